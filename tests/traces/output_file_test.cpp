@@ -1,0 +1,90 @@
+#include "traces/output_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/test_data.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::size_t entries_in(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(OutputFile, IsAbsentUntilCommittedAndCompleteAfter) {
+  const test::TemporaryFolder folder;
+  OutputFile file(folder / "a.csv", Overwrite::kRefuse);
+  file.write("hello");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.csv"));
+  file.commit();
+  EXPECT_EQ(read_text_file(folder / "a.csv"), "hello");
+  EXPECT_EQ(entries_in(folder.path()), 1U);
+}
+
+TEST(OutputFile, LeavesNothingBehindWhenDroppedWithoutCommit) {
+  const test::TemporaryFolder folder;
+  { OutputFile(folder / "a.csv", Overwrite::kRefuse).write("half"); }
+  EXPECT_EQ(entries_in(folder.path()), 0U);
+}
+
+TEST(OutputFile, RefusesToOverwriteAndSaysHowTo) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "a.csv") << "precious";
+  try {
+    OutputFile(folder / "a.csv", Overwrite::kRefuse);
+    FAIL() << "overwrote";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("exists already"));
+    EXPECT_THAT(error.what(), HasSubstr("--force"));
+  }
+  OutputFile allowed(folder / "a.csv", Overwrite::kAllow);
+  allowed.write("new");
+  allowed.commit();
+  EXPECT_EQ(read_text_file(folder / "a.csv"), "new");
+}
+
+TEST(OutputFile, DoesNotReplaceAFileThatAppearedMeanwhile) {
+  const test::TemporaryFolder folder;
+  OutputFile file(folder / "a.csv", Overwrite::kRefuse);
+  file.write("mine");
+  std::ofstream(folder / "a.csv") << "theirs";
+  EXPECT_THROW(file.commit(), Error);
+  EXPECT_EQ(read_text_file(folder / "a.csv"), "theirs");
+}
+
+TEST(OutputFile, ReportsAFullDisk) {
+  OutputFile file("/dev/full", Overwrite::kAllow);
+  file.write("x");
+  try {
+    file.commit();
+    FAIL() << "wrote to a full disk";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/dev/full"));
+    EXPECT_THAT(error.what(), HasSubstr("disk is full"));
+  }
+}
+
+TEST(OutputFile, NamesAMissingFolder) {
+  try {
+    OutputFile("/nowhere/at/all/a.csv", Overwrite::kRefuse);
+    FAIL() << "opened";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("/nowhere/at/all"));
+  }
+}
+
+TEST(ReadFile, SaysWhatIsWrong) {
+  EXPECT_THROW(read_file("/no/such/file"), Error);
+  EXPECT_THROW(read_file("/tmp"), Error);
+  EXPECT_THROW(read_file("/proc/self/exe", 10), Error);
+}
+
+}  // namespace
+}  // namespace vestige

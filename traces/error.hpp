@@ -1,0 +1,22 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace vestige {
+
+/// A failure that the user can act on. `what()` reads "WHERE: CAUSE\n  REMEDY". The command line prints it and exits
+/// with 1. WHERE is a file (with a byte offset or field where that is known) or a flag.
+class Error : public std::runtime_error {
+ public:
+  Error(std::string_view where, std::string_view cause, std::string_view remedy);
+};
+
+/// The command was called wrongly: the same form of message, exit code 2.
+class UsageError : public Error {
+ public:
+  using Error::Error;
+};
+
+}  // namespace vestige

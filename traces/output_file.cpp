@@ -1,0 +1,153 @@
+#include "traces/output_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <utility>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::size_t kBufferBytes = 1 << 16;
+
+std::string_view remedy_for(int error_number) {
+  switch (error_number) {
+    case ENOSPC:
+    case EDQUOT:
+      return "the disk is full: free some space, or write to another disk";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "choose a folder that you may write to, or change its permissions";
+    case ENOENT:
+    case ENOTDIR:
+      return "check the name; create the folder first";
+    case EISDIR:
+      return "name a file, not a folder";
+    default:
+      return "";
+  }
+}
+
+bool is_standard_output(const std::filesystem::path& path) {
+  return path == "-";
+}
+
+/// Makes the rename itself durable; a folder that cannot be synced (some network disks) is no failure.
+void sync_folder(const std::filesystem::path& path) {
+  const auto parent = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  const int folder = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder < 0) return;
+  ::fsync(folder);
+  ::close(folder);
+}
+
+}  // namespace
+
+Error system_error(const std::filesystem::path& path, std::string_view doing, int error_number) {
+  return Error(path.string(), fmt::format("{}: {}", doing, std::strerror(error_number)), remedy_for(error_number));
+}
+
+void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      throw system_error(path, "could not write", errno);
+    }
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite) {
+  if (is_standard_output(path)) return;
+  std::error_code ignored;
+  const auto status = std::filesystem::symlink_status(path, ignored);
+  if (!std::filesystem::exists(status)) {
+    const auto parent = path.parent_path();
+    if (!parent.empty() && !std::filesystem::is_directory(parent, ignored))
+      throw Error(path.string(), fmt::format("there is no folder '{}'", parent.string()), "create it first");
+    return;
+  }
+  if (std::filesystem::is_directory(status)) throw Error(path.string(), "is a folder", "name a file");
+  if (overwrite == Overwrite::kRefuse && std::filesystem::is_regular_file(status))
+    throw Error(path.string(), "exists already", "choose another name, or add --force to overwrite it");
+}
+
+void refuse_terminal(std::string_view flag) {
+  if (::isatty(STDOUT_FILENO) != 0)
+    throw UsageError(flag, "this is binary and standard output is a terminal", "redirect it, or name a file");
+}
+
+OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite)
+    : path_(std::move(path)), overwrite_(overwrite) {
+  if (is_standard_output(path_)) {
+    descriptor_ = STDOUT_FILENO;
+    return;
+  }
+  refuse_overwrite(path_, overwrite_);
+  std::error_code ignored;
+  if (std::filesystem::exists(path_, ignored) && !std::filesystem::is_regular_file(path_, ignored)) {
+    // A device or a pipe has no complete-or-absent: write to it as it comes.
+    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
+    if (descriptor_ < 0) throw system_error(path_, "could not open for writing", errno);
+    return;
+  }
+  std::string name = (path_.parent_path() / fmt::format(".{}.XXXXXX", path_.filename().string())).string();
+  descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor_ < 0) throw system_error(path_, "could not create", errno);
+  temporary_path_ = name;
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  ::fchmod(descriptor_, 0666 & ~mask);
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0 && descriptor_ != STDOUT_FILENO) ::close(descriptor_);
+  if (!temporary_path_.empty()) ::unlink(temporary_path_.c_str());
+}
+
+void OutputFile::write(std::span<const std::byte> bytes) {
+  write(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+void OutputFile::write(std::string_view text) {
+  buffer_.append(text);
+  if (buffer_.size() >= kBufferBytes) flush();
+}
+
+void OutputFile::flush() {
+  write_all(descriptor_, std::as_bytes(std::span(buffer_)), path_);
+  buffer_.clear();
+}
+
+void OutputFile::commit() {
+  flush();
+  if (temporary_path_.empty()) return;
+  if (::fsync(descriptor_) != 0) throw system_error(path_, "could not write", errno);
+  if (::close(std::exchange(descriptor_, -1)) != 0) throw system_error(path_, "could not write", errno);
+  if (overwrite_ == Overwrite::kRefuse) {
+    // link() refuses an existing name, where rename() would replace a file made meanwhile.
+    if (::link(temporary_path_.c_str(), path_.c_str()) == 0) {
+      ::unlink(temporary_path_.c_str());
+    } else if (errno == EEXIST) {
+      refuse_overwrite(path_, overwrite_);
+    } else if (::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
+      throw system_error(path_, "could not give the finished file its name", errno);
+    }
+  } else if (::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
+    throw system_error(path_, "could not give the finished file its name", errno);
+  }
+  temporary_path_.clear();
+  sync_folder(path_);
+}
+
+}  // namespace vestige

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace vestige {
+
+enum class Overwrite { kRefuse, kAllow };
+
+/// A file that is complete or absent: bytes go to a temporary file in the same folder, `commit` syncs it and gives it
+/// its name. Destroyed without `commit`, it leaves nothing behind. The name "-" is standard output, written as it comes.
+///
+/// Every function throws `Error` naming the file: it exists (and `Overwrite::kRefuse`), no such folder, permission,
+/// disk full.
+class OutputFile {
+ public:
+  OutputFile(std::filesystem::path path, Overwrite overwrite);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+  void commit();
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Where the bytes are until `commit`, for libraries that insist on a file name of their own.
+  const std::filesystem::path& temporary_path() const { return temporary_path_; }
+
+ private:
+  void flush();
+
+  std::filesystem::path path_;
+  std::filesystem::path temporary_path_;
+  Overwrite overwrite_;
+  int descriptor_ = -1;
+  std::string buffer_;
+};
+
+/// Throws `Error` when `path` exists and may not be overwritten: to be called before long work, not after it.
+void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite);
+
+/// Throws `UsageError` when standard output is a terminal: binary data would garble it.
+void refuse_terminal(std::string_view flag);
+
+/// Writes all of `bytes` to `descriptor`; throws `Error` naming `path`.
+void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path);
+
+/// The error of a failed system call on `path`, with a remedy where one is known (permission, disk full, no folder).
+class Error system_error(const std::filesystem::path& path, std::string_view doing, int error_number);
+
+}  // namespace vestige

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "traces/pose.hpp"
+
+namespace vestige {
+
+/// A collider is a point with an id that stays the same over the whole trace.
+struct ColliderSample {
+  std::uint32_t id = 0;
+  glm::dvec3 position_m = glm::dvec3(0);  ///< world
+};
+
+/// One frame: the avatar and every collider present at `time_ns`.
+struct TraceFrame {
+  std::uint64_t index = 0;   ///< counts from 0 (MCAP's sequence)
+  std::int64_t time_ns = 0;  ///< since the start of the trace, never decreasing
+  Pose pose;
+  std::vector<ColliderSample> colliders;  ///< any order, each id at most once
+  std::vector<std::uint32_t> teleported;  ///< ids that jumped here since the last frame: their segment tests nothing
+};
+
+/// What the metadata record `session` says: format_version, argv, commit, machine, clock, wall_start, sha256 of each
+/// attachment, ….
+using Session = std::map<std::string, std::string>;
+
+}  // namespace vestige
