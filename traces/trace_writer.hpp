@@ -1,0 +1,76 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "traces/avatar.hpp"
+#include "traces/mcap/compression.hpp"
+#include "traces/output_file.hpp"
+#include "traces/trace.hpp"
+
+namespace vestige {
+
+using Compression = mcap::Compression;
+
+struct TraceWriterOptions {
+  Overwrite overwrite = Overwrite::kRefuse;
+  Compression compression = Compression::kZstd;
+  std::size_t chunk_bytes = std::size_t{1} << 20;  ///< uncompressed size at which a chunk is closed
+  double chunk_s = 0.1;                            ///< age, by the wall clock, at which a chunk is closed
+};
+
+/// What makes a trace one self-contained file. The bytes must stay until the writer has been made.
+struct TraceAttachments {
+  std::span<const std::byte> avatar_glb;
+  std::span<const std::byte> actuator_map_png;  ///< empty: none
+  std::string actuator_map_json;                ///< the map's sidecar, empty: none
+};
+
+/// Writes a trace, an MCAP file (notes in trace_format.hpp). The file appears under its own name at once and grows
+/// chunk by chunk, each written with one call, so that a program killed at any instant loses at most the chunk it was
+/// filling.
+///
+/// With `Overwrite::kAllow` an existing file is replaced only when the new one's beginning is safely on disk. When a
+/// write fails midway, what was written is kept as NAME.partial, which `TraceReader` reads, and the `Error` says so;
+/// when no frame had been written yet, nothing is left. "-" is standard output.
+///
+/// Every function throws `Error` naming the file; after that, only the destructor may be called.
+class TraceWriter {
+ public:
+  /// `session` is stored with `format_version` and the SHA-256 of each attachment added.
+  TraceWriter(const std::filesystem::path& path, Session session, const Avatar& avatar,
+              const TraceAttachments& attachments, const TraceWriterOptions& options);
+  /// Without `finish`: writes what is pending and leaves a trace without footer, which is still readable. A trace
+  /// without any frame is removed.
+  ~TraceWriter();
+  TraceWriter(const TraceWriter&) = delete;
+  TraceWriter& operator=(const TraceWriter&) = delete;
+
+  /// Precondition, checked: `index` grows (and fits 32 bits), `time_ns` is not negative and does not decrease, one
+  /// local transform for each node of the avatar, every collider id at most once.
+  void write(const TraceFrame& frame);
+
+  /// Notes that `count` messages of `topic` were lost since the last frame.
+  void note_dropped(std::string_view topic, std::uint64_t count);
+  /// Notes something that the user wants to find again.
+  void note_marker(std::string_view text);
+
+  /// Writes index and footer and syncs the file.
+  void finish();
+
+  std::uint64_t frame_count() const;
+  /// Bytes that are in the file (for limits on its size); what waits in the open chunk does not count.
+  std::uint64_t bytes_written() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace vestige
