@@ -1,0 +1,85 @@
+#include "traces/avatar_gltf.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "traces/gltf_animation.hpp"
+#include "traces/gltf_document.hpp"
+#include "traces/gltf_mesh.hpp"
+#include "traces/gltf_nodes.hpp"
+
+namespace vestige {
+
+namespace {
+
+using gltf::Report;
+
+/// A node of the lowest skin that is drawn: the lowest joint without a joint above it. Without any skin, the first node
+/// that is drawn.
+int find_root(const gltf::Document& document, const std::vector<bool>& drawn, const Avatar& avatar) {
+  int skin = -1;
+  int first_drawn = -1;
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const tinygltf::Node& node = document.model.nodes[i];
+    if (!drawn[i] || node.mesh < 0) continue;
+    if (first_drawn < 0) first_drawn = static_cast<int>(i);
+    if (node.skin >= 0 && (skin < 0 || node.skin < skin)) skin = node.skin;
+  }
+  if (skin < 0) return first_drawn;
+  const std::vector<int>& joints = document.model.skins[static_cast<std::size_t>(skin)].joints;
+  const std::set<int> is_joint(joints.begin(), joints.end());
+  std::vector<bool> is_below(drawn.size());
+  int root = -1;
+  for (const int node : avatar.node_order) {
+    const int parent = avatar.nodes[static_cast<std::size_t>(node)].parent;
+    const bool has_joint_above =
+        parent >= 0 && (is_below[static_cast<std::size_t>(parent)] || is_joint.contains(parent));
+    is_below[static_cast<std::size_t>(node)] = has_joint_above;
+    if (!has_joint_above && is_joint.contains(node) && (root < 0 || node < root)) root = node;
+  }
+  return root;
+}
+
+/// A scene that shows a skinned mesh should hold its joints too (glTF 2.0 §3.7.3.1); their transforms count all the
+/// same.
+void warn_of_joints_outside(const gltf::Document& document, const std::vector<bool>& drawn, Report& report) {
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    const tinygltf::Node& node = document.model.nodes[i];
+    if (!drawn[i] || node.mesh < 0 || node.skin < 0) continue;
+    const std::vector<int>& joints = document.model.skins[static_cast<std::size_t>(node.skin)].joints;
+    if (!std::all_of(joints.begin(), joints.end(), [&](int joint) { return drawn[static_cast<std::size_t>(joint)]; }))
+      report.warn(fmt::format("nodes[{}].skin", i), "has joints outside the scene");
+  }
+}
+
+[[noreturn]] void fail_without_triangles(const Report& report) {
+  std::string cause = "there are no triangles that the default scene shows";
+  for (const std::string& warning : report.warnings()) cause += "\n  also: " + warning;
+  report.fail("", cause, "name a file that holds an avatar");
+}
+
+}  // namespace
+
+Avatar parse_avatar_glb(std::span<const std::byte> glb, std::string_view name) {
+  Report report(name);
+  const gltf::Document document = gltf::load_document(glb, report);
+  Avatar avatar;
+  gltf::read_nodes(document, avatar, report);
+  const std::vector<gltf::Skin> skins = gltf::read_skins(document, avatar, report);
+  const std::vector<bool> drawn = gltf::nodes_drawn(document, avatar, report);
+  gltf::read_meshes(document, skins, drawn, avatar, report);
+  gltf::read_animations(document, avatar, report);
+  if (avatar.triangles.empty()) fail_without_triangles(report);
+
+  avatar.root_node = find_root(document, drawn, avatar);
+  warn_of_joints_outside(document, drawn, report);
+  std::set<int> joints;
+  for (const gltf::Skin& skin : skins) joints.insert(skin.joints.begin(), skin.joints.end());
+  avatar.joint_count = joints.size();
+  avatar.warnings = report.warnings();
+  return avatar;
+}
+
+}  // namespace vestige

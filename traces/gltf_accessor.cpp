@@ -1,0 +1,286 @@
+#include "traces/gltf_accessor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace vestige::gltf {
+
+namespace {
+
+struct ComponentType {
+  std::size_t bytes;
+  Component plain;
+  Component normalized;
+  std::string_view name;
+};
+
+/// Null for a number that glTF 2.0 does not define (5124, int, is one).
+const ComponentType* component_type(int number) {
+  static constexpr std::array<ComponentType, 7> kTypes = {
+      ComponentType{1, kInt8, kNormalizedInt8, "int8"},
+      ComponentType{1, kUint8, kNormalizedUint8, "uint8"},
+      ComponentType{2, kInt16, kNormalizedInt16, "int16"},
+      ComponentType{2, kUint16, kNormalizedUint16, "uint16"},
+      ComponentType{0, kFloat, kFloat, ""},
+      ComponentType{4, kUint32, kUint32, "uint32"},
+      ComponentType{4, kFloat, kFloat, "float"},
+  };
+  const auto index = static_cast<std::size_t>(number - TINYGLTF_COMPONENT_TYPE_BYTE);
+  return index < kTypes.size() && kTypes[index].bytes != 0 ? &kTypes[index] : nullptr;
+}
+
+std::string_view type_name(int type) {
+  switch (type) {
+    case TINYGLTF_TYPE_SCALAR:
+      return "SCALAR";
+    case TINYGLTF_TYPE_VEC2:
+      return "VEC2";
+    case TINYGLTF_TYPE_VEC3:
+      return "VEC3";
+    case TINYGLTF_TYPE_VEC4:
+      return "VEC4";
+    case TINYGLTF_TYPE_MAT2:
+      return "MAT2";
+    case TINYGLTF_TYPE_MAT3:
+      return "MAT3";
+    default:
+      return "MAT4";
+  }
+}
+
+std::string format_name(int type, unsigned components) {
+  std::string names;
+  for (int number = TINYGLTF_COMPONENT_TYPE_BYTE; number <= TINYGLTF_COMPONENT_TYPE_FLOAT; ++number) {
+    const ComponentType* known = component_type(number);
+    if (known == nullptr) continue;
+    if ((components & known->plain) != 0) names += fmt::format("{}{}", names.empty() ? "" : " or ", known->name);
+    if ((components & known->normalized & ~known->plain) != 0)
+      names += fmt::format("{}normalised {}", names.empty() ? "" : " or ", known->name);
+  }
+  return fmt::format("{} of {}", type_name(type), names);
+}
+
+std::size_t component_count(int type) {
+  return static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
+}
+
+/// The columns of a matrix start at multiples of 4 bytes (glTF 2.0 §3.6.2.4).
+std::size_t element_bytes(int type, std::size_t bytes) {
+  const auto matrix = [&](std::size_t size) { return size * ((size * bytes + 3) / 4 * 4); };
+  if (type == TINYGLTF_TYPE_MAT2) return matrix(2);
+  if (type == TINYGLTF_TYPE_MAT3) return matrix(3);
+  if (type == TINYGLTF_TYPE_MAT4) return matrix(4);
+  return component_count(type) * bytes;
+}
+
+std::string accessor_path(std::size_t index, std::string_view property = {}) {
+  return fmt::format("accessors[{}]{}", index, property);
+}
+
+/// `count` elements from `offset` on must lie inside the view, and the view inside its buffer. All numbers are below
+/// 2³³, so that no product or sum here can overflow 64 bits.
+void check_range(const Document& document, int view_index, std::uint64_t offset, std::uint64_t count,
+                 std::uint64_t stride, std::uint64_t size, const std::string& path, const Report& report) {
+  const auto index = static_cast<std::size_t>(view_index);
+  const tinygltf::BufferView& view = document.model.bufferViews[index];
+  const std::uint64_t buffer_bytes = document.buffers[static_cast<std::size_t>(view.buffer)].size();
+  if (std::uint64_t{view.byteOffset} + view.byteLength > buffer_bytes)
+    report.fail(fmt::format("bufferViews[{}]", index),
+                fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", view.byteLength,
+                            view.byteOffset, view.buffer, buffer_bytes));
+  if (offset + (count - 1) * stride + size > view.byteLength)
+    report.fail(path, fmt::format("{} elements of {} bytes from byte {} on, {} bytes apart, do not lie inside "
+                                  "bufferViews[{}] of {} bytes",
+                                  count, size, offset, stride, index, view.byteLength));
+}
+
+void check_sparse(const Document& document, const tinygltf::Accessor& accessor, std::size_t index, std::size_t size,
+                  const Report& report) {
+  const auto count = static_cast<std::uint64_t>(accessor.sparse.count);
+  if (count > accessor.count)
+    report.fail(accessor_path(index, ".sparse.count"),
+                fmt::format("{} is more than the accessor's {} elements", count, accessor.count));
+  const ComponentType* type = component_type(accessor.sparse.indices.componentType);
+  if (type == nullptr || (type->plain & (kUint8 | kUint16 | kUint32)) == 0)
+    report.fail(accessor_path(index, ".sparse.indices.componentType"), "is no unsigned integer type");
+  check_range(document, accessor.sparse.indices.bufferView,
+              static_cast<std::uint64_t>(accessor.sparse.indices.byteOffset), count, type->bytes, type->bytes,
+              accessor_path(index, ".sparse.indices"), report);
+  check_range(document, accessor.sparse.values.bufferView,
+              static_cast<std::uint64_t>(accessor.sparse.values.byteOffset), count, size, size,
+              accessor_path(index, ".sparse.values"), report);
+}
+
+std::uint32_t read_unsigned(const std::byte* bytes, std::size_t size) {
+  std::uint32_t value = 0;
+  std::memcpy(&value, bytes, size);  // little-endian: the low bytes come first
+  return value;
+}
+
+template <typename T>
+double read_as(const std::byte* bytes) {
+  T value = {};
+  std::memcpy(&value, bytes, sizeof value);
+  return static_cast<double>(value);
+}
+
+}  // namespace
+
+void check_accessors(const Document& document, Report& report) {
+  for (std::size_t i = 0; i < document.model.accessors.size(); ++i) {
+    const tinygltf::Accessor& accessor = document.model.accessors[i];
+    const ComponentType* type = component_type(accessor.componentType);
+    if (type == nullptr)
+      report.fail(accessor_path(i, ".componentType"), fmt::format("{} does not exist", accessor.componentType));
+    // Without data of its own an accessor is all zeros, of a length that nothing else would bound.
+    if (accessor.count > document.file_bytes)
+      report.fail(accessor_path(i, ".count"),
+                  fmt::format("{} elements do not fit into a file of {} bytes", accessor.count, document.file_bytes));
+    const std::size_t size = element_bytes(accessor.type, type->bytes);
+    if (accessor.bufferView >= 0) {
+      const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
+      const std::size_t stride = view.byteStride != 0 ? view.byteStride : size;
+      if (stride < size)
+        report.fail(accessor_path(i),
+                    fmt::format("elements of {} bytes overlap at a byteStride of {}", size, view.byteStride));
+      check_range(document, accessor.bufferView, accessor.byteOffset, accessor.count, stride, size, accessor_path(i),
+                  report);
+      if ((view.byteOffset + accessor.byteOffset) % type->bytes != 0 || stride % type->bytes != 0)
+        report.warn(accessor_path(i), "is not aligned to its component type");
+    }
+    if (accessor.sparse.isSparse) check_sparse(document, accessor, i, size, report);
+  }
+}
+
+AccessorReader::AccessorReader(const Document& document, int accessor, const Format& format, std::string_view use,
+                               const Report& report)
+    : accessor_(document.model.accessors[static_cast<std::size_t>(accessor)]),
+      index_(accessor),
+      use_(use),
+      report_(report),
+      count_(accessor_.count) {
+  const ComponentType* type = component_type(accessor_.componentType);
+  component_ = accessor_.normalized ? type->normalized : type->plain;
+  component_bytes_ = type->bytes;
+  const auto index = static_cast<std::size_t>(accessor);
+  if (accessor_.type != format.type || (component_ & format.components) == 0)
+    report.fail(accessor_path(index), fmt::format("is {}, but {} needs {}", format_name(accessor_.type, component_),
+                                                  use, format_name(format.type, format.components)));
+  const std::size_t size = element_bytes(accessor_.type, component_bytes_);
+  if (accessor_.bufferView >= 0) {
+    const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(accessor_.bufferView)];
+    if (view.byteStride != 0 && format.stride == Stride::kPacked)
+      report.fail(fmt::format("bufferViews[{}].byteStride", accessor_.bufferView),
+                  fmt::format("is only for vertex attributes, not for {}", use));
+    first_ = document.buffers[static_cast<std::size_t>(view.buffer)].data() + view.byteOffset + accessor_.byteOffset;
+    stride_ = view.byteStride != 0 ? view.byteStride : size;
+  } else {
+    static constexpr std::array<std::byte, 64> kZeros = {};
+    first_ = kZeros.data();
+  }
+  if (accessor_.sparse.isSparse) substitute_sparse(document, report);
+}
+
+void AccessorReader::substitute_sparse(const Document& document, const Report& report) {
+  const std::size_t size = element_bytes(accessor_.type, component_bytes_);
+  dense_.resize(count_ * size);
+  for (std::size_t i = 0; i < count_; ++i) std::memcpy(dense_.data() + i * size, first_ + i * stride_, size);
+  first_ = dense_.data();
+  stride_ = size;
+
+  const auto bytes_at = [&](int view_index, int offset) {
+    const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(view_index)];
+    return document.buffers[static_cast<std::size_t>(view.buffer)].data() + view.byteOffset +
+           static_cast<std::size_t>(offset);
+  };
+  const auto& sparse = accessor_.sparse;
+  const std::byte* indices = bytes_at(sparse.indices.bufferView, sparse.indices.byteOffset);
+  const std::byte* values = bytes_at(sparse.values.bufferView, sparse.values.byteOffset);
+  const std::size_t index_bytes = component_type(sparse.indices.componentType)->bytes;
+  std::uint64_t next = 0;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(sparse.count); ++i) {
+    const std::uint32_t target = read_unsigned(indices + i * index_bytes, index_bytes);
+    if (target < next || target >= count_)
+      report.fail(accessor_path(static_cast<std::size_t>(index_), ".sparse.indices"),
+                  fmt::format("index {} is {}, not increasing or not below {}", i, target, count_));
+    next = std::uint64_t{target} + 1;
+    std::memcpy(dense_.data() + target * size, values + i * size, size);
+  }
+}
+
+double AccessorReader::stored(std::size_t i, std::size_t c) const {
+  const std::byte* bytes = at(i, c);
+  switch (component_) {
+    case kFloat:
+      return read_as<float>(bytes);
+    case kInt8:
+    case kNormalizedInt8:
+      return read_as<std::int8_t>(bytes);
+    case kUint8:
+    case kNormalizedUint8:
+      return read_as<std::uint8_t>(bytes);
+    case kInt16:
+    case kNormalizedInt16:
+      return read_as<std::int16_t>(bytes);
+    case kUint16:
+    case kNormalizedUint16:
+      return read_as<std::uint16_t>(bytes);
+    case kUint32:
+      return read_as<std::uint32_t>(bytes);
+  }
+  return 0;
+}
+
+double AccessorReader::number(std::size_t i, std::size_t c) const {
+  const double value = stored(i, c);
+  switch (component_) {
+    case kNormalizedInt8:
+      return std::max(value / 127, -1.0);
+    case kNormalizedUint8:
+      return value / 255;
+    case kNormalizedInt16:
+      return std::max(value / 32767, -1.0);
+    case kNormalizedUint16:
+      return value / 65535;
+    default:
+      return value;
+  }
+}
+
+float AccessorReader::finite(std::size_t i, std::size_t c) const {
+  const auto value = static_cast<float>(number(i, c));
+  if (!std::isfinite(value))
+    report_.fail(accessor_path(static_cast<std::size_t>(index_)),
+                 fmt::format("element {} of {} is not finite", i, use_));
+  return value;
+}
+
+std::uint32_t AccessorReader::integer(std::size_t i, std::size_t c) const {
+  return read_unsigned(at(i, c), component_bytes_);
+}
+
+void AccessorReader::compare_bounds(Report& report) const {
+  // Exporters print these numbers with six digits.
+  const auto differs = [](double said, double found) {
+    return !(std::abs(said - found) <= 1e-5 * std::max(1.0, std::abs(found)));
+  };
+  for (std::size_t c = 0; c < component_count(accessor_.type); ++c) {
+    double least = stored(0, c);
+    double most = least;
+    for (std::size_t i = 1; i < count_; ++i) {
+      least = std::min(least, stored(i, c));
+      most = std::max(most, stored(i, c));
+    }
+    const auto index = static_cast<std::size_t>(index_);
+    if (c < accessor_.minValues.size() && differs(accessor_.minValues[c], least))
+      report.warn(accessor_path(index, ".min"), "is not the minimum of the data");
+    if (c < accessor_.maxValues.size() && differs(accessor_.maxValues[c], most))
+      report.warn(accessor_path(index, ".max"), "is not the maximum of the data");
+  }
+}
+
+}  // namespace vestige::gltf

@@ -1,0 +1,148 @@
+#include "traces/gltf_animation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "traces/gltf_accessor.hpp"
+
+namespace vestige::gltf {
+
+namespace {
+
+// Channels may share accessors, but are stored one by one: bounds what a small file can ask for. Ten minutes of 60
+// joints at 120 Hz are half of it.
+constexpr std::size_t kMostNumbers = std::size_t{1} << 26;
+
+std::optional<AnimatedProperty> animated_property(const std::string& path) {
+  if (path == "translation") return AnimatedProperty::kTranslation;
+  if (path == "rotation") return AnimatedProperty::kRotation;
+  if (path == "scale") return AnimatedProperty::kScale;
+  return std::nullopt;
+}
+
+Interpolation interpolation(const std::string& name) {
+  if (name == "STEP") return Interpolation::kStep;
+  if (name == "CUBICSPLINE") return Interpolation::kCubicSpline;
+  return Interpolation::kLinear;
+}
+
+class AnimationReader {
+ public:
+  AnimationReader(const Document& document, Report& report) : document_(document), report_(report) {}
+
+  Animation read(std::size_t index) {
+    const tinygltf::Animation& source = document_.model.animations[index];
+    Animation animation;
+    animation.name = source.name;
+    std::set<std::pair<int, AnimatedProperty>> targets;
+    for (std::size_t c = 0; c < source.channels.size(); ++c) {
+      const tinygltf::AnimationChannel& channel = source.channels[c];
+      const std::string path = fmt::format("animations[{}].channels[{}]", index, c);
+      const std::optional<AnimatedProperty> property = animated_property(channel.target_path);
+      if (!property) {
+        report_.warn(path + ".target", fmt::format("ignored the animation of '{}'", channel.target_path));
+        continue;
+      }
+      if (!targets.emplace(channel.target_node, *property).second)
+        report_.fail(path + ".target", fmt::format("animates the {} of nodes[{}] a second time", channel.target_path,
+                                                   channel.target_node));
+      if (!document_.model.nodes[static_cast<std::size_t>(channel.target_node)].matrix.empty())
+        report_.fail(path + ".target",
+                     fmt::format("animates nodes[{}], whose `matrix` forbids that", channel.target_node));
+      animation.channels.push_back(read_channel(source, index, channel, path, *property));
+      animation.duration_s = std::max(animation.duration_s, double{animation.channels.back().times_s.back()});
+    }
+    return animation;
+  }
+
+ private:
+  AnimationChannel read_channel(const tinygltf::Animation& source, std::size_t animation,
+                                const tinygltf::AnimationChannel& channel, const std::string& path,
+                                AnimatedProperty property) {
+    if (static_cast<std::size_t>(channel.sampler) >= source.samplers.size())
+      report_.fail(path + ".sampler",
+                   fmt::format("{} does not exist: there are {} samplers", channel.sampler, source.samplers.size()));
+    const tinygltf::AnimationSampler& sampler = source.samplers[static_cast<std::size_t>(channel.sampler)];
+    const std::string sampler_path = fmt::format("animations[{}].samplers[{}]", animation, channel.sampler);
+    AnimationChannel result;
+    result.node = channel.target_node;
+    result.property = property;
+    result.interpolation = interpolation(sampler.interpolation);
+    const AccessorReader times(document_, sampler.input, {TINYGLTF_TYPE_SCALAR, kFloat, Stride::kPacked},
+                               sampler_path + ".input", report_);
+    const bool is_rotation = property == AnimatedProperty::kRotation;
+    constexpr unsigned kNormalized = kNormalizedInt8 | kNormalizedUint8 | kNormalizedInt16 | kNormalizedUint16;
+    const Format format = is_rotation ? Format{TINYGLTF_TYPE_VEC4, kFloat | kNormalized, Stride::kPacked}
+                                      : Format{TINYGLTF_TYPE_VEC3, kFloat, Stride::kPacked};
+    const AccessorReader values(document_, sampler.output, format, sampler_path + ".output", report_);
+    check_counts(times, values, result.interpolation, sampler_path);
+    const std::size_t components = is_rotation ? 4 : 3;
+    numbers_ += times.count() + components * values.count();
+    if (numbers_ > kMostNumbers)
+      report_.fail(path, fmt::format("takes the animations beyond {} numbers", kMostNumbers),
+                   "leave out animations, or resample them");
+    read_times(times, sampler_path + ".input", result);
+    read_values(values, components, result);
+    if (is_rotation) check_rotations(result, sampler_path + ".output");
+    if (checked_bounds_.insert(sampler.input).second) times.compare_bounds(report_);
+    return result;
+  }
+
+  void check_counts(const AccessorReader& times, const AccessorReader& values, Interpolation kind,
+                    const std::string& path) const {
+    const std::size_t factor = kind == Interpolation::kCubicSpline ? 3 : 1;
+    if (values.count() != factor * times.count())
+      report_.fail(path + ".output", fmt::format("has {} elements where {} times need {}", values.count(),
+                                                 times.count(), factor * times.count()));
+    if (factor == 3 && times.count() < 2) report_.fail(path + ".input", "CUBICSPLINE needs at least 2 times");
+  }
+
+  void read_times(const AccessorReader& reader, const std::string& path, AnimationChannel& channel) const {
+    channel.times_s.reserve(reader.count());
+    for (std::size_t i = 0; i < reader.count(); ++i) {
+      const float time_s = reader.finite(i, 0);
+      if (time_s < 0) report_.fail(path, fmt::format("time {} is negative ({} s)", i, time_s));
+      if (i > 0 && time_s <= channel.times_s.back())
+        report_.fail(path, fmt::format("time {} ({} s) is not later than the one before", i, time_s));
+      channel.times_s.push_back(time_s);
+    }
+  }
+
+  static void read_values(const AccessorReader& reader, std::size_t components, AnimationChannel& channel) {
+    channel.values.reserve(reader.count() * components);
+    for (std::size_t i = 0; i < reader.count(); ++i)
+      for (std::size_t c = 0; c < components; ++c) channel.values.push_back(reader.finite(i, c));
+  }
+
+  /// Every key, though not the tangents of a spline, must be a rotation.
+  void check_rotations(const AnimationChannel& channel, const std::string& path) {
+    const bool is_spline = channel.interpolation == Interpolation::kCubicSpline;
+    for (std::size_t key = 0; key < channel.times_s.size(); ++key) {
+      const float* q = channel.values.data() + 4 * (is_spline ? 3 * key + 1 : key);
+      const glm::dvec4 quaternion(q[0], q[1], q[2], q[3]);
+      const double length = std::sqrt(quaternion.x * quaternion.x + quaternion.y * quaternion.y +
+                                      quaternion.z * quaternion.z + quaternion.w * quaternion.w);
+      if (!(length > 0)) report_.fail(path, fmt::format("key {} is zero, which is no rotation", key));
+      if (std::abs(length - 1) > 1e-2) report_.warn(path, "has rotations not of length 1, which were normalised");
+    }
+  }
+
+  const Document& document_;
+  Report& report_;
+  std::size_t numbers_ = 0;
+  std::set<int> checked_bounds_;
+};
+
+}  // namespace
+
+void read_animations(const Document& document, Avatar& avatar, Report& report) {
+  AnimationReader reader(document, report);
+  for (std::size_t i = 0; i < document.model.animations.size(); ++i) avatar.animations.push_back(reader.read(i));
+}
+
+}  // namespace vestige::gltf

@@ -1,0 +1,298 @@
+#include "traces/gltf_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "traces/gltf_accessor.hpp"
+#include "traces/gltf_influences.hpp"
+
+namespace vestige::gltf {
+
+namespace {
+
+// One small file can show one mesh thousands of times; an avatar of this size would be beyond any use.
+constexpr std::size_t kMostVertices = std::size_t{1} << 23;
+constexpr std::size_t kMostTriangles = std::size_t{1} << 24;
+
+/// A primitive as one node shows it.
+struct Part {
+  int node = 0;
+  int skin = -1;
+  std::size_t mesh = 0;
+  std::size_t primitive = 0;
+  std::size_t vertex_count = 0;
+  std::size_t corner_count = 0;  ///< indices, or vertices where there are none
+};
+
+std::string part_path(const Part& part, std::string_view property = {}) {
+  return fmt::format("meshes[{}].primitives[{}]{}", part.mesh, part.primitive, property);
+}
+
+std::string attribute_path(const Part& part, std::string_view name) {
+  return part_path(part, fmt::format(".attributes.{}", name));
+}
+
+std::size_t triangle_count(int mode, std::size_t corners) {
+  if (mode == TINYGLTF_MODE_TRIANGLES) return corners / 3;
+  return corners < 3 ? 0 : corners - 2;
+}
+
+class MeshReader {
+ public:
+  MeshReader(const Document& document, const std::vector<Skin>& skins, Avatar& avatar, Report& report)
+      : document_(document), skins_(skins), skin_palette_(skins.size()), avatar_(avatar), report_(report) {}
+
+  void read(const std::vector<bool>& drawn) {
+    const std::vector<Part> parts = collect(drawn);
+    reserve(parts);
+    for (const Part& part : parts) {
+      const auto [vertices, is_new] = first_vertex_.try_emplace(key(part), avatar_.position_bind.size());
+      if (is_new) read_vertices(part);
+      read_triangles(part, vertices->second);
+    }
+  }
+
+ private:
+  /// What decides about a part's vertices. Primitives that share it share their vertices.
+  using Key = std::pair<std::array<int, 2>, std::vector<std::pair<std::string, int>>>;
+
+  const tinygltf::Primitive& primitive(const Part& part) const {
+    return document_.model.meshes[part.mesh].primitives[part.primitive];
+  }
+
+  const tinygltf::Accessor& accessor(int index) const {
+    return document_.model.accessors[static_cast<std::size_t>(index)];
+  }
+
+  Key key(const Part& part) const {
+    Key result = {{part.skin, part.skin < 0 ? part.node : -1}, {}};
+    for (const auto& [name, index] : primitive(part).attributes)
+      if (name == "POSITION" || name == "TEXCOORD_0" ||
+          (part.skin >= 0 && (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_"))))
+        result.second.emplace_back(name, index);
+    return result;
+  }
+
+  /// The parts that have triangles, in node, primitive order.
+  std::vector<Part> collect(const std::vector<bool>& drawn) {
+    std::vector<Part> parts;
+    for (std::size_t node = 0; node < drawn.size(); ++node) {
+      const tinygltf::Node& source = document_.model.nodes[node];
+      if (!drawn[node] || source.mesh < 0) continue;
+      Part part;
+      part.node = static_cast<int>(node);
+      part.skin = source.skin;
+      part.mesh = static_cast<std::size_t>(source.mesh);
+      const std::size_t count = document_.model.meshes[part.mesh].primitives.size();
+      for (part.primitive = 0; part.primitive < count; ++part.primitive)
+        if (has_triangles(part)) parts.push_back(part);
+    }
+    return parts;
+  }
+
+  bool has_triangles(Part& part) {
+    const tinygltf::Primitive& source = primitive(part);
+    if (source.mode < TINYGLTF_MODE_TRIANGLES) {
+      report_.warn(part_path(part), "skipped points or lines");
+      return false;
+    }
+    const auto position = source.attributes.find("POSITION");
+    if (position == source.attributes.end()) {
+      report_.warn(part_path(part), "skipped what has no POSITION");
+      return false;
+    }
+    if (!source.targets.empty()) report_.warn(part_path(part, ".targets"), "ignored morph targets");
+    check_binding(part);
+    part.vertex_count = accessor(position->second).count;
+    part.corner_count = source.indices < 0 ? part.vertex_count : accessor(source.indices).count;
+    if (triangle_count(source.mode, part.corner_count) == 0 ||
+        (source.mode == TINYGLTF_MODE_TRIANGLES && part.corner_count % 3 != 0))
+      report_.warn(part_path(part), "ignored corners that make no whole triangle");
+    return triangle_count(source.mode, part.corner_count) > 0;
+  }
+
+  void check_binding(const Part& part) {
+    const bool has_joints = primitive(part).attributes.contains("JOINTS_0");
+    if (part.skin >= 0 && !has_joints)
+      report_.fail(part_path(part, ".attributes"),
+                   fmt::format("has no JOINTS_0, but nodes[{}] shows it with skins[{}]", part.node, part.skin));
+    if (part.skin < 0 && has_joints)
+      report_.warn(part_path(part, ".attributes"), "has joints, but is shown without a skin");
+  }
+
+  void reserve(const std::vector<Part>& parts) {
+    std::size_t vertices = 0;
+    std::size_t triangles = 0;
+    std::map<Key, bool> seen;
+    for (const Part& part : parts) {
+      if (seen.try_emplace(key(part), true).second) vertices += part.vertex_count;
+      triangles += triangle_count(primitive(part).mode, part.corner_count);
+      if (vertices > kMostVertices || triangles > kMostTriangles)
+        report_.fail(part_path(part),
+                     fmt::format("takes the avatar beyond {} vertices or {} triangles", kMostVertices, kMostTriangles),
+                     "simplify the mesh");
+    }
+    avatar_.position_bind.reserve(vertices);
+    avatar_.texture_coordinate.reserve(vertices);
+    avatar_.influences.reserve(vertices);
+    avatar_.triangles.reserve(triangles);
+  }
+
+  AccessorReader attribute(const Part& part, const std::string& name, int type, unsigned components) const {
+    const auto found = primitive(part).attributes.find(name);
+    const std::string path = attribute_path(part, name);
+    if (found == primitive(part).attributes.end()) report_.fail(path, "is missing");
+    AccessorReader reader(document_, found->second, {type, components, Stride::kAny}, path, report_);
+    if (reader.count() != part.vertex_count)
+      report_.fail(path, fmt::format("has {} elements for {} vertices", reader.count(), part.vertex_count));
+    return reader;
+  }
+
+  void read_vertices(const Part& part) {
+    constexpr unsigned kSmall = kInt8 | kUint8 | kInt16 | kUint16;
+    constexpr unsigned kNormalized = kNormalizedInt8 | kNormalizedUint8 | kNormalizedInt16 | kNormalizedUint16;
+    const unsigned quantized = document_.quantized ? kSmall | kNormalized : 0U;
+    const AccessorReader position = attribute(part, "POSITION", TINYGLTF_TYPE_VEC3, kFloat | quantized);
+    position.compare_bounds(report_);
+    for (std::size_t i = 0; i < part.vertex_count; ++i)
+      avatar_.position_bind.emplace_back(position.finite(i, 0), position.finite(i, 1), position.finite(i, 2));
+    if (primitive(part).attributes.contains("TEXCOORD_0")) {
+      const AccessorReader uv =
+          attribute(part, "TEXCOORD_0", TINYGLTF_TYPE_VEC2, kFloat | kNormalizedUint8 | kNormalizedUint16 | quantized);
+      for (std::size_t i = 0; i < part.vertex_count; ++i)
+        avatar_.texture_coordinate.emplace_back(uv.finite(i, 0), uv.finite(i, 1));
+    } else {
+      avatar_.texture_coordinate.resize(avatar_.position_bind.size(), glm::vec2(0));
+    }
+    if (part.skin >= 0)
+      read_influences(part);
+    else
+      follow_node(part);
+  }
+
+  void follow_node(const Part& part) {
+    Influences rigid;
+    rigid.palette[0] = palette_index(part.node, glm::dmat4(1.0), part);
+    rigid.weight[0] = 1;
+    avatar_.influences.resize(avatar_.position_bind.size(), rigid);
+  }
+
+  /// One pair of attributes, JOINTS_n and WEIGHTS_n.
+  struct InfluenceSet {
+    AccessorReader joints;
+    AccessorReader weights;
+    std::string joints_path;
+    std::string weights_path;
+  };
+
+  std::vector<InfluenceSet> influence_sets(const Part& part) const {
+    std::vector<InfluenceSet> sets;
+    const auto& attributes = primitive(part).attributes;
+    for (std::size_t n = 0;; ++n) {
+      const std::string joints = fmt::format("JOINTS_{}", n);
+      const std::string weights = fmt::format("WEIGHTS_{}", n);
+      if (!attributes.contains(joints) && !attributes.contains(weights)) return sets;
+      sets.push_back({attribute(part, joints, TINYGLTF_TYPE_VEC4, kUint8 | kUint16),
+                      attribute(part, weights, TINYGLTF_TYPE_VEC4, kFloat | kNormalizedUint8 | kNormalizedUint16),
+                      attribute_path(part, joints), attribute_path(part, weights)});
+    }
+  }
+
+  void read_influences(const Part& part) {
+    const std::vector<InfluenceSet> sets = influence_sets(part);
+    const std::vector<std::uint16_t>& palette = skin_palette(part);
+    std::vector<Influence> influences;
+    for (std::size_t vertex = 0; vertex < part.vertex_count; ++vertex) {
+      influences.clear();
+      for (const InfluenceSet& set : sets)
+        for (std::size_t c = 0; c < 4; ++c) {
+          const std::uint32_t joint = set.joints.integer(vertex, c);
+          const auto weight = double{set.weights.finite(vertex, c)};
+          if (weight < 0)
+            report_.fail(set.weights_path, fmt::format("vertex {} has the negative weight {}", vertex, weight));
+          if (joint >= palette.size() && weight > 0)
+            report_.fail(set.joints_path, fmt::format("vertex {} names joint {}, but skins[{}] has only {}", vertex,
+                                                      joint, part.skin, palette.size()));
+          if (joint >= palette.size()) {
+            report_.warn(set.joints_path, "names joints that do not exist, without a weight");
+            continue;
+          }
+          influences.push_back({palette[joint], weight});
+        }
+      const std::uint16_t first = influences.empty() ? palette.front() : influences.front().palette;
+      avatar_.influences.push_back(combine_influences(influences, first, sets.front().weights_path, report_));
+      avatar_.influence_count = std::max(avatar_.influence_count, influences.size());
+    }
+  }
+
+  const std::vector<std::uint16_t>& skin_palette(const Part& part) {
+    const Skin& skin = skins_[static_cast<std::size_t>(part.skin)];
+    std::vector<std::uint16_t>& palette = skin_palette_[static_cast<std::size_t>(part.skin)];
+    if (palette.empty())
+      for (std::size_t joint = 0; joint < skin.joints.size(); ++joint)
+        palette.push_back(palette_index(skin.joints[joint], skin.inverse_bind[joint], part));
+    return palette;
+  }
+
+  std::uint16_t palette_index(int node, const glm::dmat4& inverse_bind, const Part& part) {
+    std::pair<int, std::array<double, 16>> entry = {node, {}};
+    for (std::size_t i = 0; i < 16; ++i)
+      entry.second[i] = inverse_bind[static_cast<int>(i / 4)][static_cast<int>(i % 4)];
+    const auto [found, is_new] = palette_.try_emplace(entry, avatar_.palette.size());
+    if (is_new) {
+      if (avatar_.palette.size() > std::numeric_limits<std::uint16_t>::max())
+        report_.fail(part_path(part), "takes the avatar beyond 65536 joints and rigid nodes", "simplify the rig");
+      avatar_.palette.push_back({node, inverse_bind});
+    }
+    return static_cast<std::uint16_t>(found->second);
+  }
+
+  /// glTF 2.0 §3.7.2.1: how the corners of strips and fans make triangles.
+  void read_triangles(const Part& part, std::size_t first_vertex) {
+    const tinygltf::Primitive& source = primitive(part);
+    std::vector<std::uint32_t> corners(part.corner_count);
+    if (source.indices < 0) {
+      for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
+    } else {
+      const std::string path = part_path(part, ".indices");
+      const AccessorReader indices(document_, source.indices,
+                                   {TINYGLTF_TYPE_SCALAR, kUint8 | kUint16 | kUint32, Stride::kPacked}, path, report_);
+      for (std::size_t i = 0; i < corners.size(); ++i) {
+        corners[i] = indices.integer(i, 0);
+        if (corners[i] >= part.vertex_count)
+          report_.fail(path,
+                       fmt::format("index {} is {}, but there are {} vertices", i, corners[i], part.vertex_count));
+      }
+    }
+    const std::size_t count = triangle_count(source.mode, corners.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<std::size_t, 3> at = {3 * i, 3 * i + 1, 3 * i + 2};
+      if (source.mode == TINYGLTF_MODE_TRIANGLE_STRIP) at = {i, i + 1 + i % 2, i + 2 - i % 2};
+      if (source.mode == TINYGLTF_MODE_TRIANGLE_FAN) at = {i + 1, i + 2, 0};
+      const glm::uvec3 triangle(corners[at[0]], corners[at[1]], corners[at[2]]);
+      avatar_.triangles.push_back(triangle + static_cast<std::uint32_t>(first_vertex));
+    }
+  }
+
+  const Document& document_;
+  const std::vector<Skin>& skins_;
+  std::vector<std::vector<std::uint16_t>> skin_palette_;  ///< for each skin's joints, once it is drawn
+  std::map<std::pair<int, std::array<double, 16>>, std::size_t> palette_;
+  std::map<Key, std::size_t> first_vertex_;
+  Avatar& avatar_;
+  Report& report_;
+};
+
+}  // namespace
+
+void read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
+                 Avatar& avatar, Report& report) {
+  MeshReader(document, skins, avatar, report).read(drawn);
+}
+
+}  // namespace vestige::gltf

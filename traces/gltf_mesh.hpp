@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "traces/avatar.hpp"
+#include "traces/gltf_document.hpp"
+
+namespace vestige::gltf {
+
+/// A skin of the file: its joints, and where each one's inverse bind matrix takes a vertex from.
+struct Skin {
+  std::vector<int> joints;               ///< nodes
+  std::vector<glm::dmat4> inverse_bind;  ///< one for each joint
+};
+
+/// All skins, drawn or not. Fails on joints that repeat and on inverse bind matrices that are too few, not affine or
+/// not finite; warns of joints without a common root and of a wrong `skeleton`, on which nothing here relies.
+std::vector<Skin> read_skins(const Document& document, const Avatar& avatar, Report& report);
+
+/// Fills palette, vertices and triangles with the meshes of the nodes that are drawn.
+void read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
+                 Avatar& avatar, Report& report);
+
+}  // namespace vestige::gltf

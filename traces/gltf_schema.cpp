@@ -1,0 +1,328 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "traces/gltf_json.hpp"
+
+namespace vestige::gltf {
+
+namespace {
+
+using nlohmann::json;
+
+enum class Type {
+  kAny,
+  kBoolean,
+  kString,
+  kStrings,
+  kNumbers,
+  kUnsigned,
+  kIndex,
+  kIndices,
+  kIndexMap,  ///< an object whose values are indices, such as a primitive's attributes
+  kObject,
+  kObjects,
+};
+enum class Need { kOptional, kRequired };
+enum class Empty { kWarned, kRefused };
+
+struct Property;
+using Object = std::span<const Property>;
+
+struct Property {
+  std::string_view name;
+  Type type = Type::kAny;
+  Need need = Need::kOptional;
+  Empty empty = Empty::kWarned;                  ///< lists only
+  std::size_t length = 0;                        ///< kNumbers: exactly so many, 0: any
+  std::uint64_t at_least = 0;                    ///< kUnsigned
+  std::uint64_t at_most = 0xFFFFFFFF;            ///< kUnsigned; a GLB has no more bytes than that
+  std::string_view into = {};                    ///< indices: the document's list that they refer to
+  std::span<const std::string_view> words = {};  ///< kString: the only ones allowed, none: any
+  Object object = {};                            ///< kObject, kObjects
+};
+
+// The parts of a document (glTF 2.0 §5), children first.
+
+constexpr std::uint64_t kInt32Max = 0x7FFFFFFF;  // tinygltf keeps a sparse accessor's numbers in an int
+
+constexpr std::array kAsset = {
+    Property{.name = "version", .type = Type::kString, .need = Need::kRequired},
+    Property{.name = "minVersion", .type = Type::kString},
+    Property{.name = "generator", .type = Type::kString},
+    Property{.name = "copyright", .type = Type::kString},
+};
+constexpr std::array kSparseIndices = {
+    Property{.name = "bufferView", .type = Type::kIndex, .need = Need::kRequired, .into = "bufferViews"},
+    Property{.name = "byteOffset", .type = Type::kUnsigned, .at_most = kInt32Max},
+    Property{
+        .name = "componentType", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 5121, .at_most = 5125},
+};
+constexpr std::array kSparseValues = {
+    Property{.name = "bufferView", .type = Type::kIndex, .need = Need::kRequired, .into = "bufferViews"},
+    Property{.name = "byteOffset", .type = Type::kUnsigned, .at_most = kInt32Max},
+};
+constexpr std::array kSparse = {
+    Property{.name = "count", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1, .at_most = kInt32Max},
+    Property{.name = "indices", .type = Type::kObject, .need = Need::kRequired, .object = kSparseIndices},
+    Property{.name = "values", .type = Type::kObject, .need = Need::kRequired, .object = kSparseValues},
+};
+constexpr std::array<std::string_view, 7> kAccessorTypes = {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"};
+constexpr std::array kAccessor = {
+    Property{.name = "bufferView", .type = Type::kIndex, .into = "bufferViews"},
+    Property{.name = "byteOffset", .type = Type::kUnsigned},
+    Property{
+        .name = "componentType", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 5120, .at_most = 5126},
+    Property{.name = "normalized", .type = Type::kBoolean},
+    Property{.name = "count", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
+    Property{.name = "type", .type = Type::kString, .need = Need::kRequired, .words = kAccessorTypes},
+    Property{.name = "max", .type = Type::kNumbers},
+    Property{.name = "min", .type = Type::kNumbers},
+    Property{.name = "sparse", .type = Type::kObject, .object = kSparse},
+    Property{.name = "name", .type = Type::kString},
+};
+constexpr std::array kBuffer = {
+    Property{.name = "uri", .type = Type::kString},
+    Property{.name = "byteLength", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
+    Property{.name = "name", .type = Type::kString},
+};
+constexpr std::array kBufferView = {
+    Property{.name = "buffer", .type = Type::kIndex, .need = Need::kRequired, .into = "buffers"},
+    Property{.name = "byteOffset", .type = Type::kUnsigned},
+    Property{.name = "byteLength", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
+    Property{.name = "byteStride", .type = Type::kUnsigned, .at_least = 4, .at_most = 252},
+    Property{.name = "target", .type = Type::kUnsigned},
+    Property{.name = "name", .type = Type::kString},
+};
+constexpr std::array kChannelTarget = {
+    Property{.name = "node", .type = Type::kIndex, .into = "nodes"},
+    Property{.name = "path", .type = Type::kString, .need = Need::kRequired},
+};
+constexpr std::array kChannel = {
+    Property{.name = "sampler", .type = Type::kUnsigned, .need = Need::kRequired, .at_most = kInt32Max},
+    Property{.name = "target", .type = Type::kObject, .need = Need::kRequired, .object = kChannelTarget},
+    Property{.name = "extensions"},
+};
+constexpr std::array<std::string_view, 3> kInterpolations = {"LINEAR", "STEP", "CUBICSPLINE"};
+constexpr std::array kSampler = {
+    Property{.name = "input", .type = Type::kIndex, .need = Need::kRequired, .into = "accessors"},
+    Property{.name = "interpolation", .type = Type::kString, .words = kInterpolations},
+    Property{.name = "output", .type = Type::kIndex, .need = Need::kRequired, .into = "accessors"},
+    Property{.name = "extensions"},
+};
+constexpr std::array kAnimation = {
+    Property{.name = "channels", .type = Type::kObjects, .need = Need::kRequired, .object = kChannel},
+    Property{.name = "samplers", .type = Type::kObjects, .need = Need::kRequired, .object = kSampler},
+    Property{.name = "name", .type = Type::kString},
+};
+constexpr std::array kPrimitive = {
+    Property{.name = "attributes",
+             .type = Type::kIndexMap,
+             .need = Need::kRequired,
+             .empty = Empty::kRefused,
+             .into = "accessors"},
+    Property{.name = "indices", .type = Type::kIndex, .into = "accessors"},
+    Property{.name = "mode", .type = Type::kUnsigned, .at_most = 6},
+    Property{.name = "targets"},
+    Property{.name = "extensions"},
+};
+constexpr std::array kMesh = {
+    Property{.name = "primitives",
+             .type = Type::kObjects,
+             .need = Need::kRequired,
+             .empty = Empty::kRefused,
+             .object = kPrimitive},
+    Property{.name = "weights", .type = Type::kNumbers},
+    Property{.name = "name", .type = Type::kString},
+};
+constexpr std::array kNode = {
+    Property{.name = "children", .type = Type::kIndices, .into = "nodes"},
+    Property{.name = "skin", .type = Type::kIndex, .into = "skins"},
+    Property{.name = "mesh", .type = Type::kIndex, .into = "meshes"},
+    Property{.name = "matrix", .type = Type::kNumbers, .length = 16},
+    Property{.name = "translation", .type = Type::kNumbers, .length = 3},
+    Property{.name = "rotation", .type = Type::kNumbers, .length = 4},
+    Property{.name = "scale", .type = Type::kNumbers, .length = 3},
+    Property{.name = "weights", .type = Type::kNumbers},
+    Property{.name = "name", .type = Type::kString},
+};
+constexpr std::array kScene = {
+    Property{.name = "nodes", .type = Type::kIndices, .into = "nodes"},
+    Property{.name = "name", .type = Type::kString},
+};
+constexpr std::array kSkin = {
+    Property{.name = "inverseBindMatrices", .type = Type::kIndex, .into = "accessors"},
+    Property{.name = "skeleton", .type = Type::kIndex, .into = "nodes"},
+    Property{
+        .name = "joints", .type = Type::kIndices, .need = Need::kRequired, .empty = Empty::kRefused, .into = "nodes"},
+    Property{.name = "name", .type = Type::kString},
+};
+constexpr std::array kDocument = {
+    Property{.name = "asset", .type = Type::kObject, .need = Need::kRequired, .object = kAsset},
+    Property{.name = "extensionsUsed", .type = Type::kStrings},
+    Property{.name = "extensionsRequired", .type = Type::kStrings},
+    Property{.name = "buffers", .type = Type::kObjects, .object = kBuffer},
+    Property{.name = "bufferViews", .type = Type::kObjects, .object = kBufferView},
+    Property{.name = "accessors", .type = Type::kObjects, .object = kAccessor},
+    Property{.name = "meshes", .type = Type::kObjects, .object = kMesh},
+    Property{.name = "skins", .type = Type::kObjects, .object = kSkin},
+    Property{.name = "nodes", .type = Type::kObjects, .object = kNode},
+    Property{.name = "scene", .type = Type::kIndex, .into = "scenes"},
+    Property{.name = "scenes", .type = Type::kObjects, .object = kScene},
+    Property{.name = "animations", .type = Type::kObjects, .object = kAnimation},
+};
+
+class Checker {
+ public:
+  Checker(json& document, Report& report) : document_(document), report_(report) {}
+
+  void check_object(json& value, Object object) {
+    if (!value.is_object()) fail("is not an object");
+    for (auto entry = value.begin(); entry != value.end(); ++entry) {
+      const auto is_named = [&](const Property& property) { return property.name == entry.key(); };
+      const auto property = std::find_if(object.begin(), object.end(), is_named);
+      path_.emplace_back(entry.key());
+      if (property == object.end())
+        report_.warn(path(), "is no property that glTF knows");
+      else
+        check(entry.value(), *property);
+      path_.pop_back();
+    }
+    for (const Property& property : object)
+      if (property.need == Need::kRequired && !value.contains(property.name))
+        fail(fmt::format("'{}' is missing", property.name));
+  }
+
+ private:
+  void check(json& value, const Property& property) {
+    switch (property.type) {
+      case Type::kAny:
+        return;
+      case Type::kBoolean:
+        if (!value.is_boolean()) fail("is neither true nor false");
+        return;
+      case Type::kString:
+        return check_string(value, property);
+      case Type::kStrings:
+        return check_each(value, property, [&](json& element) { check_string(element, property); });
+      case Type::kNumbers:
+        return check_numbers(value, property);
+      case Type::kUnsigned:
+        return check_unsigned(value, property.at_least, property.at_most);
+      case Type::kIndex:
+        return check_index(value, property);
+      case Type::kIndices:
+        return check_each(value, property, [&](json& element) { check_index(element, property); });
+      case Type::kIndexMap:
+        return check_index_map(value, property);
+      case Type::kObject:
+        return check_object(value, property.object);
+      case Type::kObjects:
+        return check_each(value, property, [&](json& element) { check_object(element, property.object); });
+    }
+  }
+
+  template <typename Check>
+  void check_each(json& value, const Property& property, Check check_element) {
+    if (!value.is_array()) fail("is not a list");
+    check_not_empty(value, property);
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      path_.emplace_back(i);
+      check_element(value[i]);
+      path_.pop_back();
+    }
+  }
+
+  void check_not_empty(const json& value, const Property& property) {
+    if (!value.empty()) return;
+    if (property.empty == Empty::kRefused) fail("is empty");
+    report_.warn(path(), "is empty");
+  }
+
+  void check_string(const json& value, const Property& property) {
+    if (!value.is_string()) fail("is not a text");
+    const auto& words = property.words;
+    if (!words.empty() && std::find(words.begin(), words.end(), value.get_ref<const std::string&>()) == words.end())
+      fail(fmt::format("'{}' is none of {}", value.get_ref<const std::string&>(), fmt::join(words, ", ")));
+  }
+
+  void check_numbers(json& value, const Property& property) {
+    if (property.length != 0 && value.is_array() && value.size() != property.length)
+      fail(fmt::format("has {} numbers instead of {}", value.size(), property.length));
+    check_each(value, property, [&](const json& element) {
+      if (!element.is_number()) fail("is not a number");
+      if (std::abs(element.get<double>()) > static_cast<double>(std::numeric_limits<float>::max()))
+        fail("does not fit into a float");
+    });
+  }
+
+  void check_unsigned(json& value, std::uint64_t at_least, std::uint64_t at_most) {
+    if (!value.is_number()) fail("is not a number");
+    // JSON does not tell 3.0 from 3; tinygltf does.
+    constexpr double kExact = 9007199254740992.0;
+    if (value.is_number_float()) {
+      const auto number = value.get<double>();
+      if (number >= 0 && number < kExact && std::trunc(number) == number) value = static_cast<std::uint64_t>(number);
+    }
+    if (!value.is_number_unsigned()) fail(fmt::format("{} is no whole number from 0 up", value.dump()));
+    const auto number = value.get<std::uint64_t>();
+    if (number < at_least || number > at_most) fail(fmt::format("{} is not in {} … {}", number, at_least, at_most));
+  }
+
+  void check_index(json& value, const Property& property) {
+    check_unsigned(value, 0, std::numeric_limits<std::uint64_t>::max());
+    const auto list = document_.find(property.into);
+    const std::size_t size = list != document_.end() && list->is_array() ? list->size() : 0;
+    if (value.get<std::uint64_t>() >= size)
+      fail(fmt::format("{} does not exist: there are {} {}", value.get<std::uint64_t>(), size, property.into));
+  }
+
+  void check_index_map(json& value, const Property& property) {
+    if (!value.is_object()) fail("is not an object");
+    check_not_empty(value, property);
+    for (auto entry = value.begin(); entry != value.end(); ++entry) {
+      path_.emplace_back(entry.key());
+      check_index(entry.value(), property);
+      path_.pop_back();
+    }
+  }
+
+  std::string path() const {
+    std::string text;
+    for (const auto& step : path_) {
+      if (const auto* index = std::get_if<std::size_t>(&step))
+        text += fmt::format("[{}]", *index);
+      else
+        text.append(text.empty() ? "" : ".").append(std::get<std::string>(step));
+    }
+    return text;
+  }
+
+  [[noreturn]] void fail(std::string_view cause) const { report_.fail(path(), cause); }
+
+  json& document_;
+  Report& report_;
+  std::vector<std::variant<std::size_t, std::string>> path_;
+};
+
+}  // namespace
+
+void check_schema(json& document, Report& report) {
+  Checker(document, report).check_object(document, kDocument);
+  const auto& version = document["asset"]["version"].get_ref<const std::string&>();
+  const std::string least = document["asset"].value("minVersion", "2.0");
+  if (!version.starts_with("2.") || least != "2.0")
+    report.fail("asset.version", fmt::format("is glTF {} (at least {}), only 2.0 can be read", version, least),
+                "export the file as glTF 2.0");
+}
+
+}  // namespace vestige::gltf

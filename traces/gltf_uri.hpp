@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+#include "traces/gltf_report.hpp"
+
+namespace vestige::gltf {
+
+bool is_data_uri(std::string_view uri);
+
+/// The bytes of "data:MEDIATYPE;base64,…" (RFC 2397; strict RFC 4648 base64, padding optional). Fails at `path`.
+std::vector<std::byte> decode_data_uri(std::string_view uri, std::string_view path, const Report& report);
+
+/// The relative file that a URI names, percent-decoded (RFC 3986). Fails at `path` when it would leave the glTF's
+/// folder
+/// ("../", an absolute path) or has a scheme.
+std::filesystem::path decode_relative_uri(std::string_view uri, std::string_view path, const Report& report);
+
+}  // namespace vestige::gltf
