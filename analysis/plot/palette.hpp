@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+
+#include "analysis/plot/canvas.hpp"
+
+namespace vestige::plot {
+
+// Okabe and Ito, "Color Universal Design" (2008): told apart with every common colour blindness.
+inline constexpr Colour kBlack = {0, 0, 0};
+inline constexpr Colour kOrange = {230, 159, 0};
+inline constexpr Colour kSkyBlue = {86, 180, 233};
+inline constexpr Colour kGreen = {0, 158, 115};
+inline constexpr Colour kBlue = {0, 114, 178};
+inline constexpr Colour kVermillion = {213, 94, 0};
+inline constexpr Colour kPurple = {204, 121, 167};
+
+/// Lines on white: without yellow, which is too pale, and black (the published points).
+inline constexpr std::array<Colour, 6> kLineColours = {kBlue, kVermillion, kGreen, kPurple, kOrange, kSkyBlue};
+inline constexpr Colour kUnmapped = {150, 150, 150};
+
+inline constexpr Colour kInk = {40, 40, 40};
+inline constexpr Colour kSmallPrint = {105, 105, 105};
+inline constexpr Colour kGrid = {225, 225, 225};
+inline constexpr Colour kWhite = {255, 255, 255};
+
+/// `part` 0 gives `from`, 1 gives `to`.
+constexpr Colour blend(Colour from, Colour to, double part) {
+  const auto channel = [part](std::uint8_t low, std::uint8_t high) {
+    return static_cast<std::uint8_t>(low + (high - low) * part + 0.5);
+  };
+  return {channel(from.red, to.red), channel(from.green, to.green), channel(from.blue, to.blue)};
+}
+
+/// Amounts, 0..1: from next to nothing to dark, evenly, and so in grey print too.
+constexpr Colour amount_ramp(double part) {
+  constexpr Colour kPale = {238, 241, 245};
+  constexpr Colour kDark = {8, 29, 66};
+  return part < 0.6 ? blend(kPale, kBlue, part / 0.6) : blend(kBlue, kDark, (part - 0.6) / 0.4);
+}
+
+/// Numbers of many things, 0..1: each visible on white, neighbours alike, darker throughout.
+constexpr Colour number_ramp(double part) {
+  constexpr Colour kMiddle = {122, 30, 98};
+  constexpr Colour kDark = {10, 14, 60};
+  if (part < 0.35) return blend(kOrange, kVermillion, part / 0.35);
+  return part < 0.7 ? blend(kVermillion, kMiddle, (part - 0.35) / 0.35) : blend(kMiddle, kDark, (part - 0.7) / 0.3);
+}
+
+}  // namespace vestige::plot

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "analysis/plot/figure.hpp"
+#include "analysis/plot/sweep_data.hpp"
+
+namespace vestige::plot {
+
+/// Detection frequency over the number of colliders: the paper's Figure 2, with its three published points beside what
+/// was measured.
+std::unique_ptr<Figure> sweep_figure(Sweeps sweeps);
+
+}  // namespace vestige::plot

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace vestige::plot {
+
+/// One texel of the collision textures that holds a contact.
+struct TextureContact {
+  std::uint32_t frame = 0;
+  std::uint32_t collider = 0;  ///< the rank of its id
+  std::uint16_t actuator = 0;  ///< 0: skin without an actuator
+};
+
+struct TextureContacts {
+  std::uint32_t frames = 0;
+  std::uint32_t colliders = 0;
+  std::vector<TextureContact> contacts;  ///< by frame, then collider
+};
+
+/// Reads the plane `actuator` of an OpenEXR file as 'vestige replay --textures' writes it: width = colliders, height =
+/// frames, +inf where there is no contact. Throws `Error`: missing, no OpenEXR, cut off, no such plane, no actuator
+/// number.
+TextureContacts read_texture_contacts(const std::filesystem::path& path);
+
+}  // namespace vestige::plot

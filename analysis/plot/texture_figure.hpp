@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "analysis/plot/figure.hpp"
+#include "analysis/plot/texture_contacts.hpp"
+
+namespace vestige::plot {
+
+/// The collision textures as a picture: frames downwards, colliders to the right, each contact in its actuator's
+/// colour. A contact is never smaller than what can be seen, however many frames there are.
+std::unique_ptr<Figure> texture_figure(TextureContacts textures);
+
+}  // namespace vestige::plot

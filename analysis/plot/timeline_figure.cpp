@@ -1,0 +1,165 @@
+#include "analysis/plot/timeline_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "analysis/plot/axis.hpp"
+#include "analysis/plot/colour_bar.hpp"
+#include "analysis/plot/palette.hpp"
+#include "traces/csv.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr std::string_view kRemedy = "was it written by 'vestige replay --timeline FILE.csv'?";
+constexpr std::size_t kMostActuators = 1024;
+constexpr int kFullDuty = 255;
+
+constexpr double kWidth_pt = 468;
+constexpr double kLeft_pt = 48;
+constexpr double kRight_pt = 408;
+constexpr double kAxisRoom_pt = 36;
+constexpr double kTop_pt = 20;
+constexpr double kLeastHeight_pt = 60;
+constexpr double kMostHeight_pt = 480;
+
+class TimelineFigure : public Figure {
+ public:
+  explicit TimelineFigure(Timeline timeline) : timeline_(std::move(timeline)) {}
+
+  double width_pt() const override { return kWidth_pt; }
+  double height_pt() const override { return kAxisRoom_pt + plot_height_pt() + kTop_pt; }
+  std::string description() const override {
+    return fmt::format("Duty of {} actuators over {:.3g} s, {} frames.", timeline_.actuator_count,
+                       end_s() - timeline_.time_s.front(), timeline_.time_s.size());
+  }
+
+  void draw(Canvas& canvas) const override {
+    const Box plot = {kLeft_pt, kAxisRoom_pt, kRight_pt, kAxisRoom_pt + plot_height_pt()};
+    canvas.image(plot, raster(plot));
+    const Axis x = {Scale::kLinear, timeline_.time_s.front(), end_s(), plot.left_pt, plot.right_pt};
+    draw_x_axis(canvas, plot, x, linear_ticks(x.low, x.high, 8), "Time (s)");
+    const auto count = static_cast<double>(timeline_.actuator_count);
+    const Axis y = {Scale::kLinear, 0.5, count + 0.5, plot.top_pt, plot.bottom_pt};
+    draw_y_axis(canvas, plot, y, actuator_ticks(plot), "Actuator");
+    const Box bar = {kRight_pt + 18, std::max(plot.bottom_pt, plot.top_pt - 96), kRight_pt + 24, plot.top_pt};
+    draw_colour_bar(canvas, bar, amount_ramp, 0, kFullDuty, "Duty");
+  }
+
+ private:
+  /// A row is 18 pt high while there is room; a multiple of 6 pt in all.
+  double plot_height_pt() const {
+    const double wish_pt = static_cast<double>(timeline_.actuator_count) * 18;
+    return std::ceil(std::clamp(wish_pt, kLeastHeight_pt, kMostHeight_pt) / 6) * 6;
+  }
+
+  /// The last frame lasts as long as the one before it.
+  double end_s() const {
+    const std::vector<double>& time_s = timeline_.time_s;
+    if (time_s.size() < 2) return time_s.front() + 1;
+    return 2 * time_s.back() - time_s[time_s.size() - 2];
+  }
+
+  std::vector<Tick> actuator_ticks(const Box& plot) const {
+    constexpr double kLabelHeight_pt = 9;
+    const double row_pt = plot.height_pt() / static_cast<double>(timeline_.actuator_count);
+    const double step = row_pt >= kLabelHeight_pt ? 1 : round_up_125(kLabelHeight_pt / row_pt);
+    std::vector<Tick> ticks;
+    for (double actuator = 1; actuator <= static_cast<double>(timeline_.actuator_count); ++actuator)
+      if (actuator == 1 || std::fmod(actuator, step) == 0) ticks.push_back({actuator, grouped(actuator)});
+    return ticks;
+  }
+
+  /// The highest duty of each actuator (rows) in each printed column.
+  std::vector<std::uint8_t> highest_duty(std::size_t columns) const {
+    const std::size_t actuators = timeline_.actuator_count;
+    std::vector<std::uint8_t> highest(columns * actuators, 0);
+    const double begin_s = timeline_.time_s.front();
+    const auto column_of = [&](double time_s) {
+      return (time_s - begin_s) / (end_s() - begin_s) * static_cast<double>(columns);
+    };
+    for (std::size_t frame = 0; frame < timeline_.time_s.size(); ++frame) {
+      const bool is_last = frame + 1 == timeline_.time_s.size();
+      const double next_s = is_last ? end_s() : timeline_.time_s[frame + 1];
+      const auto first = std::min(static_cast<std::size_t>(column_of(timeline_.time_s[frame])), columns - 1);
+      const auto end = std::min(static_cast<std::size_t>(std::ceil(column_of(next_s))), columns);
+      for (std::size_t actuator = 0; actuator < actuators; ++actuator) {
+        const std::uint8_t duty = timeline_.duty[frame * actuators + actuator];
+        if (duty == 0) continue;
+        for (std::size_t column = first; column < std::max(end, first + 1); ++column) {
+          std::uint8_t& cell = highest[actuator * columns + column];
+          cell = std::max(cell, duty);
+        }
+      }
+    }
+    return highest;
+  }
+
+  Raster raster(const Box& plot) const {
+    const std::size_t columns = print_dots(plot.width_pt());
+    const std::size_t rows = print_dots(plot.height_pt());
+    const std::size_t actuators = timeline_.actuator_count;
+    const std::vector<std::uint8_t> highest = highest_duty(columns);
+    Raster result(columns, rows, kWhite);
+    // With more actuators than rows several share one.
+    std::vector<std::uint8_t> line(columns);
+    for (std::size_t row = 0; row < rows; ++row) {
+      const std::size_t first = row * actuators / rows;
+      const std::size_t next = (row + 1) * actuators / rows;
+      // A white line between actuators that are high enough for it.
+      if (next > first && next < actuators && rows / actuators >= 8) continue;
+      std::ranges::fill(line, std::uint8_t{0});
+      for (std::size_t actuator = first; actuator < std::max(next, first + 1); ++actuator)
+        for (std::size_t column = 0; column < columns; ++column)
+          line[column] = std::max(line[column], highest[actuator * columns + column]);
+      for (std::size_t column = 0; column < columns; ++column)
+        result.at(column, row) = amount_ramp(line[column] / static_cast<double>(kFullDuty));
+    }
+    return result;
+  }
+
+  Timeline timeline_;
+};
+
+}  // namespace
+
+Timeline read_timeline(const std::filesystem::path& path) {
+  const std::string text = read_text_file(path);
+  Timeline timeline;
+  const std::string_view first_line = std::string_view(text).substr(0, text.find('\n'));
+  timeline.actuator_count = static_cast<std::size_t>(std::ranges::count(first_line, ','));
+  if (timeline.actuator_count == 0) throw Error(path.string() + ", line 1", "is not 'time_s,actuator_1,…'", kRemedy);
+  if (timeline.actuator_count > kMostActuators)
+    throw Error(path.string() + ", line 1", fmt::format("names more than {} actuators", kMostActuators), kRemedy);
+  std::string header = "time_s";
+  for (std::size_t actuator = 1; actuator <= timeline.actuator_count; ++actuator)
+    header += fmt::format(",actuator_{}", actuator);
+  CsvLines lines(text, path.string(), header, kRemedy);
+  while (lines.next()) {
+    double time_s = 0;
+    if (!lines.take(time_s) || !std::isfinite(time_s)) throw lines.error("time_s is no number");
+    if (!timeline.time_s.empty() && time_s <= timeline.time_s.back())
+      throw lines.error(fmt::format("time_s does not rise: {} after {}", time_s, timeline.time_s.back()));
+    timeline.time_s.push_back(time_s);
+    for (std::size_t actuator = 1; actuator <= timeline.actuator_count; ++actuator) {
+      int duty = 0;
+      if (!lines.take(duty) || duty < 0 || duty > kFullDuty)
+        throw lines.error(fmt::format("actuator_{} is no whole number from 0 to 255", actuator));
+      timeline.duty.push_back(static_cast<std::uint8_t>(duty));
+    }
+    if (!lines.at_end()) throw lines.error(fmt::format("has more than {} fields", timeline.actuator_count + 1));
+  }
+  if (timeline.time_s.empty()) throw Error(path.string(), "holds no frame", kRemedy);
+  return timeline;
+}
+
+std::unique_ptr<Figure> timeline_figure(Timeline timeline) {
+  return std::make_unique<TimelineFigure>(std::move(timeline));
+}
+
+}  // namespace vestige::plot
