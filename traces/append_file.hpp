@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "traces/output_file.hpp"
+
+namespace vestige {
+
+/// A file that grows under its own name, for recordings that must survive the death of their program; `OutputFile` is
+/// for everything that should be complete or absent.
+///
+/// Bytes written before `secure` are its head. A new file appears at once under its name; an existing one that may be
+/// overwritten is replaced only by `secure`, when the head is safely on disk. Destroyed before `secure`, or before
+/// `keep`, it leaves nothing behind. "-", devices and pipes are just written to.
+class AppendFile {
+ public:
+  /// Throws `Error`: it exists (and `Overwrite::kRefuse`), no such folder, permission.
+  AppendFile(std::filesystem::path path, Overwrite overwrite);
+  ~AppendFile();
+  AppendFile(const AppendFile&) = delete;
+  AppendFile& operator=(const AppendFile&) = delete;
+
+  /// Appends. When that fails, the bytes of this call are taken away again; a file worth keeping is renamed to
+  /// NAME.partial, any other removed, and the `Error` thrown says which, and why.
+  void write(std::span<const std::byte> bytes);
+  /// Syncs the head and gives the file its name. Throws `Error`.
+  void secure();
+  /// From now on there is something worth keeping in it.
+  void keep() { worth_keeping_ = true; }
+  /// Syncs and closes. Throws `Error`.
+  void close();
+
+ private:
+  [[noreturn]] void fail(std::string_view doing, int error_number);
+  void sync();
+  std::filesystem::path set_aside();
+  bool is_file() const { return !current_path_.empty(); }
+
+  std::filesystem::path path_;
+  std::filesystem::path current_path_;  ///< where the bytes are; empty when that is no regular file
+  int descriptor_ = -1;
+  std::uint64_t bytes_ = 0;
+  bool worth_keeping_ = false;
+};
+
+}  // namespace vestige

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace vestige::mcap {
+
+/// CRC-32 (IEEE 802.3, as in zip and PNG). `before` is the CRC of what came before `bytes`, 0 for nothing.
+std::uint32_t crc32(std::span<const std::byte> bytes, std::uint32_t before = 0);
+
+}  // namespace vestige::mcap

@@ -1,0 +1,148 @@
+#include "traces/mcap/record_walker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "traces/error.hpp"
+#include "traces/mcap/decode.hpp"
+
+namespace vestige::mcap {
+
+namespace {
+
+/// Larger than every record of ours that is neither a chunk nor an attachment.
+constexpr std::uint64_t kMaxCheckedBytes = 16ULL << 20;
+
+bool is_known(Opcode opcode) {
+  return least_content_bytes(opcode).has_value();
+}
+
+bool is_magic(Bytes bytes) {
+  return bytes.size() <= kMagicBytes && std::memcmp(bytes.data(), kMagic, bytes.size()) == 0;
+}
+
+bool belongs_in_chunks(Opcode opcode) {
+  return opcode == Opcode::kSchema || opcode == Opcode::kChannel || opcode == Opcode::kMessage;
+}
+
+}  // namespace
+
+void require_mcap(const ByteSource& source) {
+  std::array<std::byte, kMagicBytes> magic = {};
+  if (source.size() == 0)
+    throw Error(source.name(), "is empty", "was its recording started, and did the disk have room?");
+  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(source.size(), kMagicBytes));
+  source.read_at(0, std::span(magic).first(count));
+  if (!is_magic(std::span(magic).first(count)))
+    throw Error(source.name(), "is no MCAP file: it does not begin with MCAP's magic bytes", "name a recorded trace");
+  if (count < kMagicBytes) throw Error(source.name(), "ends within its first bytes", "record it again");
+}
+
+RecordWalker::RecordWalker(const ByteSource& source) : source_(source), here_(source), ahead_(source) {
+  require_mcap(source);
+}
+
+std::optional<RecordPlace> RecordWalker::head_at(ReadWindow& window, std::uint64_t offset) const {
+  if (offset > source_.size() || source_.size() - offset < kRecordHeadBytes) return {};
+  const Bytes head = window.at(offset, kRecordHeadBytes);
+  RecordPlace place{.opcode = static_cast<Opcode>(head[0]), .offset = offset, .content_bytes = 0};
+  std::memcpy(&place.content_bytes, head.data() + 1, sizeof place.content_bytes);
+  const auto least = least_content_bytes(place.opcode);
+  if (head[0] == std::byte{0} || place.content_bytes < least.value_or(0) || place.content_bytes > kMaxRecordBytes)
+    return {};
+  if (place.opcode == Opcode::kHeader && offset != kMagicBytes) return {};
+  if (place.opcode == Opcode::kFooter && place.content_bytes != kFooterContentBytes) return {};
+  return place;
+}
+
+/// Whether a record may begin at `offset`; the file's end is as good, since a file can be cut anywhere.
+bool RecordWalker::could_follow(std::uint64_t offset, Opcode before) {
+  const std::uint64_t rest = source_.size() - offset;
+  if (before == Opcode::kFooter)
+    return is_magic(ahead_.at(offset, static_cast<std::size_t>(std::min<std::uint64_t>(rest, kMagicBytes))));
+  if (rest == 0) return true;
+  if (rest < kRecordHeadBytes) return is_known(static_cast<Opcode>(ahead_.at(offset, 1)[0]));
+  const auto head = head_at(ahead_, offset);
+  return head && (is_known(head->opcode) || head->end() <= source_.size());
+}
+
+bool RecordWalker::fills_itself(const RecordPlace& place) {
+  const bool large = place.opcode == Opcode::kChunk || place.opcode == Opcode::kAttachment;
+  if (!large && place.content_bytes > kMaxCheckedBytes) return false;
+  return natural_content_bytes(place.opcode, content(place, scratch_)) == place.content_bytes;
+}
+
+/// Decided on a few heads only, so that resynchronising takes linear time even in a file made of lies.
+bool RecordWalker::may_resume_at(const RecordPlace& place, bool messages_too) {
+  if (!is_known(place.opcode) || place.end() > source_.size()) return false;
+  if (belongs_in_chunks(place.opcode) && !messages_too) return false;
+  if (place.opcode == Opcode::kDataEnd && place.content_bytes > 4096) return false;
+  if (!could_follow(place.end(), place.opcode)) return false;
+  if (place.end() == source_.size() || place.opcode == Opcode::kFooter) return true;
+  const auto second = head_at(ahead_, place.end());
+  if (!second) return true;
+  return second->end() > source_.size() || could_follow(second->end(), second->opcode);
+}
+
+bool RecordWalker::resynchronise() {
+  const std::uint64_t broken = position_;
+  const auto head = head_at(here_, broken);
+  const bool messages_too = !chunk_seen_ && !(head && head->opcode == Opcode::kChunk);
+  for (std::uint64_t offset = broken + 1; offset + kRecordHeadBytes <= source_.size(); ++offset) {
+    const auto place = head_at(here_, offset);
+    if (!place || !may_resume_at(*place, messages_too)) continue;
+    damages_.push_back({broken, offset - broken, "a record whose length or kind is broken"});
+    position_ = offset;
+    return true;
+  }
+  const std::uint64_t rest = source_.size() - broken;
+  if (head && is_known(head->opcode) && head->end() > source_.size()) {
+    damages_.push_back({broken, rest, fmt::format("the file ends inside this {}", mcap::name_of(head->opcode))});
+  } else if (rest < kRecordHeadBytes) {
+    damages_.push_back({broken, rest, "the file ends inside a record"});
+  } else {
+    damages_.push_back({broken, rest, "no record can be found from here to the end"});
+  }
+  return false;
+}
+
+void RecordWalker::finish(std::uint64_t end) {
+  ended_ = true;
+  footer_seen_ = true;
+  const std::uint64_t rest = source_.size() - end;
+  if (rest < kMagicBytes) damages_.push_back({end, rest, "the magic bytes that end the file are cut off"});
+  if (rest > kMagicBytes)
+    damages_.push_back({end + kMagicBytes, rest - kMagicBytes, "bytes after the file's end, which were not read"});
+}
+
+bool RecordWalker::next(RecordPlace& place) {
+  while (!ended_) {
+    if (position_ == source_.size()) {
+      damages_.push_back({position_, 0, "the file ends without a footer"});
+      break;
+    }
+    const auto head = head_at(here_, position_);
+    const bool fits = head && head->end() <= source_.size();
+    if (!fits || !(could_follow(head->end(), head->opcode) || fills_itself(*head))) {
+      if (!resynchronise()) break;
+      continue;
+    }
+    place = *head;
+    position_ = place.end();
+    if (place.opcode == Opcode::kChunk) chunk_seen_ = true;
+    if (place.opcode == Opcode::kFooter) finish(position_);
+    return true;
+  }
+  ended_ = true;
+  return false;
+}
+
+Bytes RecordWalker::content(const RecordPlace& place, RawBuffer& buffer) const {
+  source_.read_at(place.content_offset(), buffer.reset(static_cast<std::size_t>(place.content_bytes)));
+  return buffer.bytes();
+}
+
+}  // namespace vestige::mcap

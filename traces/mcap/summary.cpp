@@ -1,0 +1,128 @@
+#include "traces/mcap/summary.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "traces/mcap/crc32.hpp"
+#include "traces/mcap/decode.hpp"
+#include "traces/mcap/record_walker.hpp"
+
+namespace vestige::mcap {
+
+namespace {
+
+constexpr std::size_t kTailBytes = kRecordHeadBytes + kFooterContentBytes + kMagicBytes;
+constexpr std::size_t kFooterCrcBytes = 4;
+
+Footer read_tail(const ByteSource& source) {
+  if (source.size() < kMagicBytes + kTailBytes) throw Malformed("it has no footer");
+  std::array<std::byte, kTailBytes> tail = {};
+  source.read_at(source.size() - kTailBytes, tail);
+  const Bytes bytes = tail;
+  if (std::memcmp(bytes.last(kMagicBytes).data(), kMagic, kMagicBytes) != 0) throw Malformed("it has no footer");
+  Cursor cursor(bytes);
+  if (cursor.number<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kFooter) ||
+      cursor.number<std::uint64_t>() != kFooterContentBytes)
+    throw Malformed("it has no footer");
+  return decode_footer(cursor.bytes(kFooterContentBytes));
+}
+
+void take(Summary& summary, const InnerRecord& record) {
+  switch (record.opcode) {
+    case Opcode::kSchema:
+      summary.schemas.push_back(decode_schema(record.content));
+      break;
+    case Opcode::kChannel:
+      summary.channels.push_back(decode_channel(record.content));
+      break;
+    case Opcode::kStatistics:
+      summary.statistics = decode_statistics(record.content);
+      break;
+    case Opcode::kChunkIndex:
+      summary.chunk_indexes.push_back(decode_chunk_index(record.content));
+      break;
+    case Opcode::kAttachmentIndex:
+      summary.attachment_indexes.push_back(decode_attachment_index(record.content));
+      break;
+    case Opcode::kMetadataIndex:
+      summary.metadata_indexes.push_back(decode_metadata_index(record.content));
+      break;
+    default:
+      break;
+  }
+}
+
+void require_within(std::uint64_t offset, std::uint64_t length, const Summary& summary) {
+  if (offset < kMagicBytes || offset > summary.data_section_end || length > summary.data_section_end - offset)
+    throw Malformed(fmt::format("its index points to offset {}, outside the data", offset));
+}
+
+Summary read(const ByteSource& source) {
+  Summary summary;
+  summary.footer = read_tail(source);
+  const std::uint64_t footer_offset = source.size() - kTailBytes;
+  const std::uint64_t begin = summary.footer.summary_start != 0 ? summary.footer.summary_start : footer_offset;
+  const std::uint64_t crc_end = footer_offset + kRecordHeadBytes + kFooterContentBytes - kFooterCrcBytes;
+  if (begin < kMagicBytes || begin > footer_offset) throw Malformed("its footer points outside the file");
+  summary.data_section_end = begin;
+
+  RawBuffer buffer;
+  source.read_at(begin, buffer.reset(static_cast<std::size_t>(crc_end - begin)));
+  if (summary.footer.summary_crc != 0 && crc32(buffer.bytes()) != summary.footer.summary_crc)
+    throw Malformed("its summary's CRC is wrong");
+  Cursor records(buffer.bytes().first(static_cast<std::size_t>(footer_offset - begin)));
+  while (records.remaining() > 0) take(summary, next_record(records));
+
+  for (const ChunkIndex& chunk : summary.chunk_indexes) {
+    require_within(chunk.chunk_start_offset, chunk.chunk_length, summary);
+    require_within(chunk.chunk_start_offset + chunk.chunk_length, chunk.message_index_length, summary);
+  }
+  for (const AttachmentIndex& attachment : summary.attachment_indexes)
+    require_within(attachment.offset, attachment.length, summary);
+  for (const MetadataIndex& metadata : summary.metadata_indexes)
+    require_within(metadata.offset, metadata.length, summary);
+  std::stable_sort(
+      summary.chunk_indexes.begin(), summary.chunk_indexes.end(),
+      [](const ChunkIndex& a, const ChunkIndex& b) { return a.chunk_start_offset < b.chunk_start_offset; });
+  return summary;
+}
+
+}  // namespace
+
+SummaryResult read_summary(const ByteSource& source) {
+  require_mcap(source);
+  try {
+    SummaryResult result{.summary = read(source), .problem = {}};
+    try {
+      RawBuffer buffer;
+      result.summary->header =
+          decode_header(read_record_at(source, kMagicBytes, Opcode::kHeader, result.summary->data_section_end, buffer));
+    } catch (const Malformed&) {
+      // The header carries nothing that reading needs; whoever wants it sees that it is missing.
+      result.summary->header.reset();
+    }
+    return result;
+  } catch (const Malformed& malformed) {
+    return {.summary = {}, .problem = malformed.what()};
+  }
+}
+
+Bytes read_record_at(const ByteSource& source, std::uint64_t offset, Opcode expected, std::uint64_t limit,
+                     RawBuffer& buffer) {
+  std::array<std::byte, kRecordHeadBytes> head = {};
+  limit = std::min(limit, source.size());
+  if (offset > limit || limit - offset < kRecordHeadBytes) throw Malformed("it is not within the file");
+  source.read_at(offset, head);
+  Cursor cursor{Bytes(head)};
+  const auto opcode = static_cast<Opcode>(cursor.number<std::uint8_t>());
+  const auto length = cursor.number<std::uint64_t>();
+  if (opcode != expected) throw Malformed(fmt::format("there is a {} in its place", name_of(opcode)));
+  if (length > limit - offset - kRecordHeadBytes) throw Malformed("its length is broken");
+  source.read_at(offset + kRecordHeadBytes, buffer.reset(static_cast<std::size_t>(length)));
+  return buffer.bytes();
+}
+
+}  // namespace vestige::mcap

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <vector>
+
+#include "traces/mcap/byte_source.hpp"
+#include "traces/mcap/compression.hpp"
+#include "traces/mcap/decode.hpp"
+#include "traces/mcap/record_walker.hpp"
+#include "traces/trace_format.hpp"
+
+namespace vestige {
+
+/// Which of a file's channels are ours. Files that others rewrote may define channels inside chunks only, so this grows
+/// while reading.
+class StreamTable {
+ public:
+  void add(mcap::Schema schema);
+  void add(mcap::Channel channel);
+  trace_format::Stream stream_of(std::uint16_t channel_id) const { return streams_[channel_id]; }
+  /// Null until it is known.
+  const mcap::Channel* find(trace_format::Stream stream) const;
+
+ private:
+  void update(const mcap::Channel& channel);
+
+  std::map<std::uint16_t, mcap::Schema> schemas_;
+  std::map<std::uint16_t, mcap::Channel> channels_;
+  std::vector<trace_format::Stream> streams_ = std::vector(1 << 16, trace_format::Stream::kForeign);  ///< by channel id
+};
+
+/// A message of one of our streams.
+struct TraceMessage {
+  trace_format::Stream stream = trace_format::Stream::kForeign;
+  std::uint64_t offset = 0;  ///< in the file, of the message or of its chunk
+  mcap::Message message;
+};
+
+/// Delivers the messages of our streams in file order, from places that hold them: chunks, and messages outside chunks.
+class MessageStream {
+ public:
+  using Report = std::function<void(const mcap::Damage&)>;
+
+  /// All must stay. `report` is told of what cannot be read, which is skipped.
+  MessageStream(const mcap::ByteSource& source, const std::vector<mcap::RecordPlace>& places, StreamTable& table,
+                Report report);
+
+  /// False at the end. The message's data is valid until the next call.
+  bool next(TraceMessage& message);
+  void rewind();
+
+ private:
+  bool next_in_chunk(TraceMessage& message);
+  void open(const mcap::RecordPlace& place);
+  bool take(std::uint64_t offset, mcap::Bytes content, TraceMessage& message);
+
+  const mcap::ByteSource& source_;
+  const std::vector<mcap::RecordPlace>& places_;
+  StreamTable& table_;
+  Report report_;
+  std::size_t next_place_ = 0;
+  std::uint64_t chunk_offset_ = 0;
+  mcap::Cursor chunk_ = mcap::Cursor({});
+  mcap::RawBuffer content_;
+  mcap::RawBuffer expanded_;
+};
+
+}  // namespace vestige

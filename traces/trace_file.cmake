@@ -1,0 +1,42 @@
+# The trace file: MCAP records, FlatBuffers messages, writer, reader, summary. Included by traces/CMakeLists.txt.
+find_package(FlatBuffers 2.0.8 REQUIRED)
+find_program(FLATC flatc REQUIRED)
+
+# Headers and binary schemas are generated at every build and live in the build tree only.
+set(schema_folder ${PROJECT_BINARY_DIR}/generated_schemas)
+set(schema_headers)
+foreach(schema pose_frame collider_frame event)
+  set(outputs ${schema_folder}/schemas/${schema}_generated.h ${schema_folder}/schemas/${schema}_bfbs_generated.h)
+  add_custom_command(
+    OUTPUT ${outputs}
+    COMMAND ${FLATC} --cpp --cpp-std c++17 --scoped-enums --bfbs-comments --bfbs-gen-embed
+      -o ${schema_folder}/schemas ${CMAKE_CURRENT_SOURCE_DIR}/schemas/${schema}.fbs
+    DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/schemas/${schema}.fbs
+    COMMENT "Generating the ${schema} schema"
+    VERBATIM)
+  list(APPEND schema_headers ${outputs})
+endforeach()
+
+target_sources(vestige_traces PRIVATE
+  ${schema_headers}
+  append_file.cpp
+  mcap/byte_source.cpp
+  mcap/chunk_expander.cpp
+  mcap/compression.cpp
+  mcap/crc32.cpp
+  mcap/decode.cpp
+  mcap/encode.cpp
+  mcap/indexed_reader.cpp
+  mcap/record_walker.cpp
+  mcap/stream_reader.cpp
+  mcap/summary.cpp
+  mcap/writer.cpp
+  trace_format.cpp
+  trace_messages.cpp
+  message_stream.cpp
+  trace_index.cpp
+  trace_reader.cpp
+  trace_summary.cpp
+  trace_writer.cpp)
+target_include_directories(vestige_traces SYSTEM PRIVATE ${schema_folder})
+target_link_libraries(vestige_traces PRIVATE vestige_version)

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "traces/mcap/record.hpp"
+
+/// The trace file's own layer above MCAP; format version 1, whose meaning never changes.
+///
+///     Header      profile "vestige", library "vestige VERSION"
+///     Metadata    "session": format_version, sha256 of each attachment ("sha256:NAME"), and what the recorder adds
+///     Attachments avatar.glb, then actuator_map.png and actuator_map.json where there is a map
+///     Schemas, Channels   outside chunks, so that no damaged chunk takes them along; the head is synced before any
+///     frame Chunks      a frame's messages stand together in one chunk: [events], /pose, /colliders Summary     with
+///     everything that MCAP offers
+///
+/// Messages are FlatBuffers (schemas/*.fbs). log_time is the frame's time in nanoseconds from 0, sequence its index,
+/// publish_time equals log_time. /events exists only when something happened.
+namespace vestige::trace_format {
+
+inline constexpr std::string_view kProfile = "vestige";
+inline constexpr std::string_view kVersion = "1";
+inline constexpr std::string_view kVersionKey = "format_version";
+inline constexpr std::string_view kSessionName = "session";
+inline constexpr std::string_view kSha256Prefix = "sha256:";
+inline constexpr std::string_view kAvatarName = "avatar.glb";
+inline constexpr std::string_view kMapImageName = "actuator_map.png";
+inline constexpr std::string_view kMapTextName = "actuator_map.json";
+inline constexpr std::string_view kEncoding = "flatbuffer";  ///< of schemas and of messages
+inline constexpr std::string_view kNodesKey = "nodes";       ///< of /pose's metadata: a JSON array of node names
+
+inline constexpr std::string_view kTeleportKind = "teleport";
+inline constexpr std::string_view kDroppedKind = "dropped";
+inline constexpr std::string_view kMarkerKind = "marker";
+
+enum class Stream : std::uint8_t { kPose, kColliders, kEvents, kForeign };
+
+/// One of our channels; schema and channel have the same id.
+struct StreamFormat {
+  Stream stream;
+  std::uint16_t id;  ///< in files that we write; readers go by topic and schema
+  std::string_view topic;
+  std::string_view schema;
+};
+
+inline constexpr std::array<StreamFormat, 3> kStreams = {{
+    {Stream::kPose, 1, "/pose", "vestige.trace.PoseFrame"},
+    {Stream::kColliders, 2, "/colliders", "vestige.trace.ColliderFrame"},
+    {Stream::kEvents, 3, "/events", "vestige.trace.Event"},
+}};
+
+/// The schema record of a stream of ours, with its compiled FlatBuffers schema.
+mcap::Schema schema_of(Stream stream);
+/// Its channel record; /pose gets its nodes from the writer.
+mcap::Channel channel_of(Stream stream);
+
+/// Which stream of ours a channel carries; kForeign if none. `schema` may be null.
+Stream recognise(const mcap::Channel& channel, const mcap::Schema* schema);
+
+}  // namespace vestige::trace_format

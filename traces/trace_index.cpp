@@ -1,0 +1,141 @@
+#include "traces/trace_index.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "traces/mcap/decode.hpp"
+#include "traces/mcap/summary.hpp"
+#include "traces/trace_format.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::Malformed;
+using mcap::Opcode;
+
+void take_header(const mcap::Header& header, TraceIndex& index) {
+  index.profile_is_ours = header.profile == trace_format::kProfile;
+}
+
+void take_metadata(mcap::Metadata metadata, TraceIndex& index) {
+  if (metadata.name == trace_format::kSessionName) index.session = std::move(metadata.metadata);
+}
+
+void take_attachment(mcap::Bytes content, TraceIndex& index) {
+  const mcap::Attachment attachment = mcap::decode_attachment(content);
+  std::vector<std::byte>* target = nullptr;
+  if (attachment.name == trace_format::kAvatarName) target = &index.avatar_glb;
+  if (attachment.name == trace_format::kMapImageName) target = &index.actuator_map_png;
+  if (attachment.name == trace_format::kMapTextName) target = &index.actuator_map_json;
+  if (target == nullptr) return;
+  if (!mcap::attachment_crc_holds(content, attachment))
+    throw Malformed(fmt::format("{}: its CRC is wrong", attachment.name));
+  target->assign(attachment.data.begin(), attachment.data.end());
+}
+
+/// Whether the summary leads to everything, so that nothing is missed by not scanning.
+bool covers_everything(const mcap::Summary& summary) {
+  if (!summary.header || !summary.statistics) return false;
+  const mcap::Statistics& statistics = *summary.statistics;
+  return statistics.chunk_count == summary.chunk_indexes.size() &&
+         (statistics.chunk_count > 0 || statistics.message_count == 0) &&
+         statistics.attachment_count == summary.attachment_indexes.size() &&
+         statistics.metadata_count == summary.metadata_indexes.size() &&
+         statistics.channel_count == summary.channels.size();
+}
+
+TraceIndex from_summary(const mcap::ByteSource& source, const mcap::Summary& summary) {
+  TraceIndex index;
+  index.has_footer = true;
+  take_header(*summary.header, index);
+  for (const mcap::Schema& schema : summary.schemas) index.streams.add(schema);
+  for (const mcap::Channel& channel : summary.channels) index.streams.add(channel);
+  const std::uint64_t limit = summary.data_section_end;
+  mcap::RawBuffer buffer;
+  const auto guarded = [&](std::uint64_t offset, std::uint64_t length, Opcode opcode, auto take) {
+    try {
+      take(mcap::read_record_at(source, offset, opcode, limit, buffer));
+    } catch (const Malformed& malformed) {
+      index.damages.push_back({offset, length, fmt::format("a {}: {}", mcap::name_of(opcode), malformed.what())});
+    }
+  };
+  for (const mcap::MetadataIndex& entry : summary.metadata_indexes)
+    guarded(entry.offset, entry.length, Opcode::kMetadata,
+            [&](mcap::Bytes content) { take_metadata(mcap::decode_metadata(content), index); });
+  for (const mcap::AttachmentIndex& entry : summary.attachment_indexes)
+    guarded(entry.offset, entry.length, Opcode::kAttachment,
+            [&](mcap::Bytes content) { take_attachment(content, index); });
+  for (const mcap::ChunkIndex& chunk : summary.chunk_indexes) {
+    if (chunk.chunk_length < mcap::kRecordHeadBytes) continue;
+    index.places.push_back({.opcode = Opcode::kChunk,
+                            .offset = chunk.chunk_start_offset,
+                            .content_bytes = chunk.chunk_length - mcap::kRecordHeadBytes});
+  }
+  return index;
+}
+
+void take_record(const mcap::RecordPlace& place, const mcap::RecordWalker& walker, mcap::RawBuffer& buffer,
+                 TraceIndex& index) {
+  switch (place.opcode) {
+    case Opcode::kChunk:
+    case Opcode::kMessage:
+      index.places.push_back(place);
+      break;
+    case Opcode::kHeader:
+      take_header(mcap::decode_header(walker.content(place, buffer)), index);
+      break;
+    case Opcode::kSchema:
+      index.streams.add(mcap::decode_schema(walker.content(place, buffer)));
+      break;
+    case Opcode::kChannel:
+      index.streams.add(mcap::decode_channel(walker.content(place, buffer)));
+      break;
+    case Opcode::kMetadata:
+      take_metadata(mcap::decode_metadata(walker.content(place, buffer)), index);
+      break;
+    case Opcode::kAttachment:
+      take_attachment(walker.content(place, buffer), index);
+      break;
+    default:
+      break;
+  }
+}
+
+TraceIndex by_scanning(const mcap::ByteSource& source) {
+  TraceIndex index;
+  mcap::RecordWalker walker(source);
+  mcap::RecordPlace place;
+  mcap::RawBuffer buffer;
+  while (walker.next(place)) {
+    try {
+      take_record(place, walker, buffer, index);
+    } catch (const Malformed& malformed) {
+      index.damages.push_back({place.offset, place.end() - place.offset,
+                               fmt::format("a {}: {}", mcap::name_of(place.opcode), malformed.what())});
+    }
+  }
+  index.has_footer = walker.footer_seen();
+  index.damages.insert(index.damages.end(), walker.damages().begin(), walker.damages().end());
+  return index;
+}
+
+}  // namespace
+
+TraceIndex index_trace(const mcap::ByteSource& source) {
+  const mcap::SummaryResult result = mcap::read_summary(source);
+  if (result.summary && covers_everything(*result.summary)) return from_summary(source, *result.summary);
+  TraceIndex index = by_scanning(source);
+  if (index.has_footer && !result.summary)
+    index.damages.push_back({source.size(), 0, fmt::format("the file's end: {}", result.problem)});
+  return index;
+}
+
+std::string describe(const mcap::Damage& damage, std::string_view file) {
+  std::string text = fmt::format("{}: at byte {}: {}", file, damage.offset, damage.what);
+  if (damage.bytes > 0) text += fmt::format("; {} bytes are lost", damage.bytes);
+  return text;
+}
+
+}  // namespace vestige

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "traces/mcap/byte_source.hpp"
+#include "traces/mcap/record_walker.hpp"
+#include "traces/message_stream.hpp"
+#include "traces/trace.hpp"
+
+namespace vestige {
+
+/// Everything about a trace file that is known before its frames are read.
+struct TraceIndex {
+  bool profile_is_ours = false;
+  Session session;
+  std::vector<std::byte> avatar_glb;
+  std::vector<std::byte> actuator_map_png;
+  std::vector<std::byte> actuator_map_json;
+  StreamTable streams;
+  std::vector<mcap::RecordPlace> places;  ///< chunks, and messages outside chunks, in file order
+  bool has_footer = false;
+  std::vector<mcap::Damage> damages;
+};
+
+/// By the summary where there is a complete one, else by scanning the file. Throws `Error`: no MCAP file, reading
+/// failed.
+TraceIndex index_trace(const mcap::ByteSource& source);
+
+/// "FILE: at byte 123: a Chunk: its CRC is wrong; 456 bytes are lost".
+std::string describe(const mcap::Damage& damage, std::string_view file);
+
+}  // namespace vestige

@@ -1,0 +1,132 @@
+#include "traces/trace_messages.hpp"
+
+#include <fmt/format.h>
+#include <schemas/collider_frame_generated.h>
+#include <schemas/event_generated.h>
+#include <schemas/pose_frame_generated.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "traces/mcap/decode.hpp"
+
+namespace vestige {
+
+namespace {
+
+mcap::Bytes finished(flatbuffers::FlatBufferBuilder& builder) {
+  return std::as_bytes(std::span(builder.GetBufferPointer(), builder.GetSize()));
+}
+
+std::string_view text_of(const flatbuffers::String* text) {
+  return text == nullptr ? std::string_view() : std::string_view(text->c_str(), text->size());
+}
+
+/// `ids` is sorted on the way.
+void require_unique(std::vector<std::uint32_t>& ids) {
+  std::sort(ids.begin(), ids.end());
+  const auto twice = std::adjacent_find(ids.begin(), ids.end());
+  if (twice != ids.end()) throw mcap::Malformed(fmt::format("collider {} is in it twice", *twice));
+}
+
+}  // namespace
+
+struct MessageEncoder::Builder {
+  flatbuffers::FlatBufferBuilder buffer;
+};
+
+MessageEncoder::MessageEncoder() : builder_(std::make_unique<Builder>()) {}
+MessageEncoder::~MessageEncoder() = default;
+
+mcap::Bytes MessageEncoder::pose(std::int64_t time_ns, const Pose& pose) {
+  flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
+  buffer.Clear();
+  trace::NodeLocal* target = nullptr;
+  const auto nodes = buffer.CreateUninitializedVectorOfStructs(pose.nodes.size(), &target);
+  for (const NodeLocal& node : pose.nodes) {
+    *target++ =
+        trace::NodeLocal(node.translation.x, node.translation.y, node.translation.z, node.rotation.x, node.rotation.y,
+                         node.rotation.z, node.rotation.w, node.scale.x, node.scale.y, node.scale.z);
+  }
+  const trace::Position origin(pose.origin_m.x, pose.origin_m.y, pose.origin_m.z);
+  buffer.Finish(trace::CreatePoseFrame(buffer, time_ns, &origin, nodes));
+  return finished(buffer);
+}
+
+mcap::Bytes MessageEncoder::colliders(std::int64_t time_ns, const std::vector<ColliderSample>& colliders) {
+  flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
+  buffer.Clear();
+  trace::Collider* target = nullptr;
+  const auto vector = buffer.CreateUninitializedVectorOfStructs(colliders.size(), &target);
+  for (const ColliderSample& collider : colliders) {
+    *target++ = trace::Collider(collider.id, collider.position_m.x, collider.position_m.y, collider.position_m.z);
+  }
+  buffer.Finish(trace::CreateColliderFrame(buffer, time_ns, vector));
+  return finished(buffer);
+}
+
+mcap::Bytes MessageEncoder::event(const TraceEvent& event) {
+  flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
+  buffer.Clear();
+  const auto kind = buffer.CreateString(event.kind.data(), event.kind.size());
+  const auto text = buffer.CreateString(event.text.data(), event.text.size());
+  buffer.Finish(trace::CreateEvent(buffer, event.time_ns, kind, event.collider, event.count, text));
+  return finished(buffer);
+}
+
+template <typename Table>
+const Table& MessageDecoder::verified(mcap::Bytes message) {
+  aligned_.resize(message.size() / sizeof(std::uint64_t) + 1);
+  if (!message.empty()) std::memcpy(aligned_.data(), message.data(), message.size());
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(aligned_.data());
+  if (!flatbuffers::Verifier(bytes, message.size()).VerifyBuffer<Table>(nullptr))
+    throw mcap::Malformed("it is no valid FlatBuffer of its schema");
+  return *flatbuffers::GetRoot<Table>(bytes);
+}
+
+std::size_t MessageDecoder::pose(mcap::Bytes message, Pose& pose) {
+  const auto& table = verified<trace::PoseFrame>(message);
+  pose.origin_m = glm::dvec3(0);
+  if (const trace::Position* origin = table.origin()) pose.origin_m = {origin->x(), origin->y(), origin->z()};
+  pose.nodes.clear();
+  if (table.nodes() == nullptr) return 0;
+  pose.nodes.reserve(table.nodes()->size());
+  for (const trace::NodeLocal* node : *table.nodes()) {
+    pose.nodes.push_back({.translation = {node->tx(), node->ty(), node->tz()},
+                          .rotation = glm::quat(node->rw(), node->rx(), node->ry(), node->rz()),
+                          .scale = {node->sx(), node->sy(), node->sz()}});
+  }
+  return pose.nodes.size();
+}
+
+std::size_t MessageDecoder::pose_node_count(mcap::Bytes message) {
+  const auto* nodes = verified<trace::PoseFrame>(message).nodes();
+  return nodes == nullptr ? 0 : nodes->size();
+}
+
+void MessageDecoder::colliders(mcap::Bytes message, std::vector<ColliderSample>& colliders) {
+  const auto* vector = verified<trace::ColliderFrame>(message).colliders();
+  colliders.clear();
+  if (vector == nullptr) return;
+  colliders.reserve(vector->size());
+  bool ascending = true;
+  for (const trace::Collider* collider : *vector) {
+    if (!colliders.empty() && collider->id() <= colliders.back().id) ascending = false;
+    colliders.push_back({.id = collider->id(), .position_m = {collider->x(), collider->y(), collider->z()}});
+  }
+  if (ascending) return;
+  ids_.clear();
+  for (const ColliderSample& collider : colliders) ids_.push_back(collider.id);
+  require_unique(ids_);
+}
+
+TraceEvent MessageDecoder::event(mcap::Bytes message) {
+  const auto& table = verified<trace::Event>(message);
+  return {.time_ns = table.time_ns(),
+          .kind = text_of(table.kind()),
+          .collider = table.collider(),
+          .count = table.count(),
+          .text = text_of(table.text())};
+}
+
+}  // namespace vestige

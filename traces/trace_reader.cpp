@@ -1,0 +1,295 @@
+#include "traces/trace_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "traces/error.hpp"
+#include "traces/mcap/byte_source.hpp"
+#include "traces/message_stream.hpp"
+#include "traces/trace_index.hpp"
+#include "traces/trace_messages.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::Malformed;
+using trace_format::Stream;
+
+enum class PoseDecoding { kFull, kNodeCount };
+
+std::vector<std::string> parse_node_names(const mcap::Channel& pose_channel, const std::string& file) {
+  const auto entry = pose_channel.metadata.find(std::string(trace_format::kNodesKey));
+  const auto names =
+      entry == pose_channel.metadata.end() ? nlohmann::json() : nlohmann::json::parse(entry->second, nullptr, false);
+  const auto is_text = [](const nlohmann::json& name) { return name.is_string(); };
+  if (!names.is_array() || !std::all_of(names.begin(), names.end(), is_text))
+    throw Error(file, "its channel /pose does not say which nodes the poses have", "record it again");
+  return names.get<std::vector<std::string>>();
+}
+
+/// How many nodes a binary glTF file has (glTF 2.0 §4.4: 12 bytes of header, then a JSON chunk); nothing when it is
+/// none, which whoever parses the avatar explains better.
+std::optional<std::size_t> glb_node_count(std::span<const std::byte> glb) {
+  constexpr std::size_t kHeaderBytes = 12;
+  try {
+    mcap::Cursor cursor(glb);
+    cursor.bytes(kHeaderBytes);
+    const auto length = cursor.number<std::uint32_t>();
+    cursor.number<std::uint32_t>();
+    const mcap::Bytes text = cursor.bytes(length);
+    const auto* begin = reinterpret_cast<const char*>(text.data());
+    const auto document = nlohmann::json::parse(begin, begin + text.size(), nullptr, false);
+    if (!document.is_object()) return {};
+    const auto nodes = document.find("nodes");
+    if (nodes == document.end() || !nodes->is_array()) return 0;
+    return nodes->size();
+  } catch (const Malformed&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+class TraceReader::Implementation {
+ public:
+  explicit Implementation(const std::filesystem::path& path)
+      : source_(path), index_(index_trace(source_)), frames_(*this, PoseDecoding::kFull) {
+    for (const mcap::Damage& damage : index_.damages) warn(damage);
+    require_trace();
+  }
+
+  const TraceIndex& index() const { return index_; }
+  const std::vector<std::string>& node_names() const { return node_names_; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
+  bool complete() const { return index_.has_footer && warnings_.empty(); }
+  bool next(TraceFrame& frame) { return frames_.next(frame); }
+  void rewind() { frames_.rewind(); }
+
+  struct Census {
+    std::vector<std::uint32_t> collider_ids;  ///< ascending
+    std::uint64_t frames = 0;
+    std::uint64_t dropped = 0;
+  };
+  const Census& census();
+
+ private:
+  /// Puts messages together to frames.
+  class Frames {
+   public:
+    Frames(Implementation& owner, PoseDecoding decoding)
+        : owner_(owner),
+          decoding_(decoding),
+          messages_(owner.source_, owner.index_.places, owner.index_.streams,
+                    [&owner](const mcap::Damage& damage) { owner.warn(damage); }) {}
+
+    bool next(TraceFrame& frame);
+    void rewind();
+    /// Reads on to the next message, and with it the definitions before it.
+    bool skip_message() { return messages_.next(message_); }
+    std::uint64_t dropped() const { return dropped_; }
+
+   private:
+    bool peek() { return held_ || (held_ = messages_.next(message_)); }
+    void take(TraceFrame& frame);
+    void take_pose(TraceFrame& frame);
+    void take_event(TraceFrame& frame);
+    [[noreturn]] void refuse(std::string_view cause) const;
+
+    Implementation& owner_;
+    PoseDecoding decoding_;
+    MessageStream messages_;
+    MessageDecoder decoder_;
+    TraceMessage message_;
+    bool held_ = false;  ///< message_ is still to be taken
+    bool pose_taken_ = false;
+    bool colliders_taken_ = false;
+    std::optional<std::uint32_t> last_sequence_;
+    std::int64_t last_time_ns_ = 0;
+    std::uint64_t dropped_ = 0;
+  };
+
+  void warn(const mcap::Damage& damage);
+  void require_trace();
+
+  mcap::FileSource source_;
+  TraceIndex index_;
+  std::vector<std::string> node_names_;
+  std::vector<std::string> warnings_;
+  std::optional<Census> census_;
+  Frames frames_;
+};
+
+void TraceReader::Implementation::warn(const mcap::Damage& damage) {
+  std::string text = describe(damage, source_.name());
+  if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
+}
+
+void TraceReader::Implementation::require_trace() {
+  const std::string file = source_.name();
+  while (index_.streams.find(Stream::kPose) == nullptr && frames_.skip_message()) continue;
+  frames_.rewind();
+  const mcap::Channel* pose = index_.streams.find(Stream::kPose);
+  if (pose == nullptr) {
+    throw Error(file,
+                index_.profile_is_ours ? "is a trace without the channel /pose"
+                                       : "is an MCAP file, but no trace of an avatar: it has no channel /pose of ours",
+                "record one with `vestige record`; `vestige inspect` shows what is in this file");
+  }
+  node_names_ = parse_node_names(*pose, file);
+  if (index_.avatar_glb.empty()) {
+    throw Error(file, warnings_.empty() ? "has no attachment avatar.glb" : "has no undamaged attachment avatar.glb",
+                "record it again, or attach the avatar it was recorded with");
+  }
+  const auto nodes = glb_node_count(index_.avatar_glb);
+  if (nodes && *nodes != node_names_.size()) {
+    throw Error(file, fmt::format("its poses have {} nodes, its avatar has {}", node_names_.size(), *nodes),
+                "attach the avatar it was recorded with");
+  }
+}
+
+const TraceReader::Implementation::Census& TraceReader::Implementation::census() {
+  if (census_) return *census_;
+  Census census;
+  Frames frames(*this, PoseDecoding::kNodeCount);
+  TraceFrame frame;
+  std::vector<std::uint32_t> previous;
+  std::vector<std::uint32_t> current;
+  while (frames.next(frame)) {
+    ++census.frames;
+    current.clear();
+    for (const ColliderSample& collider : frame.colliders) current.push_back(collider.id);
+    if (current == previous) continue;
+    previous = current;
+    // Mostly the same ids again: kept sorted and unique as they come.
+    for (const std::uint32_t id : current) {
+      const auto place = std::lower_bound(census.collider_ids.begin(), census.collider_ids.end(), id);
+      if (place == census.collider_ids.end() || *place != id) census.collider_ids.insert(place, id);
+    }
+  }
+  census.dropped = frames.dropped();
+  return census_.emplace(std::move(census));
+}
+
+void TraceReader::Implementation::Frames::rewind() {
+  messages_.rewind();
+  held_ = false;
+  last_sequence_.reset();
+  last_time_ns_ = 0;
+  dropped_ = 0;
+}
+
+void TraceReader::Implementation::Frames::refuse(std::string_view cause) const {
+  throw Error(owner_.source_.name(),
+              fmt::format("at byte {}: frame {}: {}", message_.offset, message_.message.sequence, cause),
+              "the file was put together wrongly: record it again");
+}
+
+bool TraceReader::Implementation::Frames::next(TraceFrame& frame) {
+  while (peek()) {
+    const std::uint32_t sequence = message_.message.sequence;
+    const std::uint64_t offset = message_.offset;
+    frame.index = sequence;
+    frame.colliders.clear();
+    frame.teleported.clear();
+    pose_taken_ = colliders_taken_ = false;
+    do {
+      try {
+        take(frame);
+      } catch (const Malformed& malformed) {
+        owner_.warn({message_.offset, 0, fmt::format("a message of frame {}: {}", sequence, malformed.what())});
+      }
+      held_ = false;
+    } while (peek() && message_.message.sequence == sequence);
+    if (pose_taken_) {
+      last_sequence_ = sequence;
+      last_time_ns_ = frame.time_ns;
+      return true;
+    }
+    if (colliders_taken_) owner_.warn({offset, 0, fmt::format("frame {} has no pose and is left out", sequence)});
+  }
+  return false;
+}
+
+void TraceReader::Implementation::Frames::take(TraceFrame& frame) {
+  if (message_.stream == Stream::kEvents) {
+    take_event(frame);
+    return;
+  }
+  if (last_sequence_ && message_.message.sequence <= *last_sequence_)
+    refuse(fmt::format("comes after frame {}", *last_sequence_));
+  if (message_.stream == Stream::kPose) {
+    take_pose(frame);
+    return;
+  }
+  if (colliders_taken_) refuse("has its colliders twice");
+  decoder_.colliders(message_.message.data, frame.colliders);
+  colliders_taken_ = true;
+}
+
+void TraceReader::Implementation::Frames::take_pose(TraceFrame& frame) {
+  if (pose_taken_) refuse("has two poses");
+  const std::size_t nodes = decoding_ == PoseDecoding::kFull ? decoder_.pose(message_.message.data, frame.pose)
+                                                             : decoder_.pose_node_count(message_.message.data);
+  if (nodes != owner_.node_names_.size())
+    refuse(fmt::format("its pose has {} nodes, the avatar {}", nodes, owner_.node_names_.size()));
+  if (message_.message.log_time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+    refuse("its time is out of range");
+  frame.time_ns = static_cast<std::int64_t>(message_.message.log_time);
+  if (last_sequence_ && frame.time_ns < last_time_ns_)
+    refuse(fmt::format("its time, {} ns, is before the frame before, {} ns", frame.time_ns, last_time_ns_));
+  pose_taken_ = true;
+}
+
+void TraceReader::Implementation::Frames::take_event(TraceFrame& frame) {
+  const TraceEvent event = decoder_.event(message_.message.data);
+  if (event.kind == trace_format::kTeleportKind) frame.teleported.push_back(event.collider);
+  if (event.kind == trace_format::kDroppedKind) dropped_ += event.count;
+}
+
+TraceReader::TraceReader(const std::filesystem::path& path) : implementation_(std::make_unique<Implementation>(path)) {}
+TraceReader::~TraceReader() = default;
+
+const Session& TraceReader::session() const {
+  return implementation_->index().session;
+}
+std::span<const std::byte> TraceReader::avatar_glb() const {
+  return implementation_->index().avatar_glb;
+}
+std::span<const std::byte> TraceReader::actuator_map_png() const {
+  return implementation_->index().actuator_map_png;
+}
+std::span<const std::byte> TraceReader::actuator_map_json() const {
+  return implementation_->index().actuator_map_json;
+}
+const std::vector<std::string>& TraceReader::node_names() const {
+  return implementation_->node_names();
+}
+const std::vector<std::uint32_t>& TraceReader::collider_ids() {
+  return implementation_->census().collider_ids;
+}
+std::uint64_t TraceReader::frame_count() {
+  return implementation_->census().frames;
+}
+std::uint64_t TraceReader::dropped() {
+  return implementation_->census().dropped;
+}
+bool TraceReader::next(TraceFrame& frame) {
+  return implementation_->next(frame);
+}
+void TraceReader::rewind() {
+  implementation_->rewind();
+}
+bool TraceReader::complete() const {
+  return implementation_->complete();
+}
+const std::vector<std::string>& TraceReader::warnings() const {
+  return implementation_->warnings();
+}
+
+}  // namespace vestige
