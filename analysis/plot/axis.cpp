@@ -59,8 +59,10 @@ std::string grouped(double value) {
 
 std::vector<Tick> linear_ticks(double low, double high, int wanted, double least_step) {
   const double step = std::max(least_step, round_up_125((high - low) / wanted));
+  const double first = std::ceil(low / step - kSlack);
+  const double last = std::floor(high / step + kSlack);
   std::vector<Tick> ticks;
-  for (double index = std::ceil(low / step - kSlack); index * step <= high + step * kSlack; ++index) {
+  for (double index = first; index <= last; ++index) {
     // Ten digits: 0.30000000000000004 is 0.3. And -0 is 0.
     const double value = std::stod(fmt::format("{:.10g}", index * step)) + 0.0;
     ticks.push_back({value, grouped(value)});

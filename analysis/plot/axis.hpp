@@ -30,6 +30,7 @@ double round_down_125(double value);
 double round_up_125(double value);
 
 /// Ticks at round steps, about `wanted` of them; `least_step` 1 for things that are counted.
+/// `high` - `low` is at least a millionth of both.
 std::vector<Tick> linear_ticks(double low, double high, int wanted, double least_step = 0);
 /// Labelled at powers of ten (at 2 and 5 times them too where the axis is short), unlabelled between.
 std::vector<Tick> log_ticks(double low, double high);

@@ -91,6 +91,24 @@ int draw_textures(const Options& options) {
                       [&] { return plot::texture_figure(plot::read_texture_contacts(options.inputs.front())); });
 }
 
+/// Help that opens with examples, which the list of subcommands leaves out.
+class ExamplesFirst : public CLI::Formatter {
+ public:
+  explicit ExamplesFirst(std::string_view examples) : examples_(examples) {}
+  std::string make_description(const CLI::App* app) const override {
+    return fmt::format("Examples:\n{}\n{}", examples_, Formatter::make_description(app));
+  }
+
+ private:
+  std::string_view examples_;
+};
+
+CLI::App& add_command(CLI::App& app, const char* name, const char* what, std::string_view examples) {
+  CLI::App& command = *app.add_subcommand(name, what);
+  command.formatter(std::make_shared<ExamplesFirst>(examples));
+  return command;
+}
+
 void add_common_options(CLI::App& command, Options& options, const char* output_name, const char* output_help) {
   command.add_option("-o", options.output, output_help)->type_name(output_name);
   command.add_flag("--force", options.force, "overwrite figures that exist");
@@ -101,38 +119,35 @@ void add_common_options(CLI::App& command, Options& options, const char* output_
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app(
-      "Examples:\n  vestige plot sweep results/sweep\n  vestige plot timeline timeline.csv -o figures/timeline\n\n"
-      "Draws result files as figures, SVG and PNG (300 dots per inch).",
-      "vestige plot");
+  CLI::App app("Draws result files as figures, SVG and PNG (300 dots per inch).", "vestige plot");
+  app.formatter(
+      std::make_shared<ExamplesFirst>("  vestige plot sweep results/sweep\n"
+                                      "  vestige plot timeline timeline.csv -o figures/timeline\n"));
   app.set_version_flag("--version", fmt::format("vestige-plot {} ({}{})", vestige::kVersion, vestige::kCommit,
                                                 vestige::kDirty ? ", changed" : ""));
   app.require_subcommand(1);
 
-  CLI::App& sweep =
-      *app.add_subcommand("sweep",
-                          "Examples:\n  vestige plot sweep results/sweep\n  vestige plot sweep gpu/sweep.json "
-                          "software/sweep.json -o figures\n\n"
-                          "Detection frequency over the number of colliders: frequency.svg and frequency.png.");
+  CLI::App& sweep = add_command(app, "sweep", "detection frequency over the number of colliders (frequency.svg, .png)",
+                                "  vestige plot sweep results/sweep\n"
+                                "  vestige plot sweep gpu/sweep.json software/sweep.json -o figures\n");
   sweep.add_option("inputs", options.inputs, "sweep.json, or the folder that holds it; several go into one figure")
       ->type_name("DIR|JSON")
       ->required();
   add_common_options(sweep, options, "DIR", "folder for the figures (default: beside the first input)");
 
-  CLI::App& timeline = *app.add_subcommand("timeline",
-                                           "Examples:\n  vestige plot timeline timeline.csv\n  vestige plot timeline "
-                                           "timeline.csv -o figures/timeline --force\n\n"
-                                           "Duty of every actuator over time.");
+  CLI::App& timeline = add_command(app, "timeline", "duty of every actuator over time",
+                                   "  vestige plot timeline timeline.csv\n"
+                                   "  vestige plot timeline timeline.csv -o figures/timeline --force\n");
   timeline.add_option("input", options.inputs, "written by 'vestige replay --timeline FILE.csv'")
       ->type_name("CSV")
       ->expected(1)
       ->required();
   add_common_options(timeline, options, "OUT", "OUT.svg and OUT.png (default: the input's name)");
 
-  CLI::App& textures = *app.add_subcommand(
-      "textures",
-      "Examples:\n  vestige plot textures textures.exr\n  vestige plot textures textures.exr -o figures/textures\n\n"
-      "The collision textures: which actuator each collider touched in each frame.");
+  CLI::App& textures =
+      add_command(app, "textures", "collision textures: which actuator each collider touched, and when",
+                  "  vestige plot textures textures.exr\n"
+                  "  vestige plot textures textures.exr -o figures/textures\n");
   textures.add_option("input", options.inputs, "written by 'vestige replay --textures FILE.exr'")
       ->type_name("EXR")
       ->expected(1)

@@ -38,10 +38,10 @@ struct Field {
     if (value.empty()) refuse("is empty");
     return value.size();
   }
-  double at_least(double least) const {
+  double within(double least, double most) const {
     if (!value.is_number()) refuse("is no number");
     const double number = value.get<double>();
-    if (!(number >= least)) refuse(fmt::format("is {}, less than {}", number, least));
+    if (!(number >= least && number <= most)) refuse(fmt::format("is {}, not within {} and {}", number, least, most));
     return number;
   }
   std::string text() const {
@@ -55,16 +55,18 @@ struct Field {
   }
 };
 
-/// Below this no line could be drawn on a logarithmic axis, nor is it a frequency anybody means.
+/// What an axis can show; nothing real lies outside.
+constexpr double kMostColliders = 1e9;
 constexpr double kLeast_hz = 1e-6;
+constexpr double kMost_hz = 1e12;
 
 SweepPoint read_point(const Field& field) {
   SweepPoint point;
-  point.colliders = field.at("colliders").at_least(1);
-  point.hz = field.at("hz").at_least(kLeast_hz);
+  point.colliders = field.at("colliders").within(1, kMostColliders);
+  point.hz = field.at("hz").within(kLeast_hz, kMost_hz);
   if (field.has("hz_low") && field.has("hz_high")) {
-    point.hz_low = field.at("hz_low").at_least(kLeast_hz);
-    point.hz_high = field.at("hz_high").at_least(*point.hz_low);
+    point.hz_low = field.at("hz_low").within(kLeast_hz, kMost_hz);
+    point.hz_high = field.at("hz_high").within(*point.hz_low, kMost_hz);
   }
   return point;
 }

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kWidth_pt = 468;
 constexpr double kLeft_pt = 54;
-constexpr double kRight_pt = 366;
-constexpr double kLegend_pt = 378;
+constexpr double kRight_pt = 354;
+constexpr double kLegend_pt = 366;
 constexpr double kAxisRoom_pt = 36;
 constexpr double kTop_pt = 12;
 constexpr double kLeastHeight_pt = 120;

@@ -18,6 +18,8 @@ namespace {
 
 constexpr std::string_view kRemedy = "was it written by 'vestige replay --timeline FILE.csv'?";
 constexpr std::size_t kMostActuators = 1024;
+/// 30 000 years.
+constexpr double kFarthest_s = 1e12;
 constexpr int kFullDuty = 255;
 
 constexpr double kWidth_pt = 468;
@@ -42,8 +44,14 @@ class TimelineFigure : public Figure {
   void draw(Canvas& canvas) const override {
     const Box plot = {kLeft_pt, kAxisRoom_pt, kRight_pt, kAxisRoom_pt + plot_height_pt()};
     canvas.image(plot, raster(plot));
-    const Axis x = {Scale::kLinear, timeline_.time_s.front(), end_s(), plot.left_pt, plot.right_pt};
-    draw_x_axis(canvas, plot, x, linear_ticks(x.low, x.high, 8), "Time (s)");
+    // A clock's time is long and says little: count from the first frame then.
+    const double begin_s = timeline_.time_s.front();
+    const double duration_s = end_s() - begin_s;
+    const bool is_clock = std::abs(begin_s) > 10 * duration_s;
+    const double zero_s = is_clock ? begin_s : 0;
+    const Axis x = {Scale::kLinear, begin_s - zero_s, end_s() - zero_s, plot.left_pt, plot.right_pt};
+    draw_x_axis(canvas, plot, x, linear_ticks(x.low, x.high, 8),
+                is_clock ? fmt::format("Time (s) after {} s", begin_s) : "Time (s)");
     const auto count = static_cast<double>(timeline_.actuator_count);
     const Axis y = {Scale::kLinear, 0.5, count + 0.5, plot.top_pt, plot.bottom_pt};
     draw_y_axis(canvas, plot, y, actuator_ticks(plot), "Actuator");
@@ -142,7 +150,7 @@ Timeline read_timeline(const std::filesystem::path& path) {
   CsvLines lines(text, path.string(), header, kRemedy);
   while (lines.next()) {
     double time_s = 0;
-    if (!lines.take(time_s) || !std::isfinite(time_s)) throw lines.error("time_s is no number");
+    if (!lines.take(time_s) || !(std::abs(time_s) <= kFarthest_s)) throw lines.error("time_s is no time in seconds");
     if (!timeline.time_s.empty() && time_s <= timeline.time_s.back())
       throw lines.error(fmt::format("time_s does not rise: {} after {}", time_s, timeline.time_s.back()));
     timeline.time_s.push_back(time_s);
