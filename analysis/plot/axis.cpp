@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "analysis/plot/palette.hpp"
 
@@ -13,15 +14,15 @@ namespace vestige::plot {
 namespace {
 
 constexpr Pen kAxisPen = {kInk, 0.6, Dash::kSolid};
-constexpr double kTick_pt = 3;
-constexpr double kShortTick_pt = 1.8;
-constexpr int kTickType_pt = 7;
-constexpr int kTitleType_pt = 8;
+constexpr double kTickPt = 3;
+constexpr double kShortTickPt = 1.8;
+constexpr int kTickTypePt = 7;
+constexpr int kTitleTypePt = 8;
 /// Adds of floating-point steps land a hair beside the round number.
 constexpr double kSlack = 1e-9;
 
 double tick_length_pt(const Tick& tick) {
-  return tick.label.empty() ? kShortTick_pt : kTick_pt;
+  return tick.label.empty() ? kShortTickPt : kTickPt;
 }
 
 }  // namespace
@@ -59,12 +60,12 @@ std::string grouped(double value) {
 
 std::vector<Tick> linear_ticks(double low, double high, int wanted, double least_step) {
   const double step = std::max(least_step, round_up_125((high - low) / wanted));
-  const double first = std::ceil(low / step - kSlack);
-  const double last = std::floor(high / step + kSlack);
+  const auto first = static_cast<std::int64_t>(std::ceil(low / step - kSlack));
+  const auto last = static_cast<std::int64_t>(std::floor(high / step + kSlack));
   std::vector<Tick> ticks;
-  for (double index = first; index <= last; ++index) {
-    // Ten digits: 0.30000000000000004 is 0.3. And -0 is 0.
-    const double value = std::stod(fmt::format("{:.10g}", index * step)) + 0.0;
+  for (std::int64_t index = first; index <= last; ++index) {
+    // Ten digits: 0.30000000000000004 is 0.3.
+    const double value = std::stod(fmt::format("{:.10g}", static_cast<double>(index) * step));
     ticks.push_back({value, grouped(value)});
   }
   return ticks;
@@ -73,7 +74,10 @@ std::vector<Tick> linear_ticks(double low, double high, int wanted, double least
 std::vector<Tick> log_ticks(double low, double high) {
   const bool short_axis = high / low < 100;
   std::vector<Tick> ticks;
-  for (double power = std::pow(10.0, std::floor(std::log10(low) + kSlack)); power <= high * (1 + kSlack); power *= 10) {
+  const int first_decade = static_cast<int>(std::floor(std::log10(low) + kSlack));
+  const int last_decade = static_cast<int>(std::floor(std::log10(high) + kSlack));
+  for (int decade = first_decade; decade <= last_decade; ++decade) {
+    const double power = std::pow(10.0, decade);
     for (int factor = 1; factor < 10; ++factor) {
       const double value = factor * power;
       if (value < low * (1 - kSlack) || value > high * (1 + kSlack)) continue;
@@ -90,10 +94,10 @@ void draw_x_axis(Canvas& canvas, const Box& box, const Axis& x, const std::vecto
   for (const Tick& tick : ticks) {
     const double x_pt = x.place_pt(tick.value);
     canvas.line({x_pt, box.bottom_pt}, {x_pt, box.bottom_pt - tick_length_pt(tick)}, kAxisPen);
-    canvas.text({x_pt, box.bottom_pt - 5}, tick.label, {kTickType_pt, kInk, Anchor::kCentre, Level::kTop});
+    canvas.text({x_pt, box.bottom_pt - 5}, tick.label, {kTickTypePt, kInk, Anchor::kCentre, Level::kTop});
   }
   canvas.text({(box.left_pt + box.right_pt) / 2, box.bottom_pt - 17}, title,
-              {kTitleType_pt, kInk, Anchor::kCentre, Level::kTop});
+              {kTitleTypePt, kInk, Anchor::kCentre, Level::kTop});
 }
 
 void draw_y_axis(Canvas& canvas, const Box& box, const Axis& y, const std::vector<Tick>& ticks,
@@ -101,7 +105,7 @@ void draw_y_axis(Canvas& canvas, const Box& box, const Axis& y, const std::vecto
   canvas.line({box.left_pt, box.bottom_pt}, {box.left_pt, box.top_pt}, kAxisPen);
   double widest_pt = 0;
   for (const Tick& tick : ticks) {
-    const TextStyle style = {kTickType_pt, kInk, Anchor::kRight, Level::kMiddle};
+    const TextStyle style = {kTickTypePt, kInk, Anchor::kRight, Level::kMiddle};
     const double y_pt = y.place_pt(tick.value);
     canvas.line({box.left_pt, y_pt}, {box.left_pt - tick_length_pt(tick), y_pt}, kAxisPen);
     if (tick.label.empty()) continue;
@@ -109,7 +113,7 @@ void draw_y_axis(Canvas& canvas, const Box& box, const Axis& y, const std::vecto
     widest_pt = std::max(widest_pt, text_width_pt(tick.label, style));
   }
   canvas.text({box.left_pt - 11 - widest_pt, (box.bottom_pt + box.top_pt) / 2}, title,
-              {kTitleType_pt, kInk, Anchor::kCentre, Level::kFoot, Weight::kRegular, 90});
+              {kTitleTypePt, kInk, Anchor::kCentre, Level::kFoot, Weight::kRegular, 90});
 }
 
 }  // namespace vestige::plot

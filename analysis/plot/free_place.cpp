@@ -57,7 +57,7 @@ void spread(std::span<double> heights, double gap, double low, double high) {
   // Labels that would touch form a group, which sits where its members' mean would have it.
   struct Group {
     double first;
-    double count;
+    int count;
   };
   std::vector<Group> groups;
   const auto settle = [&](Group group) {
@@ -79,7 +79,7 @@ void spread(std::span<double> heights, double gap, double low, double high) {
   }
   auto next = order.begin();
   for (const Group& group : groups)
-    for (double place = 0; place < group.count; ++place) heights[*next++] = group.first + place * gap;
+    for (int place = 0; place < group.count; ++place) heights[*next++] = group.first + place * gap;
 }
 
 }  // namespace vestige::plot

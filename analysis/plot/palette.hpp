@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstdint>
 
 #include "analysis/plot/canvas.hpp"
 
@@ -25,22 +27,22 @@ inline constexpr Colour kGrid = {225, 225, 225};
 inline constexpr Colour kWhite = {255, 255, 255};
 
 /// `part` 0 gives `from`, 1 gives `to`.
-constexpr Colour blend(Colour from, Colour to, double part) {
+inline Colour blend(Colour from, Colour to, double part) {
   const auto channel = [part](std::uint8_t low, std::uint8_t high) {
-    return static_cast<std::uint8_t>(low + (high - low) * part + 0.5);
+    return static_cast<std::uint8_t>(std::lround(std::lerp(low, high, part)));
   };
   return {channel(from.red, to.red), channel(from.green, to.green), channel(from.blue, to.blue)};
 }
 
 /// Amounts, 0..1: from next to nothing to dark, evenly, and so in grey print too.
-constexpr Colour amount_ramp(double part) {
+inline Colour amount_ramp(double part) {
   constexpr Colour kPale = {238, 241, 245};
   constexpr Colour kDark = {8, 29, 66};
   return part < 0.6 ? blend(kPale, kBlue, part / 0.6) : blend(kBlue, kDark, (part - 0.6) / 0.4);
 }
 
 /// Numbers of many things, 0..1: each visible on white, neighbours alike, darker throughout.
-constexpr Colour number_ramp(double part) {
+inline Colour number_ramp(double part) {
   constexpr Colour kMiddle = {122, 30, 98};
   constexpr Colour kDark = {10, 14, 60};
   if (part < 0.35) return blend(kOrange, kVermillion, part / 0.35);

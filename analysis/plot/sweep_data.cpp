@@ -57,16 +57,16 @@ struct Field {
 
 /// What an axis can show; nothing real lies outside.
 constexpr double kMostColliders = 1e9;
-constexpr double kLeast_hz = 1e-6;
-constexpr double kMost_hz = 1e12;
+constexpr double kLeastHz = 1e-6;
+constexpr double kMostHz = 1e12;
 
 SweepPoint read_point(const Field& field) {
   SweepPoint point;
   point.colliders = field.at("colliders").within(1, kMostColliders);
-  point.hz = field.at("hz").within(kLeast_hz, kMost_hz);
+  point.hz = field.at("hz").within(kLeastHz, kMostHz);
   if (field.has("hz_low") && field.has("hz_high")) {
-    point.hz_low = field.at("hz_low").within(kLeast_hz, kMost_hz);
-    point.hz_high = field.at("hz_high").within(*point.hz_low, kMost_hz);
+    point.hz_low = field.at("hz_low").within(kLeastHz, kMostHz);
+    point.hz_high = field.at("hz_high").within(*point.hz_low, kMostHz);
   }
   return point;
 }

@@ -26,14 +26,14 @@ struct Reference {
 };
 constexpr std::array<Reference, 2> kReferences = {Reference{1000, "1 kHz"}, Reference{500, "500 Hz"}};
 
-constexpr double kWidth_pt = 468;
-constexpr double kPlotHeight_pt = 240;
-constexpr double kLeft_pt = 48;
-constexpr double kAxisRoom_pt = 34;
-constexpr double kLabelGap_pt = 10;
-constexpr double kLabelIndent_pt = 16;
-constexpr double kSmallLine_pt = 8;
-constexpr double kMargin_pt = 8;
+constexpr double kWidthPt = 468;
+constexpr double kPlotHeightPt = 240;
+constexpr double kLeftPt = 48;
+constexpr double kAxisRoomPt = 34;
+constexpr double kLabelGapPt = 10;
+constexpr double kLabelIndentPt = 16;
+constexpr double kSmallLinePt = 8;
+constexpr double kMarginPt = 8;
 /// Up to here the axis is linear, as the paper's is; counts beyond it span decades.
 constexpr double kLinearColliders = 200;
 /// A line with more points than this is marked at some of them only.
@@ -44,7 +44,7 @@ constexpr TextStyle kLabelStyle = {8, kInk, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kNoteStyle = {7, kInk, Anchor::kLeft, Level::kFoot};
 constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
-std::string detector_context(std::string context) {
+std::string shown_context(std::string context) {
   if (context == "egl") return "EGL";
   if (context == "osmesa") return "OSMesa";
   return context;
@@ -69,8 +69,8 @@ std::vector<std::string> series_names(const Sweeps& sweeps) {
   std::vector<std::string> names;
   for (const SweepSeries& series : sweeps.series) {
     std::string name = series.detector;
-    if (contexts.size() > 1 && !series.context.empty()) name += ", " + detector_context(series.context);
-    if (methods.size() > 1) name += ", " + series.method;
+    if (contexts.size() > 1 && !series.context.empty()) name.append(", ").append(shown_context(series.context));
+    if (methods.size() > 1) name.append(", ").append(series.method);
     if (skips.size() > 1 && series.skip == "off") name += ", no skipping";
     if (sweeps.sources.size() > 1) name += fmt::format(" [{}]", series.sweep + 1);
     names.push_back(name);
@@ -84,8 +84,8 @@ std::vector<std::string> wrapped(const std::string& text) {
   std::string line;
   std::istringstream words(text);
   for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : line + ' ' + word;
-    if (!line.empty() && text_width_pt(longer, kSmallStyle) > kWidth_pt - 2 * kMargin_pt) {
+    const std::string longer = line.empty() ? word : fmt::format("{} {}", line, word);
+    if (!line.empty() && text_width_pt(longer, kSmallStyle) > kWidthPt - 2 * kMarginPt) {
       lines.push_back(line);
       line = word;
     } else {
@@ -102,7 +102,7 @@ std::vector<std::string> small_print(const Sweeps& sweeps) {
   for (const SweepSeries& series : sweeps.series) has_interval |= series.points.front().hz_low.has_value();
   std::string first = "Frequency is frames / total time, whole round trip.";
   if (has_interval) first += " Shaded: 95 % bootstrap interval.";
-  first += " Triangles: at least this much, as published.";
+  first += " Triangles: published lower bounds.";
   lines = wrapped(first);
   for (std::size_t i = 0; i < sweeps.sources.size(); ++i) {
     const SweepSource& source = sweeps.sources[i];
@@ -121,9 +121,9 @@ class SweepFigure : public Figure {
   explicit SweepFigure(Sweeps sweeps)
       : sweeps_(std::move(sweeps)), names_(series_names(sweeps_)), small_print_(small_print(sweeps_)) {}
 
-  double width_pt() const override { return kWidth_pt; }
+  double width_pt() const override { return kWidthPt; }
   double height_pt() const override {
-    return kMargin_pt + plot_height_pt() + kAxisRoom_pt + static_cast<double>(small_print_.size()) * kSmallLine_pt + 4;
+    return kMarginPt + plot_height_pt() + kAxisRoomPt + static_cast<double>(small_print_.size()) * kSmallLinePt + 4;
   }
   std::string description() const override {
     std::string text =
@@ -138,28 +138,33 @@ class SweepFigure : public Figure {
   void draw(Canvas& canvas) const override {
     double label_width_pt = 0;
     for (const std::string& name : names_) label_width_pt = std::max(label_width_pt, text_width_pt(name, kLabelStyle));
-    const Box plot = {kLeft_pt, height_pt() - kMargin_pt - plot_height_pt(),
-                      kWidth_pt - label_width_pt - kLabelIndent_pt - 6, height_pt() - kMargin_pt};
+    const Box plot = {kLeftPt, height_pt() - kMarginPt - plot_height_pt(),
+                      kWidthPt - label_width_pt - kLabelIndentPt - 6, height_pt() - kMarginPt};
     const Axis x = x_axis(plot);
     const Axis y = y_axis(plot);
     draw_frame(canvas, plot, x, y);
     FreePlace free_place(plot);
     for (std::size_t i = 0; i < sweeps_.series.size(); ++i) draw_band(canvas, i, x, y);
     for (std::size_t i = 0; i < sweeps_.series.size(); ++i) free_place.take(draw_line(canvas, i, x, y));
+    for (const Reference& reference : kReferences) {
+      const double y_pt = y.place_pt(reference.hz);
+      const std::array<Place, 2> line = {Place{plot.left_pt, y_pt}, Place{plot.right_pt, y_pt}};
+      free_place.take(line);
+    }
     draw_published(canvas, x, y, free_place);
     draw_reference_labels(canvas, plot, y, free_place);
     draw_labels(canvas, plot, x, y);
-    double y_pt = 2 + static_cast<double>(small_print_.size()) * kSmallLine_pt;
+    double y_pt = 2 + static_cast<double>(small_print_.size()) * kSmallLinePt;
     for (const std::string& line : small_print_) {
-      canvas.text({kMargin_pt, y_pt}, line, kSmallStyle);
-      y_pt -= kSmallLine_pt;
+      canvas.text({kMarginPt, y_pt}, line, kSmallStyle);
+      y_pt -= kSmallLinePt;
     }
   }
 
  private:
   /// Enough for all the labels on the right.
   double plot_height_pt() const {
-    return std::max(kPlotHeight_pt, static_cast<double>(names_.size() + 1) * kLabelGap_pt);
+    return std::max(kPlotHeightPt, static_cast<double>(names_.size() + 1) * kLabelGapPt);
   }
 
   /// Colour tells detectors and contexts apart, dashes say that nothing was skipped, marks tell files apart: what
@@ -250,7 +255,7 @@ class SweepFigure : public Figure {
       free_place.take({at.x_pt - 5, at.y_pt - 4, at.x_pt + 5, at.y_pt + 6});
     }
     const double width_pt = text_width_pt(kPublishedName, kNoteStyle);
-    constexpr double kHeight_pt = 9;
+    constexpr double kHeightPt = 9;
     std::vector<Box> boxes;
     for (const double distance_pt : {7.0, 16.0, 28.0, 44.0, 64.0}) {
       for (const std::size_t which : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
@@ -259,13 +264,13 @@ class SweepFigure : public Figure {
         const double left_pt = at.x_pt - 6 - width_pt;
         const double middle_pt = at.x_pt - width_pt / 2;
         const double above_pt = at.y_pt + distance_pt;
-        const double below_pt = at.y_pt - distance_pt - kHeight_pt;
-        const double beside_pt = at.y_pt - kHeight_pt / 2;
+        const double below_pt = at.y_pt - distance_pt - kHeightPt;
+        const double beside_pt = at.y_pt - kHeightPt / 2;
         const double gap_pt = distance_pt - 7;
         for (const Place corner : {Place{right_pt + gap_pt, beside_pt}, Place{right_pt, above_pt},
                                    Place{middle_pt, above_pt}, Place{right_pt, below_pt}, Place{middle_pt, below_pt},
                                    Place{left_pt, above_pt}, Place{left_pt, below_pt}})
-          boxes.push_back({corner.x_pt, corner.y_pt, corner.x_pt + width_pt, corner.y_pt + kHeight_pt});
+          boxes.push_back({corner.x_pt, corner.y_pt, corner.x_pt + width_pt, corner.y_pt + kHeightPt});
       }
     }
     const Box box = free_place.take_first(boxes);
@@ -277,7 +282,9 @@ class SweepFigure : public Figure {
       const double y_pt = y.place_pt(reference.hz);
       const double width_pt = text_width_pt(reference.label, kNoteStyle);
       std::vector<Box> boxes;
-      for (double right_pt = plot.right_pt - 2; right_pt - width_pt > plot.left_pt; right_pt -= 6) {
+      const int places = static_cast<int>((plot.width_pt() - width_pt) / 6);
+      for (int i = 0; i < places; ++i) {
+        const double right_pt = plot.right_pt - 2 - i * 6;
         boxes.push_back({right_pt - width_pt, y_pt + 1, right_pt, y_pt + 8});
         boxes.push_back({right_pt - width_pt, y_pt - 8, right_pt, y_pt - 1});
       }
@@ -291,14 +298,14 @@ class SweepFigure : public Figure {
   void draw_labels(Canvas& canvas, const Box& plot, const Axis& x, const Axis& y) const {
     std::vector<double> heights_pt;
     for (const SweepSeries& series : sweeps_.series) heights_pt.push_back(y.place_pt(series.points.back().hz));
-    spread(heights_pt, kLabelGap_pt, plot.bottom_pt + 3, plot.top_pt - 3);
+    spread(heights_pt, kLabelGapPt, plot.bottom_pt + 3, plot.top_pt - 3);
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const Place end = place(sweeps_.series[i].points.back(), x, y);
-      const double left_pt = plot.right_pt + kLabelIndent_pt;
+      const double left_pt = plot.right_pt + kLabelIndentPt;
       const std::array<Place, 3> leader = {Place{end.x_pt + 2.5, end.y_pt},
                                            Place{std::max(end.x_pt + 2.5, plot.right_pt + 3), end.y_pt},
                                            Place{left_pt - 2, heights_pt[i]}};
-      const bool far = end.x_pt < plot.right_pt - 2 * kLabelIndent_pt;
+      const bool far = end.x_pt < plot.right_pt - 2 * kLabelIndentPt;
       canvas.polyline(leader, {colour(i), 0.5, far ? Dash::kDotted : Dash::kSolid});
       TextStyle style = kLabelStyle;
       style.colour = darkened(colour(i));

@@ -15,18 +15,18 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr double kWidth_pt = 468;
-constexpr double kLeft_pt = 54;
-constexpr double kRight_pt = 354;
-constexpr double kLegend_pt = 366;
-constexpr double kAxisRoom_pt = 36;
-constexpr double kTop_pt = 12;
-constexpr double kLeastHeight_pt = 120;
-constexpr double kMostHeight_pt = 420;
-constexpr double kFrameHeight_pt = 3;
-constexpr double kLegendLine_pt = 11;
+constexpr double kWidthPt = 468;
+constexpr double kLeftPt = 54;
+constexpr double kRightPt = 354;
+constexpr double kLegendPt = 366;
+constexpr double kAxisRoomPt = 36;
+constexpr double kTopPt = 12;
+constexpr double kLeastHeightPt = 120;
+constexpr double kMostHeightPt = 420;
+constexpr double kFrameHeightPt = 3;
+constexpr double kLegendLinePt = 11;
 /// The least width and height of a contact: about 0.4 mm in print.
-constexpr std::size_t kLeastMark_dots = 5;
+constexpr std::size_t kLeastMarkDots = 5;
 
 /// Told apart on white; grey is for unmapped skin. Past these numbers stand for themselves, on a ramp.
 constexpr std::array<Colour, 7> kCategories = {kBlue, kOrange, kGreen, kVermillion, kSkyBlue, kPurple, kBlack};
@@ -43,13 +43,13 @@ Span item_span(std::size_t index, std::size_t count, std::size_t dots) {
   return {begin, std::max((index + 1) * dots / count, begin + 1)};
 }
 
-/// `span` with at least `kLeastMark_dots`, around its middle, within [0, dots).
+/// `span` with at least `kLeastMarkDots`, around its middle, within [0, dots).
 Span grown(Span span, std::size_t dots) {
   const std::size_t size = span.end - span.begin;
-  if (size >= kLeastMark_dots || dots < kLeastMark_dots) return span;
-  const std::size_t before = (kLeastMark_dots - size) / 2;
-  const std::size_t begin = std::min(span.begin - std::min(span.begin, before), dots - kLeastMark_dots);
-  return {begin, begin + kLeastMark_dots};
+  if (size >= kLeastMarkDots || dots < kLeastMarkDots) return span;
+  const std::size_t before = (kLeastMarkDots - size) / 2;
+  const std::size_t begin = std::min(span.begin - std::min(span.begin, before), dots - kLeastMarkDots);
+  return {begin, begin + kLeastMarkDots};
 }
 
 class TextureFigure : public Figure {
@@ -58,15 +58,15 @@ class TextureFigure : public Figure {
     for (const TextureContact& contact : textures_.contacts) ++contacts_of_[contact.actuator];
   }
 
-  double width_pt() const override { return kWidth_pt; }
-  double height_pt() const override { return kAxisRoom_pt + plot_height_pt() + kTop_pt; }
+  double width_pt() const override { return kWidthPt; }
+  double height_pt() const override { return kAxisRoomPt + plot_height_pt() + kTopPt; }
   std::string description() const override {
     return fmt::format("Collision textures of {} frames and {} colliders with {} contacts.", textures_.frames,
                        textures_.colliders, textures_.contacts.size());
   }
 
   void draw(Canvas& canvas) const override {
-    const Box plot = {kLeft_pt, kAxisRoom_pt, kRight_pt, kAxisRoom_pt + plot_height_pt()};
+    const Box plot = {kLeftPt, kAxisRoomPt, kRightPt, kAxisRoomPt + plot_height_pt()};
     canvas.image(plot, raster(plot));
     canvas.frame(plot, {kInk, 0.4, Dash::kSolid});
     const Axis x = {Scale::kLinear, 0, static_cast<double>(textures_.colliders), plot.left_pt, plot.right_pt};
@@ -78,8 +78,8 @@ class TextureFigure : public Figure {
 
  private:
   double plot_height_pt() const {
-    const double wish_pt = static_cast<double>(textures_.frames) * kFrameHeight_pt;
-    return std::ceil(std::clamp(wish_pt, kLeastHeight_pt, kMostHeight_pt) / 6) * 6;
+    const double wish_pt = static_cast<double>(textures_.frames) * kFrameHeightPt;
+    return std::ceil(std::clamp(wish_pt, kLeastHeightPt, kMostHeightPt) / 6) * 6;
   }
 
   std::size_t highest_actuator() const { return contacts_of_.empty() ? 0 : contacts_of_.rbegin()->first; }
@@ -121,12 +121,11 @@ class TextureFigure : public Figure {
   void draw_legend(Canvas& canvas, const Box& plot) const {
     double y_pt = plot.top_pt - 4;
     const auto entry = [&](std::size_t actuator, std::string_view name, std::size_t count) {
-      canvas.rectangle({kLegend_pt, y_pt - 3, kLegend_pt + 10, y_pt + 3}, colour(actuator));
-      canvas.text({kLegend_pt + 14, y_pt}, fmt::format("{} ({})", name, grouped(static_cast<double>(count))),
-                  {7, kInk});
-      y_pt -= kLegendLine_pt;
+      canvas.rectangle({kLegendPt, y_pt - 3, kLegendPt + 10, y_pt + 3}, colour(actuator));
+      canvas.text({kLegendPt + 14, y_pt}, fmt::format("{} ({})", name, grouped(static_cast<double>(count))), {7, kInk});
+      y_pt -= kLegendLinePt;
     };
-    if (contacts_of_.empty()) canvas.text({kLegend_pt, y_pt}, "no contact", {7, kInk});
+    if (contacts_of_.empty()) canvas.text({kLegendPt, y_pt}, "no contact", {7, kInk});
     if (has_categories()) {
       for (const auto& [actuator, count] : contacts_of_)
         if (actuator > 0) entry(actuator, fmt::format("actuator {}", actuator), count);
@@ -135,7 +134,7 @@ class TextureFigure : public Figure {
       entry(0, "unmapped skin", unmapped->second);
     if (!has_categories()) {
       y_pt -= 14;
-      const Box bar = {kLegend_pt, std::max(plot.bottom_pt, y_pt - 96), kLegend_pt + 6, y_pt};
+      const Box bar = {kLegendPt, std::max(plot.bottom_pt, y_pt - 96), kLegendPt + 6, y_pt};
       draw_colour_bar(canvas, bar, number_ramp, 1, static_cast<double>(highest_actuator()), "Actuator");
     }
   }

@@ -19,30 +19,30 @@ namespace {
 constexpr std::string_view kRemedy = "was it written by 'vestige replay --timeline FILE.csv'?";
 constexpr std::size_t kMostActuators = 1024;
 /// 30 000 years.
-constexpr double kFarthest_s = 1e12;
+constexpr double kFarthestS = 1e12;
 constexpr int kFullDuty = 255;
 
-constexpr double kWidth_pt = 468;
-constexpr double kLeft_pt = 48;
-constexpr double kRight_pt = 408;
-constexpr double kAxisRoom_pt = 36;
-constexpr double kTop_pt = 20;
-constexpr double kLeastHeight_pt = 60;
-constexpr double kMostHeight_pt = 480;
+constexpr double kWidthPt = 468;
+constexpr double kLeftPt = 48;
+constexpr double kRightPt = 408;
+constexpr double kAxisRoomPt = 36;
+constexpr double kTopPt = 20;
+constexpr double kLeastHeightPt = 60;
+constexpr double kMostHeightPt = 480;
 
 class TimelineFigure : public Figure {
  public:
   explicit TimelineFigure(Timeline timeline) : timeline_(std::move(timeline)) {}
 
-  double width_pt() const override { return kWidth_pt; }
-  double height_pt() const override { return kAxisRoom_pt + plot_height_pt() + kTop_pt; }
+  double width_pt() const override { return kWidthPt; }
+  double height_pt() const override { return kAxisRoomPt + plot_height_pt() + kTopPt; }
   std::string description() const override {
     return fmt::format("Duty of {} actuators over {:.3g} s, {} frames.", timeline_.actuator_count,
                        end_s() - timeline_.time_s.front(), timeline_.time_s.size());
   }
 
   void draw(Canvas& canvas) const override {
-    const Box plot = {kLeft_pt, kAxisRoom_pt, kRight_pt, kAxisRoom_pt + plot_height_pt()};
+    const Box plot = {kLeftPt, kAxisRoomPt, kRightPt, kAxisRoomPt + plot_height_pt()};
     canvas.image(plot, raster(plot));
     // A clock's time is long and says little: count from the first frame then.
     const double begin_s = timeline_.time_s.front();
@@ -55,7 +55,7 @@ class TimelineFigure : public Figure {
     const auto count = static_cast<double>(timeline_.actuator_count);
     const Axis y = {Scale::kLinear, 0.5, count + 0.5, plot.top_pt, plot.bottom_pt};
     draw_y_axis(canvas, plot, y, actuator_ticks(plot), "Actuator");
-    const Box bar = {kRight_pt + 18, std::max(plot.bottom_pt, plot.top_pt - 96), kRight_pt + 24, plot.top_pt};
+    const Box bar = {kRightPt + 18, std::max(plot.bottom_pt, plot.top_pt - 96), kRightPt + 24, plot.top_pt};
     draw_colour_bar(canvas, bar, amount_ramp, 0, kFullDuty, "Duty");
   }
 
@@ -63,7 +63,7 @@ class TimelineFigure : public Figure {
   /// A row is 18 pt high while there is room; a multiple of 6 pt in all.
   double plot_height_pt() const {
     const double wish_pt = static_cast<double>(timeline_.actuator_count) * 18;
-    return std::ceil(std::clamp(wish_pt, kLeastHeight_pt, kMostHeight_pt) / 6) * 6;
+    return std::ceil(std::clamp(wish_pt, kLeastHeightPt, kMostHeightPt) / 6) * 6;
   }
 
   /// The last frame lasts as long as the one before it.
@@ -74,12 +74,14 @@ class TimelineFigure : public Figure {
   }
 
   std::vector<Tick> actuator_ticks(const Box& plot) const {
-    constexpr double kLabelHeight_pt = 9;
+    constexpr double kLabelHeightPt = 9;
     const double row_pt = plot.height_pt() / static_cast<double>(timeline_.actuator_count);
-    const double step = row_pt >= kLabelHeight_pt ? 1 : round_up_125(kLabelHeight_pt / row_pt);
+    const auto step = static_cast<std::size_t>(row_pt >= kLabelHeightPt ? 1 : round_up_125(kLabelHeightPt / row_pt));
     std::vector<Tick> ticks;
-    for (double actuator = 1; actuator <= static_cast<double>(timeline_.actuator_count); ++actuator)
-      if (actuator == 1 || std::fmod(actuator, step) == 0) ticks.push_back({actuator, grouped(actuator)});
+    for (std::size_t actuator = 1; actuator <= timeline_.actuator_count; ++actuator) {
+      const auto number = static_cast<double>(actuator);
+      if (actuator == 1 || actuator % step == 0) ticks.push_back({number, grouped(number)});
+    }
     return ticks;
   }
 
@@ -150,7 +152,7 @@ Timeline read_timeline(const std::filesystem::path& path) {
   CsvLines lines(text, path.string(), header, kRemedy);
   while (lines.next()) {
     double time_s = 0;
-    if (!lines.take(time_s) || !(std::abs(time_s) <= kFarthest_s)) throw lines.error("time_s is no time in seconds");
+    if (!lines.take(time_s) || !(std::abs(time_s) <= kFarthestS)) throw lines.error("time_s is no time in seconds");
     if (!timeline.time_s.empty() && time_s <= timeline.time_s.back())
       throw lines.error(fmt::format("time_s does not rise: {} after {}", time_s, timeline.time_s.back()));
     timeline.time_s.push_back(time_s);

@@ -1,0 +1,293 @@
+// Runs vestige-plot as a user does and looks at what it leaves behind.
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <expat.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <png.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <vector>
+
+#include "tests/support/test_data.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr const char* kSweep = R"({
+  "schema_version": 1, "commit": "0123456789abcdef", "dirty": false,
+  "machine": {"processor": "Fast & Cool 9000", "cores": 2},
+  "gl": {"renderer": "softpipe", "version": "4.5", "context": "egl"},
+  "avatar": {"vertices": 2600, "triangles": 5000, "joints": 20},
+  "series": [
+    {"detector": "paper", "context": "egl", "skip": "off", "method": "static", "points": [
+      {"colliders": 1, "hz": 2800, "hz_low": 2700, "hz_high": 2900},
+      {"colliders": 100, "hz": 170, "hz_low": 160, "hz_high": 180}]},
+    {"detector": "cpu", "context": null, "skip": "on", "method": "static", "points": [
+      {"colliders": 1, "hz": 290000}, {"colliders": 100, "hz": 16000}]}]})";
+
+struct Outcome {
+  int exit_code = -1;
+  std::string standard_error;
+};
+
+void write_text(const std::filesystem::path& path, std::string_view text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+/// The words of an SVG document; fails the test when it is not well-formed XML.
+std::string words_of(const std::filesystem::path& svg) {
+  const std::string document = read_text_file(svg);
+  std::string words;
+  const XML_Parser parser = XML_ParserCreate(nullptr);
+  XML_SetUserData(parser, &words);
+  XML_SetCharacterDataHandler(parser, [](void* out, const XML_Char* text, int length) {
+    static_cast<std::string*>(out)->append(text, static_cast<std::size_t>(length));
+  });
+  const bool is_xml = XML_Parse(parser, document.data(), static_cast<int>(document.size()), XML_TRUE) == XML_STATUS_OK;
+  EXPECT_TRUE(is_xml) << svg << ": " << XML_ErrorString(XML_GetErrorCode(parser)) << " in line "
+                      << XML_GetCurrentLineNumber(parser);
+  XML_ParserFree(parser);
+  return words;
+}
+
+struct Pixel {
+  std::uint8_t red = 0;
+  std::uint8_t green = 0;
+  std::uint8_t blue = 0;
+  bool operator==(const Pixel&) const = default;
+};
+constexpr Pixel kWhite = {255, 255, 255};
+constexpr Pixel kFirstActuator = {0, 114, 178};
+constexpr Pixel kFullDuty = {8, 29, 66};
+
+struct Picture {
+  std::size_t width = 0;
+  std::size_t height = 0;
+  std::vector<Pixel> pixels;
+
+  /// The number of pixels of that colour in columns [begin, end).
+  std::size_t count(Pixel colour, std::size_t begin, std::size_t end) const {
+    std::size_t result = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+      if (i % width >= begin && i % width < end && pixels[i] == colour) ++result;
+    return result;
+  }
+};
+
+Picture read_png(const std::filesystem::path& path) {
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  if (png_image_begin_read_from_file(&image, path.c_str()) == 0) throw std::runtime_error(image.message);
+  image.format = PNG_FORMAT_RGB;
+  Picture picture = {image.width, image.height, std::vector<Pixel>(std::size_t{image.width} * image.height)};
+  static_assert(sizeof(Pixel) == 3);
+  if (png_image_finish_read(&image, nullptr, picture.pixels.data(), 0, nullptr) == 0)
+    throw std::runtime_error(image.message);
+  return picture;
+}
+
+/// One contact of `actuator` in the middle of `frames` x `colliders` texels.
+void write_textures(const std::filesystem::path& path, int colliders, int frames, float actuator) {
+  std::vector<float> texels(static_cast<std::size_t>(colliders) * static_cast<std::size_t>(frames),
+                            std::numeric_limits<float>::infinity());
+  texels[static_cast<std::size_t>(frames / 2 * colliders + colliders / 2)] = actuator;
+  Imf::Header header(colliders, frames);
+  header.channels().insert("actuator", Imf::Channel(Imf::FLOAT));
+  Imf::OutputFile file(path.c_str(), header);
+  Imf::FrameBuffer buffer;
+  buffer.insert("actuator", Imf::Slice::Make(Imf::FLOAT, texels.data(), header.dataWindow()));
+  file.setFrameBuffer(buffer);
+  file.writePixels(frames);
+}
+
+class PlotTest : public ::testing::Test {
+ protected:
+  Outcome run(const std::string& arguments, const std::string& environment = "") const {
+    const auto errors = folder_ / "stderr.txt";
+    const std::string command =
+        fmt::format("cd '{}' && env -u DISPLAY {} '{}/vestige-plot' {} 2>'{}' >/dev/null", folder_.path().string(),
+                    environment, VESTIGE_BIN_DIR, arguments, errors.string());
+    const int status = std::system(command.c_str());  // NOLINT: the test's own words
+    Outcome outcome = {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text_file(errors)};
+    std::filesystem::remove(errors);
+    return outcome;
+  }
+
+  std::size_t file_count() const {
+    const std::filesystem::directory_iterator files(folder_.path());
+    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(PlotTest, ASweepNamesItsSeriesThePublishedPointsAndWhereItComesFrom) {
+  write_text(folder_ / "sweep.json", kSweep);
+  const Outcome outcome = run("sweep .");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  const std::string words = words_of(folder_ / "frequency.svg");
+  for (const char* expected :
+       {"paper, no skipping", "cpu", "HAVE 2010, GeForce GTX 285", "1 kHz", "500 Hz", "Number of colliders",
+        "Detection frequency (Hz)", "softpipe", "Fast & Cool 9000", "0123456789", "5000 triangles"})
+    EXPECT_THAT(words, HasSubstr(expected));
+}
+
+TEST_F(PlotTest, APngIsSixAndAHalfInchesWideAt300DotsPerInchAndNotBlank) {
+  write_text(folder_ / "sweep.json", kSweep);
+  EXPECT_EQ(run("sweep sweep.json").exit_code, 0);
+  const Picture picture = read_png(folder_ / "frequency.png");
+  EXPECT_EQ(picture.width, 1950U);
+  EXPECT_GT(picture.height, 1000U);
+  const std::size_t white = picture.count(kWhite, 0, picture.width);
+  EXPECT_GT(white, picture.pixels.size() / 2);
+  EXPECT_LT(white, picture.pixels.size() * 99 / 100);
+}
+
+TEST_F(PlotTest, SeveralSweepsInOneFigureAreToldApart) {
+  write_text(folder_ / "a.json", kSweep);
+  write_text(folder_ / "b.json", kSweep);
+  EXPECT_EQ(run("sweep a.json b.json -o .").exit_code, 0);
+  const std::string words = words_of(folder_ / "frequency.svg");
+  EXPECT_THAT(words, HasSubstr("cpu [1]"));
+  EXPECT_THAT(words, HasSubstr("cpu [2]"));
+}
+
+TEST_F(PlotTest, ASinglePulseAmongManyFramesStaysVisible) {
+  std::string csv = "time_s,actuator_1,actuator_2\n";
+  for (int frame = 0; frame < 50000; ++frame) csv += fmt::format("{},0,{}\n", frame / 1000.0, frame == 30000 ? 255 : 0);
+  write_text(folder_ / "timeline.csv", csv);
+  const Outcome outcome = run("timeline timeline.csv");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  constexpr std::size_t kColourBarDots = 1750;
+  EXPECT_GT(read_png(folder_ / "timeline.png").count(kFullDuty, 0, kColourBarDots), 50U);
+  EXPECT_THAT(words_of(folder_ / "timeline.svg"), HasSubstr("Time (s)"));
+  EXPECT_LT(std::filesystem::file_size(folder_ / "timeline.svg"), 100000U);
+}
+
+TEST_F(PlotTest, ASingleContactAmongManyTexelsStaysVisible) {
+  write_textures(folder_ / "textures.exr", 2000, 4000, 1);
+  const Outcome outcome = run("textures textures.exr -o picture.png");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  constexpr std::size_t kLegendDots = 1500;
+  EXPECT_GE(read_png(folder_ / "picture.png").count(kFirstActuator, 0, kLegendDots), 25U);
+  EXPECT_THAT(words_of(folder_ / "picture.svg"), HasSubstr("actuator 1 (1)"));
+}
+
+TEST_F(PlotTest, FiguresThatExistAreKeptWithoutForce) {
+  write_text(folder_ / "sweep.json", kSweep);
+  write_text(folder_ / "frequency.png", "mine");
+  const Outcome refused = run("sweep .");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.standard_error, HasSubstr("--force"));
+  EXPECT_EQ(read_text_file(folder_ / "frequency.png"), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "frequency.svg"));
+  EXPECT_EQ(run("sweep . --force").exit_code, 0);
+  EXPECT_EQ(read_png(folder_ / "frequency.png").width, 1950U);
+}
+
+TEST_F(PlotTest, WithoutOpenGlTheSvgIsWrittenAndTheLossIsSaid) {
+  write_text(folder_ / "sweep.json", kSweep);
+  const Outcome outcome = run("sweep .", "__EGL_VENDOR_LIBRARY_FILENAMES=/nonexistent");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("frequency.png: left out"));
+  EXPECT_THAT(words_of(folder_ / "frequency.svg"), HasSubstr("cpu"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "frequency.png"));
+}
+
+struct BadInput {
+  const char* name;
+  const char* command;
+  const char* content;  ///< null: there is no file
+  const char* cause;
+};
+
+class BadInputTest : public PlotTest, public ::testing::WithParamInterface<BadInput> {};
+
+TEST_P(BadInputTest, IsRefusedNamingFileAndCauseAndLeavesNothing) {
+  const BadInput& bad = GetParam();
+  if (bad.content != nullptr) write_text(folder_ / "input", bad.content);
+  const std::size_t files_before = file_count();
+  const Outcome outcome = run(fmt::format("{} input", bad.command));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.standard_error, StartsWith("input"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr(bad.cause));
+  EXPECT_EQ(file_count(), files_before);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Plot, BadInputTest,
+    ::testing::Values(
+        BadInput{"MissingSweep", "sweep", nullptr, "no such file"},
+        BadInput{"SweepCutOff", "sweep", R"({"commit": "x", "series": [)", "byte 28"},
+        BadInput{"SweepIsAList", "sweep", "[1]", "no JSON object"},
+        BadInput{"NoSeriesField", "sweep", R"({"commit": "x"})", "series is missing"},
+        BadInput{"EmptySeries", "sweep", R"({"commit": "x", "series": []})", "series is empty"},
+        BadInput{"NoPoints", "sweep", R"({"commit": "x", "series": [{"detector": "cpu", "points": []}]})",
+                 "series[0].points is empty"},
+        BadInput{"NotANumber", "sweep",
+                 R"({"commit": "x", "series": [{"detector": "cpu", "points": [{"colliders": 1, "hz": null}]}]})",
+                 "series[0].points[0].hz is no number"},
+        BadInput{"ZeroFrequency", "sweep",
+                 R"({"commit": "x", "series": [{"detector": "cpu", "points": [{"colliders": 1, "hz": 0}]}]})",
+                 "series[0].points[0].hz is 0"},
+        BadInput{"SameCountTwice", "sweep",
+                 R"({"commit": "x", "series": [{"detector": "cpu", "points": [{"colliders": 1, "hz": 2},
+                    {"colliders": 1, "hz": 3}]}]})",
+                 "1 colliders twice"},
+        BadInput{"MissingTimeline", "timeline", nullptr, "no such file"},
+        BadInput{"EmptyTimeline", "timeline", "", "line 1"},
+        BadInput{"WrongColumns", "timeline", "time_s,actuator_2\n0,1\n", "line 1"},
+        BadInput{"NoFrame", "timeline", "time_s,actuator_1\n", "no frame"},
+        BadInput{"TimeStandsStill", "timeline", "time_s,actuator_1\n1,0\n1,0\n", "line 3: time_s does not rise"},
+        BadInput{"TimeIsNoNumber", "timeline", "time_s,actuator_1\nnan,0\n", "line 2: time_s"},
+        BadInput{"DutyTooHigh", "timeline", "time_s,actuator_1\n0,256\n", "line 2: actuator_1"},
+        BadInput{"FieldTooMany", "timeline", "time_s,actuator_1\n0,1,2\n", "line 2"},
+        BadInput{"FieldMissing", "timeline", "time_s,actuator_1,actuator_2\n0,1\n", "line 2: actuator_2"},
+        BadInput{"MissingTextures", "textures", nullptr, "no such file"},
+        BadInput{"NoExr", "textures", "time_s,actuator_1\n", "no OpenEXR"}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+TEST_F(PlotTest, ACutOffExrIsRefused) {
+  write_textures(folder_ / "whole.exr", 100, 2000, 1);
+  const std::string whole = read_text_file(folder_ / "whole.exr");
+  for (const std::size_t bytes : {whole.size() - 1, whole.size() / 2, std::size_t{300}, std::size_t{9}}) {
+    write_text(folder_ / "cut.exr", std::string_view(whole).substr(0, bytes));
+    const Outcome outcome = run("textures cut.exr");
+    EXPECT_EQ(outcome.exit_code, 1) << bytes;
+    EXPECT_THAT(outcome.standard_error, StartsWith("cut.exr"));
+    EXPECT_EQ(file_count(), 2U);
+  }
+}
+
+TEST_F(PlotTest, AnExrWithSomethingElseInItsActuatorPlaneIsRefused) {
+  for (const float wrong : {-1.0F, 0.5F, 70000.0F, std::numeric_limits<float>::quiet_NaN()}) {
+    write_textures(folder_ / "textures.exr", 4, 10, wrong);
+    const Outcome outcome = run("textures textures.exr");
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.standard_error, HasSubstr("textures.exr, frame 5, collider 2"));
+  }
+}
+
+TEST_F(PlotTest, WrongUsageExitsWith2) {
+  EXPECT_EQ(run("").exit_code, 2);
+  EXPECT_EQ(run("sweep").exit_code, 2);
+  EXPECT_EQ(run("timeline a.csv b.csv").exit_code, 2);
+  EXPECT_EQ(run("sweep . --colour").exit_code, 2);
+  EXPECT_EQ(run("--help").exit_code, 0);
+}
+
+}  // namespace
+}  // namespace vestige
