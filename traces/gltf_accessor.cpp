@@ -173,9 +173,6 @@ AccessorReader::AccessorReader(const Document& document, int accessor, const For
   const std::size_t size = element_bytes(accessor_.type, component_bytes_);
   if (accessor_.bufferView >= 0) {
     const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(accessor_.bufferView)];
-    if (view.byteStride != 0 && format.stride == Stride::kPacked)
-      report.fail(fmt::format("bufferViews[{}].byteStride", accessor_.bufferView),
-                  fmt::format("is only for vertex attributes, not for {}", use));
     first_ = document.buffers[static_cast<std::size_t>(view.buffer)].data() + view.byteOffset + accessor_.byteOffset;
     stride_ = view.byteStride != 0 ? view.byteStride : size;
   } else {

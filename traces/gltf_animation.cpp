@@ -73,12 +73,12 @@ class AnimationReader {
     result.node = channel.target_node;
     result.property = property;
     result.interpolation = interpolation(sampler.interpolation);
-    const AccessorReader times(document_, sampler.input, {TINYGLTF_TYPE_SCALAR, kFloat, Stride::kPacked},
-                               sampler_path + ".input", report_);
+    const AccessorReader times(document_, sampler.input, {TINYGLTF_TYPE_SCALAR, kFloat}, sampler_path + ".input",
+                               report_);
     const bool is_rotation = property == AnimatedProperty::kRotation;
     constexpr unsigned kNormalized = kNormalizedInt8 | kNormalizedUint8 | kNormalizedInt16 | kNormalizedUint16;
-    const Format format = is_rotation ? Format{TINYGLTF_TYPE_VEC4, kFloat | kNormalized, Stride::kPacked}
-                                      : Format{TINYGLTF_TYPE_VEC3, kFloat, Stride::kPacked};
+    const Format format =
+        is_rotation ? Format{TINYGLTF_TYPE_VEC4, kFloat | kNormalized} : Format{TINYGLTF_TYPE_VEC3, kFloat};
     const AccessorReader values(document_, sampler.output, format, sampler_path + ".output", report_);
     check_counts(times, values, result.interpolation, sampler_path);
     const std::size_t components = is_rotation ? 4 : 3;

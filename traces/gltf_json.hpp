@@ -20,4 +20,8 @@ nlohmann::json parse_json(std::string_view text, Report& report);
 /// numbers written as 3.0 become 3.
 void check_schema(nlohmann::json& document, Report& report);
 
+/// Only vertex attributes may be interleaved (glTF 2.0 §3.6.2.1): fails where a byteStride stands behind indices,
+/// inverse bind matrices or animations. Precondition: the schema fits.
+void check_strides(const nlohmann::json& document, const Report& report);
+
 }  // namespace vestige::gltf

@@ -147,7 +147,7 @@ class MeshReader {
     const auto found = primitive(part).attributes.find(name);
     const std::string path = attribute_path(part, name);
     if (found == primitive(part).attributes.end()) report_.fail(path, "is missing");
-    AccessorReader reader(document_, found->second, {type, components, Stride::kAny}, path, report_);
+    AccessorReader reader(document_, found->second, {type, components}, path, report_);
     if (reader.count() != part.vertex_count)
       report_.fail(path, fmt::format("has {} elements for {} vertices", reader.count(), part.vertex_count));
     return reader;
@@ -260,8 +260,8 @@ class MeshReader {
       for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<std::uint32_t>(i);
     } else {
       const std::string path = part_path(part, ".indices");
-      const AccessorReader indices(document_, source.indices,
-                                   {TINYGLTF_TYPE_SCALAR, kUint8 | kUint16 | kUint32, Stride::kPacked}, path, report_);
+      const AccessorReader indices(document_, source.indices, {TINYGLTF_TYPE_SCALAR, kUint8 | kUint16 | kUint32}, path,
+                                   report_);
       for (std::size_t i = 0; i < corners.size(); ++i) {
         corners[i] = indices.integer(i, 0);
         if (corners[i] >= part.vertex_count)

@@ -29,8 +29,7 @@ std::vector<glm::dmat4> read_inverse_bind(const Document& document, const tinygl
   std::vector<glm::dmat4> matrices(count, glm::dmat4(1.0));
   if (source.inverseBindMatrices < 0) return matrices;
   const std::string path = skin_path(skin, "inverseBindMatrices");
-  const AccessorReader reader(document, source.inverseBindMatrices, {TINYGLTF_TYPE_MAT4, kFloat, Stride::kPacked}, path,
-                              report);
+  const AccessorReader reader(document, source.inverseBindMatrices, {TINYGLTF_TYPE_MAT4, kFloat}, path, report);
   if (reader.count() < count) report.fail(path, fmt::format("has {} matrices for {} joints", reader.count(), count));
   for (std::size_t joint = 0; joint < count; ++joint) {
     std::array<double, 16> numbers = {};
@@ -82,9 +81,22 @@ void check_hierarchy(const tinygltf::Skin& source, const Tree& tree, std::size_t
     report.warn(skin_path(skin, "skeleton"), "is not above all joints");
 }
 
+/// Before any matrix is looked at, since too few may be wrong as well.
+void check_counts(const Document& document, const Report& report) {
+  for (std::size_t i = 0; i < document.model.skins.size(); ++i) {
+    const tinygltf::Skin& skin = document.model.skins[i];
+    if (skin.inverseBindMatrices < 0) continue;
+    const std::size_t count = document.model.accessors[static_cast<std::size_t>(skin.inverseBindMatrices)].count;
+    if (count < skin.joints.size())
+      report.fail(skin_path(i, "inverseBindMatrices"),
+                  fmt::format("has {} matrices for {} joints", count, skin.joints.size()));
+  }
+}
+
 }  // namespace
 
 std::vector<Skin> read_skins(const Document& document, const Avatar& avatar, Report& report) {
+  check_counts(document, report);
   const Tree tree(avatar);
   std::vector<Skin> skins;
   for (std::size_t i = 0; i < document.model.skins.size(); ++i) {
