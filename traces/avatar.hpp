@@ -25,15 +25,15 @@ struct Node {
   std::optional<glm::dmat4> fixed_matrix;
 };
 
-/// One matrix of the palette that vertices refer to: node's world matrix times `inverse_bind`. A skin contributes one for
-/// each of its joints; a mesh without a skin contributes its node, with the identity.
+/// One matrix of the palette that vertices refer to: node's world matrix times `inverse_bind`. A skin contributes one
+/// for each of its joints; a mesh without a skin contributes its node, with the identity.
 struct PaletteEntry {
   int node = 0;
   glm::dmat4 inverse_bind = glm::dmat4(1.0);
 };
 
 /// What moves a vertex. Sorted by palette index, equal joints merged, weights > 0 normalised in double and then rounded
-/// once; the rest of the array is {0, 0}. design.md, "What a contact is", 3.
+/// once; the rest of the array is {0, 0}. detector/CONTRACT.md, 3.
 struct Influences {
   std::array<std::uint16_t, kMaxInfluences> palette = {};
   std::array<float, kMaxInfluences> weight = {};
@@ -42,8 +42,8 @@ struct Influences {
 enum class Interpolation { kStep, kLinear, kCubicSpline };
 enum class AnimatedProperty { kTranslation, kRotation, kScale };
 
-/// glTF 2.0, Appendix C. `values` holds 3 floats a key (4 for a rotation, x y z w), three times as many for kCubicSpline
-/// (in-tangent, value, out-tangent).
+/// glTF 2.0, Appendix C. `values` holds 3 floats a key (4 for a rotation, x y z w), three times as many for
+/// kCubicSpline (in-tangent, value, out-tangent).
 struct AnimationChannel {
   int node = 0;
   AnimatedProperty property = AnimatedProperty::kTranslation;

@@ -89,7 +89,7 @@ std::filesystem::path decode_relative_uri(std::string_view uri, std::string_view
   }
   if (name.empty() || name.find('\0') != std::string::npos)
     report.fail(path, fmt::format("'{}' names no file", shorten(uri)), kRemedy);
-  const std::filesystem::path file(name);
+  std::filesystem::path file(name);
   const bool climbs = std::any_of(file.begin(), file.end(), [](const auto& part) { return part == ".."; });
   if (file.is_absolute() || climbs || name.find('\\') != std::string::npos)
     report.fail(path, fmt::format("'{}' leaves the folder of the glTF", shorten(uri)), kRemedy);

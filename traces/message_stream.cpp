@@ -13,10 +13,14 @@ using mcap::Malformed;
 using mcap::Opcode;
 using trace_format::Stream;
 
+// Outside chunks no CRC vouches for a definition, and in a damaged file its copies may differ: what is recognised as
+// ours stays.
+
 void StreamTable::add(mcap::Schema schema) {
   const std::uint16_t id = schema.id;
+  const auto known = schemas_.find(id);
+  if (known != schemas_.end() && trace_format::is_ours(known->second)) return;
   schemas_.insert_or_assign(id, std::move(schema));
-  // A damaged file may bring the schema after its channel, from the summary.
   for (const auto& [channel_id, channel] : channels_) {
     if (channel.schema_id == id) update(channel);
   }
@@ -24,6 +28,7 @@ void StreamTable::add(mcap::Schema schema) {
 
 void StreamTable::add(mcap::Channel channel) {
   const std::uint16_t id = channel.id;
+  if (streams_[id] != Stream::kForeign) return;
   update(channels_.insert_or_assign(id, std::move(channel)).first->second);
 }
 

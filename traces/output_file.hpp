@@ -11,7 +11,8 @@ namespace vestige {
 enum class Overwrite { kRefuse, kAllow };
 
 /// A file that is complete or absent: bytes go to a temporary file in the same folder, `commit` syncs it and gives it
-/// its name. Destroyed without `commit`, it leaves nothing behind. The name "-" is standard output, written as it comes.
+/// its name. Destroyed without `commit`, it leaves nothing behind. The name "-" is standard output, written as it
+/// comes.
 ///
 /// Every function throws `Error` naming the file: it exists (and `Overwrite::kRefuse`), no such folder, permission,
 /// disk full.

@@ -31,6 +31,9 @@ Pose rest_pose(const Avatar& avatar);
 /// Interpolated in double, rounded once.
 Pose sample_animation(const Avatar& avatar, const Animation& animation, double time_s);
 
+/// What an avatar does at `time_s` while its animation loops; its rest pose where `animation` is null.
+Pose looped_pose(const Avatar& avatar, const Animation* animation, double time_s);
+
 /// World matrices of all nodes in double, relative to the pose's own `origin_m` (which is not added).
 /// Precondition: pose.nodes.size() == avatar.nodes.size().
 void world_matrices(const Avatar& avatar, const Pose& pose, std::vector<glm::dmat4>& out);

@@ -4,6 +4,8 @@
 #include <schemas/event_bfbs_generated.h>
 #include <schemas/pose_frame_bfbs_generated.h>
 
+#include <algorithm>
+
 namespace vestige::trace_format {
 
 namespace {
@@ -65,6 +67,11 @@ mcap::Channel channel_of(Stream stream) {
           .topic = std::string(format.topic),
           .message_encoding = std::string(kEncoding),
           .metadata = units_of(stream)};
+}
+
+bool is_ours(const mcap::Schema& schema) {
+  return std::any_of(kStreams.begin(), kStreams.end(),
+                     [&](const StreamFormat& format) { return schema.name == format.schema; });
 }
 
 Stream recognise(const mcap::Channel& channel, const mcap::Schema* schema) {

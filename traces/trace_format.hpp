@@ -55,6 +55,8 @@ mcap::Schema schema_of(Stream stream);
 /// Its channel record; /pose gets its nodes from the writer.
 mcap::Channel channel_of(Stream stream);
 
+bool is_ours(const mcap::Schema& schema);
+
 /// Which stream of ours a channel carries; kForeign if none. `schema` may be null.
 Stream recognise(const mcap::Channel& channel, const mcap::Schema* schema);
 

@@ -28,8 +28,8 @@ struct TraceWriterOptions {
 /// What makes a trace one self-contained file. The bytes must stay until the writer has been made.
 struct TraceAttachments {
   std::span<const std::byte> avatar_glb;
-  std::span<const std::byte> actuator_map_png;  ///< empty: none
-  std::string actuator_map_json;                ///< the map's sidecar, empty: none
+  std::span<const std::byte> actuator_map_png = {};  ///< empty: none
+  std::string actuator_map_json = {};                ///< the map's sidecar, empty: none
 };
 
 /// Writes a trace, an MCAP file (notes in trace_format.hpp). The file appears under its own name at once and grows

@@ -1,0 +1,80 @@
+#include "analysis/provenance.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <ctime>
+#include <fstream>
+#include <thread>
+
+#include "version.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// The value behind `key` in a file of "key<separator>value" lines, quotes removed; empty when it is not there.
+std::string value_in(const char* path, std::string_view key, char separator) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t place = line.find(separator);
+    if (!line.starts_with(key) || place == std::string::npos) continue;
+    const std::size_t first = line.find_first_not_of(" \t\"", place + 1);
+    const std::size_t last = line.find_last_not_of(" \t\"");
+    return first == std::string::npos ? "" : line.substr(first, last - first + 1);
+  }
+  return "";
+}
+
+}  // namespace
+
+Machine this_machine() {
+  Machine machine;
+  machine.processor = value_in("/proc/cpuinfo", "model name", ':');
+  machine.cores = std::thread::hardware_concurrency();
+  const auto pages = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES));
+  machine.memory_bytes = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  utsname name = {};
+  ::uname(&name);
+  machine.system = fmt::format("{}, {} {} {}", value_in("/etc/os-release", "PRETTY_NAME", '='), name.sysname,
+                               name.release, name.machine);
+  return machine;
+}
+
+nlohmann::ordered_json provenance(std::span<const std::string> argv) {
+  nlohmann::ordered_json json;
+  json["schema_version"] = 1;
+  json["argv"] = argv;
+  json["version"] = kVersion;
+  json["commit"] = kCommit;
+  json["dirty"] = kDirty;
+  json["time"] = utc_now();
+  json["machine"] = to_json(this_machine());
+  return json;
+}
+
+nlohmann::ordered_json to_json(const Machine& machine) {
+  return {{"processor", machine.processor},
+          {"cores", machine.cores},
+          {"memory_bytes", machine.memory_bytes},
+          {"system", machine.system}};
+}
+
+nlohmann::ordered_json to_json(const GlInfo& gl) {
+  if (gl.context.empty()) return nullptr;
+  return {{"renderer", gl.renderer}, {"version", gl.version}, {"context", gl.context}};
+}
+
+nlohmann::ordered_json to_json(const Avatar& avatar) {
+  return {{"vertices", avatar.position_bind.size()},
+          {"triangles", avatar.triangles.size()},
+          {"joints", avatar.joint_count}};
+}
+
+std::string utc_now() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+}  // namespace vestige

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+
+#include "detector/detector.hpp"
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// The machine that a measurement ran on.
+struct Machine {
+  std::string processor;
+  unsigned cores = 0;
+  std::uint64_t memory_bytes = 0;
+  std::string system;  ///< operating system and kernel
+};
+Machine this_machine();
+
+/// What every result file says of where it comes from: schema_version, argv, commit, dirty, version, machine, time
+/// (UTC).
+nlohmann::ordered_json provenance(std::span<const std::string> argv);
+
+nlohmann::ordered_json to_json(const Machine& machine);
+nlohmann::ordered_json to_json(const GlInfo& gl);      ///< renderer, version, context; null for a detector without GL
+nlohmann::ordered_json to_json(const Avatar& avatar);  ///< vertices, triangles, joints
+
+/// Now, as "2026-11-21T01:40:00Z".
+std::string utc_now();
+
+}  // namespace vestige

@@ -1,0 +1,188 @@
+#include "analysis/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <span>
+#include <utility>
+
+#include "detector/texture_hash.hpp"
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::size_t kWarmUpFrames = 3;
+
+/// Consecutive frames of the trace; the first only gives the segments of the second their start.
+using Place = std::vector<TraceFrame>;
+
+std::vector<Place> read_places(TraceReader& trace, const SweepSettings& settings) {
+  const std::uint64_t frames = trace.frame_count();
+  if (frames < 2)
+    throw Error("the trace", fmt::format("has {} frames; a sweep needs at least 2", frames), "record a longer one");
+  const std::uint64_t length = std::min<std::uint64_t>(settings.run_frames + 1, frames);
+  const std::uint64_t count = std::min<std::uint64_t>(settings.runs, std::max<std::uint64_t>(1, frames / length));
+  std::vector<Place> places(count);
+  TraceFrame frame;
+  trace.rewind();
+  for (std::uint64_t number = 0; trace.next(frame); ++number)
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const std::uint64_t start = count == 1 ? 0 : i * (frames - length) / (count - 1);
+      if (number >= start && number < start + length) places[i].push_back(frame);
+    }
+  return places;
+}
+
+/// The rows of one contestant with every collider: those of fewer colliders are their beginnings, since a collider's
+/// contact does not depend on the others.
+struct Reference {
+  std::vector<std::vector<ContactRow>> rows;  // by place, then frame
+};
+
+bool same(const Contact& timed, const Contact& reference) {
+  return timed.hit() == reference.hit() && timed.actuator == reference.actuator;
+}
+
+class Sweep {
+ public:
+  Sweep(TraceReader& trace, const Avatar& avatar, const std::vector<Contestant>& contestants,
+        const SweepSettings& settings)
+      : avatar_(avatar), settings_(settings), ids_(trace.collider_ids()), places_(read_places(trace, settings)) {
+    for (const Contestant& contestant : contestants) {
+      detectors_.push_back(contestant.make(PlaneSet()));
+      SweepSeries series;
+      series.detector = contestant.detector;
+      series.gl = detectors_.back()->gl_info();
+      for (const std::uint32_t count : settings.counts) {
+        if (count > ids_.size())
+          throw Error("--counts", fmt::format("{} colliders asked for, the trace has {}", count, ids_.size()),
+                      "record a trace with more (--count), or ask for fewer");
+        SweepPoint point;
+        point.colliders = count;
+        series.points.push_back(std::move(point));
+      }
+      series_.push_back(std::move(series));
+      references_.push_back(make_reference(contestant));
+    }
+    for (std::size_t s = 0; s < series_.size(); ++s)
+      for (SweepPoint& point : series_[s].points) describe(references_[s], point);
+  }
+
+  std::vector<SweepSeries> run(const std::function<bool(double)>& progress) {
+    struct Entry {
+      std::size_t series;
+      std::size_t point;
+    };
+    std::vector<Entry> open;
+    for (std::size_t s = 0; s < series_.size(); ++s)
+      for (std::size_t p = 0; p < settings_.counts.size(); ++p) open.push_back({s, p});
+    for (const Entry& entry : open) warm_up(entry.series, series_[entry.series].points[entry.point]);
+
+    std::mt19937_64 random(settings_.seed);
+    const double total_s = settings_.min_time_s * static_cast<double>(open.size());
+    double spent_s = 0;
+    for (std::size_t round = 0; !open.empty(); ++round) {
+      std::ranges::shuffle(open, random);
+      for (const Entry& entry : open) {
+        SweepPoint& point = series_[entry.series].points[entry.point];
+        measure(entry.series, round % places_.size(), point);
+        spent_s += std::min(point.repetitions.back().seconds, settings_.min_time_s);
+        if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return std::move(series_);
+      }
+      std::erase_if(open, [&](const Entry& entry) {
+        double seconds = 0;
+        const auto& repetitions = series_[entry.series].points[entry.point].repetitions;
+        for (const Repetition& repetition : repetitions) seconds += repetition.seconds;
+        return repetitions.size() >= places_.size() && seconds >= settings_.min_time_s;
+      });
+    }
+    return std::move(series_);
+  }
+
+ private:
+  std::span<const std::uint32_t> first_ids(std::uint32_t count) const { return std::span(ids_).first(count); }
+
+  Reference make_reference(const Contestant& contestant) const {
+    const auto detector = contestant.make(kHashedPlanes);
+    const std::uint32_t most = std::ranges::max(settings_.counts);
+    Reference reference;
+    for (const Place& place : places_) {
+      FrameBuilder builder(avatar_, first_ids(most));
+      builder.next(place.front());
+      auto& rows = reference.rows.emplace_back(place.size() - 1);
+      for (std::size_t i = 1; i < place.size(); ++i) detector->detect(builder.next(place[i]), rows[i - 1]);
+    }
+    return reference;
+  }
+
+  static void describe(const Reference& reference, SweepPoint& point) {
+    TextureHash hash;
+    for (const auto& rows : reference.rows)
+      for (const ContactRow& row : rows) {
+        const ContactRow beginning(row.begin(), row.begin() + point.colliders);
+        hash.add(beginning);
+        point.contacts += static_cast<std::uint64_t>(std::ranges::count_if(beginning, &Contact::hit));
+      }
+    point.texture_hash = hash.hex();
+  }
+
+  void warm_up(std::size_t series, const SweepPoint& point) {
+    FrameBuilder builder(avatar_, first_ids(point.colliders));
+    ContactRow row;
+    const Place& place = places_.front();
+    for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i)
+      detectors_[series]->detect(builder.next(place[i]), row);
+  }
+
+  void measure(std::size_t series, std::size_t place_number, SweepPoint& point) {
+    const Place& place = places_[place_number];
+    FrameBuilder builder(avatar_, first_ids(point.colliders));
+    builder.next(place.front());
+    ContactRow row;
+    Repetition repetition;
+    DetectorWork work;
+    for (std::size_t i = 1; i < place.size(); ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      const DetectorWork done = detectors_[series]->detect(builder.next(place[i]), row);
+      const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+      point.frame_us.push_back(elapsed.count() * 1e6);
+      repetition.seconds += elapsed.count();
+      ++repetition.frames;
+      work.pairs_tested += done.pairs_tested;
+      work.triangles_tested += done.triangles_tested;
+      const ContactRow& expected = references_[series].rows[place_number][i - 1];
+      if (!std::equal(row.begin(), row.end(), expected.begin(), same))
+        throw Error(series_[series].detector,
+                    fmt::format("frame {} gave other contacts with {} colliders than with {}", place[i].index,
+                                point.colliders, expected.size()),
+                    "this is a fault of ours or of the GL driver: try another --context, and report it");
+    }
+    if (point.repetitions.size() < places_.size()) {
+      point.pairs_tested += work.pairs_tested;
+      point.triangles_tested += work.triangles_tested;
+    }
+    point.repetitions.push_back(repetition);
+  }
+
+  const Avatar& avatar_;
+  const SweepSettings& settings_;
+  std::vector<std::uint32_t> ids_;
+  std::vector<Place> places_;
+  std::vector<std::unique_ptr<Detector>> detectors_;
+  std::vector<SweepSeries> series_;
+  std::vector<Reference> references_;
+};
+
+}  // namespace
+
+std::vector<SweepSeries> run_sweep(TraceReader& trace, const Avatar& avatar, const std::vector<Contestant>& contestants,
+                                   const SweepSettings& settings, const std::function<bool(double)>& progress) {
+  return Sweep(trace, avatar, contestants, settings).run(progress);
+}
+
+}  // namespace vestige

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/statistics.hpp"
+#include "detector/detector.hpp"
+#include "traces/avatar.hpp"
+#include "traces/trace_reader.hpp"
+
+namespace vestige {
+
+/// One of those that are measured against each other.
+struct Contestant {
+  std::string detector;
+  /// Makes it, able to deliver these planes. Called twice: for timing and for the hash.
+  std::function<std::unique_ptr<Detector>(PlaneSet)> make;
+};
+
+struct SweepSettings {
+  std::vector<std::uint32_t> counts;  ///< of colliders: the first n of the trace, by id
+  std::uint32_t runs = 5;             ///< places of the trace, evenly spread, that are measured
+  std::uint32_t run_frames = 40;      ///< consecutive frames at each place
+  double min_time_s = 1;              ///< spent on every point; the places are repeated until then
+  std::uint64_t seed = 1;             ///< of the random order
+};
+
+/// HAVE 2010 Fig. 2, one point: detection frequency for a number of colliders.
+struct SweepPoint {
+  std::uint32_t colliders = 0;
+  std::vector<Repetition> repetitions;
+  std::vector<double> frame_us;  ///< duration of every frame timed
+  std::uint64_t frames_skipped = 0;
+  std::uint64_t contacts = 0;          ///< in one pass over the measured places
+  std::uint64_t pairs_tested = 0;      ///< likewise
+  std::uint64_t triangles_tested = 0;  ///< likewise
+  std::uint64_t meshlets_skinned = 0;  ///< likewise
+  std::string texture_hash;            ///< likewise
+
+  double hz() const { return frequency_hz(repetitions); }
+};
+
+struct SweepSeries {
+  std::string detector;
+  GlInfo gl;
+  std::vector<SweepPoint> points;
+};
+
+/// Measures every contestant at every count, in an order shuffled anew for each round, so that whatever else the
+/// machine does hits all alike. Timed is the whole round trip from a pose and collider positions to a row of contacts:
+/// joint palette, segments, skinning or upload, test, read-back. Not timed: decoding the trace, hashing.
+///
+/// Every timed row is compared with one that was computed apart, with all planes that the hash needs; `Error` if they
+/// disagree. `progress` is told the share done, 0 … 1, and returns false to stop: then what was measured so far is
+/// returned, and may lack repetitions.
+std::vector<SweepSeries> run_sweep(TraceReader& trace, const Avatar& avatar, const std::vector<Contestant>& contestants,
+                                   const SweepSettings& settings, const std::function<bool(double)>& progress);
+
+}  // namespace vestige

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "analysis/sweep.hpp"
+
+namespace vestige {
+
+/// `series[…]` of a sweep's JSON (notes on the fields: the header of each struct). Medians and percentiles are of
+/// single frames, in microseconds; hz is frames over total time, hz_low and hz_high its 95 % bootstrap interval.
+nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_t seed);
+
+/// Every frame's duration as CSV: `detector,context,colliders,repetition,frame,us`.
+std::string frame_times_csv(std::span<const SweepSeries> series);
+
+/// The table for people: frequency of every series at every count, with the paper's figures beside it.
+std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed);
+
+/// One sentence for each series whose repetitions scatter too much to be quoted, with cause and remedy.
+std::vector<std::string> noise_warnings(std::span<const SweepSeries> series);
+
+/// "paper, egl-surfaceless", or "cpu".
+std::string name_of(const SweepSeries& series);
+
+}  // namespace vestige

@@ -1,0 +1,33 @@
+#include "cli/detectors.hpp"
+
+namespace vestige::cli {
+
+void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
+  verb.add_option("--device", choice.device, "EGL device, as 'vestige devices' counts them [default: the best]")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("K");
+  verb.add_option("--method", choice.method,
+                  "static: each segment against the triangle as it is now, as the paper does")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"static"}));
+  verb.add_option("--skip", choice.skip, "off: every segment meets every triangle")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"off"}));
+  verb.add_option("--surface", choice.surface,
+                  "all: skin without an actuator hides what lies behind it; mapped: it is passed through")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"all", "mapped"}));
+}
+
+std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
+                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
+                                        PlaneSet planes) {
+  const DetectorOptions options = {choice.surface_kind(), planes};
+  if (name != "paper") return make_cpu_detector(avatar, map, options);
+  ContextKind kind = ContextKind::kAuto;
+  if (context == "egl") kind = ContextKind::kEgl;
+  if (context == "osmesa") kind = ContextKind::kOsMesa;
+  return make_paper_detector(make_gl_context(kind, choice.device), avatar, map, options);
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "detector/detector.hpp"
+#include "detector/gl/gl_context.hpp"
+
+namespace vestige::cli {
+
+/// The flags that choose a detector and where it runs.
+struct DetectorChoice {
+  std::string detector = "auto";
+  std::string context = "auto";
+  int device = -1;
+  std::string surface = "all";
+  std::string method = "static";
+  std::string skip = "off";
+
+  Surface surface_kind() const { return surface == "mapped" ? Surface::kMapped : Surface::kAll; }
+};
+
+/// Adds --device, --method, --skip and --surface, which mean the same in every verb.
+void add_detector_options(CLI::App& verb, DetectorChoice& choice);
+
+/// Makes a detector: "auto" (now: cpu), "cpu" or "paper". `context`: "auto", "egl" or "osmesa".
+std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
+                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
+                                        PlaneSet planes);
+
+}  // namespace vestige::cli

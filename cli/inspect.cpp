@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "cli/verbs.hpp"
+#include "traces/trace_summary.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct InspectOptions {
+  CommonOptions common;
+  std::string trace;
+};
+
+nlohmann::ordered_json to_json(const McapSummary& summary) {
+  nlohmann::ordered_json channels = nlohmann::ordered_json::array();
+  for (const auto& channel : summary.channels)
+    channels.push_back({{"topic", channel.topic},
+                        {"encoding", channel.encoding},
+                        {"schema", channel.schema},
+                        {"messages", channel.messages},
+                        {"rate_hz", channel.rate_hz}});
+  nlohmann::ordered_json attachments = nlohmann::ordered_json::array();
+  for (const auto& attachment : summary.attachments)
+    attachments.push_back({{"name", attachment.name}, {"bytes", attachment.bytes}, {"sha256", attachment.sha256}});
+  std::string compression;
+  for (const std::string& name : summary.compression) compression += (compression.empty() ? "" : ",") + name;
+  nlohmann::ordered_json json = {{"profile", summary.profile},
+                                 {"library", summary.library},
+                                 {"bytes", summary.file_bytes},
+                                 {"messages", summary.messages},
+                                 {"channels", channels},
+                                 {"chunks", summary.chunks},
+                                 {"compression", compression},
+                                 {"compressed_bytes", summary.compressed_bytes},
+                                 {"uncompressed_bytes", summary.uncompressed_bytes},
+                                 {"attachments", attachments},
+                                 {"duration_s", summary.duration_s},
+                                 {"dropped", summary.dropped},
+                                 {"complete", summary.complete},
+                                 {"warnings", summary.warnings}};
+  if (summary.session) json["session"] = *summary.session;
+  return json;
+}
+
+std::string describe(const McapSummary& summary, const std::string& path, bool verbose) {
+  std::string text = fmt::format("{}: {}, profile '{}', written by {}\n", path,
+                                 summary.complete ? "complete" : "NOT complete", summary.profile, summary.library);
+  text += fmt::format("{} messages in {:.3f} s, {} chunks, {} bytes\n", summary.messages, summary.duration_s,
+                      summary.chunks, summary.file_bytes);
+  for (const auto& channel : summary.channels)
+    text += fmt::format("  {:<20} {:>9} messages {:>10.1f} Hz  {} ({})\n", channel.topic, channel.messages,
+                        channel.rate_hz, channel.schema, channel.encoding);
+  for (const auto& attachment : summary.attachments)
+    text += fmt::format("  {:<20} {:>9} bytes     sha256 {}\n", attachment.name, attachment.bytes, attachment.sha256);
+  if (summary.dropped != 0) text += fmt::format("{} messages were lost while recording\n", summary.dropped);
+  if (verbose && summary.session)
+    for (const auto& [key, value] : *summary.session) text += fmt::format("  {}: {}\n", key, value);
+  return text;
+}
+
+void run_inspect(const InspectOptions& options, Invocation& invocation) {
+  check_outputs({options.common.json}, options.common);
+  const McapSummary summary = summarise_mcap(options.trace);
+  for (const std::string& warning : summary.warnings)
+    warn(fmt::format("{}: {}", options.trace, warning), options.common.verbosity());
+  write_json(options.common.json, to_json(summary), options.common);
+  print_summary(describe(summary, options.trace, options.common.verbose), {options.common.json}, options.common);
+  if (!summary.complete) invocation.exit_code = kDataLost;
+}
+
+}  // namespace
+
+void add_inspect(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<InspectOptions>();
+  CLI::App* verb = add_verb(program, "inspect", "Say what a trace, or any MCAP file, holds",
+                            "  vestige inspect man.mcap\n"
+                            "  vestige inspect man.mcap --json - | jq .channels\n");
+  verb->add_option("TRACE", options->trace, "The file, or '-' for standard input")->required();
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_inspect(*options, invocation); });
+}
+
+}  // namespace vestige::cli

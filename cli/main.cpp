@@ -1,0 +1,94 @@
+#include <fmt/format.h>
+
+#include <csignal>
+#include <exception>
+#include <memory>
+#include <new>
+#include <utility>
+
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+#include "version.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+/// CLI11's help, opened by the examples of the verb that it is for.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  explicit HelpFormatter(std::string examples) : examples_(std::move(examples)) {}
+  std::string make_description(const CLI::App* app) const override {
+    return fmt::format("Examples:\n{}\n{}", examples_, CLI::Formatter::make_description(app));
+  }
+
+ private:
+  std::string examples_;
+};
+
+}  // namespace
+
+CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& summary,
+                   const std::string& examples) {
+  CLI::App* verb = program.add_subcommand(name, summary);
+  verb->formatter(std::make_shared<HelpFormatter>(examples));
+  verb->group("Verbs");
+  return verb;
+}
+
+namespace {
+
+int run(int argc, char** argv) {
+  CLI::App program(
+      "Vestige records traces of an animated avatar and the colliders around it, replays them through a\n"
+      "geometry-shader collision detector, measures that detector, and turns contacts into a haptic vest's vibration.",
+      "vestige");
+  program.formatter(
+      std::make_shared<HelpFormatter>("  vestige record -o man.mcap\n"
+                                      "  vestige replay man.mcap --contacts contacts.csv --timeline timeline.csv\n"));
+  program.set_version_flag("--version",
+                           fmt::format("vestige {} ({}{})", kVersion, kCommit, kDirty ? ", modified" : ""));
+  program.require_subcommand(1);
+  Invocation invocation;
+  invocation.argv.assign(argv, argv + argc);
+  add_record(program, invocation);
+  add_replay(program, invocation);
+  add_sweep(program, invocation);
+  add_inspect(program, invocation);
+  add_devices(program, invocation);
+  add_plot(program, invocation);
+  // After the verbs, which would take it over.
+  program.footer(
+      "'vestige VERB --help' explains each. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but data was\n"
+      "lost or repaired, 4 a check failed.");
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return program.exit(help);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "vestige: error: {}\n  'vestige --help' lists the verbs, 'vestige VERB --help' their flags.\n",
+               error.what());
+    return kWrongUsage;
+  }
+  return invocation.exit_code;
+}
+
+}  // namespace
+}  // namespace vestige::cli
+
+int main(int argc, char** argv) {
+  // A closed pipe is an error of write(), not a silent death that leaves temporary files behind.
+  std::signal(SIGPIPE, SIG_IGN);
+  try {
+    return vestige::cli::run(argc, argv);
+  } catch (const vestige::UsageError& error) {
+    fmt::print(stderr, "vestige: error: {}\n", error.what());
+    return vestige::cli::kWrongUsage;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "vestige: error: out of memory\n");
+    return vestige::cli::kFailed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "vestige: error: {}\n", error.what());
+    return vestige::cli::kFailed;
+  }
+}

@@ -1,0 +1,118 @@
+#include "cli/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <sstream>
+
+#include "traces/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+constexpr std::uint32_t kMostCounts = 100000;
+
+template <typename Number>
+bool parse_number(std::string_view text, Number& value) {
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return failure == std::errc() && end == text.data() + text.size();
+}
+
+std::string check_number(const std::string& text, bool zero_allowed) {
+  double value = 0;
+  if (!parse_number(text, value) || !std::isfinite(value) || value < 0 || (value == 0 && !zero_allowed))
+    return fmt::format("'{}' is not a finite number {} 0", text, zero_allowed ? "of at least" : "above");
+  return "";
+}
+
+bool is_standard_output(const std::string& path) {
+  return path == "-";
+}
+
+}  // namespace
+
+const CLI::Validator kPositive([](std::string& text) { return check_number(text, false); }, "> 0");
+const CLI::Validator kNotNegative([](std::string& text) { return check_number(text, true); }, ">= 0");
+
+void add_common_options(CLI::App& verb, CommonOptions& options) {
+  verb.add_option("--json", options.json, "Write the result as JSON to FILE, or '-' for standard output")
+      ->type_name("FILE|-");
+  verb.add_flag("-q,--quiet", options.quiet, "Print errors only");
+  verb.add_flag("-v,--verbose", options.verbose, "Print more");
+  verb.add_flag("--force", options.force, "Overwrite existing files");
+  verb.add_option("--seed", options.seed, "Seed of whatever is random")->capture_default_str();
+}
+
+void check_outputs(const std::vector<std::string>& paths, const CommonOptions& options) {
+  if (std::ranges::count_if(paths, is_standard_output) > 1)
+    throw UsageError("-", "two results cannot share standard output", "give all but one a file name");
+  std::set<std::filesystem::path> seen;
+  for (const std::string& path : paths) {
+    if (path.empty() || is_standard_output(path)) continue;
+    refuse_overwrite(path, options.overwrite());
+    if (!seen.insert(std::filesystem::absolute(path).lexically_normal()).second)
+      throw UsageError(path, "two results cannot share one file", "give each a name of its own");
+  }
+}
+
+void write_json(const std::string& path, const nlohmann::ordered_json& json, const CommonOptions& options) {
+  if (path.empty()) return;
+  OutputFile file(path, options.overwrite());
+  file.write(json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  file.commit();
+}
+
+void print_summary(std::string_view text, const std::vector<std::string>& output_paths, const CommonOptions& options) {
+  if (options.quiet) return;
+  fmt::print(std::ranges::any_of(output_paths, is_standard_output) ? stderr : stdout, "{}", text);
+}
+
+glm::dvec3 parse_vector(const std::string& text, const std::string& flag) {
+  const std::vector<std::string> parts = parse_list(text);
+  glm::dvec3 vector(0);
+  bool good = parts.size() == 3;
+  for (int i = 0; good && i < 3; ++i)
+    good = parse_number(parts[static_cast<std::size_t>(i)], vector[i]) && std::isfinite(vector[i]);
+  if (!good) throw UsageError(flag, fmt::format("'{}' is not X,Y,Z", text), "give three numbers, in metres: 0,1.5,0");
+  return vector;
+}
+
+std::vector<std::uint32_t> parse_counts(const std::string& text, const std::string& flag) {
+  const auto fail = [&](std::string_view cause) {
+    return UsageError(flag, fmt::format("'{}' {}", text, cause), "give counts as 1,10,40,100, or 1:100, or 5:100:5");
+  };
+  std::set<std::uint32_t> counts;
+  for (const std::string& part : parse_list(text)) {
+    std::vector<std::uint32_t> bounds;
+    std::istringstream stream(part);
+    for (std::string bound; std::getline(stream, bound, ':');) {
+      std::uint32_t value = 0;
+      if (!parse_number(bound, value)) throw fail("is no list of whole numbers");
+      if (value == 0) throw fail("has a zero");
+      bounds.push_back(value);
+    }
+    if (bounds.empty() || bounds.size() > 3 || part.ends_with(':')) throw fail("is no list of whole numbers");
+    const std::uint32_t last = bounds.size() > 1 ? bounds[1] : bounds[0];
+    const std::uint32_t step = bounds.size() > 2 ? bounds[2] : 1;
+    if (last < bounds[0]) throw fail("runs backwards");
+    if ((last - bounds[0]) / step >= kMostCounts) throw fail("is too long a list");
+    for (std::uint64_t count = bounds[0]; count <= last; count += step)
+      counts.insert(static_cast<std::uint32_t>(count));
+  }
+  if (counts.empty()) throw fail("is empty");
+  return {counts.begin(), counts.end()};
+}
+
+std::vector<std::string> parse_list(const std::string& text) {
+  std::vector<std::string> parts;
+  std::istringstream stream(text);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  if (text.ends_with(',')) parts.emplace_back();
+  return parts;
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/terminal.hpp"
+#include "traces/output_file.hpp"
+
+namespace vestige::cli {
+
+/// Exit codes: what a script may rely on.
+enum ExitCode {
+  kDone = 0,
+  kFailed = 1,
+  kWrongUsage = 2,
+  kDataLost = 3,     ///< done, but data was lost, repaired or dropped
+  kCheckFailed = 4,  ///< --verify found a difference
+};
+
+/// One run of the program: what it was called with, and what it will answer.
+struct Invocation {
+  std::vector<std::string> argv;
+  int exit_code = kDone;
+};
+
+/// The flags that every verb has.
+struct CommonOptions {
+  std::string json;
+  bool quiet = false;
+  bool verbose = false;
+  bool force = false;
+  std::uint64_t seed = 1;
+
+  Verbosity verbosity() const {
+    if (quiet) return Verbosity::kQuiet;
+    return verbose ? Verbosity::kVerbose : Verbosity::kNormal;
+  }
+  Overwrite overwrite() const { return force ? Overwrite::kAllow : Overwrite::kRefuse; }
+};
+
+/// Adds --json, -q, -v, --seed and --force.
+void add_common_options(CLI::App& verb, CommonOptions& options);
+
+/// Refuses, before any work is done, what could not be written at its end: existing files without --force, two results
+/// on standard output. Empty paths are results that nobody asked for.
+void check_outputs(const std::vector<std::string>& paths, const CommonOptions& options);
+
+/// Writes `json` to `path` ("-": standard output), unless `path` is empty.
+void write_json(const std::string& path, const nlohmann::ordered_json& json, const CommonOptions& options);
+
+/// Prints what a person wants to read: to standard output, or to standard error when --json - or another result has
+/// standard output for itself. With -q, nothing.
+void print_summary(std::string_view text, const std::vector<std::string>& output_paths, const CommonOptions& options);
+
+/// CLI11 validators. Numbers must be finite, and positive or not negative.
+extern const CLI::Validator kPositive;
+extern const CLI::Validator kNotNegative;
+
+/// "X,Y,Z" in metres. Throws `UsageError` naming `flag`.
+glm::dvec3 parse_vector(const std::string& text, const std::string& flag);
+
+/// "1:100", "1,10,40,100", "5:100:5", or any mix: ascending, without repetitions. Throws `UsageError` naming `flag`.
+std::vector<std::uint32_t> parse_counts(const std::string& text, const std::string& flag);
+
+/// Splits at commas.
+std::vector<std::string> parse_list(const std::string& text);
+
+}  // namespace vestige::cli

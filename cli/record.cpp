@@ -1,0 +1,131 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "analysis/provenance.hpp"
+#include "cli/scene.hpp"
+#include "cli/verbs.hpp"
+#include "traces/colliders.hpp"
+#include "traces/error.hpp"
+#include "traces/recording.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+constexpr double kMostFrames = 4294967295.0;  // a trace numbers its frames in 32 bits
+
+struct RecordOptions {
+  CommonOptions common;
+  std::string avatar = "builtin";
+  std::string animation;
+  std::string map;
+  std::string colliders = "swarm";
+  ScenarioSettings scenario;
+  RecordingSettings recording;
+  std::string origin = "0,0,0";
+  std::string compression = "zstd";
+  std::string output;
+};
+
+std::unique_ptr<ColliderSource> make_colliders(const RecordOptions& options, const Avatar& avatar,
+                                               const Animation* animation) {
+  if (options.colliders == "swarm") {
+    ScenarioSettings settings = options.scenario;
+    settings.seed = options.common.seed;
+    return make_swarm(avatar, animation, settings);
+  }
+  if (options.colliders.ends_with(".csv")) return read_collider_csv(options.colliders);
+  throw UsageError("--colliders", fmt::format("there is no scenario '{}'", options.colliders),
+                   "the scenarios are: swarm; or name a .csv file");
+}
+
+void run_record(const RecordOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  RecordingSettings recording = options.recording;
+  recording.origin_m = parse_vector(options.origin, "--origin");
+  if (recording.rate_hz * recording.duration_s > kMostFrames)
+    throw UsageError("--duration", "a trace holds 4294967295 frames at most", "record less, or at a lower --rate");
+  check_outputs({options.output, options.common.json}, options.common);
+  if (options.output == "-") refuse_terminal("-o -");
+
+  const Scene scene = load_scene(options.avatar, options.map, verbosity);
+  const Animation* animation = find_animation(scene.avatar, options.animation);
+  const auto colliders = make_colliders(options, scene.avatar, animation);
+
+  Session session;
+  const nlohmann::ordered_json origin = provenance(invocation.argv);
+  for (const auto& [key, value] : origin.items())
+    session[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  session["rate_hz"] = fmt::format("{}", recording.rate_hz);
+  session["animation"] = animation == nullptr ? "" : animation->name;
+  session["colliders"] = options.colliders;
+  session["seed"] = fmt::format("{}", options.common.seed);
+
+  TraceWriterOptions writing;
+  writing.overwrite = options.common.overwrite();
+  if (options.compression == "lz4") writing.compression = Compression::kLz4;
+  if (options.compression == "none") writing.compression = Compression::kNone;
+  catch_interrupts();
+  TraceWriter writer(options.output, session, scene.avatar, scene.attachments(), writing);
+  {
+    Progress progress("Recording", verbosity);
+    record(writer, scene.avatar, animation, *colliders, recording,
+           [&](double share) { return progress.update(share); });
+  }
+  writer.finish();
+  if (interrupted())
+    warn(fmt::format("stopped after {} frames; the trace is complete up to there", writer.frame_count()), verbosity);
+
+  nlohmann::ordered_json json = provenance(invocation.argv);
+  json["trace"] = options.output;
+  json["frames"] = writer.frame_count();
+  json["bytes"] = writer.bytes_written();
+  json["avatar"] = to_json(scene.avatar);
+  write_json(options.common.json, json, options.common);
+  print_summary(fmt::format("{}: {} frames at {} Hz, {:.1f} MB\n", options.output, writer.frame_count(),
+                            recording.rate_hz, static_cast<double>(writer.bytes_written()) / 1e6),
+                {options.output, options.common.json}, options.common);
+}
+
+}  // namespace
+
+void add_record(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<RecordOptions>();
+  CLI::App* verb = add_verb(program, "record", "Write a trace of an avatar and the colliders around it",
+                            "  vestige record -o man.mcap\n"
+                            "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n");
+  verb->add_option("--avatar", options->avatar, "Avatar: the built-in one, or a glTF file (.glb, .gltf, .vrm)")
+      ->capture_default_str()
+      ->type_name("builtin|FILE");
+  verb->add_option("--animation", options->animation,
+                   "Its animation, looping: a name, an index, or none [default: the first]")
+      ->type_name("NAME|INDEX|none");
+  verb->add_option("--map", options->map,
+                   "Actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
+                   "[default: builtin for the built-in avatar, else none]")
+      ->type_name("builtin|none|FILE.png");
+  verb->add_option("--colliders", options->colliders,
+                   "swarm: points that pierce the body from all sides while it moves; or a file time_s,id,x,y,z")
+      ->capture_default_str()
+      ->type_name("SCENARIO|FILE.csv");
+  verb->add_option("--count", options->scenario.count, "Colliders of a scenario")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1000000));
+  verb->add_option("--rate", options->recording.rate_hz, "Frames per second")->capture_default_str()->check(kPositive);
+  verb->add_option("--duration", options->recording.duration_s, "Seconds")->capture_default_str()->check(kPositive);
+  verb->add_option("--origin", options->origin, "Where in the world the scene stands, in metres")
+      ->capture_default_str()
+      ->type_name("X,Y,Z");
+  verb->add_option("--compression", options->compression, "Of the trace's chunks")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"zstd", "lz4", "none"}));
+  verb->add_option("-o,--output", options->output, "The trace to write, or '-' for standard output")
+      ->required()
+      ->type_name("OUT.mcap|-");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_record(*options, invocation); });
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,274 @@
+#include "analysis/replay.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "analysis/provenance.hpp"
+#include "cli/detectors.hpp"
+#include "cli/scene.hpp"
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct ReplayOptions {
+  CommonOptions common;
+  DetectorChoice choice;
+  std::string trace;
+  double hold_ms = 60;
+  std::string contacts;
+  std::string textures;
+  std::string planes = "actuator,t,triangle";
+  std::string timeline;
+  std::string verify;
+};
+
+struct NamedPlane {
+  const char* name;
+  Plane plane;
+};
+constexpr NamedPlane kPlaneNames[] = {
+    {"actuator", Plane::kActuator},
+    {"t", Plane::kTime},
+    {"triangle", Plane::kTriangle},
+    {"barycentric", Plane::kBarycentric},
+    {"texture", Plane::kTextureCoordinate},
+    {"position", Plane::kPosition},
+    {"speed", Plane::kSpeed},
+    {"side", Plane::kSide},
+};
+
+PlaneSet parse_planes(const std::string& text) {
+  PlaneSet planes;
+  std::string known;
+  for (const NamedPlane& named : kPlaneNames) known += fmt::format(" {}", named.name);
+  for (const std::string& part : parse_list(text)) {
+    const NamedPlane* found = nullptr;
+    for (const NamedPlane& named : kPlaneNames)
+      if (part == named.name) found = &named;
+    if (found == nullptr)
+      throw UsageError("--planes", fmt::format("there is no plane '{}'", part), "choose of" + known);
+    planes = planes | found->plane;
+  }
+  return planes;
+}
+
+/// What --verify names: another detector, or a file that an earlier replay wrote.
+struct Verification {
+  std::unique_ptr<Detector> detector;
+  std::vector<RecordedContact> contacts;
+  std::string texture_hash;
+  bool from_csv = false;
+
+  ReplayExpectation expectation() const { return {detector.get(), from_csv ? &contacts : nullptr}; }
+};
+
+Verification load_verification(const ReplayOptions& options, const OpenTrace& trace) {
+  Verification verification;
+  if (options.verify.empty()) return verification;
+  if (options.verify == "cpu" || options.verify == "paper") {
+    verification.detector =
+        make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, kHashedPlanes);
+  } else if (options.verify.ends_with(".csv")) {
+    verification.contacts = read_contacts_csv(options.verify);
+    verification.from_csv = true;
+  } else {
+    const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
+    if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
+      throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
+                  "name cpu or paper, or what 'vestige replay --contacts FILE.csv' or '--json FILE' wrote");
+    verification.texture_hash = json["texture_hash"].get<std::string>();
+  }
+  return verification;
+}
+
+nlohmann::ordered_json to_json(const Comparison& comparison) {
+  return {{"expected", comparison.expected},
+          {"differing", comparison.differing()},
+          {"missing", comparison.missing},
+          {"extra", comparison.extra},
+          {"other_triangle", comparison.other_triangle},
+          {"other_actuator", comparison.other_actuator},
+          {"other_t", comparison.other_t},
+          {"largest_t_difference", comparison.largest_t_difference}};
+}
+
+nlohmann::ordered_json to_json(const SkinningError& skinning) {
+  return {{"frames", skinning.frames},
+          {"vertices", skinning.vertices},
+          {"identical_to_cpu", skinning.identical},
+          {"largest_error_m", skinning.largest_m},
+          {"largest_error_cpu_m", skinning.largest_cpu_m},
+          {"height_m", skinning.height_m},
+          {"largest_error_of_height", skinning.largest_m / skinning.height_m}};
+}
+
+nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& options, const OpenTrace& trace,
+                               std::size_t colliders, const Detector& detector, const Invocation& invocation) {
+  nlohmann::ordered_json json = provenance(invocation.argv);
+  json["trace"] = options.trace;
+  json["detector"] = detector.name();
+  json["method"] = options.choice.method;
+  json["skip"] = options.choice.skip;
+  json["surface"] = options.choice.surface;
+  json["hold_ms"] = options.hold_ms;
+  json["gl"] = vestige::to_json(detector.gl_info());
+  json["avatar"] = vestige::to_json(trace.avatar);
+  json["frames"] = result.frames;
+  json["frames_skipped"] = result.frames_skipped;
+  json["colliders"] = colliders;
+  json["contacts"] = result.contacts;
+  json["unsure"] = result.unsure;
+  json["texture_hash"] = result.texture_hash;
+  json["pairs_tested"] = result.pairs_tested;
+  json["origin_changes"] = result.origin_changes;
+  json["non_finite_frames"] = result.non_finite_frames;
+  json["non_finite_segments"] = result.non_finite_segments;
+  json["detection_s"] = result.detection_s;
+  json["hz"] = static_cast<double>(result.frames) / result.detection_s;
+  nlohmann::ordered_json actuators = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < trace.map.actuator_count; ++i)
+    actuators.push_back({{"name", trace.map.names[i]}, {"contacts", result.contacts_of_actuator[i + 1]}});
+  json["actuators"] = actuators;
+  json["skinning"] = to_json(result.skinning);
+  if (result.comparison) json["verify"] = to_json(*result.comparison);
+  json["complete"] = trace.reader.complete() && !result.interrupted;
+  return json;
+}
+
+std::string summary(const ReplayResult& result, const OpenTrace& trace, std::size_t colliders,
+                    const Detector& detector) {
+  const GlInfo gl = detector.gl_info();
+  const std::string where = gl.context.empty() ? "" : fmt::format(" on {} ({})", gl.context, gl.renderer);
+  std::string text =
+      fmt::format("{}{}: {} frames, {} colliders, {} contacts, {:.0f} Hz\n", detector.name(), where, result.frames,
+                  colliders, result.contacts, static_cast<double>(result.frames) / result.detection_s);
+  for (std::size_t i = 0; i < trace.map.actuator_count; ++i)
+    text += fmt::format("  {:<24} {:>8} contacts\n", trace.map.names[i], result.contacts_of_actuator[i + 1]);
+  text += fmt::format("  {:<24} {:>8} contacts\n", "(no actuator)", result.contacts_of_actuator[0]);
+  text += fmt::format(
+      "skinning: at most {:.2g} of the avatar's height from the double reference; {} of {} vertices "
+      "have the bits of the CPU's\n",
+      result.skinning.largest_m / result.skinning.height_m, result.skinning.identical, result.skinning.vertices);
+  return text + fmt::format("texture_hash {}\n", result.texture_hash);
+}
+
+/// Says how the check went; returns the exit code.
+int report_verification(const ReplayOptions& options, const ReplayResult& result, const Verification& verification,
+                        const std::vector<std::string>& outputs) {
+  if (options.verify.empty()) return kDone;
+  const bool by_hash = !result.comparison;
+  const bool same = by_hash ? result.texture_hash == verification.texture_hash : result.comparison->differing() == 0;
+  std::string text = by_hash ? std::string(same ? "the texture hashes are equal" : "the texture hashes differ")
+                             : describe(*result.comparison);
+  print_summary(fmt::format("verify against {}: {}\n", options.verify, text), outputs, options.common);
+  return same ? kDone : kCheckFailed;
+}
+
+void run_replay(const ReplayOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
+  check_outputs(outputs, options.common);
+  if (options.textures == "-") refuse_terminal("--textures -");
+  const PlaneSet texture_planes = parse_planes(options.planes);
+
+  OpenTrace trace(options.trace, verbosity);
+  const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
+  PlaneSet planes = kHashedPlanes;
+  if (!options.textures.empty()) planes = planes | texture_planes;
+  if (!options.contacts.empty()) planes = PlaneSet::all();
+  const auto detector =
+      make_detector(options.choice.detector, options.choice.context, options.choice, trace.avatar, trace.map, planes);
+  const Verification verification = load_verification(options, trace);
+
+  std::optional<ContactsCsv> contacts;
+  std::optional<TextureExr> textures;
+  std::optional<OutputFile> texture_file;
+  std::optional<TimelineCsv> timeline;
+  if (!options.contacts.empty()) contacts.emplace(options.contacts, options.common.overwrite());
+  if (!options.timeline.empty())
+    timeline.emplace(options.timeline, options.common.overwrite(), trace.map.actuator_count);
+  if (!options.textures.empty()) {
+    texture_file.emplace(options.textures, options.common.overwrite());
+    const nlohmann::ordered_json origin = provenance(invocation.argv);
+    textures.emplace(texture_planes, collider_ids.size(),
+                     std::map<std::string, std::string>{{"vestige_trace", options.trace},
+                                                        {"vestige_detector", detector->name()},
+                                                        {"vestige_gl_renderer", detector->gl_info().renderer},
+                                                        {"vestige_commit", origin["commit"].get<std::string>()}});
+  }
+
+  catch_interrupts();
+  ReplayResult result;
+  {
+    Progress progress("Replaying", verbosity);
+    result = replay(trace.reader, trace.avatar, trace.map.actuator_count, *detector, options.hold_ms / 1e3,
+                    {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline ? &*timeline : nullptr},
+                    verification.expectation(), [&](double share) { return progress.update(share); });
+  }
+  if (result.frames == 0) throw Error(options.trace, "holds no frame", "record it again");
+  if (textures) textures->write(*texture_file);
+  if (contacts) contacts->commit();
+  if (texture_file) texture_file->commit();
+  if (timeline) timeline->commit();
+  if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
+  if (result.non_finite_frames + result.non_finite_segments != 0)
+    warn(fmt::format("{} frames had a pose and {} segments an end that is not finite; they fired nothing",
+                     result.non_finite_frames, result.non_finite_segments),
+         verbosity);
+
+  print_summary(summary(result, trace, collider_ids.size(), *detector), outputs, options.common);
+  write_json(options.common.json, to_json(result, options, trace, collider_ids.size(), *detector, invocation),
+             options.common);
+  invocation.exit_code = report_verification(options, result, verification, outputs);
+  const int damage = report_damage(trace.reader, options.trace, verbosity);
+  if (invocation.exit_code == kDone) invocation.exit_code = damage;
+}
+
+}  // namespace
+
+void add_replay(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* verb = add_verb(program, "replay", "Run a trace through a collision detector",
+                            "  vestige replay man.mcap --contacts contacts.csv --timeline timeline.csv\n"
+                            "  vestige replay man.mcap --detector paper --textures textures.exr --json replay.json\n");
+  verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
+  verb->add_option("--detector", options->choice.detector,
+                   "paper: HAVE 2010's geometry shader, as published; cpu: the same contacts in double precision; "
+                   "auto: cpu")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "paper", "cpu"}));
+  verb->add_option("--context", options->choice.context, "OpenGL context of paper")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
+  add_detector_options(*verb, options->choice);
+  verb->add_option(
+          "--hold", options->hold_ms,
+          "How long a contact keeps its actuator on, in ms: a coin motor cannot answer a single frame; 0 gives "
+          "the raw frames")
+      ->capture_default_str()
+      ->check(kNotNegative);
+  verb->add_option("--contacts", options->contacts, "Write one row a contact")->type_name("OUT.csv|-");
+  verb->add_option("--textures", options->textures,
+                   "Write the collision textures as OpenEXR: a row a frame, a column a collider")
+      ->type_name("OUT.exr|-");
+  verb->add_option("--planes", options->planes,
+                   "What the textures hold: actuator, t, triangle, barycentric, texture, position, speed, side")
+      ->capture_default_str()
+      ->type_name("LIST");
+  verb->add_option("--timeline", options->timeline, "Write the actuators' duties, 0 to 255, one row a frame")
+      ->type_name("OUT.csv|-");
+  verb->add_option("--verify", options->verify,
+                   "Compare with another detector (cpu, paper), or with the --contacts or --json of an earlier replay; "
+                   "exit 4 if contacts differ")
+      ->type_name("DETECTOR|FILE");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_replay(*options, invocation); });
+}
+
+}  // namespace vestige::cli

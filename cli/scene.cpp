@@ -1,0 +1,92 @@
+#include "cli/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+#include <string_view>
+
+#include "cli/options.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+void warn_all(const std::vector<std::string>& warnings, Verbosity verbosity) {
+  for (const std::string& warning : warnings) warn(warning, verbosity);
+}
+
+void load_map(const std::string& map, Scene& scene) {
+  if (map == "none") return;
+  if (map == "builtin") {
+    scene.map_png = builtin_actuator_map_png();
+    scene.map_json = builtin_actuator_map_json();
+  } else {
+    scene.map_png = read_file(map);
+    const auto sidecar = std::filesystem::path(map).replace_extension(".json");
+    if (std::filesystem::exists(sidecar)) scene.map_json = read_text_file(sidecar);
+  }
+  scene.map = parse_actuator_map(scene.map_png, scene.map_json, map);
+}
+
+std::string list_animations(const Avatar& avatar) {
+  if (avatar.animations.empty()) return "the avatar has none; leave --animation out";
+  std::string list = "the avatar has";
+  for (std::size_t i = 0; i < avatar.animations.size(); ++i)
+    fmt::format_to(std::back_inserter(list), "{} {} ({})", i == 0 ? "" : ",", i,
+                   avatar.animations[i].name.empty() ? "unnamed" : avatar.animations[i].name);
+  return list;
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity) {
+  Scene scene;
+  scene.avatar_glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
+  scene.avatar = parse_avatar_glb(scene.avatar_glb, avatar);
+  warn_all(scene.avatar.warnings, verbosity);
+  const std::string default_map = avatar == "builtin" ? "builtin" : "none";
+  load_map(map.empty() ? default_map : map, scene);
+  warn_all(scene.map.warnings, verbosity);
+  if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
+  return scene;
+}
+
+const Animation* find_animation(const Avatar& avatar, const std::string& name_or_index) {
+  if (name_or_index == "none" || (name_or_index.empty() && avatar.animations.empty())) return nullptr;
+  if (name_or_index.empty()) return &avatar.animations.front();
+  const auto named = std::ranges::find(avatar.animations, name_or_index, &Animation::name);
+  if (named != avatar.animations.end()) return &*named;
+  std::size_t index = 0;
+  const char* end = name_or_index.data() + name_or_index.size();
+  const auto parsed = std::from_chars(name_or_index.data(), end, index);
+  if (parsed.ec == std::errc() && parsed.ptr == end && index < avatar.animations.size())
+    return &avatar.animations[index];
+  throw UsageError("--animation", fmt::format("there is no animation '{}'", name_or_index), list_animations(avatar));
+}
+
+OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
+    : reader(path), avatar(parse_avatar_glb(reader.avatar_glb(), path + ", avatar.glb")) {
+  if (!reader.actuator_map_png().empty())
+    map =
+        parse_actuator_map(reader.actuator_map_png(), text_of(reader.actuator_map_json()), path + ", actuator_map.png");
+  if (verbosity == Verbosity::kVerbose) warn_all(avatar.warnings, verbosity);
+}
+
+int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity) {
+  if (trace.complete()) return kDone;
+  for (const std::string& warning : trace.warnings()) warn(fmt::format("{}: {}", path, warning), verbosity);
+  if (trace.warnings().empty()) warn(fmt::format("{}: is not complete", path), verbosity);
+  return kDataLost;
+}
+
+}  // namespace vestige::cli

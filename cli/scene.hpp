@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "cli/terminal.hpp"
+#include "detector/actuator_map.hpp"
+#include "traces/avatar.hpp"
+#include "traces/trace_reader.hpp"
+#include "traces/trace_writer.hpp"
+
+namespace vestige::cli {
+
+/// What is recorded: an avatar and its map, as files and as what they mean.
+struct Scene {
+  std::vector<std::byte> avatar_glb;
+  std::vector<std::byte> map_png;
+  std::string map_json;
+  Avatar avatar;
+  ActuatorMap map;
+
+  TraceAttachments attachments() const { return {avatar_glb, map_png, map_json}; }
+};
+
+/// `avatar`: "builtin" or a file. `map`: "builtin", "none" or a PNG file, whose sidecar is the .json of the same name,
+/// if there is one; empty: "builtin" for the built-in avatar, else "none". Warnings go to standard error.
+Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity);
+
+/// An animation by its name or, if none has it, by its index; "none" is null. Empty: the first, if there is one. Throws
+/// `UsageError` listing what there is.
+const Animation* find_animation(const Avatar& avatar, const std::string& name_or_index);
+
+/// A trace, with the avatar and map that it carries.
+struct OpenTrace {
+  OpenTrace(const std::string& path, Verbosity verbosity);
+  TraceReader reader;
+  Avatar avatar;
+  ActuatorMap map;
+};
+
+/// What was wrong with a trace, to standard error. Returns kDataLost if anything was, else kDone.
+int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity);
+
+}  // namespace vestige::cli

@@ -1,0 +1,178 @@
+#include "analysis/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "analysis/provenance.hpp"
+#include "analysis/sweep_report.hpp"
+#include "cli/detectors.hpp"
+#include "cli/scene.hpp"
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+#include "traces/mcap/compression.hpp"
+#include "traces/recording.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct SweepOptions {
+  CommonOptions common;
+  DetectorChoice choice;
+  std::string trace;
+  std::string counts = "1:100";
+  std::string detectors = "paper,cpu";
+  std::string contexts = "egl,osmesa";
+  SweepSettings settings;
+  bool no_figure = false;
+  std::string output;
+};
+
+/// Every detector asked for, `paper` once in every context that this machine has; a context that it lacks is said.
+std::vector<Contestant> make_contestants(const SweepOptions& options, const OpenTrace& trace, Verbosity verbosity) {
+  std::vector<Contestant> contestants;
+  const auto add = [&](const std::string& detector, const std::string& context) {
+    contestants.push_back({detector, [&options, &trace, detector, context](PlaneSet planes) {
+                             return make_detector(detector, context, options.choice, trace.avatar, trace.map, planes);
+                           }});
+  };
+  for (const std::string& detector : parse_list(options.detectors)) {
+    if (detector == "cpu") {
+      add(detector, "");
+      continue;
+    }
+    if (detector != "paper")
+      throw UsageError("--detector", fmt::format("there is no detector '{}'", detector), "choose of: paper, cpu");
+    for (const std::string& context : parse_list(options.contexts)) {
+      if (context != "egl" && context != "osmesa" && context != "auto")
+        throw UsageError("--context", fmt::format("there is no context '{}'", context), "choose of: egl, osmesa, auto");
+      try {
+        make_gl_context(context == "osmesa" ? ContextKind::kOsMesa : ContextKind::kEgl, options.choice.device);
+      } catch (const Error& error) {
+        warn(fmt::format("no series 'paper' on {}: {}", context, error.what()), verbosity);
+        continue;
+      }
+      add(detector, context);
+    }
+  }
+  if (contestants.empty())
+    throw Error("--context", "none of the detectors asked for can run on this machine",
+                "'vestige devices' lists its OpenGL contexts; --detector cpu needs none");
+  return contestants;
+}
+
+/// Without a trace, the built-in avatar in a swarm as large as the largest count, kept beside the results.
+std::string record_default_trace(const SweepOptions& options, const Invocation& invocation) {
+  const std::string path = options.output + "/trace.mcap";
+  const Scene scene = load_scene("builtin", "builtin", Verbosity::kQuiet);
+  const Animation* animation = find_animation(scene.avatar, "");
+  const auto swarm =
+      make_swarm(scene.avatar, animation, {std::ranges::max(options.settings.counts), options.common.seed});
+  TraceWriterOptions writing;
+  writing.overwrite = options.common.overwrite();
+  TraceWriter writer(path, {{"argv", nlohmann::json(invocation.argv).dump()}}, scene.avatar, scene.attachments(),
+                     writing);
+  record(writer, scene.avatar, animation, *swarm, {}, [](double) { return !interrupted(); });
+  writer.finish();
+  return path;
+}
+
+/// The series' own GL first; the whole file's is that of the first series that has one.
+nlohmann::ordered_json first_gl(std::span<const SweepSeries> series) {
+  for (const SweepSeries& one : series)
+    if (!one.gl.context.empty()) return to_json(one.gl);
+  return nullptr;
+}
+
+void draw_figure(const SweepOptions& options) {
+  std::vector<std::string> arguments = {"sweep", options.output};
+  if (options.common.force) arguments.emplace_back("--force");
+  if (options.common.quiet) arguments.emplace_back("-q");
+  try {
+    if (run_plot(arguments) != kDone) warn("the figure is not complete", options.common.verbosity());
+  } catch (const Error& error) {
+    warn(fmt::format("no figure was drawn: {}", error.what()), options.common.verbosity());
+  }
+}
+
+void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  options.settings.counts = parse_counts(options.counts, "--counts");
+  options.settings.seed = options.common.seed;
+  const std::string json_path = options.output + "/sweep.json";
+  const std::string times_path = options.output + "/frame_times.csv.zst";
+  std::error_code failure;
+  std::filesystem::create_directories(options.output, failure);
+  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  check_outputs({json_path, times_path, options.common.json}, options.common);
+
+  catch_interrupts();
+  const std::string path = options.trace.empty() ? record_default_trace(options, invocation) : options.trace;
+  OpenTrace trace(path, verbosity);
+  const std::vector<Contestant> contestants = make_contestants(options, trace, verbosity);
+  std::vector<SweepSeries> series;
+  {
+    Progress progress("Measuring", verbosity);
+    series = run_sweep(trace.reader, trace.avatar, contestants, options.settings,
+                       [&](double share) { return progress.update(share); });
+  }
+
+  nlohmann::ordered_json json = provenance(invocation.argv);
+  json["gl"] = first_gl(series);
+  json["avatar"] = to_json(trace.avatar);
+  json["trace"] = path;
+  json["complete"] = !interrupted();
+  json["series"] = to_json(series, options.settings.seed);
+  write_json(json_path, json, options.common);
+  if (!options.common.json.empty()) write_json(options.common.json, json, options.common);
+  std::vector<std::byte> compressed;
+  const std::string times = frame_times_csv(series);
+  mcap::compress(Compression::kZstd, std::as_bytes(std::span(times)), compressed);
+  OutputFile times_file(times_path, options.common.overwrite());
+  times_file.write(compressed);
+  times_file.commit();
+
+  if (interrupted()) warn("stopped early; what was measured so far was written", verbosity);
+  for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
+  print_summary(sweep_table(series, options.settings.seed), {options.common.json}, options.common);
+  print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {options.common.json}, options.common);
+  if (!options.no_figure) draw_figure(options);
+  invocation.exit_code = report_damage(trace.reader, path, verbosity);
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<SweepOptions>();
+  CLI::App* verb = add_verb(program, "sweep", "Measure detection frequency against the number of colliders",
+                            "  vestige sweep -o sweep\n"
+                            "  vestige sweep man.mcap --counts 1,10,40,100 --detector paper,cpu -o sweep\n");
+  verb->add_option("TRACE", options->trace, "The trace to measure on [default: the built-in avatar in a swarm]");
+  verb->add_option("--counts", options->counts, "Numbers of colliders")->capture_default_str()->type_name("LIST");
+  verb->add_option("--detector", options->detectors, "Detectors to measure: paper, cpu")
+      ->capture_default_str()
+      ->type_name("LIST");
+  verb->add_option("--context", options->contexts, "OpenGL contexts to measure paper in: egl, osmesa")
+      ->capture_default_str()
+      ->type_name("LIST");
+  add_detector_options(*verb, options->choice);
+  verb->add_option("--runs", options->settings.runs, "Places of the trace, evenly spread, that are measured")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10000));
+  verb->add_option("--run-frames", options->settings.run_frames, "Consecutive frames at each place")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  verb->add_option("--min-time", options->settings.min_time_s, "Seconds spent on every point, at least")
+      ->capture_default_str()
+      ->check(kPositive);
+  verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
+  verb->add_option("-o,--output", options->output, "Folder for sweep.json, every frame's duration, and the figure")
+      ->required()
+      ->type_name("DIR");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_sweep_verb(*options, invocation); });
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,68 @@
+#include "cli/terminal.hpp"
+
+#include <fmt/color.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <utility>
+
+namespace vestige::cli {
+
+namespace {
+
+constexpr int kBarCells = 30;
+
+volatile std::sig_atomic_t interrupt_seen = 0;
+
+void on_interrupt(int signal_number) {
+  interrupt_seen = 1;
+  std::signal(signal_number, SIG_DFL);
+}
+
+}  // namespace
+
+void warn(std::string_view text, Verbosity verbosity) {
+  if (verbosity != Verbosity::kQuiet) fmt::print(stderr, "vestige: warning: {}\n", text);
+}
+
+Progress::Progress(std::string label, Verbosity verbosity)
+    : label_(std::move(label)),
+      shown_(verbosity != Verbosity::kQuiet && ::isatty(STDERR_FILENO) != 0),
+      colour_(std::getenv("NO_COLOR") == nullptr),
+      start_(std::chrono::steady_clock::now()),
+      last_(start_) {}
+
+Progress::~Progress() {
+  if (shown_) fmt::print(stderr, "\r\033[K");
+}
+
+bool Progress::update(double share) {
+  const auto now = std::chrono::steady_clock::now();
+  if (shown_ && now - last_ >= std::chrono::milliseconds(100)) {
+    last_ = now;
+    const double spent_s = std::chrono::duration<double>(now - start_).count();
+    const double left_s = share > 0 ? spent_s * (1 - share) / share : 0;
+    const int full = std::clamp(static_cast<int>(share * kBarCells), 0, kBarCells);
+    const std::string bar = std::string(static_cast<std::size_t>(full), '#');
+    const std::string rest = std::string(static_cast<std::size_t>(kBarCells - full), '.');
+    const std::string drawn = colour_ ? fmt::format(fmt::fg(fmt::terminal_color::green), "{}", bar) : bar;
+    fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %, {:.0f} s left", label_, drawn, rest, 100 * share, left_s);
+    std::fflush(stderr);
+  }
+  return !interrupted();
+}
+
+void catch_interrupts() {
+  std::signal(SIGINT, on_interrupt);
+  std::signal(SIGTERM, on_interrupt);
+}
+
+bool interrupted() {
+  return interrupt_seen != 0;
+}
+
+}  // namespace vestige::cli

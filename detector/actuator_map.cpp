@@ -1,0 +1,211 @@
+#include "detector/actuator_map.hpp"
+
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::uint32_t kMaxSide = 16384;  // texels; also what OpenGL offers
+constexpr std::size_t kManyActuators = 64;
+constexpr std::size_t kFewTexels = 4;  // an editor's soft edge leaves greys of this few
+
+struct GreyImage {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<std::uint16_t> grey;
+};
+
+struct PngSource {
+  std::span<const std::byte> bytes;
+  std::size_t offset = 0;
+  std::string failure;
+};
+
+/// libpng reports errors through a callback that must not return; the offset of the failure is kept for the message.
+[[noreturn]] void on_png_error(png_structp png, png_const_charp message) {
+  auto& source = *static_cast<PngSource*>(png_get_error_ptr(png));
+  source.failure = message;
+  png_longjmp(png, 1);
+}
+
+void on_png_warning(png_structp, png_const_charp) {}
+
+void read_png_bytes(png_structp png, png_bytep out, std::size_t count) {
+  auto& source = *static_cast<PngSource*>(png_get_io_ptr(png));
+  if (count > source.bytes.size() - source.offset) png_error(png, "the file ends too early");
+  std::memcpy(out, source.bytes.data() + source.offset, count);
+  source.offset += count;
+}
+
+class PngReader {
+ public:
+  explicit PngReader(PngSource& source)
+      : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, on_png_error, on_png_warning)),
+        info_(png_create_info_struct(png_)) {
+    png_set_read_fn(png_, &source, read_png_bytes);
+    png_set_user_limits(png_, kMaxSide, kMaxSide);
+  }
+  ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngReader(const PngReader&) = delete;
+  PngReader& operator=(const PngReader&) = delete;
+  png_structp png() const { return png_; }
+  png_infop info() const { return info_; }
+
+ private:
+  png_structp png_;
+  png_infop info_;
+};
+
+/// Reads header and pixels; false when libpng gave up (source.failure says why). Nothing with a destructor is made
+/// between setjmp and the calls that may jump.
+bool read_header(const PngReader& reader) {
+  if (setjmp(png_jmpbuf(reader.png())) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's own way
+  png_read_info(reader.png(), reader.info());
+  png_set_expand_gray_1_2_4_to_8(reader.png());
+  png_set_strip_alpha(reader.png());
+  png_set_swap(reader.png());  // 16-bit samples in the machine's (little-endian) order
+  png_set_interlace_handling(reader.png());
+  png_read_update_info(reader.png(), reader.info());
+  return true;
+}
+
+bool read_rows(const PngReader& reader, std::vector<png_bytep>& rows) {
+  if (setjmp(png_jmpbuf(reader.png())) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's own way
+  png_read_image(reader.png(), rows.data());
+  png_read_end(reader.png(), nullptr);
+  return true;
+}
+
+GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name) {
+  if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
+    throw Error(name, "is not a PNG file", "export the actuator map as a greyscale PNG");
+  PngSource source = {bytes, 0, {}};
+  const PngReader reader(source);
+  const auto fail = [&] {
+    return Error(fmt::format("{}, byte {}", name, source.offset), fmt::format("damaged PNG: {}", source.failure),
+                 "export the actuator map again");
+  };
+  if (!read_header(reader)) throw fail();
+  const int colour = png_get_color_type(reader.png(), reader.info());
+  if (colour != PNG_COLOR_TYPE_GRAY)
+    throw Error(name, "is a colour image; grey levels are the actuators",
+                "convert it to greyscale (in GIMP: Image > Mode > Greyscale) and export it again");
+  GreyImage image;
+  image.width = png_get_image_width(reader.png(), reader.info());
+  image.height = png_get_image_height(reader.png(), reader.info());
+  const std::size_t sample_bytes = png_get_bit_depth(reader.png(), reader.info()) == 16 ? 2 : 1;
+  const std::size_t texels = std::size_t{image.width} * image.height;
+  std::vector<png_byte> pixels(texels * sample_bytes);
+  std::vector<png_bytep> rows(image.height);
+  for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = pixels.data() + y * image.width * sample_bytes;
+  if (!read_rows(reader, rows)) throw fail();
+  image.grey.resize(texels);
+  if (sample_bytes == 2) {
+    std::memcpy(image.grey.data(), pixels.data(), pixels.size());
+  } else {
+    std::ranges::copy(pixels, image.grey.begin());
+  }
+  return image;
+}
+
+struct Sidecar {
+  std::vector<std::uint16_t> grey;
+  std::vector<std::string> names;
+};
+
+Sidecar parse_sidecar(std::string_view json, std::string_view name) {
+  constexpr const char* kRemedy = R"(write {"actuators": [{"grey": 40, "name": "chest left"}, …]})";
+  const auto document = nlohmann::json::parse(json, nullptr, false);
+  if (!document.is_object() || !document.contains("actuators") || !document["actuators"].is_array())
+    throw Error(fmt::format("{}, sidecar", name), "is not JSON with a list 'actuators'", kRemedy);
+  Sidecar sidecar;
+  for (const auto& entry : document["actuators"]) {
+    const std::string where = fmt::format("{}, sidecar, actuators[{}]", name, sidecar.grey.size());
+    if (!entry.is_object() || !entry.contains("grey") || !entry["grey"].is_number_unsigned() ||
+        entry["grey"].get<std::uint64_t>() == 0 || entry["grey"].get<std::uint64_t>() > 0xFFFF)
+      throw Error(where, "needs a 'grey' from 1 to 65535", kRemedy);
+    const auto grey = entry["grey"].get<std::uint16_t>();
+    if (std::ranges::find(sidecar.grey, grey) != sidecar.grey.end())
+      throw Error(where, fmt::format("grey {} is listed twice", grey), "give every actuator its own grey");
+    sidecar.grey.push_back(grey);
+    const bool named = entry.contains("name") && entry["name"].is_string();
+    sidecar.names.push_back(named ? entry["name"].get<std::string>() : fmt::format("actuator {}", sidecar.grey.size()));
+  }
+  return sidecar;
+}
+
+Sidecar actuators_of(const GreyImage& image, std::string_view name, std::vector<std::string>& warnings) {
+  std::map<std::uint16_t, std::size_t> texels;
+  for (const std::uint16_t grey : image.grey)
+    if (grey != 0) ++texels[grey];
+  if (texels.size() > 0xFFFF - 1) throw Error(name, "has more than 65534 grey levels", "is it an actuator map at all?");
+  Sidecar found;
+  std::size_t thin = 0;
+  for (const auto& [grey, count] : texels) {
+    found.grey.push_back(grey);
+    found.names.push_back(fmt::format("actuator {}", found.grey.size()));
+    if (count <= kFewTexels) ++thin;
+  }
+  if (found.grey.size() > kManyActuators)
+    warnings.push_back(
+        fmt::format("{}: {} grey levels make {} actuators; soft edges of an editor? Draw without "
+                    "anti-aliasing, or list the greys in a sidecar JSON.",
+                    name, found.grey.size(), found.grey.size()));
+  if (thin != 0)
+    warnings.push_back(
+        fmt::format("{}: {} grey levels cover {} texels or fewer; soft edges of an editor? Draw without "
+                    "anti-aliasing, or list the greys in a sidecar JSON.",
+                    name, thin, kFewTexels));
+  if (found.grey.empty()) warnings.push_back(fmt::format("{}: is black all over, so nothing will ever fire.", name));
+  return found;
+}
+
+double fraction(double value) {
+  return value - std::floor(value);
+}
+
+}  // namespace
+
+std::uint16_t ActuatorMap::at(const glm::dvec2& texture_coordinate) const {
+  if (!std::isfinite(texture_coordinate.x) || !std::isfinite(texture_coordinate.y)) return 0;
+  // A tiny negative coordinate has a fraction that rounds to 1: the last texel.
+  const auto column = std::min(static_cast<std::uint32_t>(fraction(texture_coordinate.x) * width), width - 1);
+  const auto row = std::min(static_cast<std::uint32_t>(fraction(texture_coordinate.y) * height), height - 1);
+  return actuator[std::size_t{row} * width + column];
+}
+
+ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view sidecar_json, std::string_view name) {
+  const GreyImage image = read_grey_png(png, name);
+  ActuatorMap map;
+  map.width = image.width;
+  map.height = image.height;
+  Sidecar listed = sidecar_json.empty() ? actuators_of(image, name, map.warnings) : parse_sidecar(sidecar_json, name);
+  std::vector<std::uint16_t> actuator_of_grey(0x10000, 0);
+  for (std::size_t i = 0; i < listed.grey.size(); ++i)
+    actuator_of_grey[listed.grey[i]] = static_cast<std::uint16_t>(i + 1);
+  map.actuator.reserve(image.grey.size());
+  for (std::size_t i = 0; i < image.grey.size(); ++i) {
+    const std::uint16_t grey = image.grey[i];
+    if (grey != 0 && actuator_of_grey[grey] == 0)
+      throw Error(name,
+                  fmt::format("texel ({}, {}) has grey {}, which the sidecar does not list", i % image.width,
+                              i / image.width, grey),
+                  "add it to the sidecar's 'actuators', or paint it black");
+    map.actuator.push_back(actuator_of_grey[grey]);
+  }
+  map.actuator_count = listed.grey.size();
+  map.names = std::move(listed.names);
+  return map;
+}
+
+}  // namespace vestige

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace vestige {
+
+/// The actuator ID map (HAVE 2010 §III.B): an image in the avatar's UV space whose grey levels are actuators and whose
+/// black fires nothing. Held as actuator numbers 1 … actuator_count; 0 is none.
+struct ActuatorMap {
+  std::uint32_t width = 1;
+  std::uint32_t height = 1;
+  std::vector<std::uint16_t> actuator = {0};  ///< width * height, row 0 at the top
+  std::size_t actuator_count = 0;
+  std::vector<std::string> names;     ///< one for each actuator
+  std::vector<std::string> warnings;  ///< one sentence each
+
+  /// The actuator under a texture coordinate: nearest texel floor(frac(u) W), floor(frac(v) H), origin top-left,
+  /// wrapped (detector/CONTRACT.md, 8). A coordinate that is not finite has none.
+  std::uint16_t at(const glm::dvec2& texture_coordinate) const;
+};
+
+/// Reads a PNG of 8 or 16 bit grey. Without a sidecar, actuators 1 … n are the distinct non-zero greys in ascending
+/// order. `sidecar_json` (may be empty) says which grey is which: {"actuators": [{"grey": 40, "name": "chest left"},
+/// …]}, in the order of their numbers; a grey in the image that it does not list is an error. `name` stands in errors:
+/// no PNG, truncated, colour or palette image, alpha channel, more than 65535 actuators, unusable sidecar.
+ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view sidecar_json, std::string_view name);
+
+}  // namespace vestige

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <vector>
+
+namespace vestige {
+
+inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
+
+/// Where one collider's segment first meets the skin in one frame: one texel of the collision texture (HAVE 2010 §III).
+/// `triangle == kNoTriangle` means no contact; then nothing else in it means anything but t = +inf.
+struct Contact {
+  std::uint32_t triangle = kNoTriangle;
+  float t = std::numeric_limits<float>::infinity();  ///< 0 at the segment's start … 1 at its end
+  std::uint16_t actuator = 0;                        ///< 0: skin that no actuator covers
+  std::int8_t side = 0;                           ///< +1 entering (from the triangle's front), -1 leaving, 0 coplanar
+  glm::dvec2 barycentric = glm::dvec2(0);         ///< u, v: weights of the triangle's second and third vertex
+  glm::dvec2 texture_coordinate = glm::dvec2(0);  ///< as in the file: not wrapped into [0, 1]
+  glm::dvec3 position = glm::dvec3(0);            ///< metres, relative to the frame's origin
+  double speed_m_per_s = 0;                       ///< of the collider along the triangle's normal, not negative
+
+  bool hit() const { return triangle != kNoTriangle; }
+};
+
+/// One row of the collision texture: a texel for each collider of the trace, in order of their ids.
+using ContactRow = std::vector<Contact>;
+
+/// What a row can carry. A detector may leave the fields of planes that nobody asked for at their defaults.
+enum class Plane : unsigned {
+  kActuator = 1U << 0,  ///< the paper's texture; always there
+  kTime = 1U << 1,
+  kTriangle = 1U << 2,
+  kBarycentric = 1U << 3,
+  kTextureCoordinate = 1U << 4,
+  kPosition = 1U << 5,
+  kSpeed = 1U << 6,
+  kSide = 1U << 7,
+};
+
+class PlaneSet {
+ public:
+  constexpr PlaneSet() = default;
+  constexpr PlaneSet(Plane plane) : bits_(static_cast<unsigned>(plane) | 1U) {}
+  constexpr bool has(Plane plane) const { return (bits_ & static_cast<unsigned>(plane)) != 0; }
+  friend constexpr PlaneSet operator|(PlaneSet a, PlaneSet b) {
+    PlaneSet both;
+    both.bits_ = a.bits_ | b.bits_;
+    return both;
+  }
+  static constexpr PlaneSet all() {
+    PlaneSet set;
+    set.bits_ = 0xFF;
+    return set;
+  }
+  friend constexpr bool operator==(PlaneSet, PlaneSet) = default;
+
+ private:
+  unsigned bits_ = 1;
+};
+
+constexpr PlaneSet operator|(Plane a, Plane b) {
+  return PlaneSet(a) | PlaneSet(b);
+}
+
+/// The planes that `texture_hash` reads.
+inline constexpr PlaneSet kHashedPlanes = Plane::kTime | Plane::kTriangle;
+
+}  // namespace vestige

@@ -1,0 +1,54 @@
+#include "detector/contacts_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "traces/csv.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::string_view kHeader = "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z";
+constexpr std::string_view kRemedy = "write it with 'vestige replay --contacts'";
+
+}  // namespace
+
+ContactsCsv::ContactsCsv(const std::filesystem::path& path, Overwrite overwrite) : file_(path, overwrite) {
+  file_.write(fmt::format("{}\n", kHeader));
+}
+
+void ContactsCsv::write(const Frame& frame, const ContactRow& row, const std::vector<std::uint32_t>& collider_ids) {
+  text_.clear();
+  for (std::size_t column = 0; column < row.size(); ++column) {
+    const Contact& contact = row[column];
+    if (!contact.hit()) continue;
+    const glm::dvec3 world_m = frame.origin_m + contact.position;
+    fmt::format_to(std::back_inserter(text_), "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame.index, frame.time_s,
+                   collider_ids[column], contact.triangle, contact.t, contact.barycentric.x, contact.barycentric.y,
+                   contact.texture_coordinate.x, contact.texture_coordinate.y, contact.actuator, contact.side,
+                   world_m.x, world_m.y, world_m.z);
+  }
+  file_.write(text_);
+}
+
+std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path) {
+  const std::string text = read_text_file(path);
+  CsvLines lines(text, path.string(), kHeader, kRemedy);
+  std::vector<RecordedContact> contacts;
+  while (lines.next()) {
+    RecordedContact contact;
+    double ignored = 0;
+    if (!lines.take(contact.frame) || !lines.take(ignored) || !lines.take(contact.collider) ||
+        !lines.take(contact.triangle) || !lines.take(contact.t) || !lines.take(ignored) || !lines.take(ignored) ||
+        !lines.take(ignored) || !lines.take(ignored) || !lines.take(contact.actuator))
+      throw lines.error("is no row of contacts");
+    contacts.push_back(contact);
+  }
+  return contacts;
+}
+
+}  // namespace vestige

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "detector/actuator_map.hpp"
+#include "detector/contact.hpp"
+#include "detector/frame.hpp"
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// kAll: skin that no actuator covers occludes what lies behind it. kMapped: the winner is the first contact whose
+/// texel has an actuator.
+enum class Surface { kAll, kMapped };
+
+struct DetectorOptions {
+  Surface surface = Surface::kAll;
+  PlaneSet planes;  ///< what the rows must carry
+};
+
+/// Work done by one call of `detect`, for reports.
+struct DetectorWork {
+  std::uint64_t pairs_tested = 0;      ///< (segment, triangle) pairs
+  std::uint64_t triangles_tested = 0;  ///< triangles that met at least one test
+};
+
+/// Where a detector runs, as the driver says it. Empty for a detector without GL.
+struct GlInfo {
+  std::string context;  ///< "egl-surfaceless", "egl-device-0", "osmesa"
+  std::string renderer;
+  std::string version;
+};
+
+/// Finds, for every collider, where its segment first meets the avatar's skin.
+///
+/// `paper` reproduces HAVE 2010; `geometry`, `cpu` and `exact` keep the contract of detector/CONTRACT.md.
+/// A detector holds references to the avatar and map that it was made with, and belongs to the thread that made it.
+class Detector {
+ public:
+  Detector() = default;
+  virtual ~Detector() = default;
+  Detector(const Detector&) = delete;
+  Detector& operator=(const Detector&) = delete;
+
+  virtual const char* name() const = 0;
+  virtual GlInfo gl_info() const { return {}; }
+
+  /// Fills `row` (resized to frame.columns). The whole round trip is in here: skinning or upload, test, read-back.
+  virtual DetectorWork detect(const Frame& frame, ContactRow& row) = 0;
+
+  /// This detector's own skinned vertices, relative to the frame's origin: to compare with the double reference.
+  virtual void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) = 0;
+};
+
+/// Brute force on the CPU: fp32 skinning by the contract, contacts in double.
+std::unique_ptr<Detector> make_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
+                                            const DetectorOptions& options);
+
+class GlContext;
+
+/// The published method: HAVE 2010 §III. Needs OpenGL 4.5; throws `Error` with the driver's own words otherwise.
+std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+                                              const ActuatorMap& map, const DetectorOptions& options);
+
+}  // namespace vestige

@@ -1,0 +1,86 @@
+#include "detector/frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace vestige {
+
+namespace {
+
+/// The avatar may stray this far from the origin before the origin follows (detector/CONTRACT.md, 2).
+constexpr double kOriginReach_m = 2.0;
+
+bool finite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool finite(std::span<const SkinMatrix> palette) {
+  return std::ranges::all_of(palette, [](const SkinMatrix& matrix) {
+    return std::ranges::all_of(matrix.column, [](const glm::vec4& column) { return finite(glm::vec3(column)); });
+  });
+}
+
+}  // namespace
+
+FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids)
+    : avatar_(avatar), collider_ids_(collider_ids.begin(), collider_ids.end()), columns_(collider_ids.size()) {
+  frame_.columns = columns_.size();
+}
+
+const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
+  ++calls_;
+  const double time_s = static_cast<double>(trace_frame.time_ns) / 1e9;
+  frame_.duration_s = calls_ == 1 ? 0 : time_s - frame_.time_s;
+  frame_.time_s = time_s;
+  frame_.index = trace_frame.index;
+
+  world_matrices(avatar_, trace_frame.pose, world_);
+  follow_origin(trace_frame.pose);
+  build_palette(avatar_, world_, trace_frame.pose.origin_m - frame_.origin_m, frame_.palette);
+  build_segments(trace_frame);
+  if (!finite(frame_.palette)) {
+    ++non_finite_frames_;
+    frame_.segments.clear();
+  }
+  return frame_;
+}
+
+void FrameBuilder::follow_origin(const Pose& pose) {
+  // Whole metres and the rest are kept apart, so that a pose shifted by whole metres gets an origin shifted alike.
+  const glm::dvec3 root(world_[static_cast<std::size_t>(avatar_.root_node)][3]);
+  const glm::dvec3 whole = glm::floor(pose.origin_m);
+  const glm::dvec3 rest = (pose.origin_m - whole) + root;
+  const glm::dvec3 away = (whole - frame_.origin_m) + rest;
+  const bool stays = calls_ > 1 && std::abs(away.x) <= kOriginReach_m && std::abs(away.y) <= kOriginReach_m &&
+                     std::abs(away.z) <= kOriginReach_m;
+  const glm::dvec3 origin = whole + glm::round(rest);
+  if (stays || !(std::isfinite(origin.x) && std::isfinite(origin.y) && std::isfinite(origin.z))) return;
+  if (calls_ > 1) ++origin_changes_;
+  frame_.origin_m = origin;
+}
+
+void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
+  frame_.segments.clear();
+  for (const ColliderSample& sample : trace_frame.colliders) {
+    const auto place = std::ranges::lower_bound(collider_ids_, sample.id);
+    if (place == collider_ids_.end() || *place != sample.id) continue;
+    const auto column = static_cast<std::size_t>(place - collider_ids_.begin());
+    Column& before = columns_[column];
+    const bool has_start = before.seen_in + 1 == calls_ && before.seen_in != 0 &&
+                           std::ranges::find(trace_frame.teleported, sample.id) == trace_frame.teleported.end();
+    if (has_start) {
+      const Segment segment = {static_cast<std::uint32_t>(column), glm::vec3(before.position_m - frame_.origin_m),
+                               glm::vec3(sample.position_m - frame_.origin_m)};
+      if (finite(segment.start) && finite(segment.end)) {
+        frame_.segments.push_back(segment);
+      } else {
+        ++non_finite_segments_;
+      }
+    }
+    before = {sample.position_m, calls_};
+  }
+  if (!std::ranges::is_sorted(frame_.segments, {}, &Segment::column))
+    std::ranges::sort(frame_.segments, {}, &Segment::column);
+}
+
+}  // namespace vestige

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "detector/skinning.hpp"
+#include "traces/avatar.hpp"
+#include "traces/trace.hpp"
+
+namespace vestige {
+
+/// The way of one collider from the frame before to this one. Metres, relative to the frame's origin.
+struct Segment {
+  std::uint32_t column = 0;  ///< of the collision texture
+  glm::vec3 start = glm::vec3(0);
+  glm::vec3 end = glm::vec3(0);
+};
+
+/// What a detector is given: detector/CONTRACT.md, 1 to 3. Everything is relative to `origin_m`.
+struct Frame {
+  std::uint64_t index = 0;
+  double time_s = 0;
+  double duration_s = 0;  ///< since the frame before; 0 in the first frame
+  glm::dvec3 origin_m = glm::dvec3(0);
+  std::size_t columns = 0;  ///< of the collision texture
+  std::vector<SkinMatrix> palette;
+  std::vector<Segment> segments;  ///< ascending columns; at most one each
+};
+
+/// Turns the frames of a trace into what detectors are given: segments between consecutive frames, and a palette, both
+/// relative to a whole-metre origin that follows the avatar.
+class FrameBuilder {
+ public:
+  /// `collider_ids`: ascending; a collider's rank in it is its column. Colliders that are not in it are ignored.
+  FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids);
+
+  /// The frame after the one given before. The reference stays good until the next call.
+  const Frame& next(const TraceFrame& trace_frame);
+
+  /// Frames whose pose, and segments of which an end, was not finite: they test nothing.
+  std::uint64_t non_finite_frames() const { return non_finite_frames_; }
+  std::uint64_t non_finite_segments() const { return non_finite_segments_; }
+  std::uint64_t origin_changes() const { return origin_changes_; }
+
+ private:
+  struct Column {
+    glm::dvec3 position_m = glm::dvec3(0);
+    std::uint64_t seen_in = 0;  ///< 1 + number of the call that saw it last, 0: never
+  };
+
+  void follow_origin(const Pose& pose);
+  void build_segments(const TraceFrame& trace_frame);
+
+  const Avatar& avatar_;
+  std::vector<std::uint32_t> collider_ids_;
+  std::vector<Column> columns_;
+  std::vector<glm::dmat4> world_;
+  Frame frame_;
+  std::uint64_t calls_ = 0;
+  std::uint64_t non_finite_frames_ = 0;
+  std::uint64_t non_finite_segments_ = 0;
+  std::uint64_t origin_changes_ = 0;
+};
+
+}  // namespace vestige

@@ -1,0 +1,145 @@
+#include <EGL/egl.h>
+#include <EGL/eglext.h>
+#include <fmt/format.h>
+
+#include <array>
+
+#include "detector/gl/gl_context.hpp"
+#include "detector/gl/shared_library.hpp"
+#include "traces/error.hpp"
+
+#ifndef EGL_PLATFORM_SURFACELESS_MESA
+#define EGL_PLATFORM_SURFACELESS_MESA 0x31DD
+#endif
+
+namespace vestige {
+
+namespace {
+
+struct EglFunctions {
+  PFNEGLGETPROCADDRESSPROC GetProcAddress = nullptr;
+  PFNEGLGETERRORPROC GetError = nullptr;
+  PFNEGLQUERYSTRINGPROC QueryString = nullptr;
+  PFNEGLINITIALIZEPROC Initialize = nullptr;
+  PFNEGLBINDAPIPROC BindAPI = nullptr;
+  PFNEGLCREATECONTEXTPROC CreateContext = nullptr;
+  PFNEGLDESTROYCONTEXTPROC DestroyContext = nullptr;
+  PFNEGLMAKECURRENTPROC MakeCurrent = nullptr;
+  PFNEGLGETPLATFORMDISPLAYEXTPROC GetPlatformDisplay = nullptr;
+  PFNEGLQUERYDEVICESEXTPROC QueryDevices = nullptr;            // null without EGL_EXT_device_enumeration
+  PFNEGLQUERYDEVICESTRINGEXTPROC QueryDeviceString = nullptr;  // likewise
+
+  EglFunctions() {
+    const SharedLibrary library("libEGL.so.1");
+    library.find("eglGetProcAddress", GetProcAddress);
+    library.find("eglGetError", GetError);
+    library.find("eglQueryString", QueryString);
+    library.find("eglInitialize", Initialize);
+    library.find("eglBindAPI", BindAPI);
+    library.find("eglCreateContext", CreateContext);
+    library.find("eglDestroyContext", DestroyContext);
+    library.find("eglMakeCurrent", MakeCurrent);
+    GetPlatformDisplay = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(GetProcAddress("eglGetPlatformDisplayEXT"));
+    if (GetPlatformDisplay == nullptr)
+      throw Error("libEGL.so.1", "has no eglGetPlatformDisplayEXT", "use a newer version of it");
+    QueryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(GetProcAddress("eglQueryDevicesEXT"));
+    QueryDeviceString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(GetProcAddress("eglQueryDeviceStringEXT"));
+  }
+};
+
+/// Opened once, at first use; a failure is thrown again at every use.
+const EglFunctions& egl() {
+  static const EglFunctions kFunctions;
+  return kFunctions;
+}
+
+Error egl_error(const std::string& context, std::string_view what) {
+  return Error(context, fmt::format("{} failed (EGL error {:#06x})", what, egl().GetError()), "");
+}
+
+std::vector<EGLDeviceEXT> query_devices() {
+  if (egl().QueryDevices == nullptr || egl().QueryDeviceString == nullptr) return {};
+  std::array<EGLDeviceEXT, 64> devices = {};
+  EGLint count = 0;
+  if (egl().QueryDevices(static_cast<EGLint>(devices.size()), devices.data(), &count) != EGL_TRUE) return {};
+  // Not with braces: iterators are pointers here, and would become a list of two devices.
+  return std::vector<EGLDeviceEXT>(devices.begin(), devices.begin() + count);
+}
+
+std::string device_string(EGLDeviceEXT device, EGLint name) {
+  const char* text = egl().QueryDeviceString(device, name);
+  return text == nullptr ? "" : text;
+}
+
+class EglContext final : public GlContext {
+ public:
+  EglContext(const std::string& name, EGLenum platform, void* native) {
+    display_ = egl().GetPlatformDisplay(platform, native, nullptr);
+    if (display_ == EGL_NO_DISPLAY) throw egl_error(name, "eglGetPlatformDisplay");
+    // Displays are shared in the process and initialised as often as asked; they are never terminated, since another
+    // context may still live on the same one.
+    if (egl().Initialize(display_, nullptr, nullptr) != EGL_TRUE) throw egl_error(name, "eglInitialize");
+    if (egl().BindAPI(EGL_OPENGL_API) != EGL_TRUE) throw egl_error(name, "eglBindAPI(EGL_OPENGL_API)");
+    constexpr std::array<EGLint, 7> kAttributes = {
+        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+    context_ = egl().CreateContext(display_, EGLConfig(nullptr), EGL_NO_CONTEXT, kAttributes.data());
+    if (context_ == EGL_NO_CONTEXT) throw egl_error(name, "eglCreateContext for OpenGL 4.5 core");
+    try {
+      make_current();
+      load(name, [](const char* symbol) { return reinterpret_cast<void*>(egl().GetProcAddress(symbol)); });
+    } catch (...) {
+      destroy();
+      throw;
+    }
+  }
+  ~EglContext() override { destroy(); }
+
+ private:
+  void bind() override {
+    // Which API is bound is kept per thread, and others may have changed it.
+    egl().BindAPI(EGL_OPENGL_API);
+    if (egl().MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)
+      throw egl_error("EGL", "eglMakeCurrent without a surface");
+  }
+  void unbind() override { egl().MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
+  void destroy() {
+    leave();
+    egl().DestroyContext(display_, context_);
+  }
+
+  EGLDisplay display_ = EGL_NO_DISPLAY;
+  EGLContext context_ = EGL_NO_CONTEXT;
+};
+
+}  // namespace
+
+std::vector<EglDevice> list_egl_devices() {
+  std::vector<EglDevice> found;
+  try {
+    for (EGLDeviceEXT device : query_devices()) {
+      const std::string extensions = device_string(device, EGL_EXTENSIONS);
+      std::string name = device_string(device, EGL_VENDOR);
+      if (name.empty()) name = device_string(device, EGL_DRM_DEVICE_FILE_EXT);
+      found.push_back({extensions.find("EGL_MESA_device_software") != std::string::npos, name});
+    }
+  } catch (const Error&) {
+    found.clear();  // no EGL at all: no devices
+  }
+  return found;
+}
+
+std::unique_ptr<GlContext> make_egl_surfaceless_context() {
+  return std::make_unique<EglContext>("egl-surfaceless", EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
+}
+
+std::unique_ptr<GlContext> make_egl_device_context(int device) {
+  const std::vector<EGLDeviceEXT> devices = query_devices();
+  if (device < 0 || static_cast<std::size_t>(device) >= devices.size())
+    throw Error(fmt::format("--device {}", device), fmt::format("this machine has {} EGL devices", devices.size()),
+                "'vestige devices' lists them");
+  return std::make_unique<EglContext>(fmt::format("egl-device-{}", device), EGL_PLATFORM_DEVICE_EXT,
+                                      devices[static_cast<std::size_t>(device)]);
+}
+
+}  // namespace vestige

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <GL/glcorearb.h>
+
+namespace vestige {
+
+// Every OpenGL entry point that we call. They are loaded from the context's own library: nothing links libGL.
+#define VESTIGE_GL_FUNCTIONS(X)                                          \
+  X(PFNGLATTACHSHADERPROC, AttachShader)                                 \
+  X(PFNGLBEGINTRANSFORMFEEDBACKPROC, BeginTransformFeedback)             \
+  X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                             \
+  X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                           \
+  X(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)                           \
+  X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                           \
+  X(PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC, CheckNamedFramebufferStatus)   \
+  X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)           \
+  X(PFNGLCLEARNAMEDFRAMEBUFFERUIVPROC, ClearNamedFramebufferuiv)         \
+  X(PFNGLCLIPCONTROLPROC, ClipControl)                                   \
+  X(PFNGLCOMPILESHADERPROC, CompileShader)                               \
+  X(PFNGLCREATEBUFFERSPROC, CreateBuffers)                               \
+  X(PFNGLCREATEFRAMEBUFFERSPROC, CreateFramebuffers)                     \
+  X(PFNGLCREATEPROGRAMPROC, CreateProgram)                               \
+  X(PFNGLCREATERENDERBUFFERSPROC, CreateRenderbuffers)                   \
+  X(PFNGLCREATESHADERPROC, CreateShader)                                 \
+  X(PFNGLCREATETEXTURESPROC, CreateTextures)                             \
+  X(PFNGLCREATEVERTEXARRAYSPROC, CreateVertexArrays)                     \
+  X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                               \
+  X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                     \
+  X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                               \
+  X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                   \
+  X(PFNGLDELETESHADERPROC, DeleteShader)                                 \
+  X(PFNGLDELETETEXTURESPROC, DeleteTextures)                             \
+  X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                     \
+  X(PFNGLDEPTHFUNCPROC, DepthFunc)                                       \
+  X(PFNGLDISABLEPROC, Disable)                                           \
+  X(PFNGLDRAWARRAYSPROC, DrawArrays)                                     \
+  X(PFNGLDRAWELEMENTSINSTANCEDPROC, DrawElementsInstanced)               \
+  X(PFNGLENABLEPROC, Enable)                                             \
+  X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)           \
+  X(PFNGLENDTRANSFORMFEEDBACKPROC, EndTransformFeedback)                 \
+  X(PFNGLGETERRORPROC, GetError)                                         \
+  X(PFNGLGETINTEGERVPROC, GetIntegerv)                                   \
+  X(PFNGLGETNAMEDBUFFERSUBDATAPROC, GetNamedBufferSubData)               \
+  X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                       \
+  X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                 \
+  X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                         \
+  X(PFNGLGETSHADERIVPROC, GetShaderiv)                                   \
+  X(PFNGLGETSTRINGPROC, GetString)                                       \
+  X(PFNGLLINKPROGRAMPROC, LinkProgram)                                   \
+  X(PFNGLNAMEDBUFFERDATAPROC, NamedBufferData)                           \
+  X(PFNGLNAMEDBUFFERSUBDATAPROC, NamedBufferSubData)                     \
+  X(PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC, NamedFramebufferDrawBuffers)   \
+  X(PFNGLNAMEDFRAMEBUFFERREADBUFFERPROC, NamedFramebufferReadBuffer)     \
+  X(PFNGLNAMEDFRAMEBUFFERRENDERBUFFERPROC, NamedFramebufferRenderbuffer) \
+  X(PFNGLNAMEDFRAMEBUFFERTEXTUREPROC, NamedFramebufferTexture)           \
+  X(PFNGLNAMEDRENDERBUFFERSTORAGEPROC, NamedRenderbufferStorage)         \
+  X(PFNGLPIXELSTOREIPROC, PixelStorei)                                   \
+  X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                         \
+  X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                         \
+  X(PFNGLREADPIXELSPROC, ReadPixels)                                     \
+  X(PFNGLSHADERSOURCEPROC, ShaderSource)                                 \
+  X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                       \
+  X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                         \
+  X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                       \
+  X(PFNGLTRANSFORMFEEDBACKVARYINGSPROC, TransformFeedbackVaryings)       \
+  X(PFNGLUSEPROGRAMPROC, UseProgram)                                     \
+  X(PFNGLVERTEXARRAYATTRIBBINDINGPROC, VertexArrayAttribBinding)         \
+  X(PFNGLVERTEXARRAYATTRIBFORMATPROC, VertexArrayAttribFormat)           \
+  X(PFNGLVERTEXARRAYATTRIBIFORMATPROC, VertexArrayAttribIFormat)         \
+  X(PFNGLVERTEXARRAYELEMENTBUFFERPROC, VertexArrayElementBuffer)         \
+  X(PFNGLVERTEXARRAYVERTEXBUFFERPROC, VertexArrayVertexBuffer)           \
+  X(PFNGLVIEWPORTPROC, Viewport)
+
+/// The loaded functions, named without their "gl".
+struct GlFunctions {
+#define VESTIGE_GL_MEMBER(type, name) type name = nullptr;
+  VESTIGE_GL_FUNCTIONS(VESTIGE_GL_MEMBER)
+#undef VESTIGE_GL_MEMBER
+};
+
+}  // namespace vestige

@@ -1,0 +1,417 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "detector/detector.hpp"
+#include "detector/gl/gl_context.hpp"
+#include "detector/gl/gl_objects.hpp"
+#include "shaders/constants.h"
+#include "shaders/shaders.hpp"
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// A plane of the collision texture: where it is attached, what it holds, and its share of a contact.
+struct PlaneFormat {
+  Plane plane;
+  GLenum internal_format;
+  GLenum format;
+  std::size_t components;           // read back for each texel
+  std::size_t geometry_components;  // written by the geometry shader for each point
+};
+
+constexpr std::array<PlaneFormat, 8> kPlanes = {{
+    {Plane::kActuator, GL_R32F, GL_RED, 1, 1},
+    {Plane::kTime, GL_R32F, GL_RED, 1, 1},
+    {Plane::kTriangle, GL_R32UI, GL_RED_INTEGER, 1, 1},
+    {Plane::kBarycentric, GL_RG32F, GL_RG, 2, 2},
+    {Plane::kTextureCoordinate, GL_RG32F, GL_RG, 2, 2},
+    {Plane::kPosition, GL_RGBA32F, GL_RGBA, 4, 3},
+    {Plane::kSpeed, GL_R32F, GL_RED, 1, 1},
+    {Plane::kSide, GL_R32F, GL_RED, 1, 1},
+}};
+static_assert(static_cast<unsigned>(Plane::kSide) == 1U << VESTIGE_PLANE_SIDE);
+
+/// std430 layout of the shader's GpuSegment.
+struct GpuSegment {
+  glm::vec3 start;
+  std::uint32_t column;
+  glm::vec3 end;
+  std::uint32_t unused;
+};
+static_assert(sizeof(GpuSegment) == 32);
+
+struct GpuVertex {
+  glm::vec3 position_bind;
+  glm::vec2 texture_coordinate;
+  Influences influences;
+};
+
+unsigned plane_bits(PlaneSet planes) {
+  unsigned bits = 0;
+  for (const PlaneFormat& plane : kPlanes)
+    if (planes.has(plane.plane)) bits |= static_cast<unsigned>(plane.plane);
+  return bits;
+}
+
+GLint limit(const GlFunctions& gl, GLenum name) {
+  GLint value = 0;
+  gl.GetIntegerv(name, &value);
+  return value;
+}
+
+/// The collision texture: one texel for each collider, in as many rows as the driver's texture limit asks for.
+class CollisionTexture {
+ public:
+  CollisionTexture(const GlFunctions& gl, PlaneSet planes) : gl_(gl), planes_(planes) {}
+  ~CollisionTexture() { release(); }
+  CollisionTexture(const CollisionTexture&) = delete;
+  CollisionTexture& operator=(const CollisionTexture&) = delete;
+
+  GLsizei width() const { return width_; }
+  GLsizei height() const { return height_; }
+
+  /// Makes room for `texels`, binds the framebuffer and clears it to +inf, 0xFFFFFFFF and depth 1.
+  void begin(std::size_t texels) {
+    if (texels > texels_ || framebuffer_ == 0) create(texels);
+    gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+    gl_.Viewport(0, 0, width_, height_);
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr std::array<GLfloat, 4> kNone = {kInfinity, kInfinity, kInfinity, kInfinity};
+    constexpr std::array<GLuint, 4> kNoIndex = {kNoTriangle, 0, 0, 0};
+    constexpr GLfloat kFar = 1;
+    for (GLint i = 0; i < static_cast<GLint>(kPlanes.size()); ++i) {
+      const PlaneFormat& plane = kPlanes[static_cast<std::size_t>(i)];
+      if (!planes_.has(plane.plane)) continue;
+      if (plane.plane == Plane::kTriangle) {
+        gl_.ClearNamedFramebufferuiv(framebuffer_, GL_COLOR, i, kNoIndex.data());
+      } else {
+        gl_.ClearNamedFramebufferfv(framebuffer_, GL_COLOR, i, kNone.data());
+      }
+    }
+    gl_.ClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &kFar);
+  }
+
+  /// Reads one plane back into `out`: width * height * components values of 32 bits.
+  void read(std::size_t plane_index, std::vector<std::uint32_t>& out) const {
+    const PlaneFormat& plane = kPlanes[plane_index];
+    out.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * plane.components);
+    gl_.NamedFramebufferReadBuffer(framebuffer_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(plane_index));
+    gl_.ReadPixels(0, 0, width_, height_, plane.format, plane.plane == Plane::kTriangle ? GL_UNSIGNED_INT : GL_FLOAT,
+                   out.data());
+  }
+
+ private:
+  void create(std::size_t texels) {
+    release();
+    const auto side = static_cast<std::size_t>(limit(gl_, GL_MAX_TEXTURE_SIZE));
+    const std::size_t wanted = std::max<std::size_t>(texels, 1);
+    const std::size_t columns = std::min(wanted, side);
+    const std::size_t rows = (wanted + columns - 1) / columns;
+    if (rows > side)
+      throw Error("OpenGL", fmt::format("{} colliders do not fit into a texture", texels), "use fewer colliders");
+    width_ = static_cast<GLsizei>(columns);
+    height_ = static_cast<GLsizei>(rows);
+    texels_ = columns * rows;
+    gl_.CreateFramebuffers(1, &framebuffer_);
+    std::array<GLenum, kPlanes.size()> draw_buffers = {};
+    for (std::size_t i = 0; i < kPlanes.size(); ++i) {
+      draw_buffers[i] = GL_NONE;
+      if (!planes_.has(kPlanes[i].plane)) continue;
+      const GLenum attachment = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i);
+      gl_.CreateTextures(GL_TEXTURE_2D, 1, &textures_[i]);
+      gl_.TextureStorage2D(textures_[i], 1, kPlanes[i].internal_format, width_, height_);
+      gl_.NamedFramebufferTexture(framebuffer_, attachment, textures_[i], 0);
+      draw_buffers[i] = attachment;
+    }
+    gl_.CreateRenderbuffers(1, &depth_);
+    gl_.NamedRenderbufferStorage(depth_, GL_DEPTH_COMPONENT32F, width_, height_);
+    gl_.NamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
+    gl_.NamedFramebufferDrawBuffers(framebuffer_, static_cast<GLsizei>(draw_buffers.size()), draw_buffers.data());
+    const GLenum status = gl_.CheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+      throw Error("OpenGL", fmt::format("the driver refuses a collision texture (status {:#06x})", status),
+                  "ask for fewer planes, or use another --context");
+  }
+
+  void release() {
+    if (framebuffer_ == 0) return;
+    gl_.DeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
+    gl_.DeleteRenderbuffers(1, &depth_);
+    gl_.DeleteFramebuffers(1, &framebuffer_);
+    textures_ = {};
+    framebuffer_ = 0;
+    texels_ = 0;
+  }
+
+  const GlFunctions& gl_;
+  PlaneSet planes_;
+  GLuint framebuffer_ = 0;
+  GLuint depth_ = 0;
+  std::array<GLuint, kPlanes.size()> textures_ = {};
+  GLsizei width_ = 0;
+  GLsizei height_ = 0;
+  std::size_t texels_ = 0;
+};
+
+class PaperDetector final : public Detector {
+ public:
+  PaperDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
+                const DetectorOptions& options)
+      : context_(std::move(context)),
+        gl_(current(*context_)),
+        avatar_(avatar),
+        options_(options),
+        palette_(gl_),
+        segments_(gl_),
+        vertices_(gl_),
+        indices_(gl_),
+        captured_(gl_),
+        texture_(gl_, options.planes) {
+    std::size_t components = 4;  // gl_Position
+    for (const PlaneFormat& plane : kPlanes)
+      if (options_.planes.has(plane.plane)) components += plane.geometry_components;
+    const auto total = static_cast<std::size_t>(limit(gl_, GL_MAX_GEOMETRY_TOTAL_OUTPUT_COMPONENTS));
+    const auto most = static_cast<std::size_t>(limit(gl_, GL_MAX_GEOMETRY_OUTPUT_VERTICES));
+    largest_block_ = std::bit_floor(std::min(total / components, most));
+
+    upload_mesh();
+    upload_map(map);
+    gl_.Enable(GL_DEPTH_TEST);
+    gl_.DepthFunc(GL_LESS);
+    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
+    check_gl(gl_, "uploading the avatar");
+  }
+
+  ~PaperDetector() override {
+    context_->make_current();
+    gl_.DeleteVertexArrays(1, &vertex_array_);
+    gl_.DeleteTextures(1, &map_texture_);
+  }
+
+  const char* name() const override { return "paper"; }
+  GlInfo gl_info() const override { return context_->info(); }
+
+  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+    context_->make_current();
+    row.assign(frame.columns, Contact());
+    upload_frame(frame);
+    texture_.begin(frame.columns);
+
+    const std::size_t block = block_for(frame.segments.size());
+    const GLuint program = program_for(block).name();
+    gl_.UseProgram(program);
+    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_SEGMENT_COUNT, static_cast<GLint>(frame.segments.size()));
+    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_TEXTURE_COLUMNS, texture_.width());
+    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_TEXTURE_ROWS, texture_.height());
+    gl_.ProgramUniform1f(program, VESTIGE_UNIFORM_FRAMES_PER_S,
+                         frame.duration_s > 0 ? static_cast<float>(1 / frame.duration_s) : 0.0F);
+    const auto blocks = static_cast<GLsizei>((frame.segments.size() + block - 1) / block);
+    gl_.BindVertexArray(vertex_array_);
+    gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(avatar_.triangles.size() * 3), GL_UNSIGNED_INT,
+                              nullptr, blocks);
+    read_back(row);
+    check_gl(gl_, "detecting contacts");
+    return {frame.segments.size() * avatar_.triangles.size(), avatar_.triangles.size()};
+  }
+
+  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+    context_->make_current();
+    upload_frame(frame);
+    if (!skinning_program_) {
+      skinning_program_.emplace(
+          gl_, head(1), std::initializer_list<GlProgram::Stage>{{GL_VERTEX_SHADER, "paper.vert", shaders::kPaperVert}},
+          "Skinned.position");
+    }
+    texture_.begin(1);  // a draw without any framebuffer fails in a surfaceless context
+    out.resize(avatar_.position_bind.size());
+    const std::size_t bytes = out.size() * sizeof(glm::vec3);
+    captured_.upload(nullptr, bytes, GL_STREAM_READ);
+    gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, captured_.name());
+    gl_.UseProgram(skinning_program_->name());
+    gl_.BindVertexArray(vertex_array_);
+    gl_.Enable(GL_RASTERIZER_DISCARD);
+    gl_.BeginTransformFeedback(GL_POINTS);
+    gl_.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(out.size()));
+    gl_.EndTransformFeedback();
+    gl_.Disable(GL_RASTERIZER_DISCARD);
+    gl_.GetNamedBufferSubData(captured_.name(), 0, static_cast<GLsizeiptr>(bytes), out.data());
+    check_gl(gl_, "capturing skinned vertices");
+  }
+
+ private:
+  static const GlFunctions& current(GlContext& context) {
+    context.make_current();
+    return context.gl();
+  }
+
+  void upload_mesh() {
+    std::vector<GpuVertex> vertices(avatar_.position_bind.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      vertices[i] = {avatar_.position_bind[i], avatar_.texture_coordinate[i], avatar_.influences[i]};
+    vertices_.upload(vertices.data(), vertices.size() * sizeof(GpuVertex), GL_STATIC_DRAW);
+    indices_.upload(avatar_.triangles.data(), avatar_.triangles.size() * sizeof(glm::uvec3), GL_STATIC_DRAW);
+
+    gl_.CreateVertexArrays(1, &vertex_array_);
+    gl_.VertexArrayVertexBuffer(vertex_array_, 0, vertices_.name(), 0, sizeof(GpuVertex));
+    gl_.VertexArrayElementBuffer(vertex_array_, indices_.name());
+    const auto influences = static_cast<GLuint>(offsetof(GpuVertex, influences));
+    const auto palette = influences + static_cast<GLuint>(offsetof(Influences, palette));
+    const auto weight = influences + static_cast<GLuint>(offsetof(Influences, weight));
+    add_attribute(VESTIGE_ATTRIBUTE_POSITION, 3, GL_FLOAT, offsetof(GpuVertex, position_bind));
+    add_attribute(VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE, 2, GL_FLOAT, offsetof(GpuVertex, texture_coordinate));
+    add_attribute(VESTIGE_ATTRIBUTE_PALETTE_0, 4, GL_UNSIGNED_SHORT, palette);
+    add_attribute(VESTIGE_ATTRIBUTE_WEIGHT_0, 4, GL_FLOAT, weight);
+    if (avatar_.influence_count <= 4) return;
+    add_attribute(VESTIGE_ATTRIBUTE_PALETTE_1, 4, GL_UNSIGNED_SHORT, palette + 4 * sizeof(std::uint16_t));
+    add_attribute(VESTIGE_ATTRIBUTE_WEIGHT_1, 4, GL_FLOAT, weight + 4 * sizeof(float));
+  }
+
+  void add_attribute(GLuint location, GLint components, GLenum type, std::size_t offset) {
+    gl_.EnableVertexArrayAttrib(vertex_array_, location);
+    gl_.VertexArrayAttribBinding(vertex_array_, location, 0);
+    if (type == GL_FLOAT) {
+      gl_.VertexArrayAttribFormat(vertex_array_, location, components, type, GL_FALSE, static_cast<GLuint>(offset));
+    } else {
+      gl_.VertexArrayAttribIFormat(vertex_array_, location, components, type, static_cast<GLuint>(offset));
+    }
+  }
+
+  void upload_map(const ActuatorMap& map) {
+    const auto side = static_cast<std::uint32_t>(limit(gl_, GL_MAX_TEXTURE_SIZE));
+    if (map.width > side || map.height > side)
+      throw Error("--map", fmt::format("{} x {} texels are more than this driver's {}", map.width, map.height, side),
+                  "scale the map down, without smoothing");
+    gl_.CreateTextures(GL_TEXTURE_2D, 1, &map_texture_);
+    gl_.TextureStorage2D(map_texture_, 1, GL_R16UI, static_cast<GLsizei>(map.width), static_cast<GLsizei>(map.height));
+    gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    gl_.TextureSubImage2D(map_texture_, 0, 0, 0, static_cast<GLsizei>(map.width), static_cast<GLsizei>(map.height),
+                          GL_RED_INTEGER, GL_UNSIGNED_SHORT, map.actuator.data());
+    gl_.TextureParameteri(map_texture_, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+    gl_.TextureParameteri(map_texture_, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+    gl_.TextureParameteri(map_texture_, GL_TEXTURE_WRAP_S, GL_REPEAT);
+    gl_.TextureParameteri(map_texture_, GL_TEXTURE_WRAP_T, GL_REPEAT);
+  }
+
+  /// Palette and segments of this frame, and every binding that another detector of the context may have changed.
+  void upload_frame(const Frame& frame) {
+    palette_.upload(frame.palette.data(), frame.palette.size() * sizeof(SkinMatrix), GL_STREAM_DRAW);
+    gpu_segments_.clear();
+    for (const Segment& segment : frame.segments)
+      gpu_segments_.push_back({segment.start, segment.column, segment.end, 0});
+    segments_.upload(gpu_segments_.data(), gpu_segments_.size() * sizeof(GpuSegment), GL_STREAM_DRAW);
+    gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_PALETTE, palette_.name());
+    gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_SEGMENTS, segments_.name());
+    gl_.BindTextureUnit(VESTIGE_TEXTURE_ACTUATOR_MAP, map_texture_);
+  }
+
+  /// Segments that one invocation of the geometry shader tests. It may emit a point for each, so a block is never
+  /// larger than the points that an invocation may emit: no contact can be dropped. Powers of two keep the programs
+  /// few.
+  std::size_t block_for(std::size_t segments) const {
+    return std::min(std::bit_ceil(std::max<std::size_t>(segments, 1)), largest_block_);
+  }
+
+  const GlProgram& program_for(std::size_t block) {
+    auto& program = programs_[static_cast<std::size_t>(std::countr_zero(block))];
+    if (!program) {
+      program.emplace(gl_, head(block),
+                      std::initializer_list<GlProgram::Stage>{{GL_VERTEX_SHADER, "paper.vert", shaders::kPaperVert},
+                                                              {GL_GEOMETRY_SHADER, "paper.geom", shaders::kPaperGeom},
+                                                              {GL_FRAGMENT_SHADER, "paper.frag", shaders::kPaperFrag}});
+    }
+    return *program;
+  }
+
+  std::string head(std::size_t block) const {
+    return fmt::format(
+        "#version 450 core\n{}#define PLANES {}\n#define BLOCK_SEGMENTS {}\n#define INFLUENCES {}\n"
+        "#define MAPPED_ONLY {}\n",
+        shaders::kConstantsH, plane_bits(options_.planes), block, avatar_.influence_count,
+        options_.surface == Surface::kMapped ? 1 : 0);
+  }
+
+  void read_back(ContactRow& row) {
+    for (std::size_t i = 0; i < kPlanes.size(); ++i) {
+      if (!options_.planes.has(kPlanes[i].plane)) continue;
+      texture_.read(i, texels_);
+      for (std::size_t column = 0; column < row.size(); ++column) {
+        // The actuator plane comes first and says which texels hold a contact.
+        if (i != VESTIGE_PLANE_ACTUATOR && !row[column].hit()) continue;
+        store(kPlanes[i].plane, &texels_[column * kPlanes[i].components], row[column]);
+      }
+    }
+  }
+
+  static void store(Plane plane, const std::uint32_t* texel, Contact& contact) {
+    const auto value = [&](std::size_t component) { return std::bit_cast<float>(texel[component]); };
+    switch (plane) {
+      case Plane::kActuator:
+        if (!std::isfinite(value(0))) return;
+        contact.triangle = kUnreadTriangle;
+        contact.actuator = static_cast<std::uint16_t>(value(0));
+        return;
+      case Plane::kTime:
+        contact.t = value(0);
+        return;
+      case Plane::kTriangle:
+        contact.triangle = texel[0];
+        return;
+      case Plane::kBarycentric:
+        contact.barycentric = {value(0), value(1)};
+        return;
+      case Plane::kTextureCoordinate:
+        contact.texture_coordinate = {value(0), value(1)};
+        return;
+      case Plane::kPosition:
+        contact.position = {value(0), value(1), value(2)};
+        return;
+      case Plane::kSpeed:
+        contact.speed_m_per_s = value(0);
+        return;
+      case Plane::kSide:
+        contact.side = static_cast<std::int8_t>(value(0));
+        return;
+    }
+  }
+
+  /// A contact whose triangle plane was not asked for still counts as one.
+  static constexpr std::uint32_t kUnreadTriangle = 0;
+
+  std::unique_ptr<GlContext> context_;
+  const GlFunctions& gl_;
+  const Avatar& avatar_;
+  DetectorOptions options_;
+  std::size_t largest_block_ = 1;
+  GlBuffer palette_;
+  GlBuffer segments_;
+  GlBuffer vertices_;
+  GlBuffer indices_;
+  GlBuffer captured_;
+  GLuint vertex_array_ = 0;
+  GLuint map_texture_ = 0;
+  CollisionTexture texture_;
+  std::array<std::optional<GlProgram>, 16> programs_;  // by log2 of the block
+  std::optional<GlProgram> skinning_program_;
+  std::vector<GpuSegment> gpu_segments_;
+  std::vector<std::uint32_t> texels_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+                                              const ActuatorMap& map, const DetectorOptions& options) {
+  return std::make_unique<PaperDetector>(std::move(context), avatar, map, options);
+}
+
+}  // namespace vestige

@@ -1,0 +1,117 @@
+#include "detector/segment_triangle.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace vestige {
+
+namespace {
+
+bool is_zero(const glm::dvec3& v) {
+  return v.x == 0 && v.y == 0 && v.z == 0;
+}
+
+/// The first t at which p + t d meets the closed edge a + s e, when the two are coplanar lines.
+std::optional<double> first_on_edge(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec3& a,
+                                    const glm::dvec3& e) {
+  const glm::dvec3 to_edge = a - p;
+  if (glm::dot(glm::cross(to_edge, e), d) != 0) return std::nullopt;
+  const glm::dvec3 normal = glm::cross(d, e);
+  if (!is_zero(normal)) {
+    const double scale = glm::dot(normal, normal);
+    const double t = glm::dot(glm::cross(to_edge, e), normal) / scale;
+    const double s = glm::dot(glm::cross(to_edge, d), normal) / scale;
+    if (t < 0 || t > 1 || s < 0 || s > 1) return std::nullopt;
+    return t;
+  }
+  if (is_zero(d)) {  // a resting collider: is it on the edge?
+    const double along = -glm::dot(to_edge, e);
+    const bool on_edge = is_zero(glm::cross(to_edge, e)) && along >= 0 && along <= glm::dot(e, e);
+    const bool on_point = !is_zero(e) || is_zero(to_edge);
+    return on_edge && on_point ? std::optional(0.0) : std::nullopt;
+  }
+  if (!is_zero(glm::cross(to_edge, d))) return std::nullopt;  // parallel, apart
+  const double length = glm::dot(d, d);
+  const double first = glm::dot(to_edge, d) / length;
+  const double second = glm::dot(to_edge + e, d) / length;
+  if (std::max(first, second) < 0 || std::min(first, second) > 1) return std::nullopt;
+  return std::max(std::min(first, second), 0.0);
+}
+
+/// Is x, a point of the triangle's plane, inside the closed triangle? `normal` is not zero.
+bool contains(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
+              const glm::dvec3& normal) {
+  const double ab = glm::dot(glm::cross(b - a, x - a), normal);
+  const double bc = glm::dot(glm::cross(c - b, x - b), normal);
+  const double ca = glm::dot(glm::cross(a - c, x - c), normal);
+  return ab >= 0 && bc >= 0 && ca >= 0;
+}
+
+/// Segment and triangle in one plane, or a triangle without area.
+std::optional<SegmentHit> coplanar_hit(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec3& a,
+                                       const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& normal) {
+  if (!is_zero(normal) && contains(p, a, b, c, normal)) return SegmentHit{0, 0};
+  std::optional<double> first;
+  for (const auto& t : {first_on_edge(p, d, a, b - a), first_on_edge(p, d, b, c - b), first_on_edge(p, d, c, a - c)})
+    if (t && (!first || *t < *first)) first = t;
+  if (!first) return std::nullopt;
+  return SegmentHit{*first, 0};
+}
+
+}  // namespace
+
+std::optional<SegmentHit> segment_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a,
+                                           const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 normal = glm::cross(b - a, c - a);
+  const double above_p = glm::dot(normal, p - a);
+  const double above_q = glm::dot(normal, q - a);
+  if ((above_p > 0 && above_q > 0) || (above_p < 0 && above_q < 0)) return std::nullopt;
+  const glm::dvec3 d = q - p;
+  if (above_p == 0 && above_q == 0) return coplanar_hit(p, d, a, b, c, normal);
+
+  // Signed volumes of d with each edge. cross(x, y) is exactly -cross(y, x), so the triangle on the other side of an
+  // edge sees exactly the opposite value.
+  const glm::dvec3 to_a = a - p;
+  const glm::dvec3 to_b = b - p;
+  const glm::dvec3 to_c = c - p;
+  const double ab = glm::dot(d, glm::cross(to_a, to_b));
+  const double bc = glm::dot(d, glm::cross(to_b, to_c));
+  const double ca = glm::dot(d, glm::cross(to_c, to_a));
+  const bool all_left = ab >= 0 && bc >= 0 && ca >= 0;
+  const bool all_right = ab <= 0 && bc <= 0 && ca <= 0;
+  if (!all_left && !all_right) return std::nullopt;
+  return SegmentHit{above_p / (above_p - above_q), above_p - above_q > 0 ? 1 : -1};
+}
+
+glm::dvec2 barycentric_of(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+  const glm::dvec3 ab = b - a;
+  const glm::dvec3 ac = c - a;
+  const glm::dvec3 ax = x - a;
+  const glm::dvec3 normal = glm::cross(ab, ac);
+  const double area = glm::dot(normal, normal);
+  if (area > 0) {
+    double u = std::clamp(glm::dot(glm::cross(ax, ac), normal) / area, 0.0, 1.0);
+    double v = std::clamp(glm::dot(glm::cross(ab, ax), normal) / area, 0.0, 1.0);
+    const double sum = u + v;
+    if (sum > 1) {
+      u /= sum;
+      v = 1 - u;
+    }
+    return {u, v};
+  }
+  const auto along = [](const glm::dvec3& from, const glm::dvec3& edge) {
+    const double length = glm::dot(edge, edge);
+    return length > 0 ? std::clamp(glm::dot(from, edge) / length, 0.0, 1.0) : 0.0;
+  };
+  const glm::dvec3 bc = c - b;
+  const double ab_length = glm::dot(ab, ab);
+  const double ac_length = glm::dot(ac, ac);
+  const double bc_length = glm::dot(bc, bc);
+  if (ab_length >= ac_length && ab_length >= bc_length) return {along(ax, ab), 0};
+  if (ac_length >= bc_length) return {0, along(ax, ac)};
+  const double s = along(x - b, bc);
+  return {1 - s, s};
+}
+
+}  // namespace vestige

@@ -1,0 +1,35 @@
+#include "detector/skinning.hpp"
+
+namespace vestige {
+
+void build_palette(const Avatar& avatar, std::span<const glm::dmat4> world, const glm::dvec3& offset_m,
+                   std::vector<SkinMatrix>& out) {
+  out.resize(avatar.palette.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const PaletteEntry& entry = avatar.palette[i];
+    const glm::dmat4 matrix = world[static_cast<std::size_t>(entry.node)] * entry.inverse_bind;
+    for (int column = 0; column < 4; ++column) {
+      glm::dvec3 value(matrix[column]);
+      if (column == 3) value += offset_m;
+      out[i].column[static_cast<std::size_t>(column)] = glm::vec4(glm::vec3(value), 0.0F);
+    }
+  }
+}
+
+void skin_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::vector<glm::vec3>& out) {
+  out.resize(avatar.position_bind.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Influences& influences = avatar.influences[i];
+    std::array<glm::vec4, 4> blend = {glm::vec4(0), glm::vec4(0), glm::vec4(0), glm::vec4(0)};
+    for (std::size_t k = 0; k < avatar.influence_count; ++k) {
+      const SkinMatrix& matrix = palette[influences.palette[k]];
+      const float weight = influences.weight[k];
+      for (std::size_t column = 0; column < 4; ++column) blend[column] += weight * matrix.column[column];
+    }
+    const glm::vec3 bind = avatar.position_bind[i];
+    const glm::vec4 world = ((blend[0] * bind.x + blend[1] * bind.y) + blend[2] * bind.z) + blend[3];
+    out[i] = glm::vec3(world);
+  }
+}
+
+}  // namespace vestige

@@ -1,0 +1,121 @@
+#include "detector/texture_exr.hpp"
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <utility>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+struct ChannelFormat {
+  const char* name;
+  Plane plane;
+  Imf::PixelType type;
+  std::uint32_t (*bits)(const Contact&);
+};
+
+std::uint32_t float_bits(double value) {
+  return std::bit_cast<std::uint32_t>(static_cast<float>(value));
+}
+
+constexpr std::array<ChannelFormat, 12> kChannels = {{
+    {"actuator", Plane::kActuator, Imf::FLOAT, [](const Contact& c) { return float_bits(c.actuator); }},
+    {"t", Plane::kTime, Imf::FLOAT, [](const Contact& c) { return std::bit_cast<std::uint32_t>(c.t); }},
+    {"triangle", Plane::kTriangle, Imf::UINT, [](const Contact& c) { return c.triangle; }},
+    {"u", Plane::kBarycentric, Imf::FLOAT, [](const Contact& c) { return float_bits(c.barycentric.x); }},
+    {"v", Plane::kBarycentric, Imf::FLOAT, [](const Contact& c) { return float_bits(c.barycentric.y); }},
+    {"texture_u", Plane::kTextureCoordinate, Imf::FLOAT,
+     [](const Contact& c) { return float_bits(c.texture_coordinate.x); }},
+    {"texture_v", Plane::kTextureCoordinate, Imf::FLOAT,
+     [](const Contact& c) { return float_bits(c.texture_coordinate.y); }},
+    {"x", Plane::kPosition, Imf::FLOAT, [](const Contact& c) { return float_bits(c.position.x); }},
+    {"y", Plane::kPosition, Imf::FLOAT, [](const Contact& c) { return float_bits(c.position.y); }},
+    {"z", Plane::kPosition, Imf::FLOAT, [](const Contact& c) { return float_bits(c.position.z); }},
+    {"speed", Plane::kSpeed, Imf::FLOAT, [](const Contact& c) { return float_bits(c.speed_m_per_s); }},
+    {"side", Plane::kSide, Imf::FLOAT, [](const Contact& c) { return float_bits(c.side); }},
+}};
+
+/// OpenEXR writes into memory, and `OutputFile` onto the disk, so that a full disk is reported in one way everywhere.
+class MemoryStream final : public Imf::OStream {
+ public:
+  MemoryStream() : Imf::OStream("memory") {}
+  void write(const char bytes[], int count) override {
+    const auto size = static_cast<std::size_t>(count);
+    if (place_ + size > content_.size()) content_.resize(place_ + size);
+    std::memcpy(content_.data() + place_, bytes, size);
+    place_ += size;
+  }
+  std::uint64_t tellp() override { return place_; }
+  void seekp(std::uint64_t place) override { place_ = place; }
+  const std::string& content() const { return content_; }
+
+ private:
+  std::string content_;
+  std::size_t place_ = 0;
+};
+
+}  // namespace
+
+TextureExr::TextureExr(PlaneSet planes, std::size_t columns, std::map<std::string, std::string> attributes)
+    : planes_(planes), columns_(columns), attributes_(std::move(attributes)) {}
+
+void TextureExr::add(const Frame& frame, const ContactRow& row) {
+  for (std::uint32_t column = 0; column < row.size(); ++column) {
+    if (!row[column].hit()) continue;
+    Contact contact = row[column];
+    contact.position += frame.origin_m;
+    texels_.push_back({rows_, column, contact});
+  }
+  ++rows_;
+}
+
+void TextureExr::write(OutputFile& file) const {
+  if (rows_ == 0 || columns_ == 0)
+    throw Error(file.path().string(), "there is no frame or no collider, so there is no texture to write",
+                "replay a trace that has both");
+  Imf::Header header(static_cast<int>(columns_), static_cast<int>(rows_));
+  header.compression() = Imf::ZIPS_COMPRESSION;
+  for (const auto& [name, value] : attributes_) header.insert(name, Imf::StringAttribute(value));
+  std::vector<const ChannelFormat*> channels;
+  for (const ChannelFormat& channel : kChannels) {
+    if (!planes_.has(channel.plane)) continue;
+    channels.push_back(&channel);
+    header.channels().insert(channel.name, Imf::Channel(channel.type));
+  }
+  MemoryStream stream;
+  {
+    Imf::OutputFile image(stream, header);
+    std::vector<std::uint32_t> line(channels.size() * columns_);
+    Imf::FrameBuffer frame_buffer;
+    for (std::size_t i = 0; i < channels.size(); ++i)
+      // A y stride of 0: every row is written from the same line.
+      frame_buffer.insert(channels[i]->name, Imf::Slice(channels[i]->type, reinterpret_cast<char*>(&line[i * columns_]),
+                                                        sizeof(std::uint32_t), 0));
+    image.setFrameBuffer(frame_buffer);
+    auto texel = texels_.begin();
+    for (std::uint32_t row = 0; row < rows_; ++row) {
+      for (std::size_t i = 0; i < channels.size(); ++i)
+        std::fill_n(&line[i * columns_], columns_,
+                    channels[i]->type == Imf::UINT ? kNoTriangle : float_bits(std::numeric_limits<double>::infinity()));
+      for (; texel != texels_.end() && texel->row == row; ++texel)
+        for (std::size_t i = 0; i < channels.size(); ++i)
+          line[i * columns_ + texel->column] = channels[i]->bits(texel->contact);
+      image.writePixels(1);
+    }
+  }
+  file.write(stream.content());
+}
+
+}  // namespace vestige

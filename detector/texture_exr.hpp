@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "detector/contact.hpp"
+#include "detector/frame.hpp"
+#include "traces/output_file.hpp"
+
+namespace vestige {
+
+/// The collision textures of a run as one OpenEXR image: a row for each frame, a column for each collider, one channel
+/// for each plane asked for, uncompressed order top-down, ZIPS. Without contact, float channels hold +inf and uint
+/// channels 0xFFFFFFFF.
+///
+/// Channels: actuator, t, triangle (uint), u, v, texture_u, texture_v, x, y, z (world metres, rounded to float), speed
+/// (m/s), side.
+class TextureExr {
+ public:
+  /// `attributes` go into the file's header as strings.
+  TextureExr(PlaneSet planes, std::size_t columns, std::map<std::string, std::string> attributes);
+
+  /// Adds a row. Only contacts are kept, so memory grows with them, not with frames times colliders.
+  void add(const Frame& frame, const ContactRow& row);
+
+  /// Writes the whole image. A run without any frame or collider has no image: throws `Error`.
+  void write(OutputFile& file) const;
+
+ private:
+  struct Texel {
+    std::uint32_t row;
+    std::uint32_t column;
+    Contact contact;  // position in world metres
+  };
+
+  PlaneSet planes_;
+  std::size_t columns_;
+  std::map<std::string, std::string> attributes_;
+  std::uint32_t rows_ = 0;
+  std::vector<Texel> texels_;
+};
+
+}  // namespace vestige

@@ -1,0 +1,28 @@
+#include "detector/texture_hash.hpp"
+
+#include <bit>
+#include <span>
+
+namespace vestige {
+
+namespace {
+
+template <typename Unsigned>
+void append_little_endian(std::string& out, Unsigned value) {
+  for (std::size_t byte = 0; byte < sizeof(Unsigned); ++byte)
+    out.push_back(static_cast<char>((value >> (8 * byte)) & 0xFFU));
+}
+
+}  // namespace
+
+void TextureHash::add(const ContactRow& row) {
+  bytes_.clear();
+  for (const Contact& contact : row) {
+    append_little_endian(bytes_, contact.triangle);
+    append_little_endian(bytes_, std::bit_cast<std::uint32_t>(contact.t));
+    append_little_endian(bytes_, contact.actuator);
+  }
+  sha_.update(std::as_bytes(std::span(bytes_)));
+}
+
+}  // namespace vestige

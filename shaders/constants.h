@@ -1,0 +1,29 @@
+// Shared by C++ and GLSL: where the buffers, attributes and planes of the shaders are bound.
+
+#define VESTIGE_BINDING_PALETTE 0   // mat4 columns, one SkinMatrix for each palette entry
+#define VESTIGE_BINDING_SEGMENTS 1  // one GpuSegment for each collider that has a segment
+
+#define VESTIGE_ATTRIBUTE_POSITION 0            // vec3, bind pose
+#define VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE 1  // vec2
+#define VESTIGE_ATTRIBUTE_PALETTE_0 2           // uvec4, influences 0 to 3
+#define VESTIGE_ATTRIBUTE_PALETTE_1 3           // uvec4, influences 4 to 7
+#define VESTIGE_ATTRIBUTE_WEIGHT_0 4            // vec4
+#define VESTIGE_ATTRIBUTE_WEIGHT_1 5            // vec4
+
+#define VESTIGE_TEXTURE_ACTUATOR_MAP 0
+
+#define VESTIGE_UNIFORM_SEGMENT_COUNT 0    // int
+#define VESTIGE_UNIFORM_TEXTURE_COLUMNS 1  // int, of the collision texture
+#define VESTIGE_UNIFORM_TEXTURE_ROWS 2     // int
+#define VESTIGE_UNIFORM_FRAMES_PER_S 3     // float, 1 / the frame's duration; 0 in the first frame
+
+// The planes of the collision texture. Only those asked for are compiled in, attached and read back. Each is its own
+// colour attachment, in this order.
+#define VESTIGE_PLANE_ACTUATOR 0            // R32F, the paper's: actuator number, +inf without contact
+#define VESTIGE_PLANE_TIME 1                // R32F
+#define VESTIGE_PLANE_TRIANGLE 2            // R32UI
+#define VESTIGE_PLANE_BARYCENTRIC 3         // RG32F
+#define VESTIGE_PLANE_TEXTURE_COORDINATE 4  // RG32F
+#define VESTIGE_PLANE_POSITION 5            // RGBA32F, the last unused
+#define VESTIGE_PLANE_SPEED 6               // R32F
+#define VESTIGE_PLANE_SIDE 7                // R32F

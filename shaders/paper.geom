@@ -1,0 +1,114 @@
+// One triangle against a block of segments; one point for each contact, to the collider's pixel of the collision
+// texture: HAVE 2010 §III.A. The test is Möller & Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection", in
+// fp32. Depth is t / 2, so the depth test keeps the earliest contact (the paper leaves open which is kept).
+
+layout(triangles) in;
+layout(points, max_vertices = BLOCK_SEGMENTS) out;
+
+in Skinned {
+  vec3 position;
+  vec2 texture_coordinate;
+  flat int block;
+} skinned[];
+
+struct GpuSegment {
+  vec3 start;
+  uint column;
+  vec3 end;
+  uint unused;
+};
+layout(std430, binding = VESTIGE_BINDING_SEGMENTS) readonly buffer Segments {
+  GpuSegment segments[];
+};
+
+layout(binding = VESTIGE_TEXTURE_ACTUATOR_MAP) uniform usampler2D actuator_map;
+
+layout(location = VESTIGE_UNIFORM_SEGMENT_COUNT) uniform int segment_count;
+layout(location = VESTIGE_UNIFORM_TEXTURE_COLUMNS) uniform int texture_columns;
+layout(location = VESTIGE_UNIFORM_TEXTURE_ROWS) uniform int texture_rows;
+layout(location = VESTIGE_UNIFORM_FRAMES_PER_S) uniform float frames_per_s;
+
+flat out float contact_actuator;
+#if PLANES & (1 << VESTIGE_PLANE_TIME)
+flat out float contact_time;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_TRIANGLE)
+flat out uint contact_triangle;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_BARYCENTRIC)
+flat out vec2 contact_barycentric;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_TEXTURE_COORDINATE)
+flat out vec2 contact_texture_coordinate;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_POSITION)
+flat out vec3 contact_position;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_SPEED)
+flat out float contact_speed;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_SIDE)
+flat out float contact_side;
+#endif
+
+void main() {
+  vec3 a = skinned[0].position;
+  vec3 edge_1 = skinned[1].position - a;
+  vec3 edge_2 = skinned[2].position - a;
+  int first = skinned[0].block * BLOCK_SEGMENTS;
+  int last = min(first + BLOCK_SEGMENTS, segment_count);
+  for (int i = first; i < last; ++i) {
+    vec3 start = segments[i].start;
+    vec3 direction = segments[i].end - start;
+    vec3 p = cross(direction, edge_2);
+    float determinant = dot(edge_1, p);
+    if (determinant == 0.0) continue;  // parallel
+    float inverse = 1.0 / determinant;
+    vec3 from_a = start - a;
+    float u = dot(from_a, p) * inverse;
+    if (!(u >= 0.0 && u <= 1.0)) continue;
+    vec3 q = cross(from_a, edge_1);
+    float v = dot(direction, q) * inverse;
+    if (!(v >= 0.0 && u + v <= 1.0)) continue;
+    float t = dot(edge_2, q) * inverse;
+    if (!(t >= 0.0 && t <= 1.0)) continue;
+    t = abs(t);  // never -0
+
+    vec2 texture_coordinate = skinned[0].texture_coordinate +
+                              u * (skinned[1].texture_coordinate - skinned[0].texture_coordinate) +
+                              v * (skinned[2].texture_coordinate - skinned[0].texture_coordinate);
+    uint actuator = textureLod(actuator_map, texture_coordinate, 0.0).r;
+#if MAPPED_ONLY
+    if (actuator == 0u) continue;
+#endif
+    // The collider's number in normalised device coordinates, at the pixel's centre; rows where one is not enough.
+    int column = int(segments[i].column);
+    vec2 pixel = vec2(column % texture_columns, column / texture_columns);
+    vec2 device = (2.0 * pixel + 1.0) / vec2(texture_columns, texture_rows) - 1.0;
+    gl_Position = vec4(device, 0.5 * t, 1.0);
+    contact_actuator = float(actuator);
+#if PLANES & (1 << VESTIGE_PLANE_TIME)
+    contact_time = t;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_TRIANGLE)
+    contact_triangle = uint(gl_PrimitiveIDIn);
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_BARYCENTRIC)
+    contact_barycentric = vec2(u, v);
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_TEXTURE_COORDINATE)
+    contact_texture_coordinate = texture_coordinate;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_POSITION)
+    contact_position = start + t * direction;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_SPEED)
+    contact_speed = abs(dot(direction, normalize(cross(edge_1, edge_2)))) * frames_per_s;
+#endif
+#if PLANES & (1 << VESTIGE_PLANE_SIDE)
+    contact_side = sign(determinant);
+#endif
+    EmitVertex();
+    EndPrimitive();
+  }
+}

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string_view>
+
+/// The GLSL sources, without their #version line and defines, which whoever compiles them puts first.
+namespace vestige::shaders {
+
+extern const std::string_view kConstantsH;
+extern const std::string_view kPaperVert;
+extern const std::string_view kPaperGeom;
+extern const std::string_view kPaperFrag;
+
+}  // namespace vestige::shaders

@@ -1,0 +1,40 @@
+#include "traces/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace vestige {
+
+CsvLines::CsvLines(std::string_view text, std::string name, std::string_view header, std::string_view remedy)
+    : text_(text), name_(std::move(name)), remedy_(remedy) {
+  if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+  if (!next_line() || row_ != header) {
+    line_ = 1;
+    throw error(fmt::format("the header is not '{}'", header));
+  }
+}
+
+bool CsvLines::next_line() {
+  if (text_.empty()) return false;
+  ++line_;
+  const std::size_t end = std::min(text_.find('\n'), text_.size());
+  row_ = text_.substr(0, end);
+  text_.remove_prefix(std::min(end + 1, text_.size()));
+  if (row_.ends_with('\r')) row_.remove_suffix(1);
+  at_end_ = false;
+  return true;
+}
+
+bool CsvLines::next() {
+  while (next_line())
+    if (!row_.empty()) return true;
+  return false;
+}
+
+Error CsvLines::error(std::string_view cause, std::string_view remedy) const {
+  return Error(fmt::format("{}, line {}", name_, line_), cause, remedy);
+}
+
+}  // namespace vestige

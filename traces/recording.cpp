@@ -1,0 +1,38 @@
+#include "traces/recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+namespace vestige {
+
+namespace {
+
+/// Steps a metre: on this grid a shift by whole metres is exact up to 1e7 m.
+constexpr double kGrid = 1048576;
+
+}  // namespace
+
+std::uint64_t frame_count(const RecordingSettings& settings) {
+  return static_cast<std::uint64_t>(std::max(1.0, std::round(settings.rate_hz * settings.duration_s)));
+}
+
+void record(TraceWriter& writer, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
+            const RecordingSettings& settings, const std::function<bool(double)>& progress) {
+  const std::uint64_t frames = frame_count(settings);
+  const glm::dvec3 origin_m = glm::round(settings.origin_m * kGrid) / kGrid;
+  TraceFrame frame;
+  for (std::uint64_t index = 0; index < frames; ++index) {
+    const double time_s = static_cast<double>(index) / settings.rate_hz;
+    frame.index = index;
+    frame.time_ns = std::llround(time_s * 1e9);
+    frame.pose = looped_pose(avatar, animation, time_s);
+    frame.pose.origin_m = origin_m;
+    colliders.sample(time_s, frame.colliders);
+    for (ColliderSample& sample : frame.colliders) sample.position_m += origin_m;
+    writer.write(frame);
+    if (!progress(static_cast<double>(index + 1) / static_cast<double>(frames))) return;
+  }
+}
+
+}  // namespace vestige

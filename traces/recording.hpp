@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+
+#include "traces/avatar.hpp"
+#include "traces/colliders.hpp"
+#include "traces/trace_writer.hpp"
+
+namespace vestige {
+
+struct RecordingSettings {
+  double rate_hz = 1000;
+  double duration_s = 2;
+  glm::dvec3 origin_m = glm::dvec3(0);  ///< where the whole scene stands; rounded to the grid of 2^-20 m
+};
+
+/// How many frames a recording has: rate times duration, rounded, at least 1.
+std::uint64_t frame_count(const RecordingSettings& settings);
+
+/// Samples pose and colliders at k / rate and writes them. The animation (null: the avatar rests) loops. `progress` is
+/// told the share done and returns false to stop. Does not call `writer.finish`.
+void record(TraceWriter& writer, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
+            const RecordingSettings& settings, const std::function<bool(double)>& progress);
+
+}  // namespace vestige
