@@ -101,9 +101,10 @@ Picture read_png(const std::filesystem::path& path) {
 
 /// One contact of `actuator` in the middle of `frames` x `colliders` texels.
 void write_textures(const std::filesystem::path& path, int colliders, int frames, float actuator) {
-  std::vector<float> texels(static_cast<std::size_t>(colliders) * static_cast<std::size_t>(frames),
-                            std::numeric_limits<float>::infinity());
-  texels[static_cast<std::size_t>(frames / 2 * colliders + colliders / 2)] = actuator;
+  const auto width = static_cast<std::size_t>(colliders);
+  const auto height = static_cast<std::size_t>(frames);
+  std::vector<float> texels(width * height, std::numeric_limits<float>::infinity());
+  texels[height / 2 * width + width / 2] = actuator;
   Imf::Header header(colliders, frames);
   header.channels().insert("actuator", Imf::Channel(Imf::FLOAT));
   Imf::OutputFile file(path.c_str(), header);
