@@ -113,8 +113,10 @@ void RecordWalker::finish(std::uint64_t end) {
   ended_ = true;
   footer_seen_ = true;
   const std::uint64_t rest = source_.size() - end;
-  if (rest < kMagicBytes) damages_.push_back({end, rest, "the magic bytes that end the file are cut off"});
-  if (rest > kMagicBytes)
+  const auto magic = static_cast<std::size_t>(std::min<std::uint64_t>(rest, kMagicBytes));
+  if (magic < kMagicBytes || !is_magic(ahead_.at(end, magic)))
+    damages_.push_back({end, rest, "the magic bytes that end the file are cut off or broken"});
+  else if (rest > kMagicBytes)
     damages_.push_back({end + kMagicBytes, rest - kMagicBytes, "bytes after the file's end, which were not read"});
 }
 

@@ -108,6 +108,7 @@ void StreamReader::check(const RecordPlace& place, Bytes content) {
 }
 
 void StreamReader::check_data_section(const RecordPlace& place, Bytes content) {
+  data_end_seen_ = true;
   const std::uint32_t expected = decode_data_end(content).data_section_crc;
   // After broken framing the sum has a hole, and the damage is noted already.
   if (expected != 0 && place.offset == data_end_ && data_crc_ != expected)
@@ -115,6 +116,7 @@ void StreamReader::check_data_section(const RecordPlace& place, Bytes content) {
 }
 
 void StreamReader::check_summary(const RecordPlace& place, Bytes content) {
+  if (!data_end_seen_) damages_.push_back({place.offset, 0, "no DataEnd comes before the Footer"});
   const Footer footer = decode_footer(content);
   if (footer.summary_start > place.offset || footer.summary_offset_start > place.offset)
     throw Malformed("the summary is said to begin after it");

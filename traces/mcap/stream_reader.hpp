@@ -53,6 +53,7 @@ class StreamReader {
   RecordPlace chunk_place_;
   std::uint32_t data_crc_ = 0;
   std::uint64_t data_end_ = kMagicBytes;  ///< up to where data_crc_ reaches
+  bool data_end_seen_ = false;
   std::vector<Damage> damages_;
 };
 

@@ -1,0 +1,291 @@
+// Foreign and damaged bytes: every cut and every flipped byte of a small trace. Never a crash, never much memory, and
+// whatever chunk is whole is read.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+
+#include "tests/support/test_data.hpp"
+#include "tests/traces/trace_fixture.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+#include "traces/mcap/encode.hpp"
+#include "traces/mcap/stream_reader.hpp"
+#include "traces/mcap/summary.hpp"
+#include "traces/trace_summary.hpp"
+
+namespace vestige {
+namespace {
+
+using mcap::Opcode;
+using test::kColliders;
+using test::kNodes;
+using ::testing::HasSubstr;
+
+constexpr std::uint64_t kFrames = 16;
+constexpr std::uint64_t kFramesInAChunk = 4;
+
+/// A file that is never on disk: thousands of small ones would wait for it.
+class MemoryFile {
+ public:
+  MemoryFile() : descriptor_(::memfd_create("damaged.mcap", MFD_CLOEXEC)) {}
+  ~MemoryFile() { ::close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::filesystem::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
+  void assign(std::span<const std::byte> bytes) const {
+    ASSERT_EQ(::ftruncate(descriptor_, 0), 0);
+    ASSERT_EQ(::pwrite(descriptor_, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
+  }
+
+ private:
+  int descriptor_;
+};
+
+void write_bytes(const std::filesystem::path& path, std::span<const std::byte> bytes) {
+  std::ofstream(path, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+}
+
+/// A small trace in memory, and where its parts are.
+struct SmallTrace {
+  std::vector<std::byte> bytes;
+  std::vector<mcap::RecordPlace> chunks;
+  std::uint64_t head_end = 0;  ///< of schemas and channels, before the first chunk
+  std::uint64_t data_end = 0;
+};
+
+SmallTrace small_trace(const test::TemporaryFolder& folder, Compression compression) {
+  SmallTrace trace;
+  TraceWriterOptions options = test::steady_options(1200);
+  options.compression = compression;
+  test::write_trace(folder / "whole.mcap", kFrames, options);
+  trace.bytes = read_file(folder / "whole.mcap");
+  const mcap::MemorySource source(trace.bytes);
+  mcap::RecordWalker walker(source);
+  mcap::RecordPlace place;
+  while (walker.next(place)) {
+    if (place.opcode == Opcode::kChunk) trace.chunks.push_back(place);
+    if (place.opcode == Opcode::kDataEnd) trace.data_end = place.offset;
+  }
+  trace.head_end = trace.chunks.front().offset;
+  return trace;
+}
+
+std::uint64_t frames_in(std::size_t chunks) {
+  return std::min(kFrames, chunks * kFramesInAChunk);
+}
+
+/// Reads all there is; every frame must be as it was written. Nothing when the file is refused.
+std::optional<std::uint64_t> intact_frames(const std::filesystem::path& path, bool& complete) {
+  try {
+    TraceReader reader(path);
+    const auto frames = test::read_frames(reader);
+    for (const TraceFrame& frame : frames)
+      EXPECT_TRUE(test::same_bits(frame, test::frame(frame.index, kNodes, kColliders)));
+    EXPECT_EQ(reader.frame_count(), frames.size());
+    complete = reader.complete();
+    EXPECT_EQ(complete, reader.warnings().empty());
+    return frames.size();
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+TEST(TraceDamage, ACutAnywhereKeepsEveryWholeChunk) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  ASSERT_EQ(trace.chunks.size(), 4U);
+  const MemoryFile file;
+  for (std::size_t length = 0; length < trace.bytes.size(); ++length) {
+    file.assign(std::span(trace.bytes).first(length));
+    bool complete = true;
+    const auto frames = intact_frames(file.path(), complete);
+    if (length < trace.head_end) continue;
+    const auto whole = static_cast<std::size_t>(std::count_if(
+        trace.chunks.begin(), trace.chunks.end(), [&](const auto& chunk) { return chunk.end() <= length; }));
+    ASSERT_TRUE(frames) << length;
+    EXPECT_EQ(*frames, frames_in(whole)) << length;
+    EXPECT_FALSE(complete) << length;
+    const McapSummary summary = summarise_mcap(file.path());
+    EXPECT_EQ(summary.messages, 2 * frames_in(whole)) << length;
+    EXPECT_FALSE(summary.complete) << length;
+  }
+}
+
+class TraceDamageCompressed : public ::testing::TestWithParam<Compression> {};
+
+TEST_P(TraceDamageCompressed, AFlippedByteCostsAtMostTheChunkThatItIsIn) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, GetParam());
+  const MemoryFile file;
+  for (std::size_t at = 0; at < trace.bytes.size(); ++at) {
+    for (const int flip : {0x01, 0xFF}) {
+      std::vector<std::byte> damaged = trace.bytes;
+      damaged[at] ^= static_cast<std::byte>(flip);
+      file.assign(damaged);
+      bool complete = true;
+      const auto frames = intact_frames(file.path(), complete);
+      try {
+        const McapSummary summary = summarise_mcap(file.path(), SummaryDepth::kEverything);
+        EXPECT_FALSE(summary.complete) << at;
+      } catch (const Error&) {
+        EXPECT_LT(at, mcap::kMagicBytes);
+      }
+      // A damaged avatar makes the trace useless, and its definitions may be the only ones that say what it is.
+      if (at < trace.head_end) continue;
+      ASSERT_TRUE(frames) << at;
+      const bool in_chunk = std::any_of(trace.chunks.begin(), trace.chunks.end(),
+                                        [&](const auto& chunk) { return at >= chunk.offset && at < chunk.end(); });
+      EXPECT_GE(*frames, kFrames - (in_chunk ? kFramesInAChunk : 0)) << at;
+    }
+  }
+}
+
+TEST_P(TraceDamageCompressed, AFlippedByteWithoutFooterCostsAtMostTheChunkThatItIsInOrBefore) {
+  const test::TemporaryFolder folder;
+  SmallTrace trace = small_trace(folder, GetParam());
+  trace.bytes.resize(trace.data_end);
+  const MemoryFile file;
+  for (std::size_t at = trace.head_end; at < trace.bytes.size(); ++at) {
+    std::vector<std::byte> damaged = trace.bytes;
+    damaged[at] ^= std::byte{0x41};
+    file.assign(damaged);
+    bool complete = true;
+    const auto frames = intact_frames(file.path(), complete);
+    ASSERT_TRUE(frames) << at;
+    EXPECT_GE(*frames, kFrames - kFramesInAChunk) << at;
+    EXPECT_FALSE(complete);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Compressions, TraceDamageCompressed,
+                         ::testing::Values(Compression::kNone, Compression::kLz4, Compression::kZstd));
+
+TEST(TraceDamage, ADamagedChunkIsReportedWithItsOffset) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kNone);
+  std::vector<std::byte> damaged = trace.bytes;
+  damaged[trace.chunks[1].end() - 20] ^= std::byte{1};
+  write_bytes(folder / "a.mcap", damaged);
+  TraceReader reader(folder / "a.mcap");
+  EXPECT_TRUE(reader.complete()) << "damage is found by reading";
+  const auto frames = test::read_frames(reader);
+  ASSERT_EQ(frames.size(), kFrames - kFramesInAChunk);
+  EXPECT_EQ(frames[4].index, 8U) << "the gap shows";
+  EXPECT_FALSE(reader.complete());
+  ASSERT_EQ(reader.warnings().size(), 1U);
+  EXPECT_THAT(reader.warnings()[0],
+              HasSubstr(fmt::format("at byte {}: a Chunk: its CRC is wrong", trace.chunks[1].offset)));
+  EXPECT_EQ(reader.frame_count(), kFrames - kFramesInAChunk);
+  EXPECT_EQ(reader.warnings().size(), 1U) << "nothing is said twice";
+}
+
+TEST(TraceDamage, ABrokenSummaryIsNoLoss) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  std::vector<std::byte> damaged = trace.bytes;
+  damaged[trace.data_end + 40] ^= std::byte{1};
+  write_bytes(folder / "a.mcap", damaged);
+  TraceReader reader(folder / "a.mcap");
+  EXPECT_EQ(test::read_frames(reader).size(), kFrames);
+  EXPECT_FALSE(reader.complete());
+  EXPECT_THAT(reader.warnings().at(0), HasSubstr("summary's CRC is wrong"));
+}
+
+TEST(TraceDamage, ADamagedAvatarIsRefused) {
+  const test::TemporaryFolder folder;
+  SmallTrace trace = small_trace(folder, Compression::kZstd);
+  const auto glb = test::skeleton_glb(kNodes);
+  const auto place = std::search(trace.bytes.begin(), trace.bytes.end(), glb.begin(), glb.end());
+  ASSERT_NE(place, trace.bytes.end());
+  *(place + 30) ^= std::byte{1};
+  write_bytes(folder / "a.mcap", trace.bytes);
+  try {
+    TraceReader reader(folder / "a.mcap");
+    FAIL() << "took a damaged avatar";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("no undamaged attachment avatar.glb"));
+  }
+}
+
+TEST(TraceDamage, FramesThatComeTwiceAreRefused) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  // The first chunk again, at the end of a file without footer.
+  std::vector<std::byte> bytes(trace.bytes.begin(), trace.bytes.begin() + static_cast<std::ptrdiff_t>(trace.data_end));
+  const mcap::RecordPlace& chunk = trace.chunks.front();
+  bytes.insert(bytes.end(), trace.bytes.begin() + static_cast<std::ptrdiff_t>(chunk.offset),
+               trace.bytes.begin() + static_cast<std::ptrdiff_t>(chunk.end()));
+  write_bytes(folder / "a.mcap", bytes);
+  TraceReader reader(folder / "a.mcap");
+  try {
+    test::read_frames(reader);
+    FAIL() << "went back in time";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr(fmt::format("at byte {}: frame 0: comes after frame 15", trace.data_end)));
+  }
+}
+
+TEST(TraceDamage, ClaimsOfHugeSizesCostNoMemory) {
+  const test::TemporaryFolder folder;
+  mcap::ByteBuffer bytes;
+  mcap::append_magic(bytes);
+  append_record(bytes, mcap::Header{});
+  for (const std::uint64_t claim : {mcap::kMaxChunkBytes, mcap::kMaxChunkBytes + 1, ~std::uint64_t{0}}) {
+    for (const char* compression : {"", "lz4", "zstd", "rot13"}) {
+      append_record(bytes, mcap::Chunk{.uncompressed_size = claim, .compression = compression, .records = {}});
+    }
+  }
+  const mcap::MemorySource source(bytes);
+  mcap::StreamReader reader(source);
+  mcap::StreamRecord record;
+  rusage before = {};
+  ::getrusage(RUSAGE_SELF, &before);
+  while (reader.next(record)) continue;
+  rusage after = {};
+  ::getrusage(RUSAGE_SELF, &after);
+  EXPECT_EQ(reader.damages().size(), 13U) << "twelve chunks, no footer";
+  constexpr long kFewKibibytes = 64 << 10;
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kFewKibibytes);
+}
+
+TEST(TraceDamage, ABombIsRefusedAtTheSizeItClaims) {
+  const std::vector<std::byte> zeros(std::size_t{1} << 20);
+  for (const Compression compression : {Compression::kLz4, Compression::kZstd}) {
+    std::vector<std::byte> small;
+    mcap::compress(compression, zeros, small);
+    mcap::RawBuffer out;
+    EXPECT_NO_THROW(mcap::decompress(mcap::name_of(compression), small, zeros.size(), out));
+    for (const std::uint64_t claim : {zeros.size() - 1, zeros.size() + 1, std::size_t{0}})
+      EXPECT_THROW(mcap::decompress(mcap::name_of(compression), small, claim, out), mcap::Malformed);
+    small.pop_back();
+    EXPECT_THROW(mcap::decompress(mcap::name_of(compression), small, zeros.size(), out), mcap::Malformed);
+  }
+}
+
+TEST(TraceDamage, SearchingThroughLiesTakesLinearTime) {
+  // Every byte looks like the beginning of a record that reaches far ahead.
+  std::vector<std::byte> bytes(std::size_t{1} << 20);
+  mcap::ByteBuffer magic;
+  mcap::append_magic(magic);
+  std::copy(magic.begin(), magic.end(), bytes.begin());
+  for (std::size_t i = magic.size(); i + 9 <= bytes.size(); i += 9) {
+    bytes[i] = std::byte{6};
+    bytes[i + 2] = std::byte{0x40};
+  }
+  const mcap::MemorySource source(bytes);
+  mcap::StreamReader reader(source);
+  mcap::StreamRecord record;
+  while (reader.next(record)) continue;
+  EXPECT_FALSE(reader.damages().empty());
+}
+
+}  // namespace
+}  // namespace vestige
