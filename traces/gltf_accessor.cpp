@@ -18,19 +18,20 @@ struct ComponentType {
   std::string_view name;
 };
 
-/// Null for a number that glTF 2.0 does not define (5124, int, is one).
-const ComponentType* component_type(int number) {
-  static constexpr std::array<ComponentType, 7> kTypes = {
-      ComponentType{1, kInt8, kNormalizedInt8, "int8"},
-      ComponentType{1, kUint8, kNormalizedUint8, "uint8"},
-      ComponentType{2, kInt16, kNormalizedInt16, "int16"},
-      ComponentType{2, kUint16, kNormalizedUint16, "uint16"},
-      ComponentType{0, kFloat, kFloat, ""},
-      ComponentType{4, kUint32, kUint32, "uint32"},
-      ComponentType{4, kFloat, kFloat, "float"},
-  };
-  const auto index = static_cast<std::size_t>(number - TINYGLTF_COMPONENT_TYPE_BYTE);
-  return index < kTypes.size() && kTypes[index].bytes != 0 ? &kTypes[index] : nullptr;
+/// By number, from 5120 (GL_BYTE) on; glTF 2.0 leaves out 5124.
+constexpr std::array<ComponentType, 7> kComponentTypes = {
+    ComponentType{1, kInt8, kNormalizedInt8, "int8"},
+    ComponentType{1, kUint8, kNormalizedUint8, "uint8"},
+    ComponentType{2, kInt16, kNormalizedInt16, "int16"},
+    ComponentType{2, kUint16, kNormalizedUint16, "uint16"},
+    ComponentType{0, kFloat, kFloat, ""},
+    ComponentType{4, kUint32, kUint32, "uint32"},
+    ComponentType{4, kFloat, kFloat, "float"},
+};
+
+/// The schema lets only 5120 … 5126 through.
+const ComponentType& component_type(int number) {
+  return kComponentTypes[static_cast<std::size_t>(number - TINYGLTF_COMPONENT_TYPE_BYTE)];
 }
 
 std::string_view type_name(int type) {
@@ -54,12 +55,11 @@ std::string_view type_name(int type) {
 
 std::string format_name(int type, unsigned components) {
   std::string names;
-  for (int number = TINYGLTF_COMPONENT_TYPE_BYTE; number <= TINYGLTF_COMPONENT_TYPE_FLOAT; ++number) {
-    const ComponentType* known = component_type(number);
-    if (known == nullptr) continue;
-    if ((components & known->plain) != 0) names += fmt::format("{}{}", names.empty() ? "" : " or ", known->name);
-    if ((components & known->normalized & ~known->plain) != 0)
-      names += fmt::format("{}normalised {}", names.empty() ? "" : " or ", known->name);
+  for (const ComponentType& known : kComponentTypes) {
+    if (known.bytes == 0) continue;
+    if ((components & known.plain) != 0) names += fmt::format("{}{}", names.empty() ? "" : " or ", known.name);
+    if ((components & known.normalized & ~known.plain) != 0)
+      names += fmt::format("{}normalised {}", names.empty() ? "" : " or ", known.name);
   }
   return fmt::format("{} of {}", type_name(type), names);
 }
@@ -104,11 +104,11 @@ void check_sparse(const Document& document, const tinygltf::Accessor& accessor, 
   if (count > accessor.count)
     report.fail(accessor_path(index, ".sparse.count"),
                 fmt::format("{} is more than the accessor's {} elements", count, accessor.count));
-  const ComponentType* type = component_type(accessor.sparse.indices.componentType);
-  if (type == nullptr || (type->plain & (kUint8 | kUint16 | kUint32)) == 0)
+  const ComponentType& type = component_type(accessor.sparse.indices.componentType);
+  if ((type.plain & (kUint8 | kUint16 | kUint32)) == 0)
     report.fail(accessor_path(index, ".sparse.indices.componentType"), "is no unsigned integer type");
   check_range(document, accessor.sparse.indices.bufferView,
-              static_cast<std::uint64_t>(accessor.sparse.indices.byteOffset), count, type->bytes, type->bytes,
+              static_cast<std::uint64_t>(accessor.sparse.indices.byteOffset), count, type.bytes, type.bytes,
               accessor_path(index, ".sparse.indices"), report);
   check_range(document, accessor.sparse.values.bufferView,
               static_cast<std::uint64_t>(accessor.sparse.values.byteOffset), count, size, size,
@@ -133,14 +133,14 @@ double read_as(const std::byte* bytes) {
 void check_accessors(const Document& document, Report& report) {
   for (std::size_t i = 0; i < document.model.accessors.size(); ++i) {
     const tinygltf::Accessor& accessor = document.model.accessors[i];
-    const ComponentType* type = component_type(accessor.componentType);
-    if (type == nullptr)
+    const ComponentType& type = component_type(accessor.componentType);
+    if (type.bytes == 0)
       report.fail(accessor_path(i, ".componentType"), fmt::format("{} does not exist", accessor.componentType));
     // Without data of its own an accessor is all zeros, of a length that nothing else would bound.
     if (accessor.count > document.file_bytes)
       report.fail(accessor_path(i, ".count"),
                   fmt::format("{} elements do not fit into a file of {} bytes", accessor.count, document.file_bytes));
-    const std::size_t size = element_bytes(accessor.type, type->bytes);
+    const std::size_t size = element_bytes(accessor.type, type.bytes);
     if (accessor.bufferView >= 0) {
       const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
       const std::size_t stride = view.byteStride != 0 ? view.byteStride : size;
@@ -149,7 +149,7 @@ void check_accessors(const Document& document, Report& report) {
                     fmt::format("elements of {} bytes overlap at a byteStride of {}", size, view.byteStride));
       check_range(document, accessor.bufferView, accessor.byteOffset, accessor.count, stride, size, accessor_path(i),
                   report);
-      if ((view.byteOffset + accessor.byteOffset) % type->bytes != 0 || stride % type->bytes != 0)
+      if ((view.byteOffset + accessor.byteOffset) % type.bytes != 0 || stride % type.bytes != 0)
         report.warn(accessor_path(i), "is not aligned to its component type");
     }
     if (accessor.sparse.isSparse) check_sparse(document, accessor, i, size, report);
@@ -163,9 +163,9 @@ AccessorReader::AccessorReader(const Document& document, int accessor, const For
       use_(use),
       report_(report),
       count_(accessor_.count) {
-  const ComponentType* type = component_type(accessor_.componentType);
-  component_ = accessor_.normalized ? type->normalized : type->plain;
-  component_bytes_ = type->bytes;
+  const ComponentType& type = component_type(accessor_.componentType);
+  component_ = accessor_.normalized ? type.normalized : type.plain;
+  component_bytes_ = type.bytes;
   const auto index = static_cast<std::size_t>(accessor);
   if (accessor_.type != format.type || (component_ & format.components) == 0)
     report.fail(accessor_path(index), fmt::format("is {}, but {} needs {}", format_name(accessor_.type, component_),
@@ -197,7 +197,7 @@ void AccessorReader::substitute_sparse(const Document& document, const Report& r
   const auto& sparse = accessor_.sparse;
   const std::byte* indices = bytes_at(sparse.indices.bufferView, sparse.indices.byteOffset);
   const std::byte* values = bytes_at(sparse.values.bufferView, sparse.values.byteOffset);
-  const std::size_t index_bytes = component_type(sparse.indices.componentType)->bytes;
+  const std::size_t index_bytes = component_type(sparse.indices.componentType).bytes;
   std::uint64_t next = 0;
   for (std::size_t i = 0; i < static_cast<std::size_t>(sparse.count); ++i) {
     const std::uint32_t target = read_unsigned(indices + i * index_bytes, index_bytes);

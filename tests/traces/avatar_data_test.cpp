@@ -29,8 +29,8 @@ struct Expected {
   std::size_t influences;
 };
 
-void PrintTo(const Expected& expected, std::ostream* out) {
-  *out << expected.file;
+std::ostream& operator<<(std::ostream& out, const Expected& expected) {
+  return out << expected.file;
 }
 
 class RealAvatar : public ::testing::TestWithParam<Expected> {};
