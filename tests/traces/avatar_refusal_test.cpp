@@ -162,7 +162,7 @@ TEST(RefuseAvatar, NamesIndicesThatReferToNothing) {
 }
 
 TEST(RefuseAvatar, NamesNodesThatAreNoTree) {
-  const auto children = [](std::size_t node, std::vector<int> list) {
+  const auto children = [](std::size_t node, const std::vector<int>& list) {
     return [=](GltfBuilder& b) { b.document["nodes"][node]["children"] = list; };
   };
   expect_refused(skinned_triangle(), {{"nodes[1].children: leads back", children(2, {1})},

@@ -33,7 +33,7 @@ inline std::vector<std::byte> make_glb(std::string json, std::vector<std::byte> 
   put(json.data(), json.size());
   if (!bin.empty()) {
     put_u32(bin.size());
-    put("BIN\0", 4);
+    put_u32(0x004E4942);  // "BIN" and a zero
     put(bin.data(), bin.size());
   }
   return glb;
