@@ -193,6 +193,7 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
   std::vector<std::uint16_t> actuator_of_grey(0x10000, 0);
   for (std::size_t i = 0; i < listed.grey.size(); ++i)
     actuator_of_grey[listed.grey[i]] = static_cast<std::uint16_t>(i + 1);
+  map.actuator.clear();
   map.actuator.reserve(image.grey.size());
   for (std::size_t i = 0; i < image.grey.size(); ++i) {
     const std::uint16_t grey = image.grey[i];

@@ -240,8 +240,8 @@ void add_sway(Document& document) {
     for (int key = 0; key < kSwayKeys; ++key) {
       const double phase = 2 * kPi * (key % (kSwayKeys - 1)) / (kSwayKeys - 1);
       const double delay = 0.08 * joint;  // the motion travels upwards
-      const glm::dvec3 angles(0.05 * std::sin(2 * phase - delay), 0.06 * std::sin(phase - delay),
-                              0.04 * std::sin(phase - 2 * delay));
+      const glm::dvec3 angles(0.02 * std::sin(2 * phase - delay), 0.04 * std::sin(phase - delay),
+                              0.025 * std::sin(phase - 2 * delay));
       const glm::dquat rotation(angles);
       rotations.emplace_back(rotation.x, rotation.y, rotation.z, rotation.w);
     }

@@ -1,7 +1,7 @@
-// clang-format off: GL/glcorearb.h must come before GL/osmesa.h, whose GL/gl.h hides half of it otherwise.
-#include <GL/osmesa.h>
-
+// GL/glcorearb.h must come before GL/osmesa.h, whose GL/gl.h hides half of it otherwise.
+// clang-format off
 #include "detector/gl/gl_context.hpp"
+#include <GL/osmesa.h>
 // clang-format on
 
 #include <array>

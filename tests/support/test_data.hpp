@@ -36,8 +36,8 @@ class TemporaryFolder {
 }  // namespace vestige::test
 
 /// Skips the test, naming the missing path, when real data is absent; fails instead under CI.
-#define VESTIGE_REQUIRE_DATA(path)                                                    \
-  if (!std::filesystem::exists(path)) {                                               \
-    if (std::getenv("CI") != nullptr) FAIL() << "test data is missing: " << (path);   \
+#define VESTIGE_REQUIRE_DATA(path)                                                     \
+  if (!std::filesystem::exists(path)) {                                                \
+    if (std::getenv("CI") != nullptr) FAIL() << "test data is missing: " << (path);    \
     GTEST_SKIP() << "test data is missing: " << (path) << "; nothing was tested here"; \
   }

@@ -1,0 +1,376 @@
+// Runs vestige as a user does: real files, real contexts, real exit codes.
+
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "tests/support/process.hpp"
+#include "tests/support/test_data.hpp"
+#include "traces/builtin_avatar.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class CommandLine : public ::testing::Test {
+ protected:
+  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
+
+  nlohmann::json json_of(const std::string& command) const {
+    const test::Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
+    return nlohmann::json::parse(outcome.standard_output, nullptr, false);
+  }
+
+  void record_small(const std::string& name = "small.mcap") const {
+    ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 -o " + name).exit_code, 0);
+  }
+
+  /// The command fails with this exit code, says each of these words, and leaves no file named `absent`.
+  void expect_failure(const std::string& command, int exit_code, const std::vector<std::string>& words,
+                      const std::string& absent = "") const {
+    const test::Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exit_code, exit_code) << command << "\n" << outcome.standard_error;
+    EXPECT_THAT(outcome.standard_error, StartsWith("vestige: ")) << command;
+    for (const std::string& word : words) EXPECT_THAT(outcome.standard_error, HasSubstr(word)) << command;
+    if (absent.empty()) return;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / absent)) << command;
+  }
+
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(CommandLine, HelpOfEveryVerbOpensWithTwoExamples) {
+  for (const char* verb : {"", "record", "replay", "sweep", "inspect", "devices"}) {
+    const test::Outcome help = run(std::string("vestige ") + verb + " --help");
+    EXPECT_EQ(help.exit_code, 0) << verb;
+    EXPECT_THAT(help.standard_output, StartsWith("Examples:\n  vestige ")) << verb;
+  }
+  EXPECT_THAT(run("vestige --version").standard_output, StartsWith("vestige 0"));
+}
+
+TEST_F(CommandLine, RecordsReplaysAndSaysTheSameEveryTime) {
+  record_small();
+  record_small("again.mcap");
+  const auto first = json_of("vestige replay small.mcap --json -");
+  EXPECT_EQ(first["frames"], 60);
+  EXPECT_EQ(first["colliders"], 20);
+  EXPECT_GT(first["contacts"], 20);
+  EXPECT_EQ(first["avatar"]["triangles"], 5000);
+  EXPECT_EQ(first["unsure"], 0);
+  EXPECT_TRUE(first["argv"].is_array());
+  EXPECT_TRUE(first["gl"].is_null());
+  EXPECT_EQ(json_of("vestige replay again.mcap --json -")["texture_hash"], first["texture_hash"]);
+  ASSERT_EQ(run("vestige record --seed 2 --count 20 --rate 60 --duration 1 -o other.mcap").exit_code, 0);
+  EXPECT_NE(json_of("vestige replay other.mcap --json -")["texture_hash"], first["texture_hash"]);
+}
+
+TEST_F(CommandLine, GivesTheSameBitsTenThousandKilometresAway) {
+  record_small();
+  ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 --origin 10000000,0,-3 -o far.mcap").exit_code, 0);
+  for (const char* detector : {"cpu", "paper"}) {
+    const std::string flags = std::string(" --json - --detector ") + detector;
+    EXPECT_EQ(json_of("vestige replay far.mcap" + flags)["texture_hash"],
+              json_of("vestige replay small.mcap" + flags)["texture_hash"]);
+  }
+}
+
+TEST_F(CommandLine, PaperGivesOneTextureHashOnEglAndOsMesa) {
+  record_small();
+  const auto egl = json_of("vestige replay small.mcap --detector paper --context egl --json -");
+  const auto osmesa = json_of("vestige replay small.mcap --detector paper --context osmesa --json -");
+  const auto device = json_of("vestige replay small.mcap --detector paper --device 0 --json -");
+  EXPECT_EQ(egl["texture_hash"], osmesa["texture_hash"]);
+  EXPECT_EQ(egl["texture_hash"], device["texture_hash"]);
+  EXPECT_EQ(osmesa["gl"]["context"], "osmesa");
+  EXPECT_EQ(device["gl"]["context"], "egl-device-0");
+  EXPECT_FALSE(egl["gl"]["renderer"].get<std::string>().empty());
+}
+
+TEST_F(CommandLine, WritesContactsTexturesAndTimelineThatAgree) {
+  record_small();
+  const auto replay = json_of(
+      "vestige replay small.mcap --detector paper --contacts c.csv --textures t.exr "
+      "--planes actuator,t,triangle,position,speed --timeline a.csv --hold 0 --json -");
+  std::ifstream contacts(folder_ / "c.csv");
+  std::string line;
+  std::getline(contacts, line);
+  EXPECT_EQ(line, "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z");
+  std::size_t rows = 0;
+  std::set<std::pair<std::string, std::string>> fired;  // time, actuator
+  while (std::getline(contacts, line)) {
+    ++rows;
+    std::vector<std::string> fields;
+    std::istringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+    ASSERT_EQ(fields.size(), 14U);
+    if (fields[9] != "0") fired.emplace(fields[1], fields[9]);
+  }
+  EXPECT_EQ(rows, replay["contacts"]);
+
+  std::ifstream timeline(folder_ / "a.csv");
+  std::getline(timeline, line);
+  EXPECT_EQ(line, "time_s,actuator_1,actuator_2,actuator_3,actuator_4,actuator_5,actuator_6");
+  std::set<std::pair<std::string, std::string>> on;
+  std::size_t frames = 0;
+  while (std::getline(timeline, line)) {
+    ++frames;
+    std::istringstream stream(line);
+    std::string time;
+    std::getline(stream, time, ',');
+    int actuator = 0;
+    for (std::string duty; std::getline(stream, duty, ',');) {
+      ++actuator;
+      if (duty != "0") on.emplace(time, std::to_string(actuator));
+    }
+  }
+  EXPECT_EQ(frames, 60U);
+  EXPECT_EQ(on, fired);
+
+  const Imf::InputFile image((folder_ / "t.exr").c_str());
+  EXPECT_EQ(image.header().dataWindow().max.x, 19);
+  EXPECT_EQ(image.header().dataWindow().max.y, 59);
+  std::vector<std::string> names;
+  for (auto channel = image.header().channels().begin(); channel != image.header().channels().end(); ++channel)
+    names.emplace_back(channel.name());
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("actuator", "t", "triangle", "speed", "x", "y", "z"));
+  std::vector<float> actuator(20 * 60);
+  std::vector<std::uint32_t> triangle(20 * 60);
+  Imf::FrameBuffer buffer;
+  buffer.insert("actuator", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(actuator.data()), 4, 80));
+  buffer.insert("triangle", Imf::Slice(Imf::UINT, reinterpret_cast<char*>(triangle.data()), 4, 80));
+  Imf::InputFile reader((folder_ / "t.exr").c_str());
+  reader.setFrameBuffer(buffer);
+  reader.readPixels(0, 59);
+  EXPECT_EQ(std::ranges::count_if(actuator, [](float a) { return std::isfinite(a); }), static_cast<long>(rows));
+  EXPECT_EQ(std::ranges::count_if(triangle, [](std::uint32_t t) { return t != 0xFFFFFFFF; }), static_cast<long>(rows));
+}
+
+TEST_F(CommandLine, HoldKeepsAnActuatorOnForThatLong) {
+  record_small();
+  const auto on_cells = [&](const std::string& hold) {
+    EXPECT_EQ(run("vestige replay small.mcap --force --timeline a.csv --hold " + hold).exit_code, 0);
+    const std::string csv = read_text_file(folder_ / "a.csv");
+    std::size_t count = 0;
+    for (std::size_t at = csv.find(",255"); at != std::string::npos; at = csv.find(",255", at + 1)) ++count;
+    return count;
+  };
+  EXPECT_GT(on_cells("60"), 2 * on_cells("0"));
+}
+
+TEST_F(CommandLine, VerifyTellsEqualFromDifferentRuns) {
+  record_small();
+  ASSERT_EQ(run("vestige replay small.mcap --contacts c.csv --json r.json").exit_code, 0);
+  EXPECT_EQ(run("vestige replay small.mcap --verify r.json").exit_code, 0);
+  EXPECT_EQ(run("vestige replay small.mcap --verify c.csv").exit_code, 0);
+  const test::Outcome paper = run("vestige replay small.mcap --detector paper --verify cpu");
+  EXPECT_EQ(paper.exit_code, 0);
+  EXPECT_THAT(paper.standard_output, HasSubstr("0 of "));
+  ASSERT_EQ(run("vestige record --seed 3 --count 20 --rate 60 --duration 1 -o other.mcap").exit_code, 0);
+  EXPECT_EQ(run("vestige replay other.mcap --verify r.json").exit_code, 4);
+  EXPECT_EQ(run("vestige replay other.mcap --verify c.csv").exit_code, 4);
+  ASSERT_EQ(run("sed -i '$d' c.csv").exit_code, 0);
+  const test::Outcome less = run("vestige replay small.mcap --verify c.csv");
+  EXPECT_EQ(less.exit_code, 4);
+  EXPECT_THAT(less.standard_output, HasSubstr("1 extra"));
+}
+
+TEST_F(CommandLine, PipesATraceFromOneVerbToTheNext) {
+  record_small();
+  const auto piped = json_of("vestige record --count 20 --rate 60 --duration 1 -o - -q | vestige replay - --json -");
+  EXPECT_EQ(piped["texture_hash"], json_of("vestige replay small.mcap --json -")["texture_hash"]);
+}
+
+TEST_F(CommandLine, InspectNamesChannelsAndAttachments) {
+  record_small();
+  const auto inspect = json_of("vestige inspect small.mcap --json -");
+  EXPECT_EQ(inspect["messages"], 120);
+  EXPECT_EQ(inspect["complete"], true);
+  EXPECT_EQ(inspect["dropped"], 0);
+  EXPECT_EQ(inspect["compression"], "zstd");
+  EXPECT_EQ(inspect["channels"].size(), 2U);
+  EXPECT_EQ(inspect["channels"][0]["topic"], "/pose");
+  EXPECT_EQ(inspect["attachments"][0]["name"], "avatar.glb");
+  EXPECT_NEAR(inspect["duration_s"].get<double>(), 59.0 / 60, 1e-6);
+}
+
+TEST_F(CommandLine, ReadsATraceThatWasCutOffAndSaysSo) {
+  record_small();
+  const auto bytes = std::filesystem::file_size(folder_ / "small.mcap");
+  ASSERT_EQ(run("head -c " + std::to_string(bytes - 300) + " small.mcap > cut.mcap").exit_code, 0);
+  const test::Outcome replay = run("vestige replay cut.mcap");
+  EXPECT_EQ(replay.exit_code, 3);
+  EXPECT_THAT(replay.standard_error, HasSubstr("cut.mcap"));
+  EXPECT_EQ(run("vestige inspect cut.mcap").exit_code, 3);
+}
+
+TEST_F(CommandLine, InterruptedRecordingLeavesAValidTrace) {
+  const test::Outcome outcome =
+      run("vestige record --duration 100000 --rate 1000 --count 5 -o long.mcap & P=$!; sleep 1; kill -INT $P; wait $P");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_error, HasSubstr("stopped after"));
+  const auto inspect = json_of("vestige inspect long.mcap --json -");
+  EXPECT_EQ(inspect["complete"], true);
+  EXPECT_GT(inspect["messages"], 100);
+}
+
+TEST_F(CommandLine, NeverOverwritesWithoutForce) {
+  record_small();
+  expect_failure("vestige record -o small.mcap", 1, {"small.mcap", "exists already", "--force"});
+  ASSERT_EQ(run("echo precious > c.csv").exit_code, 0);
+  expect_failure("vestige replay small.mcap --contacts c.csv --timeline a.csv", 1, {"c.csv", "--force"}, "a.csv");
+  EXPECT_EQ(read_text_file(folder_ / "c.csv"), "precious\n");
+  EXPECT_EQ(run("vestige replay small.mcap --contacts c.csv --force").exit_code, 0);
+}
+
+TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
+  record_small();
+  expect_failure("vestige", 2, {});
+  expect_failure("vestige frobnicate", 2, {});
+  expect_failure("vestige record", 2, {"--output"});
+  expect_failure("vestige record -o x.mcap --count 0", 2, {"--count"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --rate 0", 2, {"--rate"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --rate nan", 2, {"--rate"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --duration inf", 2, {"--duration"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --origin 1,nan,0", 2, {"--origin"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --colliders tornado", 2, {"tornado", "swarm"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --animation dance", 2, {"dance", "sway"}, "x.mcap");
+  expect_failure("vestige replay small.mcap --detector magic", 2, {"--detector"});
+  expect_failure("vestige replay small.mcap --planes colour --textures t.exr", 2, {"colour", "triangle"}, "t.exr");
+  expect_failure("vestige replay small.mcap --hold -1", 2, {"--hold"});
+  expect_failure("vestige replay small.mcap --contacts - --json -", 2, {"standard output"});
+  expect_failure("vestige sweep small.mcap -o s --counts 0:5", 2, {"--counts"}, "s/sweep.json");
+  expect_failure("vestige sweep small.mcap -o s --counts 5,x", 2, {"--counts"}, "s/sweep.json");
+  expect_failure("vestige sweep small.mcap -o s --detector cpu,magic", 2, {"magic"}, "s/sweep.json");
+}
+
+TEST_F(CommandLine, NamesWhatIsWrongWithForeignFiles) {
+  record_small();
+  std::ofstream(folder_ / "text.txt") << "hello";
+  std::ofstream(folder_ / "empty") << "";
+  const auto glb = builtin_avatar_glb();
+  std::ofstream(folder_ / "cut.glb", std::ios::binary)
+      .write(reinterpret_cast<const char*>(glb.data()), static_cast<std::streamsize>(glb.size() / 2));
+  expect_failure("vestige record --avatar nowhere.glb -o x.mcap", 1, {"nowhere.glb", "no such file"}, "x.mcap");
+  expect_failure("vestige record --avatar text.txt -o x.mcap", 1, {"text.txt"}, "x.mcap");
+  expect_failure("vestige record --avatar cut.glb -o x.mcap", 1, {"cut.glb"}, "x.mcap");
+  expect_failure("vestige record --avatar . -o x.mcap", 1, {"folder"}, "x.mcap");
+  expect_failure("vestige record --map nowhere.png -o x.mcap", 1, {"nowhere.png"}, "x.mcap");
+  expect_failure("vestige record --map text.txt -o x.mcap", 1, {"text.txt", "PNG"}, "x.mcap");
+  expect_failure("vestige record --colliders nowhere.csv -o x.mcap", 1, {"nowhere.csv"}, "x.mcap");
+  expect_failure("vestige record -o nowhere/x.mcap", 1, {"nowhere"});
+  for (const char* file : {"text.txt", "empty", "nowhere", "."}) {
+    expect_failure(std::string("vestige replay --contacts c.csv ") + file, 1, {file}, "c.csv");
+    expect_failure(std::string("vestige inspect ") + file, 1, {file});
+  }
+  expect_failure("vestige replay small.mcap --verify text.txt", 1, {"text.txt"});
+  expect_failure("vestige sweep small.mcap -o s --counts 21", 1, {"21", "20"}, "s/sweep.json");
+  expect_failure("vestige replay small.mcap --detector paper --device 99", 1, {"--device 99"});
+}
+
+TEST_F(CommandLine, ReadsColliderFilesAndRefusesBrokenOnesByLine) {
+  const auto with = [&](const std::string& content) {
+    std::ofstream(folder_ / "c.csv") << content;
+    return "vestige record --colliders c.csv --animation none --rate 100 --duration 1 --force -o x.mcap";
+  };
+  const std::string header = "time_s,id,x,y,z\n";
+  // Straight through the body, from 0.2 s to 0.6 s.
+  ASSERT_EQ(run(with(header + "0.2,7,-1,1,0\r\n\r\n0.6,7,1,1,0\n")).exit_code, 0);
+  const test::Outcome contacts = run("vestige replay x.mcap --contacts - -q");
+  EXPECT_EQ(std::ranges::count(contacts.standard_output, '\n'), 3);  // header, in, out
+  EXPECT_THAT(contacts.standard_output, HasSubstr(",7,"));
+  expect_failure(with("hello\n"), 1, {"c.csv, line 1", "time_s,id,x,y,z"});
+  expect_failure(with(header), 1, {"c.csv", "no sample"});
+  expect_failure(with(header + "0,1,2,3\n"), 1, {"c.csv, line 2"});
+  expect_failure(with(header + "0,1,2,3,4,5\n"), 1, {"c.csv, line 2"});
+  expect_failure(with(header + "0,1,2,3,nan\n"), 1, {"c.csv, line 2", "finite"});
+  expect_failure(with(header + "0,-1,2,3,4\n"), 1, {"c.csv, line 2"});
+  expect_failure(with(header + "1,1,2,3,4\n0,1,2,3,4\n"), 1, {"c.csv, line 3", "backwards"});
+  expect_failure(with(header + "1,1,2,3,4\n1,1,2,3,5\n"), 1, {"c.csv, line 3", "two positions"});
+}
+
+TEST_F(CommandLine, ReportsAFullDiskAndLeavesNothingUnderTheFinalName) {
+  record_small();
+  // A limit on the size of files stands for the full disk: with both, write() fails midway.
+  const std::string full = "trap '' XFSZ; ulimit -f 2; ";
+  expect_failure(full + "vestige replay small.mcap --contacts c.csv --timeline a.csv", 1, {"c.csv"}, "c.csv");
+  expect_failure(full + "vestige replay small.mcap --textures t.exr --planes actuator,t,position", 1, {"t.exr"},
+                 "t.exr");
+  expect_failure("trap '' XFSZ; ulimit -f 200; vestige record -o x.mcap", 1, {"x.mcap"}, "x.mcap");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1) << run("ls -la").standard_output;
+}
+
+TEST_F(CommandLine, SaysWhatToInstallWithoutAnyOpenGl) {
+  record_small();
+  // A loader path of stubs that are no libraries hides EGL and OSMesa.
+  ASSERT_EQ(run("mkdir none && echo > none/libEGL.so.1 && echo > none/libOSMesa.so.8").exit_code, 0);
+  const std::string hidden = "LD_LIBRARY_PATH=\"$PWD/none\" ";
+  expect_failure(hidden + "vestige replay small.mcap --detector paper --contacts c.csv", 1,
+                 {"OpenGL", "libegl1", "--detector cpu"}, "c.csv");
+  EXPECT_EQ(run(hidden + "vestige replay small.mcap --detector cpu").exit_code, 0);
+  EXPECT_EQ(run(hidden + "vestige devices").exit_code, 0);
+  const test::Outcome sweep =
+      run(hidden + "vestige sweep small.mcap --counts 1 --min-time 0.01 --runs 1 --no-figure -o s");
+  EXPECT_EQ(sweep.exit_code, 0);
+  EXPECT_THAT(sweep.standard_error, HasSubstr("no series 'paper'"));
+}
+
+TEST_F(CommandLine, SweepMeasuresEverySeriesAndKeepsEveryFrame) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --counts 1,5:20:5 --min-time 0.01 --runs 2 --run-frames 10 --no-figure -o s");
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("HAVE 2010"), HasSubstr("paper, osmesa"), HasSubstr("cpu")));
+  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(json["avatar"]["joints"], 20);
+  ASSERT_EQ(json["series"].size(), 3U);
+  for (const auto& series : json["series"]) {
+    EXPECT_EQ(series["points"].size(), 5U);
+    for (const auto& point : series["points"]) {
+      EXPECT_GE(point["frames"], 20);
+      EXPECT_GT(point["hz"], 0);
+      EXPECT_LE(point["hz_low"], point["hz"]);
+      EXPECT_GE(point["hz_high"], point["hz"]);
+      EXPECT_LE(point["us_median"], point["us_p99"]);
+      EXPECT_EQ(point["pairs_tested"], 5000 * 20 * point["colliders"].get<int>());
+    }
+  }
+  EXPECT_EQ(json["series"][0]["points"][4]["texture_hash"], json["series"][1]["points"][4]["texture_hash"]);
+  EXPECT_EQ(run("zstd -qdc s/frame_times.csv.zst | head -1").standard_output,
+            "detector,context,colliders,repetition,frame,us\n");
+}
+
+TEST_F(CommandLine, FiresEveryActuatorOfARealAvatarsMap) {
+  const auto avatar = test::data("avatars/avatars/CesiumMan.glb");
+  const auto map = test::data("avatars/maps/CesiumMan.actuators6.png");
+  VESTIGE_REQUIRE_DATA(avatar);
+  ASSERT_EQ(run("vestige record --avatar '" + avatar.string() + "' --map '" + map.string() +
+                "' --colliders swarm --count 100 --rate 60 --duration 2 -o man.mcap")
+                .exit_code,
+            0);
+  const auto replay = json_of("vestige replay man.mcap --contacts c.csv --textures t.exr --timeline a.csv --json -");
+  EXPECT_GT(replay["contacts"], 300);
+  EXPECT_EQ(replay["actuators"].size(), 6U);
+  for (const auto& actuator : replay["actuators"]) EXPECT_GT(actuator["contacts"], 0);
+}
+
+TEST_F(CommandLine, PlotWithoutVtkSaysWhatToInstall) {
+  ASSERT_EQ(run("cp \"$(command -v vestige)\" here").exit_code, 0);
+  expect_failure("PATH=/usr/bin:/bin ./here plot sweep s", 1, {"vestige-plot", "libvtk9-dev"});
+}
+
+}  // namespace
+}  // namespace vestige

@@ -1,0 +1,166 @@
+#include "detector/actuator_map.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <png.h>
+
+#include <limits>
+
+#include "detector/intensity.hpp"
+#include "detector/texture_hash.hpp"
+#include "tests/support/test_data.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A PNG of these samples, `channels` a texel; 16-bit where `Sample` is.
+template <typename Sample>
+std::vector<std::byte> make_png(const std::vector<Sample>& samples, std::uint32_t width, int colour_type,
+                                std::size_t channels = 1) {
+  std::vector<std::byte> out;
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_set_write_fn(
+      png, &out,
+      [](png_structp writer, png_bytep bytes, png_size_t count) {
+        auto& target = *static_cast<std::vector<std::byte>*>(png_get_io_ptr(writer));
+        const auto* first = reinterpret_cast<const std::byte*>(bytes);
+        target.insert(target.end(), first, first + count);
+      },
+      nullptr);
+  const std::size_t row = width * channels;
+  png_set_IHDR(png, info, width, static_cast<std::uint32_t>(samples.size() / row), 8 * sizeof(Sample), colour_type,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(png, info);
+  if (sizeof(Sample) == 2) png_set_swap(png);
+  for (std::size_t i = 0; i < samples.size(); i += row)
+    png_write_row(png, reinterpret_cast<png_const_bytep>(&samples[i]));
+  png_write_end(png, info);
+  png_destroy_write_struct(&png, &info);
+  return out;
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ActuatorMap, NumbersGreysInAscendingOrderAndLeavesBlackOut) {
+  const auto png = make_png<std::uint8_t>({0, 200, 10, 200}, 2, PNG_COLOR_TYPE_GRAY);
+  const ActuatorMap map = parse_actuator_map(png, "", "map.png");
+  EXPECT_EQ(map.actuator_count, 2U);
+  EXPECT_THAT(map.actuator, ::testing::ElementsAre(0, 2, 1, 2));
+}
+
+TEST(ActuatorMap, TellsSixteenBitGreysApart) {
+  const auto png = make_png<std::uint16_t>({0, 258, 257, 65535}, 2, PNG_COLOR_TYPE_GRAY);
+  EXPECT_THAT(parse_actuator_map(png, "", "map.png").actuator, ::testing::ElementsAre(0, 2, 1, 3));
+}
+
+TEST(ActuatorMap, TakesNumbersAndNamesFromTheSidecar) {
+  const auto png = make_png<std::uint8_t>({0, 200, 10, 200}, 2, PNG_COLOR_TYPE_GRAY);
+  const ActuatorMap map = parse_actuator_map(
+      png, R"({"actuators": [{"grey": 200, "name": "left"}, {"grey": 10}, {"grey": 5, "name": "never"}]})", "map.png");
+  EXPECT_THAT(map.actuator, ::testing::ElementsAre(0, 1, 2, 1));
+  EXPECT_THAT(map.names, ::testing::ElementsAre("left", "actuator 2", "never"));
+  EXPECT_THAT(message_of([&] { parse_actuator_map(png, R"({"actuators": [{"grey": 200}]})", "map.png"); }),
+              HasSubstr("texel (0, 1) has grey 10"));
+  EXPECT_THAT(message_of([&] { parse_actuator_map(png, "{", "map.png"); }), HasSubstr("map.png, sidecar"));
+  EXPECT_THAT(message_of([&] { parse_actuator_map(png, R"({"actuators": [{"grey": 0}]})", "map.png"); }),
+              HasSubstr("actuators[0]"));
+}
+
+TEST(ActuatorMap, TakesTheNearestTexelAndWrapsAround) {
+  ActuatorMap map;
+  map.width = 2;
+  map.height = 2;
+  map.actuator = {1, 2, 3, 4};
+  EXPECT_EQ(map.at({0.25, 0.25}), 1);
+  EXPECT_EQ(map.at({0.5, 0.25}), 2);
+  EXPECT_EQ(map.at({0.49999, 0.5}), 3);
+  EXPECT_EQ(map.at({1.0, 0.0}), 1);
+  EXPECT_EQ(map.at({-0.25, 1.75}), 4);
+  EXPECT_EQ(map.at({-1e-300, 0}), 2);
+  EXPECT_EQ(map.at({std::numeric_limits<double>::quiet_NaN(), 0}), 0);
+  EXPECT_EQ(map.at({std::numeric_limits<double>::infinity(), 0}), 0);
+}
+
+TEST(ActuatorMap, RefusesWhatIsNoGreyPngAndSaysWhere) {
+  const auto png = make_png<std::uint8_t>({0, 200, 10, 200}, 2, PNG_COLOR_TYPE_GRAY);
+  for (std::size_t size = 0; size < png.size(); ++size) {
+    const auto cut = std::span(png).first(size);
+    EXPECT_THROW(parse_actuator_map(cut, "", "map.png"), Error) << size;
+  }
+  for (std::size_t i = 0; i < png.size(); ++i) {
+    auto damaged = png;
+    damaged[i] ^= std::byte{0x55};
+    message_of([&] { parse_actuator_map(damaged, "", "map.png"); });  // any answer will do, a crash will not
+  }
+  const auto colour = make_png<std::uint8_t>({1, 2, 3}, 1, PNG_COLOR_TYPE_RGB, 3);
+  EXPECT_THAT(message_of([&] { parse_actuator_map(colour, "", "map.png"); }), HasSubstr("greyscale"));
+  EXPECT_THAT(message_of([&] { parse_actuator_map({}, "", "map.png"); }), HasSubstr("is not a PNG"));
+}
+
+TEST(ActuatorMap, WarnsOfSoftEdges) {
+  std::vector<std::uint8_t> ramp(256);
+  for (std::size_t i = 0; i < ramp.size(); ++i) ramp[i] = static_cast<std::uint8_t>(i);
+  const ActuatorMap map = parse_actuator_map(make_png(ramp, 16, PNG_COLOR_TYPE_GRAY), "", "map.png");
+  EXPECT_EQ(map.actuator_count, 255U);
+  EXPECT_EQ(map.warnings.size(), 2U);
+}
+
+TEST(ActuatorMap, ReadsTheMapsOfRealAvatars) {
+  const auto path = test::data("avatars/maps/CesiumMan.actuators6.png");
+  VESTIGE_REQUIRE_DATA(path);
+  const ActuatorMap map = parse_actuator_map(read_file(path), "", path.string());
+  EXPECT_EQ(map.actuator_count, 6U);
+  EXPECT_EQ(map.width, 512U);
+}
+
+TEST(ActuatorMap, OfTheBuiltInAvatarHasSixNamedRegions) {
+  const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
+  ASSERT_EQ(map.actuator_count, 6U);
+  EXPECT_EQ(map.names[1], "upper torso, left");
+  EXPECT_TRUE(map.warnings.empty());
+}
+
+Contact contact_on(std::uint16_t actuator) {
+  Contact contact;
+  contact.triangle = 5;
+  contact.t = 0.5F;
+  contact.actuator = actuator;
+  return contact;
+}
+
+TEST(BinaryLaw, SwitchesTheActuatorOfAContactOnAndHoldsIt) {
+  BinaryLaw law(2, 0.060);
+  EXPECT_THAT(law.next(0, {contact_on(2), Contact()}).duty, ::testing::ElementsAre(0, 255));
+  EXPECT_THAT(law.next(0.059, {}).duty, ::testing::ElementsAre(0, 255));
+  EXPECT_THAT(law.next(0.060, {}).duty, ::testing::ElementsAre(0, 0));
+  EXPECT_THAT(law.next(0.070, {contact_on(0)}).duty, ::testing::ElementsAre(0, 0));
+}
+
+TEST(BinaryLaw, WithoutHoldGivesTheRawFrames) {
+  BinaryLaw law(1, 0);
+  EXPECT_THAT(law.next(0, {contact_on(1)}).duty, ::testing::ElementsAre(255));
+  EXPECT_THAT(law.next(0, {}).duty, ::testing::ElementsAre(0));
+}
+
+TEST(TextureHash, IsTheSha256OfTriangleTimeAndActuatorInLittleEndian) {
+  TextureHash hash;
+  hash.add({contact_on(3), Contact()});
+  // printf '\x05\0\0\0\0\0\0\x3f\x03\0\xff\xff\xff\xff\0\0\x80\x7f\0\0' | sha256sum
+  EXPECT_EQ(hash.hex(), "65694e4c5dcd3ed57221d90ed80462c729b834f23941c6ff68908b18176cffb0");
+}
+
+}  // namespace
+}  // namespace vestige

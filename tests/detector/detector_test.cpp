@@ -1,0 +1,319 @@
+#include "detector/detector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "analysis/comparison.hpp"
+#include "analysis/skinning_error.hpp"
+#include "detector/gl/gl_context.hpp"
+#include "tests/support/exact_segment_triangle.hpp"
+#include "tests/support/small_avatar.hpp"
+#include "tests/support/test_data.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/colliders.hpp"
+
+namespace vestige {
+namespace {
+
+const Avatar& builtin_avatar() {
+  static const Avatar kAvatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  return kAvatar;
+}
+
+const ActuatorMap& builtin_map() {
+  static const ActuatorMap kMap =
+      parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
+  return kMap;
+}
+
+/// A map of 2 x 1 texels: nothing left of u = 0.5, actuator 1 right of it.
+ActuatorMap half_map() {
+  ActuatorMap map;
+  map.width = 2;
+  map.actuator = {0, 1};
+  map.actuator_count = 1;
+  map.names = {"right half"};
+  return map;
+}
+
+/// Every detector that there is, in every kind of context: what holds for one must hold for all.
+struct Kind {
+  const char* name;
+  std::unique_ptr<Detector> (*make)(const Avatar&, const ActuatorMap&, const DetectorOptions&);
+};
+
+std::unique_ptr<Detector> paper_on_egl(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
+  return make_paper_detector(make_egl_surfaceless_context(), avatar, map, options);
+}
+std::unique_ptr<Detector> paper_on_egl_device(const Avatar& avatar, const ActuatorMap& map,
+                                              const DetectorOptions& options) {
+  return make_paper_detector(make_egl_device_context(0), avatar, map, options);
+}
+std::unique_ptr<Detector> paper_on_osmesa(const Avatar& avatar, const ActuatorMap& map,
+                                          const DetectorOptions& options) {
+  return make_paper_detector(make_osmesa_context(), avatar, map, options);
+}
+
+class DetectorTest : public ::testing::TestWithParam<Kind> {
+ protected:
+  static DetectorOptions options(Surface surface = Surface::kAll) { return {surface, PlaneSet::all()}; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Each, DetectorTest,
+                         ::testing::Values(Kind{"cpu", make_cpu_detector}, Kind{"paper_egl", paper_on_egl},
+                                           Kind{"paper_egl_device", paper_on_egl_device},
+                                           Kind{"paper_osmesa", paper_on_osmesa}),
+                         [](const auto& test) { return test.param.name; });
+
+const std::vector<glm::vec3> kUnitTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+
+TEST_P(DetectorTest, DescribesAContactCompletely) {
+  const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
+  const ActuatorMap map = half_map();
+  const auto detector = GetParam().make(avatar, map, options());
+  ContactRow row;
+  detector->detect(test::frame_of(avatar, {{0, {0.625F, 0.25F, 1}, {0.625F, 0.25F, -3}}}), row);
+  ASSERT_EQ(row.size(), 1U);
+  EXPECT_EQ(row[0].triangle, 0U);
+  EXPECT_EQ(row[0].t, 0.25F);
+  EXPECT_EQ(row[0].actuator, 1);
+  EXPECT_EQ(row[0].side, 1);
+  EXPECT_EQ(row[0].barycentric, glm::dvec2(0.625, 0.25));
+  EXPECT_EQ(row[0].texture_coordinate, glm::dvec2(0.625, 0.25));
+  EXPECT_EQ(row[0].position, glm::dvec3(0.625, 0.25, 0));
+  EXPECT_NEAR(row[0].speed_m_per_s, 400, 1e-3);
+}
+
+TEST_P(DetectorTest, KeepsTheEarliestContactAndAmongEqualsTheSmallestTriangle) {
+  std::vector<glm::vec3> vertices;
+  std::vector<glm::uvec3> triangles;
+  for (const float z : {0.25F, 0.75F, 0.5F, 0.75F})
+    for (const glm::vec3& vertex : kUnitTriangle) vertices.emplace_back(vertex.x, vertex.y, z);
+  for (std::uint32_t i = 0; i < 4; ++i) triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  const Avatar avatar = test::rigid_avatar(vertices, triangles);
+  const ActuatorMap map = half_map();
+  const auto detector = GetParam().make(avatar, map, options());
+  ContactRow row;
+  detector->detect(
+      test::frame_of(avatar, {{0, {0.25F, 0.25F, 1}, {0.25F, 0.25F, 0}}, {1, {0.25F, 0.25F, 0}, {0.25F, 0.25F, 1}}}),
+      row);
+  EXPECT_EQ(row[0].triangle, 1U);
+  EXPECT_EQ(row[0].t, 0.25F);
+  EXPECT_EQ(row[1].triangle, 0U);
+  EXPECT_EQ(row[1].side, -1);
+}
+
+TEST_P(DetectorTest, FindsContactsAtBothEndsOfTheSegment) {
+  const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
+  const ActuatorMap map = half_map();
+  const auto detector = GetParam().make(avatar, map, options());
+  ContactRow row;
+  detector->detect(test::frame_of(avatar, {{0, {0.25F, 0.25F, 1}, {0.25F, 0.25F, 0}},
+                                           {1, {0.25F, 0.25F, 0}, {0.25F, 0.25F, 1}},
+                                           {2, {0.25F, 0.25F, 1}, {0.25F, 0.25F, 0.001F}}}),
+                   row);
+  EXPECT_EQ(row[0].t, 1.0F);
+  EXPECT_EQ(row[1].t, 0.0F);
+  EXPECT_FALSE(std::signbit(row[1].t));
+  EXPECT_FALSE(row[2].hit());
+  EXPECT_TRUE(std::isinf(row[2].t));
+}
+
+TEST_P(DetectorTest, DropsNoContactWhenAThousandCollidersHitOneTriangle) {
+  const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
+  const ActuatorMap map = half_map();
+  const auto detector = GetParam().make(avatar, map, options());
+  std::vector<Segment> segments;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const float x = 0.9F * static_cast<float>(i) / 1000;
+    segments.push_back({i, {x, 0.05F, 1}, {x, 0.05F, -1}});
+  }
+  ContactRow row;
+  detector->detect(test::frame_of(avatar, segments), row);
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    ASSERT_TRUE(row[i].hit()) << i;
+    EXPECT_EQ(row[i].actuator, segments[i].start.x >= 0.5F ? 1 : 0) << i;
+  }
+}
+
+TEST_P(DetectorTest, HasRoomForMoreCollidersThanATextureIsWide) {
+  const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
+  const ActuatorMap map = half_map();
+  const auto detector = GetParam().make(avatar, map, options());
+  constexpr std::uint32_t kCount = 20000;
+  std::vector<Segment> segments;
+  for (std::uint32_t i = 0; i < kCount; ++i) {
+    const float z = i % 3 == 0 ? 1.0F : -1.0F;
+    segments.push_back({i, {0.25F, 0.25F, 1}, {0.25F, 0.25F, z * 0.5F}});
+  }
+  ContactRow row;
+  detector->detect(test::frame_of(avatar, segments), row);
+  for (std::uint32_t i = 0; i < kCount; ++i) ASSERT_EQ(row[i].hit(), i % 3 != 0) << i;
+}
+
+TEST_P(DetectorTest, PassesThroughUnmappedSkinOnlyWhenAsked) {
+  std::vector<glm::vec3> vertices;
+  for (const float z : {0.75F, 0.5F})
+    for (const glm::vec3& vertex : kUnitTriangle) vertices.emplace_back(vertex.x, vertex.y, z);
+  Avatar avatar = test::rigid_avatar(vertices, {{0, 1, 2}, {3, 4, 5}});
+  for (std::size_t i = 3; i < 6; ++i) avatar.texture_coordinate[i] = {0.75F, 0.5F};
+  for (std::size_t i = 0; i < 3; ++i) avatar.texture_coordinate[i] = {0.25F, 0.5F};
+  const ActuatorMap map = half_map();
+  const Frame frame = test::frame_of(avatar, {{0, {0.25F, 0.25F, 1}, {0.25F, 0.25F, 0}}});
+  ContactRow row;
+  GetParam().make(avatar, map, options(Surface::kAll))->detect(frame, row);
+  EXPECT_EQ(row[0].triangle, 0U);
+  EXPECT_EQ(row[0].actuator, 0);
+  GetParam().make(avatar, map, options(Surface::kMapped))->detect(frame, row);
+  EXPECT_EQ(row[0].triangle, 1U);
+  EXPECT_EQ(row[0].actuator, 1);
+}
+
+TEST_P(DetectorTest, GivesTheSameActuatorsWhateverPlanesAreAskedFor) {
+  const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
+  const ActuatorMap map = half_map();
+  const Frame frame =
+      test::frame_of(avatar, {{0, {0.75F, 0.125F, 1}, {0.75F, 0.125F, -1}}, {2, {2, 2, 1}, {2, 2, -1}}});
+  ContactRow row;
+  GetParam().make(avatar, map, {Surface::kAll, PlaneSet()})->detect(frame, row);
+  ASSERT_EQ(row.size(), 3U);
+  EXPECT_TRUE(row[0].hit());
+  EXPECT_EQ(row[0].actuator, 1);
+  EXPECT_FALSE(row[1].hit());
+  EXPECT_FALSE(row[2].hit());
+}
+
+TEST_P(DetectorTest, AnswersAFrameWithoutSegments) {
+  const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
+  const ActuatorMap map = half_map();
+  const auto detector = GetParam().make(avatar, map, options());
+  ContactRow row;
+  Frame frame = test::frame_of(avatar, {});
+  detector->detect(frame, row);
+  EXPECT_TRUE(row.empty());
+  frame.columns = 5;
+  detector->detect(frame, row);
+  EXPECT_EQ(row.size(), 5U);
+  EXPECT_FALSE(row[4].hit());
+}
+
+/// Runs `frames` frames of a swarm over an avatar and hands each to `visit`.
+template <typename Visit>
+void swarm_over(const Avatar& avatar, std::uint32_t colliders, int frames, double rate_hz, Visit visit) {
+  const Animation* animation = avatar.animations.empty() ? nullptr : &avatar.animations.front();
+  const auto swarm = make_swarm(avatar, animation, {colliders, 1});
+  std::vector<std::uint32_t> ids;
+  for (std::uint32_t i = 0; i < colliders; ++i) ids.push_back(i);
+  FrameBuilder builder(avatar, ids);
+  TraceFrame trace_frame;
+  for (int k = 0; k < frames; ++k) {
+    trace_frame.time_ns = std::llround(k / rate_hz * 1e9);
+    trace_frame.pose = looped_pose(avatar, animation, k / rate_hz);
+    swarm->sample(k / rate_hz, trace_frame.colliders);
+    visit(trace_frame, builder.next(trace_frame));
+  }
+}
+
+TEST_P(DetectorTest, SkinsWithinAMillionthOfTheAvatarsHeight) {
+  std::vector<Avatar> avatars = {builtin_avatar()};
+  for (const char* name : {"CesiumMan.glb", "MakeHumanBase_cc0_8inf.glb", "KayKit_Knight.glb"}) {
+    const auto path = test::data("avatars/avatars") / name;
+    VESTIGE_REQUIRE_DATA(path);
+    avatars.push_back(parse_avatar_glb(read_avatar_glb(path), name));
+  }
+  for (const Avatar& avatar : avatars) {
+    const auto detector = GetParam().make(avatar, builtin_map(), options());
+    SkinningError error;
+    swarm_over(avatar, 1, 5, 3, [&](const TraceFrame& trace_frame, const Frame& frame) {
+      error.add(avatar, trace_frame, frame, *detector);
+    });
+    EXPECT_EQ(error.vertices, 5 * avatar.position_bind.size());
+    EXPECT_LT(error.largest_m, 1e-6 * error.height_m);
+    EXPECT_GT(error.height_m, 0);
+  }
+}
+
+/// What a user would notice: the same contacts as in double precision, on the built-in avatar and a real one. The full
+/// comparison, 2000 frames, is `vestige replay --detector paper --verify cpu`.
+TEST_P(DetectorTest, FindsTheContactsThatTheCpuFinds) {
+  std::vector<Avatar> avatars = {builtin_avatar()};
+  const auto path = test::data("avatars/avatars/CesiumMan.glb");
+  VESTIGE_REQUIRE_DATA(path);
+  avatars.push_back(parse_avatar_glb(read_avatar_glb(path), "CesiumMan.glb"));
+  for (const Avatar& avatar : avatars) {
+    const auto detector = GetParam().make(avatar, builtin_map(), options());
+    const auto cpu = make_cpu_detector(avatar, builtin_map(), options());
+    Comparison comparison;
+    ContactRow row;
+    ContactRow expected;
+    swarm_over(avatar, 100, 60, 60, [&](const TraceFrame&, const Frame& frame) {
+      detector->detect(frame, row);
+      cpu->detect(frame, expected);
+      comparison.add(row, expected);
+    });
+    EXPECT_GT(comparison.expected, 200U);
+    EXPECT_EQ(comparison.differing(), 0U) << describe(comparison);
+    EXPECT_LT(comparison.largest_t_difference, 1e-4);
+  }
+}
+
+TEST(CpuDetector, AgreesWithRationalArithmeticOnAMovingAvatar) {
+  const Avatar& avatar = builtin_avatar();
+  const auto cpu = make_cpu_detector(avatar, builtin_map(), {Surface::kAll, PlaneSet::all()});
+  std::vector<glm::vec3> vertices;
+  ContactRow row;
+  int contacts = 0;
+  swarm_over(avatar, 10, 12, 15, [&](const TraceFrame&, const Frame& frame) {
+    cpu->detect(frame, row);
+    skin_vertices(avatar, frame.palette, vertices);
+    for (const Segment& segment : frame.segments) {
+      // Rational arithmetic for 5000 triangles is slow: those whose box is apart cannot touch.
+      const glm::vec3 low = glm::min(segment.start, segment.end);
+      const glm::vec3 high = glm::max(segment.start, segment.end);
+      std::uint32_t first = kNoTriangle;
+      float first_t = 2;
+      for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) {
+        const glm::vec3 a = vertices[avatar.triangles[i].x];
+        const glm::vec3 b = vertices[avatar.triangles[i].y];
+        const glm::vec3 c = vertices[avatar.triangles[i].z];
+        if (glm::any(glm::lessThan(glm::max(a, glm::max(b, c)), low)) ||
+            glm::any(glm::greaterThan(glm::min(a, glm::min(b, c)), high)))
+          continue;
+        const auto t = test::exact_first_contact(segment.start, segment.end, a, b, c);
+        if (!t || static_cast<float>(*t) >= first_t) continue;
+        first = i;
+        first_t = static_cast<float>(*t);
+      }
+      EXPECT_EQ(row[segment.column].triangle, first) << "frame at " << frame.time_s << ", column " << segment.column;
+      if (first == kNoTriangle) continue;
+      ++contacts;
+      EXPECT_NEAR(row[segment.column].t, first_t, 1e-7);
+    }
+  });
+  EXPECT_GT(contacts, 10);
+}
+
+TEST(GlContext, ListsDevicesAndNamesWhatIsMissing) {
+  const auto devices = list_egl_devices();
+  EXPECT_FALSE(devices.empty());
+  EXPECT_THROW(make_egl_device_context(static_cast<int>(devices.size())), std::exception);
+}
+
+TEST(GlContext, SurvivesTwoContextsTakingTurnsOnOneThread) {
+  const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
+  const ActuatorMap map = half_map();
+  const auto egl = paper_on_egl(avatar, map, {});
+  const auto osmesa = paper_on_osmesa(avatar, map, {});
+  const Frame frame = test::frame_of(avatar, {{0, {0.75F, 0.125F, 1}, {0.75F, 0.125F, -1}}});
+  ContactRow row;
+  for (int i = 0; i < 20; ++i) {
+    (i % 2 == 0 ? egl : osmesa)->detect(frame, row);
+    ASSERT_TRUE(row[0].hit()) << i;
+  }
+}
+
+}  // namespace
+}  // namespace vestige
