@@ -1,0 +1,26 @@
+# Sourced by ./reproduce and ./check: installs the Debian packages that are missing.
+
+build_packages="build-essential cmake ninja-build pkg-config git
+  libtinygltf-dev libglm-dev libopenexr-dev flatbuffers-compiler libflatbuffers-dev libzstd-dev liblz4-dev
+  libdeflate-dev libpng-dev libmd-dev libcli11-dev libfmt-dev nlohmann-json3-dev
+  libgl-dev libegl-dev libosmesa6-dev libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6
+  libvtk9-dev fonts-liberation2"
+test_packages="libgtest-dev libgmock-dev libboost-dev libexpat1-dev zstd clang-format-14 clang-tidy-14"
+
+# install_packages NAME…: nothing to do, nothing said; not allowed to, the line to run is printed.
+install_packages() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}\n' "$package" 2>/dev/null | grep -q 'ok installed' || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  local run="apt-get install -y --no-install-recommends ${missing[*]}"
+  if [ "$(id -u)" -eq 0 ]; then
+    apt-get update && DEBIAN_FRONTEND=noninteractive $run
+  elif command -v sudo >/dev/null && { [ -t 0 ] || sudo -n true 2>/dev/null; }; then
+    sudo apt-get update && sudo DEBIAN_FRONTEND=noninteractive $run
+  else
+    printf 'Packages are missing. As root, run:\n  apt-get update && %s\n' "$run" >&2
+    return 1
+  fi
+}
