@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <memory>
 
 #include "analysis/provenance.hpp"
@@ -138,6 +139,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
   print_summary(sweep_table(series, options.settings.seed), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {options.common.json}, options.common);
+  std::fflush(stdout);  // before the child that draws prints its own
   if (!options.no_figure) draw_figure(options);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
 }

@@ -240,7 +240,10 @@ class SweepFigure : public Figure {
     const SweepSeries& series = sweeps_.series[index];
     std::vector<Place> line;
     for (const SweepPoint& point : series.points) line.push_back(place(point, x, y));
-    const Dash dash = series.skip == "off" ? Dash::kDashed : Dash::kSolid;
+    // Dashes tell brute force from skipping, where there are both.
+    const bool both =
+        std::ranges::any_of(sweeps_.series, [&](const SweepSeries& one) { return one.skip != series.skip; });
+    const Dash dash = both && series.skip == "off" ? Dash::kDashed : Dash::kSolid;
     canvas.polyline(line, {colour(index), 1.2, dash});
     const std::size_t step = (line.size() + kMarkedPoints - 1) / kMarkedPoints;
     for (std::size_t i = line.size(); i > 0; i -= std::min(step, i))
