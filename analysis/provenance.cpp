@@ -73,6 +73,10 @@ nlohmann::ordered_json to_json(const Avatar& avatar) {
           {"joints", avatar.joint_count}};
 }
 
+std::string commit() {
+  return fmt::format("{}{}", kCommit, kDirty ? "+" : "");
+}
+
 std::string utc_now() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }

@@ -27,6 +27,9 @@ nlohmann::ordered_json to_json(const Machine& machine);
 nlohmann::ordered_json to_json(const GlInfo& gl);      ///< renderer, version, context; null for a detector without GL
 nlohmann::ordered_json to_json(const Avatar& avatar);  ///< vertices, triangles, joints
 
+/// The commit that this program was built from; a "+" behind it says that files had been changed since.
+std::string commit();
+
 /// Now, as "2026-11-21T01:40:00Z".
 std::string utc_now();
 

@@ -57,6 +57,7 @@ int run(int argc, char** argv) {
   add_inspect(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);
+  add_claims(program, invocation);
   // After the verbs, which would take it over.
   program.footer(
       "'vestige VERB --help' explains each. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but data was\n"

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "analysis/provenance.hpp"
 #include "cli/detectors.hpp"
@@ -195,12 +197,11 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     timeline.emplace(options.timeline, options.common.overwrite(), trace.map.actuator_count);
   if (!options.textures.empty()) {
     texture_file.emplace(options.textures, options.common.overwrite());
-    const nlohmann::ordered_json origin = provenance(invocation.argv);
-    textures.emplace(texture_planes, collider_ids.size(),
-                     std::map<std::string, std::string>{{"vestige_trace", options.trace},
-                                                        {"vestige_detector", detector->name()},
-                                                        {"vestige_gl_renderer", detector->gl_info().renderer},
-                                                        {"vestige_commit", origin["commit"].get<std::string>()}});
+    std::map<std::string, std::string> attributes = {
+        {"vestige_trace", options.trace}, {"vestige_detector", detector->name()}, {"vestige_commit", commit()}};
+    const GlInfo gl = detector->gl_info();
+    if (!gl.context.empty()) attributes.emplace("vestige_gl_renderer", gl.renderer);
+    textures.emplace(texture_planes, collider_ids.size(), std::move(attributes));
   }
 
   catch_interrupts();

@@ -13,6 +13,7 @@ void add_sweep(CLI::App& program, Invocation& invocation);
 void add_inspect(CLI::App& program, Invocation& invocation);
 void add_devices(CLI::App& program, Invocation& invocation);
 void add_plot(CLI::App& program, Invocation& invocation);
+void add_claims(CLI::App& program, Invocation& invocation);
 
 /// Makes a verb. `examples`, two that run as they are, open its help.
 CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& summary, const std::string& examples);

@@ -45,6 +45,7 @@ class PlaneSet {
   constexpr PlaneSet() = default;
   constexpr PlaneSet(Plane plane) : bits_(static_cast<unsigned>(plane) | 1U) {}
   constexpr bool has(Plane plane) const { return (bits_ & static_cast<unsigned>(plane)) != 0; }
+  constexpr unsigned bits() const { return bits_; }
   friend constexpr PlaneSet operator|(PlaneSet a, PlaneSet b) {
     PlaneSet both;
     both.bits_ = a.bits_ | b.bits_;

@@ -4,12 +4,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstring>
-#include <limits>
 #include <optional>
 #include <utility>
 
 #include "detector/detector.hpp"
+#include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
 #include "shaders/constants.h"
@@ -19,27 +18,6 @@
 namespace vestige {
 
 namespace {
-
-/// A plane of the collision texture: where it is attached, what it holds, and its share of a contact.
-struct PlaneFormat {
-  Plane plane;
-  GLenum internal_format;
-  GLenum format;
-  std::size_t components;           // read back for each texel
-  std::size_t geometry_components;  // written by the geometry shader for each point
-};
-
-constexpr std::array<PlaneFormat, 8> kPlanes = {{
-    {Plane::kActuator, GL_R32F, GL_RED, 1, 1},
-    {Plane::kTime, GL_R32F, GL_RED, 1, 1},
-    {Plane::kTriangle, GL_R32UI, GL_RED_INTEGER, 1, 1},
-    {Plane::kBarycentric, GL_RG32F, GL_RG, 2, 2},
-    {Plane::kTextureCoordinate, GL_RG32F, GL_RG, 2, 2},
-    {Plane::kPosition, GL_RGBA32F, GL_RGBA, 4, 3},
-    {Plane::kSpeed, GL_R32F, GL_RED, 1, 1},
-    {Plane::kSide, GL_R32F, GL_RED, 1, 1},
-}};
-static_assert(static_cast<unsigned>(Plane::kSide) == 1U << VESTIGE_PLANE_SIDE);
 
 /// std430 layout of the shader's GpuSegment.
 struct GpuSegment {
@@ -54,113 +32,6 @@ struct GpuVertex {
   glm::vec3 position_bind;
   glm::vec2 texture_coordinate;
   Influences influences;
-};
-
-unsigned plane_bits(PlaneSet planes) {
-  unsigned bits = 0;
-  for (const PlaneFormat& plane : kPlanes)
-    if (planes.has(plane.plane)) bits |= static_cast<unsigned>(plane.plane);
-  return bits;
-}
-
-GLint limit(const GlFunctions& gl, GLenum name) {
-  GLint value = 0;
-  gl.GetIntegerv(name, &value);
-  return value;
-}
-
-/// The collision texture: one texel for each collider, in as many rows as the driver's texture limit asks for.
-class CollisionTexture {
- public:
-  CollisionTexture(const GlFunctions& gl, PlaneSet planes) : gl_(gl), planes_(planes) {}
-  ~CollisionTexture() { release(); }
-  CollisionTexture(const CollisionTexture&) = delete;
-  CollisionTexture& operator=(const CollisionTexture&) = delete;
-
-  GLsizei width() const { return width_; }
-  GLsizei height() const { return height_; }
-
-  /// Makes room for `texels`, binds the framebuffer and clears it to +inf, 0xFFFFFFFF and depth 1.
-  void begin(std::size_t texels) {
-    if (texels > texels_ || framebuffer_ == 0) create(texels);
-    gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-    gl_.Viewport(0, 0, width_, height_);
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    constexpr std::array<GLfloat, 4> kNone = {kInfinity, kInfinity, kInfinity, kInfinity};
-    constexpr std::array<GLuint, 4> kNoIndex = {kNoTriangle, 0, 0, 0};
-    constexpr GLfloat kFar = 1;
-    for (GLint i = 0; i < static_cast<GLint>(kPlanes.size()); ++i) {
-      const PlaneFormat& plane = kPlanes[static_cast<std::size_t>(i)];
-      if (!planes_.has(plane.plane)) continue;
-      if (plane.plane == Plane::kTriangle) {
-        gl_.ClearNamedFramebufferuiv(framebuffer_, GL_COLOR, i, kNoIndex.data());
-      } else {
-        gl_.ClearNamedFramebufferfv(framebuffer_, GL_COLOR, i, kNone.data());
-      }
-    }
-    gl_.ClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &kFar);
-  }
-
-  /// Reads one plane back into `out`: width * height * components values of 32 bits.
-  void read(std::size_t plane_index, std::vector<std::uint32_t>& out) const {
-    const PlaneFormat& plane = kPlanes[plane_index];
-    out.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * plane.components);
-    gl_.NamedFramebufferReadBuffer(framebuffer_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(plane_index));
-    gl_.ReadPixels(0, 0, width_, height_, plane.format, plane.plane == Plane::kTriangle ? GL_UNSIGNED_INT : GL_FLOAT,
-                   out.data());
-  }
-
- private:
-  void create(std::size_t texels) {
-    release();
-    const auto side = static_cast<std::size_t>(limit(gl_, GL_MAX_TEXTURE_SIZE));
-    const std::size_t wanted = std::max<std::size_t>(texels, 1);
-    const std::size_t columns = std::min(wanted, side);
-    const std::size_t rows = (wanted + columns - 1) / columns;
-    if (rows > side)
-      throw Error("OpenGL", fmt::format("{} colliders do not fit into a texture", texels), "use fewer colliders");
-    width_ = static_cast<GLsizei>(columns);
-    height_ = static_cast<GLsizei>(rows);
-    texels_ = columns * rows;
-    gl_.CreateFramebuffers(1, &framebuffer_);
-    std::array<GLenum, kPlanes.size()> draw_buffers = {};
-    for (std::size_t i = 0; i < kPlanes.size(); ++i) {
-      draw_buffers[i] = GL_NONE;
-      if (!planes_.has(kPlanes[i].plane)) continue;
-      const GLenum attachment = GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i);
-      gl_.CreateTextures(GL_TEXTURE_2D, 1, &textures_[i]);
-      gl_.TextureStorage2D(textures_[i], 1, kPlanes[i].internal_format, width_, height_);
-      gl_.NamedFramebufferTexture(framebuffer_, attachment, textures_[i], 0);
-      draw_buffers[i] = attachment;
-    }
-    gl_.CreateRenderbuffers(1, &depth_);
-    gl_.NamedRenderbufferStorage(depth_, GL_DEPTH_COMPONENT32F, width_, height_);
-    gl_.NamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
-    gl_.NamedFramebufferDrawBuffers(framebuffer_, static_cast<GLsizei>(draw_buffers.size()), draw_buffers.data());
-    const GLenum status = gl_.CheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER);
-    if (status != GL_FRAMEBUFFER_COMPLETE)
-      throw Error("OpenGL", fmt::format("the driver refuses a collision texture (status {:#06x})", status),
-                  "ask for fewer planes, or use another --context");
-  }
-
-  void release() {
-    if (framebuffer_ == 0) return;
-    gl_.DeleteTextures(static_cast<GLsizei>(textures_.size()), textures_.data());
-    gl_.DeleteRenderbuffers(1, &depth_);
-    gl_.DeleteFramebuffers(1, &framebuffer_);
-    textures_ = {};
-    framebuffer_ = 0;
-    texels_ = 0;
-  }
-
-  const GlFunctions& gl_;
-  PlaneSet planes_;
-  GLuint framebuffer_ = 0;
-  GLuint depth_ = 0;
-  std::array<GLuint, kPlanes.size()> textures_ = {};
-  GLsizei width_ = 0;
-  GLsizei height_ = 0;
-  std::size_t texels_ = 0;
 };
 
 class PaperDetector final : public Detector {
@@ -178,10 +49,10 @@ class PaperDetector final : public Detector {
         captured_(gl_),
         texture_(gl_, options.planes) {
     std::size_t components = 4;  // gl_Position
-    for (const PlaneFormat& plane : kPlanes)
+    for (const GlPlane& plane : kGlPlanes)
       if (options_.planes.has(plane.plane)) components += plane.geometry_components;
-    const auto total = static_cast<std::size_t>(limit(gl_, GL_MAX_GEOMETRY_TOTAL_OUTPUT_COMPONENTS));
-    const auto most = static_cast<std::size_t>(limit(gl_, GL_MAX_GEOMETRY_OUTPUT_VERTICES));
+    const auto total = static_cast<std::size_t>(gl_limit(gl_, GL_MAX_GEOMETRY_TOTAL_OUTPUT_COMPONENTS));
+    const auto most = static_cast<std::size_t>(gl_limit(gl_, GL_MAX_GEOMETRY_OUTPUT_VERTICES));
     largest_block_ = std::bit_floor(std::min(total / components, most));
 
     upload_mesh();
@@ -288,7 +159,7 @@ class PaperDetector final : public Detector {
   }
 
   void upload_map(const ActuatorMap& map) {
-    const auto side = static_cast<std::uint32_t>(limit(gl_, GL_MAX_TEXTURE_SIZE));
+    const auto side = static_cast<std::uint32_t>(gl_limit(gl_, GL_MAX_TEXTURE_SIZE));
     if (map.width > side || map.height > side)
       throw Error("--map", fmt::format("{} x {} texels are more than this driver's {}", map.width, map.height, side),
                   "scale the map down, without smoothing");
@@ -337,18 +208,18 @@ class PaperDetector final : public Detector {
     return fmt::format(
         "#version 450 core\n{}#define PLANES {}\n#define BLOCK_SEGMENTS {}\n#define INFLUENCES {}\n"
         "#define MAPPED_ONLY {}\n",
-        shaders::kConstantsH, plane_bits(options_.planes), block, avatar_.influence_count,
+        shaders::kConstantsH, options_.planes.bits(), block, avatar_.influence_count,
         options_.surface == Surface::kMapped ? 1 : 0);
   }
 
   void read_back(ContactRow& row) {
-    for (std::size_t i = 0; i < kPlanes.size(); ++i) {
-      if (!options_.planes.has(kPlanes[i].plane)) continue;
+    for (std::size_t i = 0; i < kGlPlanes.size(); ++i) {
+      if (!options_.planes.has(kGlPlanes[i].plane)) continue;
       texture_.read(i, texels_);
       for (std::size_t column = 0; column < row.size(); ++column) {
         // The actuator plane comes first and says which texels hold a contact.
         if (i != VESTIGE_PLANE_ACTUATOR && !row[column].hit()) continue;
-        store(kPlanes[i].plane, &texels_[column * kPlanes[i].components], row[column]);
+        store(kGlPlanes[i].plane, &texels_[column * kGlPlanes[i].components], row[column]);
       }
     }
   }

@@ -82,6 +82,12 @@ GlProgram::~GlProgram() {
   gl_.DeleteProgram(name_);
 }
 
+GLint gl_limit(const GlFunctions& gl, GLenum name) {
+  GLint value = 0;
+  gl.GetIntegerv(name, &value);
+  return value;
+}
+
 void check_gl(const GlFunctions& gl, std::string_view doing) {
   const GLenum error = gl.GetError();
   if (error == GL_NO_ERROR) return;

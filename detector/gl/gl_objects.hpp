@@ -50,6 +50,9 @@ class GlProgram {
   GLuint name_ = 0;
 };
 
+/// One of the driver's limits.
+GLint gl_limit(const GlFunctions& gl, GLenum name);
+
 /// Throws `Error` naming the OpenGL error, if there was one since the last call.
 void check_gl(const GlFunctions& gl, std::string_view doing);
 

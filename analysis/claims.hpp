@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace vestige {
+
+/// One row of the table in results/README.md: something that a result file shows, with all it takes to check it.
+struct Claim {
+  std::string claim;
+  std::string command;
+  std::string time;
+  std::string machine;  ///< processor, cores, GL renderer
+  std::string commit;
+  std::string file;
+};
+
+/// What a sweep's or replay's JSON shows; nothing for any other JSON. `file` is how the table names it.
+std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& file);
+
+/// The claims as a Markdown table.
+std::string claims_table(const std::vector<Claim>& claims);
+
+}  // namespace vestige

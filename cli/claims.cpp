@@ -1,0 +1,72 @@
+#include "analysis/claims.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct ClaimsOptions {
+  CommonOptions common;
+  std::string folder;
+  std::string output = "-";
+};
+
+std::vector<Claim> claims_under(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder)) throw Error(folder.string(), "is no folder", "name a folder of results");
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
+    if (entry.path().extension() == ".json") files.push_back(entry.path());
+  std::ranges::sort(files);
+  std::vector<Claim> claims;
+  for (const auto& file : files) {
+    const std::string name = std::filesystem::relative(file, folder).string();
+    try {
+      const std::vector<Claim> found = claims_of(nlohmann::json::parse(read_text_file(file)), name);
+      claims.insert(claims.end(), found.begin(), found.end());
+    } catch (const nlohmann::json::exception& exception) {
+      throw Error(file.string(), fmt::format("is no result of ours: {}", exception.what()),
+                  "remove it, or write it again");
+    }
+  }
+  return claims;
+}
+
+void run_claims(const ClaimsOptions& options) {
+  check_outputs({options.output}, options.common);
+  const std::vector<Claim> claims = claims_under(options.folder);
+  if (claims.empty())
+    throw Error(options.folder, "holds no result", "write one with 'vestige sweep -o' or 'vestige replay --json'");
+  OutputFile file(options.output, options.common.overwrite());
+  file.write(
+      fmt::format("# Results\n\nWritten by `vestige claims`: what the committed runs show. Frequencies are frames / "
+                  "total time over the whole round trip, with\n95 % bootstrap intervals. llvmpipe is software: its "
+                  "figures say nothing of a GPU.\n\n{}",
+                  claims_table(claims)));
+  file.commit();
+}
+
+}  // namespace
+
+void add_claims(CLI::App& program, Invocation&) {
+  auto options = std::make_shared<ClaimsOptions>();
+  CLI::App* verb = add_verb(program, "claims", "Tabulate what a folder of results shows, as Markdown",
+                            "  vestige claims results\n"
+                            "  vestige claims results --force -o results/README.md\n");
+  verb->add_option("DIR", options->folder, "Folder of JSON files that sweep and replay wrote")->required();
+  verb->add_option("-o,--output", options->output, "The file to write, or '-' for standard output")
+      ->capture_default_str()
+      ->type_name("OUT.md|-");
+  add_common_options(*verb, options->common);
+  verb->callback([options] { run_claims(*options); });
+}
+
+}  // namespace vestige::cli

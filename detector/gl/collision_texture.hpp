@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "detector/contact.hpp"
+#include "detector/gl/gl_functions.hpp"
+#include "shaders/constants.h"
+
+namespace vestige {
+
+/// A plane of the collision texture: what its attachment holds. Planes are attached in the order of their bits.
+struct GlPlane {
+  Plane plane;
+  GLenum internal_format;
+  GLenum format;
+  std::size_t components;           ///< read back for each texel
+  std::size_t geometry_components;  ///< written by the geometry shader for each point
+};
+
+inline constexpr std::array<GlPlane, 8> kGlPlanes = {{
+    {Plane::kActuator, GL_R32F, GL_RED, 1, 1},
+    {Plane::kTime, GL_R32F, GL_RED, 1, 1},
+    {Plane::kTriangle, GL_R32UI, GL_RED_INTEGER, 1, 1},
+    {Plane::kBarycentric, GL_RG32F, GL_RG, 2, 2},
+    {Plane::kTextureCoordinate, GL_RG32F, GL_RG, 2, 2},
+    {Plane::kPosition, GL_RGBA32F, GL_RGBA, 4, 3},
+    {Plane::kSpeed, GL_R32F, GL_RED, 1, 1},
+    {Plane::kSide, GL_R32F, GL_RED, 1, 1},
+}};
+static_assert(static_cast<unsigned>(Plane::kSide) == 1U << VESTIGE_PLANE_SIDE);
+
+/// The collision texture (HAVE 2010 §III.A): one texel for each collider, in as many rows as the driver's texture limit
+/// asks for, with a depth buffer that keeps the earliest contact. Belongs to the context whose functions it was made
+/// with, which must be current.
+class CollisionTexture {
+ public:
+  CollisionTexture(const GlFunctions& gl, PlaneSet planes) : gl_(gl), planes_(planes) {}
+  ~CollisionTexture() { release(); }
+  CollisionTexture(const CollisionTexture&) = delete;
+  CollisionTexture& operator=(const CollisionTexture&) = delete;
+
+  GLsizei width() const { return width_; }
+  GLsizei height() const { return height_; }
+
+  /// Makes room for `texels`, binds the framebuffer and clears it to +inf, 0xFFFFFFFF and depth 1. Throws `Error`: more
+  /// texels than a texture holds, or planes that the driver refuses.
+  void begin(std::size_t texels);
+
+  /// Reads one plane back into `out`: width * height * components values of 32 bits.
+  void read(std::size_t plane_index, std::vector<std::uint32_t>& out) const;
+
+ private:
+  void create(std::size_t texels);
+  void release();
+
+  const GlFunctions& gl_;
+  PlaneSet planes_;
+  GLuint framebuffer_ = 0;
+  GLuint depth_ = 0;
+  std::array<GLuint, kGlPlanes.size()> textures_ = {};
+  GLsizei width_ = 0;
+  GLsizei height_ = 0;
+  std::size_t texels_ = 0;
+};
+
+}  // namespace vestige
