@@ -9,6 +9,7 @@
 #include "tests/support/test_data.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/stream_reader.hpp"
+#include "traces/mcap/writer.hpp"
 #include "traces/sha256.hpp"
 
 namespace vestige::mcap {
@@ -58,6 +59,31 @@ TEST_P(McapCompressed, IndexesTheMessagesByTime) {
   }
   // Messages outside chunks have no index.
   EXPECT_EQ(count, reader.summary().chunk_indexes.empty() ? 0U : 600U);
+}
+
+TEST(McapWriter, GivesAChunkTheTimesOfItsEarliestAndLatestMessage) {
+  std::vector<std::byte> written;
+  Writer writer([&](Bytes bytes) { written.insert(written.end(), bytes.begin(), bytes.end()); }, {}, {});
+  writer.write(Channel{.id = 1, .schema_id = 0, .topic = "t", .message_encoding = "", .metadata = {}});
+  for (const std::uint64_t time : {5U, 9U, 2U, 7U})
+    writer.write(Message{.channel_id = 1, .sequence = 0, .log_time = time, .publish_time = 0, .data = {}});
+  writer.close_chunk();
+  writer.write(Message{.channel_id = 1, .sequence = 0, .log_time = 3, .publish_time = 0, .data = {}});
+  writer.finish();
+
+  const MemorySource source(written);
+  IndexedReader reader(source);
+  ASSERT_EQ(reader.summary().chunk_indexes.size(), 2U);
+  EXPECT_EQ(reader.summary().chunk_indexes[0].message_start_time, 2U);
+  EXPECT_EQ(reader.summary().chunk_indexes[0].message_end_time, 9U);
+  EXPECT_EQ(reader.summary().chunk_indexes[1].message_start_time, 3U);
+  EXPECT_EQ(reader.summary().chunk_indexes[1].message_end_time, 3U);
+  EXPECT_EQ(reader.summary().statistics->message_start_time, 2U);
+  EXPECT_EQ(reader.summary().statistics->message_end_time, 9U);
+  std::vector<std::uint64_t> times;
+  Message message;
+  while (reader.next(message)) times.push_back(message.log_time);
+  EXPECT_EQ(times, (std::vector<std::uint64_t>{2, 3, 5, 7, 9}));
 }
 
 INSTANTIATE_TEST_SUITE_P(Files, McapCompressed,

@@ -1,4 +1,5 @@
-// Our traces, read by the reference reader: npm's @mcap/core, fetched into tests/npm/node_modules when it is not there yet.
+// Our traces, read by the reference reader: npm's @mcap/core, fetched into tests/npm/node_modules when it is not there
+// yet.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ nlohmann::json seen_by_reference_reader(const std::filesystem::path& trace) {
 /// Where the reference reader is, or should be: without network it stays missing.
 std::filesystem::path reference_reader() {
   const auto folder = std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/npm";
-  const auto module = folder / "node_modules/@mcap/core";
+  auto module = folder / "node_modules/@mcap/core";
   if (!std::filesystem::exists(module)) {
     const std::string command = fmt::format("cd '{}' && npm ci --no-audit --no-fund >&2", folder.string());
     if (std::system(command.c_str()) != 0) std::fputs("npm ci failed\n", stderr);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <span>
@@ -61,16 +62,21 @@ inline TraceFrame frame(std::uint64_t index, std::size_t nodes, std::size_t coll
   return frame;
 }
 
+inline bool same_bits(const glm::dvec3& a, const glm::dvec3& b) {
+  const auto bits = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  return bits(a.x) == bits(b.x) && bits(a.y) == bits(b.y) && bits(a.z) == bits(b.z);
+}
+
 inline bool same_bits(const TraceFrame& a, const TraceFrame& b) {
   const auto equal_arrays = [](const auto& x, const auto& y) {
     return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0);
   };
   if (a.index != b.index || a.time_ns != b.time_ns || a.teleported != b.teleported) return false;
-  if (std::memcmp(&a.pose.origin_m, &b.pose.origin_m, sizeof a.pose.origin_m) != 0) return false;
+  if (!same_bits(a.pose.origin_m, b.pose.origin_m)) return false;
   if (!equal_arrays(a.pose.nodes, b.pose.nodes) || a.colliders.size() != b.colliders.size()) return false;
   for (std::size_t i = 0; i < a.colliders.size(); ++i) {
     if (a.colliders[i].id != b.colliders[i].id) return false;
-    if (std::memcmp(&a.colliders[i].position_m, &b.colliders[i].position_m, sizeof(glm::dvec3)) != 0) return false;
+    if (!same_bits(a.colliders[i].position_m, b.colliders[i].position_m)) return false;
   }
   return true;
 }
