@@ -8,8 +8,11 @@
 
 namespace vestige {
 
+namespace {
+const Contact kNone;
+}
+
 void Comparison::add(const ContactRow& row, const ContactRow& expected_row) {
-  static const Contact kNone;
   const std::size_t columns = std::max(row.size(), expected_row.size());
   for (std::size_t column = 0; column < columns; ++column) {
     const Contact& mine = column < row.size() ? row[column] : kNone;

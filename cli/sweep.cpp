@@ -66,7 +66,7 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
 
 /// Without a trace, the built-in avatar in a swarm as large as the largest count, kept beside the results.
 std::string record_default_trace(const SweepOptions& options, const Invocation& invocation) {
-  const std::string path = options.output + "/trace.mcap";
+  std::string path = options.output + "/trace.mcap";
   const Scene scene = load_scene("builtin", "builtin", Verbosity::kQuiet);
   const Animation* animation = find_animation(scene.avatar, "");
   const auto swarm =

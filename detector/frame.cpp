@@ -28,14 +28,14 @@ FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> 
 }
 
 const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
-  ++calls_;
   const double time_s = static_cast<double>(trace_frame.time_ns) / 1e9;
-  frame_.duration_s = calls_ == 1 ? 0 : time_s - frame_.time_s;
+  frame_.duration_s = started_ ? time_s - frame_.time_s : 0;
   frame_.time_s = time_s;
   frame_.index = trace_frame.index;
 
   world_matrices(avatar_, trace_frame.pose, world_);
   follow_origin(trace_frame.pose);
+  started_ = true;
   build_palette(avatar_, world_, trace_frame.pose.origin_m - frame_.origin_m, frame_.palette);
   build_segments(trace_frame);
   if (!finite(frame_.palette)) {
@@ -51,11 +51,11 @@ void FrameBuilder::follow_origin(const Pose& pose) {
   const glm::dvec3 whole = glm::floor(pose.origin_m);
   const glm::dvec3 rest = (pose.origin_m - whole) + root;
   const glm::dvec3 away = (whole - frame_.origin_m) + rest;
-  const bool stays = calls_ > 1 && std::abs(away.x) <= kOriginReach_m && std::abs(away.y) <= kOriginReach_m &&
+  const bool stays = started_ && std::abs(away.x) <= kOriginReach_m && std::abs(away.y) <= kOriginReach_m &&
                      std::abs(away.z) <= kOriginReach_m;
   const glm::dvec3 origin = whole + glm::round(rest);
   if (stays || !(std::isfinite(origin.x) && std::isfinite(origin.y) && std::isfinite(origin.z))) return;
-  if (calls_ > 1) ++origin_changes_;
+  if (started_) ++origin_changes_;
   frame_.origin_m = origin;
 }
 
@@ -66,7 +66,7 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
     if (place == collider_ids_.end() || *place != sample.id) continue;
     const auto column = static_cast<std::size_t>(place - collider_ids_.begin());
     Column& before = columns_[column];
-    const bool has_start = before.seen_in + 1 == calls_ && before.seen_in != 0 &&
+    const bool has_start = before.seen_in != 0 && before.seen_in == trace_frame.index &&
                            std::ranges::find(trace_frame.teleported, sample.id) == trace_frame.teleported.end();
     if (has_start) {
       const Segment segment = {static_cast<std::uint32_t>(column), glm::vec3(before.position_m - frame_.origin_m),
@@ -77,7 +77,7 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
         ++non_finite_segments_;
       }
     }
-    before = {sample.position_m, calls_};
+    before = {sample.position_m, trace_frame.index + 1};
   }
   if (!std::ranges::is_sorted(frame_.segments, {}, &Segment::column))
     std::ranges::sort(frame_.segments, {}, &Segment::column);

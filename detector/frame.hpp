@@ -37,7 +37,8 @@ class FrameBuilder {
   /// `collider_ids`: ascending; a collider's rank in it is its column. Colliders that are not in it are ignored.
   FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids);
 
-  /// The frame after the one given before. The reference stays good until the next call.
+  /// The frame after the one given before; where their indices leave a gap (a damaged trace), nothing is tested. The
+  /// reference stays good until the next call.
   const Frame& next(const TraceFrame& trace_frame);
 
   /// Frames whose pose, and segments of which an end, was not finite: they test nothing.
@@ -48,7 +49,7 @@ class FrameBuilder {
  private:
   struct Column {
     glm::dvec3 position_m = glm::dvec3(0);
-    std::uint64_t seen_in = 0;  ///< 1 + number of the call that saw it last, 0: never
+    std::uint64_t seen_in = 0;  ///< 1 + index of the frame that had it last, 0: none did
   };
 
   void follow_origin(const Pose& pose);
@@ -59,7 +60,7 @@ class FrameBuilder {
   std::vector<Column> columns_;
   std::vector<glm::dmat4> world_;
   Frame frame_;
-  std::uint64_t calls_ = 0;
+  bool started_ = false;
   std::uint64_t non_finite_frames_ = 0;
   std::uint64_t non_finite_segments_ = 0;
   std::uint64_t origin_changes_ = 0;

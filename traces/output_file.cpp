@@ -10,8 +10,6 @@
 #include <cstring>
 #include <utility>
 
-#include "traces/error.hpp"
-
 namespace vestige {
 
 namespace {

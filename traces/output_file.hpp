@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "traces/error.hpp"
+
 namespace vestige {
 
 enum class Overwrite { kRefuse, kAllow };
@@ -51,6 +53,6 @@ void refuse_terminal(std::string_view flag);
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 /// The error of a failed system call on `path`, with a remedy where one is known (permission, disk full, no folder).
-class Error system_error(const std::filesystem::path& path, std::string_view doing, int error_number);
+Error system_error(const std::filesystem::path& path, std::string_view doing, int error_number);
 
 }  // namespace vestige

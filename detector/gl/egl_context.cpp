@@ -49,8 +49,8 @@ struct EglFunctions {
 
 /// Opened once, at first use; a failure is thrown again at every use.
 const EglFunctions& egl() {
-  static const EglFunctions kFunctions;
-  return kFunctions;
+  static const EglFunctions functions;
+  return functions;
 }
 
 Error egl_error(const std::string& context, std::string_view what) {

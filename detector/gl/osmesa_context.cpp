@@ -31,8 +31,8 @@ struct OsMesaFunctions {
 };
 
 const OsMesaFunctions& osmesa() {
-  static const OsMesaFunctions kFunctions;
-  return kFunctions;
+  static const OsMesaFunctions functions;
+  return functions;
 }
 
 class OsMesaGlContext final : public GlContext {

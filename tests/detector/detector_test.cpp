@@ -24,9 +24,8 @@ const Avatar& builtin_avatar() {
 }
 
 const ActuatorMap& builtin_map() {
-  static const ActuatorMap kMap =
-      parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
-  return kMap;
+  static const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
+  return map;
 }
 
 /// A map of 2 x 1 texels: nothing left of u = 0.5, actuator 1 right of it.
@@ -167,7 +166,7 @@ TEST_P(DetectorTest, PassesThroughUnmappedSkinOnlyWhenAsked) {
   GetParam().make(avatar, map, options(Surface::kAll))->detect(frame, row);
   EXPECT_EQ(row[0].triangle, 0U);
   EXPECT_EQ(row[0].actuator, 0);
-  GetParam().make(avatar, map, options(Surface::kMapped))->detect(frame, row);
+  GetParam().make(avatar, map, options(Surface::mapped))->detect(frame, row);
   EXPECT_EQ(row[0].triangle, 1U);
   EXPECT_EQ(row[0].actuator, 1);
 }
@@ -210,6 +209,7 @@ void swarm_over(const Avatar& avatar, std::uint32_t colliders, int frames, doubl
   FrameBuilder builder(avatar, ids);
   TraceFrame trace_frame;
   for (int k = 0; k < frames; ++k) {
+    trace_frame.index = static_cast<std::uint64_t>(k);
     trace_frame.time_ns = std::llround(k / rate_hz * 1e9);
     trace_frame.pose = looped_pose(avatar, animation, k / rate_hz);
     swarm->sample(k / rate_hz, trace_frame.colliders);

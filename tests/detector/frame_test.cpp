@@ -14,9 +14,11 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 class FrameBuilderTest : public ::testing::Test {
  protected:
-  TraceFrame frame_at(std::int64_t time_ns, const std::vector<ColliderSample>& colliders) const {
+  /// Frame `index`, a millisecond after the one before.
+  TraceFrame frame_at(std::uint64_t index, const std::vector<ColliderSample>& colliders) const {
     TraceFrame frame;
-    frame.time_ns = time_ns;
+    frame.index = index;
+    frame.time_ns = static_cast<std::int64_t>(index) * 1000000;
     frame.pose = rest_pose(avatar_);
     frame.colliders = colliders;
     return frame;
@@ -29,7 +31,7 @@ class FrameBuilderTest : public ::testing::Test {
 TEST_F(FrameBuilderTest, GivesAColliderTheColumnOfItsRankAndASegmentFromItsLastPosition) {
   FrameBuilder builder(avatar_, ids_);
   EXPECT_TRUE(builder.next(frame_at(0, {{9, {0, 0, 1}}, {3, {1, 0, 0}}})).segments.empty());
-  const Frame& frame = builder.next(frame_at(1000000, {{9, {0, 0, 2}}, {3, {1, 0, 5}}}));
+  const Frame& frame = builder.next(frame_at(1, {{9, {0, 0, 2}}, {3, {1, 0, 5}}}));
   EXPECT_EQ(frame.columns, 3U);
   EXPECT_DOUBLE_EQ(frame.duration_s, 0.001);
   ASSERT_EQ(frame.segments.size(), 2U);
@@ -49,6 +51,13 @@ TEST_F(FrameBuilderTest, TestsNothingAfterAGapOrATeleport) {
   EXPECT_EQ(builder.next(frame_at(3, {{3, {0, 0, 1}}, {7, {0, 0, 2}}})).segments.size(), 2U);
 }
 
+TEST_F(FrameBuilderTest, TestsNothingAcrossFramesThatADamagedTraceLost) {
+  FrameBuilder builder(avatar_, ids_);
+  builder.next(frame_at(0, {{3, {0, 0, 0}}}));
+  EXPECT_TRUE(builder.next(frame_at(5, {{3, {0, 0, 1}}})).segments.empty());
+  EXPECT_EQ(builder.next(frame_at(6, {{3, {0, 0, 2}}})).segments.size(), 1U);
+}
+
 TEST_F(FrameBuilderTest, DropsAndCountsWhatIsNotFinite) {
   FrameBuilder builder(avatar_, ids_);
   builder.next(frame_at(0, {{3, {0, 0, 0}}, {7, {0, 0, 0}}}));
@@ -65,6 +74,7 @@ TEST_F(FrameBuilderTest, KeepsAWholeMetreOriginUntilTheAvatarIsTwoMetresAway) {
   FrameBuilder builder(avatar_, ids_);
   TraceFrame frame = frame_at(0, {});
   const auto origin_at = [&](double x) {
+    ++frame.index;
     frame.pose.origin_m.x = x;
     return builder.next(frame).origin_m.x;
   };
@@ -81,8 +91,8 @@ TEST_F(FrameBuilderTest, GivesTheSameBitsTenThousandKilometresAway) {
   FrameBuilder here(avatar_, ids_);
   FrameBuilder there(avatar_, ids_);
   const glm::dvec3 shift(1e7, -1e7, 3);
-  for (int i = 0; i < 200; ++i) {
-    const double x = std::ldexp(std::round(std::ldexp(0.0371 * i, 20)), -20);
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const double x = std::ldexp(std::round(std::ldexp(0.0371 * static_cast<double>(i), 20)), -20);
     TraceFrame frame = frame_at(i, {{3, {x, 0.5, 1 - x}}});
     frame.pose.origin_m = {x, 0, 0};
     frame.pose.nodes[0].translation = {0.3F, 0.1F, -0.7F};
