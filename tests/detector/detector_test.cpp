@@ -19,8 +19,8 @@ namespace vestige {
 namespace {
 
 const Avatar& builtin_avatar() {
-  static const Avatar kAvatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return kAvatar;
+  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  return avatar;
 }
 
 const ActuatorMap& builtin_map() {
@@ -166,7 +166,7 @@ TEST_P(DetectorTest, PassesThroughUnmappedSkinOnlyWhenAsked) {
   GetParam().make(avatar, map, options(Surface::kAll))->detect(frame, row);
   EXPECT_EQ(row[0].triangle, 0U);
   EXPECT_EQ(row[0].actuator, 0);
-  GetParam().make(avatar, map, options(Surface::mapped))->detect(frame, row);
+  GetParam().make(avatar, map, options(Surface::kMapped))->detect(frame, row);
   EXPECT_EQ(row[0].triangle, 1U);
   EXPECT_EQ(row[0].actuator, 1);
 }
