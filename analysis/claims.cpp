@@ -53,21 +53,20 @@ void add_replay(const nlohmann::json& result, const Claim& base, std::vector<Cla
   const auto detector = result.at("detector").get<std::string>();
   const std::string context = result.at("gl").is_object() ? " on " + result["gl"]["context"].get<std::string>() : "";
   const auto trace = std::filesystem::path(result.at("trace").get<std::string>()).filename().string();
-  const std::string what = fmt::format("`{}`{}, {} ({} frames, {} colliders)", detector, context, trace,
-                                       result.at("frames").get<int>(), result.at("colliders").get<int>());
-  claim.claim = fmt::format("{}: texture_hash {:.16}…", what, result.at("texture_hash").get<std::string>());
-  claims.push_back(claim);
+  claim.claim = fmt::format("`{}`{}, {} ({} frames, {} colliders): ", detector, context, trace,
+                            result.at("frames").get<int>(), result.at("colliders").get<int>());
+  if (result.contains("verify") && result["verify"].contains("differing"))
+    fmt::format_to(std::back_inserter(claim.claim), "{} of {} contacts differ from {}; ",
+                   result["verify"].at("differing").get<std::uint64_t>(),
+                   result["verify"].at("expected").get<std::uint64_t>(),
+                   result["verify"].at("against").get<std::string>());
   const auto& skinning = result.at("skinning");
-  claim.claim = fmt::format(
-      "{}: skinned vertices within {:.2g} of the avatar's height of the double reference; {} of {} "
-      "agree in all bits with the CPU's",
-      what, skinning.at("largest_error_of_height").get<double>(), skinning.at("identical_to_cpu").get<std::uint64_t>(),
-      skinning.at("vertices").get<std::uint64_t>());
-  claims.push_back(claim);
-  if (!result.contains("verify")) return;
-  claim.claim = fmt::format("{}: {} of {} contacts differ from what it was verified against", what,
-                            result["verify"].at("differing").get<std::uint64_t>(),
-                            result["verify"].at("expected").get<std::uint64_t>());
+  fmt::format_to(std::back_inserter(claim.claim),
+                 "skinned vertices lie within {:.2g} of the avatar's height of the double reference, {} of {} with the "
+                 "bits of the CPU's; texture_hash {:.16}…",
+                 skinning.at("largest_error_of_height").get<double>(),
+                 skinning.at("identical_to_cpu").get<std::uint64_t>(), skinning.at("vertices").get<std::uint64_t>(),
+                 result.at("texture_hash").get<std::string>());
   claims.push_back(claim);
 }
 

@@ -89,8 +89,9 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
   return verification;
 }
 
-nlohmann::ordered_json to_json(const Comparison& comparison) {
-  return {{"expected", comparison.expected},
+nlohmann::ordered_json to_json(const Comparison& comparison, const std::string& against) {
+  return {{"against", against},
+          {"expected", comparison.expected},
           {"differing", comparison.differing()},
           {"missing", comparison.missing},
           {"extra", comparison.extra},
@@ -138,7 +139,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& 
     actuators.push_back({{"name", trace.map.names[i]}, {"contacts", result.contacts_of_actuator[i + 1]}});
   json["actuators"] = actuators;
   json["skinning"] = to_json(result.skinning);
-  if (result.comparison) json["verify"] = to_json(*result.comparison);
+  if (result.comparison) json["verify"] = to_json(*result.comparison, options.verify);
   json["complete"] = trace.reader.complete() && !result.interrupted;
   return json;
 }
