@@ -10,8 +10,8 @@ namespace vestige {
 struct Avatar;
 struct Animation;
 
-/// A node relative to its parent: scale first, then rotation, then translation (glTF 2.0 §3.5.3). Single precision, since
-/// that is what a trace stores: what is replayed is what was recorded, to the bit.
+/// A node relative to its parent: scale first, then rotation, then translation (glTF 2.0 §3.5.3). Single precision,
+/// since that is what a trace stores: what is replayed is what was recorded, to the bit.
 struct NodeLocal {
   glm::vec3 translation = glm::vec3(0);
   glm::quat rotation = glm::quat(1, 0, 0, 0);  ///< w, x, y, z; normalised in double when used
