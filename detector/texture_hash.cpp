@@ -10,7 +10,7 @@ namespace {
 template <typename Unsigned>
 void append_little_endian(std::string& out, Unsigned value) {
   for (std::size_t byte = 0; byte < sizeof(Unsigned); ++byte)
-    out.push_back(static_cast<char>((value >> (8 * byte)) & 0xFFU));
+    out.push_back(static_cast<char>(static_cast<std::uint32_t>(value) >> (8 * byte)));
 }
 
 }  // namespace
