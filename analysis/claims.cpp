@@ -47,6 +47,15 @@ void add_sweep(const nlohmann::json& result, const Claim& base, std::vector<Clai
   }
 }
 
+void add_record(const nlohmann::json& result, Claim claim, std::vector<Claim>& claims) {
+  claim.machine = machine_of(result, nullptr);
+  const auto frames = result.at("frames").get<double>();
+  const auto seconds = result.at("recording_s").get<double>();
+  claim.claim = fmt::format("`record` samples and writes {:.0f} frames in {:.3f} s: {:.0f} frames/s", frames, seconds,
+                            frames / seconds);
+  claims.push_back(claim);
+}
+
 void add_replay(const nlohmann::json& result, const Claim& base, std::vector<Claim>& claims) {
   Claim claim = base;
   claim.machine = machine_of(result, result.at("gl"));
@@ -63,9 +72,10 @@ void add_replay(const nlohmann::json& result, const Claim& base, std::vector<Cla
   const auto& skinning = result.at("skinning");
   fmt::format_to(std::back_inserter(claim.claim),
                  "skinned vertices lie within {:.2g} of the avatar's height of the double reference, {} of {} with the "
-                 "bits of the CPU's; texture_hash {:.16}…",
+                 "bits of the CPU's; the reader delivers {:.0f} frames/s; texture_hash {:.16}…",
                  skinning.at("largest_error_of_height").get<double>(),
                  skinning.at("identical_to_cpu").get<std::uint64_t>(), skinning.at("vertices").get<std::uint64_t>(),
+                 result.at("frames").get<double>() / result.at("reading_s").get<double>(),
                  result.at("texture_hash").get<std::string>());
   claims.push_back(claim);
 }
@@ -82,6 +92,7 @@ std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& fi
       fmt::format("{:.10}{}", result.at("commit").get<std::string>(), result.at("dirty").get<bool>() ? "+" : "");
   base.file = file;
   if (result.contains("series")) add_sweep(result, base, claims);
+  if (result.contains("recording_s")) add_record(result, base, claims);
   if (result.contains("texture_hash")) add_replay(result, base, claims);
   return claims;
 }

@@ -16,7 +16,7 @@ struct Claim {
   std::string file;
 };
 
-/// What a sweep's or replay's JSON shows; nothing for any other JSON. `file` is how the table names it.
+/// What the JSON of a recording, replay or sweep shows; nothing for any other JSON. `file` is how the table names it.
 std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& file);
 
 /// The claims as a Markdown table.

@@ -36,8 +36,8 @@ void Comparison::add(const ContactRow& row, const ContactRow& expected_row) {
 
 std::string describe(const Comparison& comparison) {
   return fmt::format(
-      "{} of {} contacts differ ({} missing, {} extra, {} on another triangle, {} with another actuator); "
-      "t differs in its bits in {}, by {:.3g} at most",
+      "{} contacts differ from the {} expected ({} missing, {} extra, {} on another triangle, {} with another "
+      "actuator); t differs in its bits in {}, by {:.3g} at most",
       comparison.differing(), comparison.expected, comparison.missing, comparison.extra, comparison.other_triangle,
       comparison.other_actuator, comparison.other_t, comparison.largest_t_difference);
 }

@@ -23,7 +23,7 @@ struct Comparison {
   std::uint64_t differing() const { return missing + extra + other_triangle + other_actuator; }
 };
 
-/// "3 of 812 contacts differ (…)".
+/// "3 contacts differ from the 812 expected (…)".
 std::string describe(const Comparison& comparison);
 
 }  // namespace vestige

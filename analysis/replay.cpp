@@ -13,6 +13,10 @@ namespace {
 
 constexpr std::uint64_t kSkinningFrames = 5;
 
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 /// Turns the contacts of a CSV file back into rows, frame by frame.
 class RecordedRows {
  public:
@@ -74,11 +78,17 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
   ContactRow row;
   ContactRow expected;
   trace.rewind();
-  while (trace.next(trace_frame)) {
+  const auto next_frame = [&] {
+    const auto start = std::chrono::steady_clock::now();
+    const bool more = trace.next(trace_frame);
+    result.reading_s += seconds_since(start);
+    return more;
+  };
+  while (next_frame()) {
     const auto start = std::chrono::steady_clock::now();
     const Frame& frame = builder.next(trace_frame);
     const DetectorWork work = detector.detect(frame, row);
-    result.detection_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    result.detection_s += seconds_since(start);
 
     result.pairs_tested += work.pairs_tested;
     for (const Contact& contact : row) {

@@ -40,6 +40,7 @@ struct ReplayResult {
   std::uint64_t non_finite_segments = 0;
   std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: on skin that no actuator covers
   std::string texture_hash;
+  double reading_s = 0;    ///< decoding the trace
   double detection_s = 0;  ///< whole round trips, without decoding and writing
   SkinningError skinning;  ///< of a few frames, evenly spread
   std::optional<Comparison> comparison;

@@ -20,29 +20,33 @@ struct ClaimsOptions {
   std::string output = "-";
 };
 
-std::vector<Claim> claims_under(const std::filesystem::path& folder) {
+std::vector<std::string> json_files_under(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder)) throw Error(folder.string(), "is no folder", "name a folder of results");
-  std::vector<std::filesystem::path> files;
+  std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (entry.path().extension() == ".json") files.push_back(entry.path());
+    if (entry.path().extension() == ".json") files.push_back(entry.path().string());
   std::ranges::sort(files);
+  return files;
+}
+
+std::vector<Claim> claims_of_files(const std::vector<std::string>& files, const std::filesystem::path& folder) {
   std::vector<Claim> claims;
-  for (const auto& file : files) {
+  for (const std::string& file : files) {
     const std::string name = std::filesystem::relative(file, folder).string();
     try {
       const std::vector<Claim> found = claims_of(nlohmann::json::parse(read_text_file(file)), name);
       claims.insert(claims.end(), found.begin(), found.end());
     } catch (const nlohmann::json::exception& exception) {
-      throw Error(file.string(), fmt::format("is no result of ours: {}", exception.what()),
-                  "remove it, or write it again");
+      throw Error(file, fmt::format("is no result of ours: {}", exception.what()), "remove it, or write it again");
     }
   }
   return claims;
 }
 
 void run_claims(const ClaimsOptions& options) {
-  check_outputs({options.output}, options.common);
-  const std::vector<Claim> claims = claims_under(options.folder);
+  const std::vector<std::string> files = json_files_under(options.folder);
+  check_outputs({options.output}, files, options.common);
+  const std::vector<Claim> claims = claims_of_files(files, options.folder);
   if (claims.empty())
     throw Error(options.folder, "holds no result", "write one with 'vestige sweep -o' or 'vestige replay --json'");
   OutputFile file(options.output, options.common.overwrite());

@@ -13,7 +13,7 @@ namespace vestige::cli {
 namespace {
 
 void run_devices(const CommonOptions& options) {
-  check_outputs({options.json}, options);
+  check_outputs({options.json}, {}, options);
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   std::string text;
   const auto attempt = [&](const std::string& name, const std::function<std::unique_ptr<GlContext>()>& make) {

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <csignal>
+#include <cstdio>
 #include <exception>
+#include <iostream>
 #include <memory>
 #include <new>
 #include <utility>
@@ -38,6 +41,10 @@ CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string
 
 namespace {
 
+bool is_verb(const CLI::App& program, const std::string& word) {
+  return !program.get_subcommands([&](const CLI::App* verb) { return verb->check_name(word); }).empty();
+}
+
 int run(int argc, char** argv) {
   CLI::App program(
       "Vestige records traces of an animated avatar and the colliders around it, replays them through a\n"
@@ -62,15 +69,25 @@ int run(int argc, char** argv) {
   program.footer(
       "'vestige VERB --help' explains each. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but data was\n"
       "lost or repaired, 4 a check failed.");
+  for (int i = 1; i < argc; ++i)
+    if (*argv[i] == '\0')
+      throw UsageError(fmt::format("argument {}", i), "is empty",
+                       "an unset variable? Leave the flag out, or give it a value");
+  if (argc > 1 && *argv[1] != '-' && !is_verb(program, argv[1]))
+    throw UsageError(argv[1], "there is no such verb", "'vestige --help' lists the verbs");
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return program.exit(help);
+    const int shown = program.exit(help);
+    std::cout.flush();
+    if (!std::cout) throw system_error("standard output", "could not write", errno);
+    return shown;
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "vestige: error: {}\n  'vestige --help' lists the verbs, 'vestige VERB --help' their flags.\n",
                error.what());
     return kWrongUsage;
   }
+  if (std::fflush(stdout) != 0) throw system_error("standard output", "could not write", errno);
   return invocation.exit_code;
 }
 

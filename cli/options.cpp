@@ -29,6 +29,14 @@ std::string check_number(const std::string& text, bool zero_allowed) {
   return "";
 }
 
+/// CLI11 itself would wrap -1 around.
+const CLI::Validator kSeed(
+    [](std::string& text) {
+      std::uint64_t value = 0;
+      return parse_number(text, value) ? std::string() : fmt::format("'{}' is not a whole number below 2^64", text);
+    },
+    "");
+
 bool is_standard_output(const std::string& path) {
   return path == "-";
 }
@@ -44,15 +52,21 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
   verb.add_flag("-q,--quiet", options.quiet, "Print errors only");
   verb.add_flag("-v,--verbose", options.verbose, "Print more");
   verb.add_flag("--force", options.force, "Overwrite existing files");
-  verb.add_option("--seed", options.seed, "Seed of whatever is random")->capture_default_str();
+  verb.add_option("--seed", options.seed, "Seed of whatever is random")->capture_default_str()->check(kSeed);
 }
 
-void check_outputs(const std::vector<std::string>& paths, const CommonOptions& options) {
-  if (std::ranges::count_if(paths, is_standard_output) > 1)
+void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
+                   const CommonOptions& options) {
+  if (std::ranges::count_if(outputs, is_standard_output) > 1)
     throw UsageError("-", "two results cannot share standard output", "give all but one a file name");
   std::set<std::filesystem::path> seen;
-  for (const std::string& path : paths) {
+  for (const std::string& path : outputs) {
     if (path.empty() || is_standard_output(path)) continue;
+    for (const std::string& input : inputs) {
+      std::error_code missing;
+      if (std::filesystem::equivalent(path, input, missing))
+        throw UsageError(path, "this result would replace a file that is read", "choose another name");
+    }
     refuse_overwrite(path, options.overwrite());
     if (!seen.insert(std::filesystem::absolute(path).lexically_normal()).second)
       throw UsageError(path, "two results cannot share one file", "give each a name of its own");

@@ -46,9 +46,10 @@ struct CommonOptions {
 /// Adds --json, -q, -v, --seed and --force.
 void add_common_options(CLI::App& verb, CommonOptions& options);
 
-/// Refuses, before any work is done, what could not be written at its end: existing files without --force, two results
-/// on standard output. Empty paths are results that nobody asked for.
-void check_outputs(const std::vector<std::string>& paths, const CommonOptions& options);
+/// Refuses, before any work is done, what could not be written at its end or would destroy what is read: existing files
+/// without --force, two results in one place, a result in the place of an input. Empty paths were not asked for.
+void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
+                   const CommonOptions& options);
 
 /// Writes `json` to `path` ("-": standard output), unless `path` is empty.
 void write_json(const std::string& path, const nlohmann::ordered_json& json, const CommonOptions& options);

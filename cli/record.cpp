@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <chrono>
 #include <memory>
 
 #include "analysis/provenance.hpp"
@@ -15,6 +16,8 @@ namespace vestige::cli {
 namespace {
 
 constexpr double kMostFrames = 4294967295.0;  // a trace numbers its frames in 32 bits
+
+constexpr double kFarthest_m = 1e7;  // detector/CONTRACT.md, 2
 
 struct RecordOptions {
   CommonOptions common;
@@ -41,24 +44,41 @@ std::unique_ptr<ColliderSource> make_colliders(const RecordOptions& options, con
                    "the scenarios are: swarm; or name a .csv file");
 }
 
+/// Samples of a file that the recording does not reach are said, and when it reaches none it is refused.
+void check_span(const TimeSpan& span, const RecordOptions& options, Verbosity verbosity) {
+  const std::string times = fmt::format("its samples lie from {} s to {} s, the recording from 0 s to {} s",
+                                        span.first_s, span.last_s, options.recording.duration_s);
+  if (span.last_s < 0 || span.first_s > options.recording.duration_s)
+    throw Error(options.colliders, "no sample lies within the recording: " + times,
+                "let the file's time begin at 0, or raise --duration");
+  if (std::isfinite(span.last_s) && (span.first_s < 0 || span.last_s > options.recording.duration_s))
+    warn(fmt::format("{}: {}; the rest is left out (--duration)", options.colliders, times), verbosity);
+}
+
 void run_record(const RecordOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
-  RecordingSettings recording = options.recording;
-  recording.origin_m = parse_vector(options.origin, "--origin");
-  if (recording.rate_hz * recording.duration_s > kMostFrames)
+  RecordingSettings settings = options.recording;
+  settings.origin_m = parse_vector(options.origin, "--origin");
+  if (settings.rate_hz * settings.duration_s > kMostFrames)
     throw UsageError("--duration", "a trace holds 4294967295 frames at most", "record less, or at a lower --rate");
-  check_outputs({options.output, options.common.json}, options.common);
+  check_outputs({options.output, options.common.json}, {options.avatar, options.map, options.colliders},
+                options.common);
+  if (std::max({std::abs(settings.origin_m.x), std::abs(settings.origin_m.y), std::abs(settings.origin_m.z)}) >
+      kFarthest_m)
+    throw UsageError("--origin", fmt::format("'{}' is farther away than 1e7 m", options.origin),
+                     "beyond that, positions are too coarse for contacts");
   if (options.output == "-") refuse_terminal("-o -");
 
   const Scene scene = load_scene(options.avatar, options.map, verbosity);
   const Animation* animation = find_animation(scene.avatar, options.animation);
   const auto colliders = make_colliders(options, scene.avatar, animation);
+  check_span(colliders->span_s(), options, verbosity);
 
   Session session;
   const nlohmann::ordered_json origin = provenance(invocation.argv);
   for (const auto& [key, value] : origin.items())
     session[key] = value.is_string() ? value.get<std::string>() : value.dump();
-  session["rate_hz"] = fmt::format("{}", recording.rate_hz);
+  session["rate_hz"] = fmt::format("{}", settings.rate_hz);
   session["animation"] = animation == nullptr ? "" : animation->name;
   session["colliders"] = options.colliders;
   session["seed"] = fmt::format("{}", options.common.seed);
@@ -68,24 +88,26 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   if (options.compression == "lz4") writing.compression = Compression::kLz4;
   if (options.compression == "none") writing.compression = Compression::kNone;
   catch_interrupts();
+  const auto start = std::chrono::steady_clock::now();
   TraceWriter writer(options.output, session, scene.avatar, scene.attachments(), writing);
   {
     Progress progress("Recording", verbosity);
-    record(writer, scene.avatar, animation, *colliders, recording,
-           [&](double share) { return progress.update(share); });
+    record(writer, scene.avatar, animation, *colliders, settings, [&](double share) { return progress.update(share); });
   }
   writer.finish();
+  const std::chrono::duration<double> recording = std::chrono::steady_clock::now() - start;
   if (interrupted())
     warn(fmt::format("stopped after {} frames; the trace is complete up to there", writer.frame_count()), verbosity);
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;
   json["frames"] = writer.frame_count();
+  json["recording_s"] = recording.count();
   json["bytes"] = writer.bytes_written();
   json["avatar"] = to_json(scene.avatar);
   write_json(options.common.json, json, options.common);
   print_summary(fmt::format("{}: {} frames at {} Hz, {:.1f} MB\n", options.output, writer.frame_count(),
-                            recording.rate_hz, static_cast<double>(writer.bytes_written()) / 1e6),
+                            settings.rate_hz, static_cast<double>(writer.bytes_written()) / 1e6),
                 {options.output, options.common.json}, options.common);
 }
 
@@ -125,7 +147,11 @@ void add_record(CLI::App& program, Invocation& invocation) {
       ->required()
       ->type_name("OUT.mcap|-");
   add_common_options(*verb, options->common);
-  verb->callback([options, &invocation] { run_record(*options, invocation); });
+  verb->callback([options, verb, &invocation] {
+    if (verb->count("--count") != 0 && options->colliders.ends_with(".csv"))
+      throw UsageError("--count", "a file has the colliders that it has", "leave --count out");
+    run_record(*options, invocation);
+  });
 }
 
 }  // namespace vestige::cli

@@ -132,6 +132,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& 
   json["origin_changes"] = result.origin_changes;
   json["non_finite_frames"] = result.non_finite_frames;
   json["non_finite_segments"] = result.non_finite_segments;
+  json["reading_s"] = result.reading_s;
   json["detection_s"] = result.detection_s;
   json["hz"] = static_cast<double>(result.frames) / result.detection_s;
   nlohmann::ordered_json actuators = nlohmann::ordered_json::array();
@@ -176,7 +177,7 @@ int report_verification(const ReplayOptions& options, const ReplayResult& result
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
-  check_outputs(outputs, options.common);
+  check_outputs(outputs, {options.trace, options.verify}, options.common);
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);
 
@@ -220,7 +221,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (timeline) timeline->commit();
   if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
   if (result.non_finite_frames + result.non_finite_segments != 0)
-    warn(fmt::format("{} frames had a pose and {} segments an end that is not finite; they fired nothing",
+    warn(fmt::format("{}: {} poses and the ends of {} segments are not finite; they fired nothing", options.trace,
                      result.non_finite_frames, result.non_finite_segments),
          verbosity);
 
@@ -228,7 +229,8 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   write_json(options.common.json, to_json(result, options, trace, collider_ids.size(), *detector, invocation),
              options.common);
   invocation.exit_code = report_verification(options, result, verification, outputs);
-  const int damage = report_damage(trace.reader, options.trace, verbosity);
+  int damage = report_damage(trace.reader, options.trace, verbosity);
+  if (result.interrupted || result.non_finite_frames + result.non_finite_segments != 0) damage = kDataLost;
   if (invocation.exit_code == kDone) invocation.exit_code = damage;
 }
 
@@ -270,6 +272,9 @@ void add_replay(CLI::App& program, Invocation& invocation) {
                    "exit 4 if contacts differ")
       ->type_name("DETECTOR|FILE");
   add_common_options(*verb, options->common);
+  // Flags that would do nothing are refused.
+  verb->get_option("--planes")->needs(verb->get_option("--textures"));
+  verb->get_option("--hold")->needs(verb->get_option("--timeline"));
   verb->callback([options, &invocation] { run_replay(*options, invocation); });
 }
 

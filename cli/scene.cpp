@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 
 #include "cli/options.hpp"
@@ -57,6 +58,9 @@ Scene load_scene(const std::string& avatar, const std::string& map, Verbosity ve
   const std::string default_map = avatar == "builtin" ? "builtin" : "none";
   load_map(map.empty() ? default_map : map, scene);
   warn_all(scene.map.warnings, verbosity);
+  const auto& coordinates = scene.avatar.texture_coordinate;
+  if (!scene.map_png.empty() && std::ranges::count(coordinates, coordinates.front()) == std::ssize(coordinates))
+    warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", avatar), verbosity);
   if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
   return scene;
 }
@@ -84,7 +88,7 @@ OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
 
 int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity) {
   if (trace.complete()) return kDone;
-  for (const std::string& warning : trace.warnings()) warn(fmt::format("{}: {}", path, warning), verbosity);
+  warn_all(trace.warnings(), verbosity);
   if (trace.warnings().empty()) warn(fmt::format("{}: is not complete", path), verbosity);
   return kDataLost;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "analysis/provenance.hpp"
 #include "analysis/sweep_report.hpp"
@@ -31,6 +32,14 @@ struct SweepOptions {
   std::string output;
 };
 
+/// A list in which nothing may stand twice.
+std::vector<std::string> parse_names(const std::string& list, const std::string& flag) {
+  std::vector<std::string> names = parse_list(list);
+  if (std::set<std::string>(names.begin(), names.end()).size() != names.size())
+    throw UsageError(flag, fmt::format("'{}' names one twice", list), "name each once");
+  return names;
+}
+
 /// Every detector asked for, `paper` once in every context that this machine has; a context that it lacks is said.
 std::vector<Contestant> make_contestants(const SweepOptions& options, const OpenTrace& trace, Verbosity verbosity) {
   std::vector<Contestant> contestants;
@@ -39,7 +48,10 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
                              return make_detector(detector, context, options.choice, trace.avatar, trace.map, planes);
                            }});
   };
-  for (const std::string& detector : parse_list(options.detectors)) {
+  for (const std::string& context : parse_names(options.contexts, "--context"))
+    if (context != "egl" && context != "osmesa" && context != "auto")
+      throw UsageError("--context", fmt::format("there is no context '{}'", context), "choose of: egl, osmesa, auto");
+  for (const std::string& detector : parse_names(options.detectors, "--detector")) {
     if (detector == "cpu") {
       add(detector, "");
       continue;
@@ -47,8 +59,6 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
     if (detector != "paper")
       throw UsageError("--detector", fmt::format("there is no detector '{}'", detector), "choose of: paper, cpu");
     for (const std::string& context : parse_list(options.contexts)) {
-      if (context != "egl" && context != "osmesa" && context != "auto")
-        throw UsageError("--context", fmt::format("there is no context '{}'", context), "choose of: egl, osmesa, auto");
       try {
         make_gl_context(context == "osmesa" ? ContextKind::kOsMesa : ContextKind::kEgl, options.choice.device);
       } catch (const Error& error) {
@@ -107,7 +117,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   std::error_code failure;
   std::filesystem::create_directories(options.output, failure);
   if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
-  check_outputs({json_path, times_path, options.common.json}, options.common);
+  check_outputs({json_path, times_path, options.common.json}, {options.trace}, options.common);
 
   catch_interrupts();
   const std::string path = options.trace.empty() ? record_default_trace(options, invocation) : options.trace;
@@ -119,6 +129,11 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
     series = run_sweep(trace.reader, trace.avatar, contestants, options.settings,
                        [&](double share) { return progress.update(share); });
   }
+
+  if (std::ranges::all_of(series, [](const SweepSeries& one) {
+        return std::ranges::all_of(one.points, [](const SweepPoint& point) { return point.repetitions.empty(); });
+      }))
+    throw Error("sweep", "was stopped before anything had been measured", "nothing was written; start it again");
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["gl"] = first_gl(series);
@@ -142,6 +157,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   std::fflush(stdout);  // before the child that draws prints its own
   if (!options.no_figure) draw_figure(options);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
+  if (interrupted()) invocation.exit_code = kDataLost;
 }
 
 }  // namespace

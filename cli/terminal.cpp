@@ -59,6 +59,7 @@ bool Progress::update(double share) {
 void catch_interrupts() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
+  std::signal(SIGHUP, on_interrupt);
 }
 
 bool interrupted() {

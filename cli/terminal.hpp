@@ -32,7 +32,7 @@ class Progress {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// From now on SIGINT and SIGTERM only set a flag, so that files are finished properly. A second one kills.
+/// From now on SIGINT, SIGTERM and SIGHUP only set a flag, so that files are finished properly. A second one kills.
 void catch_interrupts();
 bool interrupted();
 

@@ -225,6 +225,7 @@ void add_skeleton(Document& document) {
 /// One loop of bending to the sides, forwards and around, while the whole body wanders a little.
 void add_sway(Document& document) {
   std::vector<float> times;
+  times.reserve(kSwayKeys);
   for (int key = 0; key < kSwayKeys; ++key)
     times.push_back(static_cast<float>(kSwayDuration_s * key / (kSwayKeys - 1)));
   const std::size_t input =

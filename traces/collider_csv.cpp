@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "traces/colliders.hpp"
@@ -52,7 +54,12 @@ Samples parse(std::string_view text, const std::string& name) {
 class CsvColliders final : public ColliderSource {
  public:
   explicit CsvColliders(const Samples& samples) {
-    for (const auto& [id, of_collider] : samples) tracks_.push_back({id, of_collider, 0});
+    span_s_ = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+    for (const auto& [id, of_collider] : samples) {
+      tracks_.push_back({id, of_collider, 0});
+      span_s_.first_s = std::min(span_s_.first_s, of_collider.front().time_s);
+      span_s_.last_s = std::max(span_s_.last_s, of_collider.back().time_s);
+    }
   }
 
   void sample(double time_s, std::vector<ColliderSample>& out) override {
@@ -71,6 +78,8 @@ class CsvColliders final : public ColliderSource {
     }
   }
 
+  TimeSpan span_s() const override { return span_s_; }
+
  private:
   struct Track {
     std::uint32_t id;
@@ -78,6 +87,7 @@ class CsvColliders final : public ColliderSource {
     std::size_t next;  // the first sample later than the last time asked for
   };
   std::vector<Track> tracks_;
+  TimeSpan span_s_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -10,6 +11,11 @@
 #include "traces/trace.hpp"
 
 namespace vestige {
+
+struct TimeSpan {
+  double first_s = 0;
+  double last_s = std::numeric_limits<double>::infinity();
+};
 
 /// Where colliders are over time: a built-in scenario or a file.
 class ColliderSource {
@@ -21,6 +27,9 @@ class ColliderSource {
 
   /// The colliders present at `time_s`, relative to the scene's origin. Times must not decrease.
   virtual void sample(double time_s, std::vector<ColliderSample>& out) = 0;
+
+  /// When there are samples: first and last time. A scenario has no bounds.
+  virtual TimeSpan span_s() const { return {}; }
 };
 
 /// `animation` may be null: then the avatar rests.

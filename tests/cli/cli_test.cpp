@@ -177,7 +177,7 @@ TEST_F(CommandLine, VerifyTellsEqualFromDifferentRuns) {
   EXPECT_EQ(run("vestige replay small.mcap --verify c.csv").exit_code, 0);
   const test::Outcome paper = run("vestige replay small.mcap --detector paper --verify cpu");
   EXPECT_EQ(paper.exit_code, 0);
-  EXPECT_THAT(paper.standard_output, HasSubstr("0 of "));
+  EXPECT_THAT(paper.standard_output, HasSubstr(" 0 contacts differ"));
   ASSERT_EQ(run("vestige record --seed 3 --count 20 --rate 60 --duration 1 -o other.mcap").exit_code, 0);
   EXPECT_EQ(run("vestige replay other.mcap --verify r.json").exit_code, 4);
   EXPECT_EQ(run("vestige replay other.mcap --verify c.csv").exit_code, 4);
@@ -235,10 +235,44 @@ TEST_F(CommandLine, NeverOverwritesWithoutForce) {
   EXPECT_EQ(run("vestige replay small.mcap --contacts c.csv --force").exit_code, 0);
 }
 
+TEST_F(CommandLine, NeverReplacesAFileThatItReads) {
+  record_small();
+  const std::string trace = read_text_file(folder_ / "small.mcap");
+  ASSERT_EQ(run("ln -s small.mcap link.mcap").exit_code, 0);
+  expect_failure("vestige replay small.mcap --contacts small.mcap --force", 2, {"small.mcap"});
+  expect_failure("vestige replay link.mcap --json small.mcap --force", 2, {"small.mcap"});
+  expect_failure("vestige inspect small.mcap --json small.mcap --force", 2, {"small.mcap"});
+  EXPECT_EQ(read_text_file(folder_ / "small.mcap"), trace);
+}
+
+TEST_F(CommandLine, InspectSeesDamageInsideAChunk) {
+  record_small();
+  const auto middle = std::filesystem::file_size(folder_ / "small.mcap") - 2000;
+  ASSERT_EQ(run("printf X | dd of=small.mcap bs=1 seek=" + std::to_string(middle) + " conv=notrunc").exit_code, 0);
+  EXPECT_EQ(run("vestige inspect small.mcap").exit_code, 3);
+}
+
+TEST_F(CommandLine, AnInterruptedReplayIsNotDone) {
+  ASSERT_EQ(run("vestige record --count 100 --rate 1000 --duration 10 -o long.mcap").exit_code, 0);
+  const test::Outcome outcome = run("vestige replay long.mcap --contacts c.csv & P=$!; sleep 1; kill -HUP $P; wait $P");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;
+  EXPECT_THAT(read_text_file(folder_ / "c.csv"), StartsWith("frame,"));
+}
+
+TEST_F(CommandLine, ReportsAFullDiskOnStandardOutput) {
+  record_small();
+  expect_failure("vestige replay small.mcap >/dev/full", 1, {"standard output", "full"});
+  expect_failure("vestige --help >/dev/full", 1, {"standard output"});
+}
+
 TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   record_small();
   expect_failure("vestige", 2, {});
-  expect_failure("vestige frobnicate", 2, {});
+  expect_failure("vestige frobnicate", 2, {"frobnicate"});
+  expect_failure("vestige replay small.mcap --verify ''", 2, {"is empty"});
+  expect_failure("vestige replay small.mcap --planes t", 2, {"--textures"});
+  expect_failure("vestige record -o x.mcap --seed -1", 2, {"--seed"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --origin 1e300,0,0", 2, {"--origin"}, "x.mcap");
   expect_failure("vestige record", 2, {"--output"});
   expect_failure("vestige record -o x.mcap --count 0", 2, {"--count"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --rate 0", 2, {"--rate"}, "x.mcap");
@@ -291,6 +325,8 @@ TEST_F(CommandLine, ReadsColliderFilesAndRefusesBrokenOnesByLine) {
   const test::Outcome contacts = run("vestige replay x.mcap --contacts - -q");
   EXPECT_EQ(std::ranges::count(contacts.standard_output, '\n'), 3);  // header, in, out
   EXPECT_THAT(contacts.standard_output, HasSubstr(",7,"));
+  expect_failure(with(header + "1700000000,7,-1,1,0\n"), 1, {"c.csv", "no sample lies within"});
+  EXPECT_THAT(run(with(header + "0,7,-1,1,0\n9,7,1,1,0\n")).standard_error, HasSubstr("left out"));
   expect_failure(with("hello\n"), 1, {"c.csv, line 1", "time_s,id,x,y,z"});
   expect_failure(with(header), 1, {"c.csv", "no sample"});
   expect_failure(with(header + "0,1,2,3\n"), 1, {"c.csv, line 2"});
