@@ -113,7 +113,7 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
       break;
     }
   }
-  if (expectation.contacts != nullptr) {
+  if (expectation.contacts != nullptr && !result.interrupted) {
     result.comparison->missing += recorded.strangers();
     result.comparison->expected += recorded.strangers();
   }

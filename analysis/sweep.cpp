@@ -16,7 +16,7 @@ namespace vestige {
 
 namespace {
 
-constexpr std::size_t kWarmUpFrames = 3;
+constexpr std::size_t kWarmUpFrames = 2;
 
 /// Consecutive frames of the trace; the first only gives the segments of the second their start.
 using Place = std::vector<TraceFrame>;
@@ -52,7 +52,11 @@ class Sweep {
  public:
   Sweep(TraceReader& trace, const Avatar& avatar, const std::vector<Contestant>& contestants,
         const SweepSettings& settings)
-      : avatar_(avatar), settings_(settings), ids_(trace.collider_ids()), places_(read_places(trace, settings)) {
+      : avatar_(avatar),
+        contestants_(contestants),
+        settings_(settings),
+        ids_(trace.collider_ids()),
+        places_(read_places(trace, settings)) {
     for (const Contestant& contestant : contestants) {
       detectors_.push_back(contestant.make(PlaneSet()));
       SweepSeries series;
@@ -67,10 +71,7 @@ class Sweep {
         series.points.push_back(std::move(point));
       }
       series_.push_back(std::move(series));
-      references_.push_back(make_reference(contestant));
     }
-    for (std::size_t s = 0; s < series_.size(); ++s)
-      for (SweepPoint& point : series_[s].points) describe(references_[s], point);
   }
 
   std::vector<SweepSeries> run(const std::function<bool(double)>& progress) {
@@ -81,7 +82,15 @@ class Sweep {
     std::vector<Entry> open;
     for (std::size_t s = 0; s < series_.size(); ++s)
       for (std::size_t p = 0; p < settings_.counts.size(); ++p) open.push_back({s, p});
-    for (const Entry& entry : open) warm_up(entry.series, series_[entry.series].points[entry.point]);
+    for (std::size_t s = 0; s < series_.size(); ++s) {
+      if (!progress(0)) return std::move(series_);
+      references_.push_back(make_reference(contestants_[s]));
+      for (SweepPoint& point : series_[s].points) describe(references_[s], point);
+    }
+    for (const Entry& entry : open) {
+      if (!progress(0)) return std::move(series_);
+      warm_up(entry.series, series_[entry.series].points[entry.point]);
+    }
 
     std::mt19937_64 random(settings_.seed);
     const double total_s = settings_.min_time_s * static_cast<double>(open.size());
@@ -131,12 +140,14 @@ class Sweep {
     point.texture_hash = hash.hex();
   }
 
+  /// Everywhere, since a place with another number of segments may need another program.
   void warm_up(std::size_t series, const SweepPoint& point) {
-    FrameBuilder builder(avatar_, first_ids(point.colliders));
     ContactRow row;
-    const Place& place = places_.front();
-    for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i)
-      detectors_[series]->detect(builder.next(place[i]), row);
+    for (const Place& place : places_) {
+      FrameBuilder builder(avatar_, first_ids(point.colliders));
+      for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i)
+        detectors_[series]->detect(builder.next(place[i]), row);
+    }
   }
 
   void measure(std::size_t series, std::size_t place_number, SweepPoint& point) {
@@ -170,6 +181,7 @@ class Sweep {
   }
 
   const Avatar& avatar_;
+  const std::vector<Contestant>& contestants_;
   const SweepSettings& settings_;
   std::vector<std::uint32_t> ids_;
   std::vector<Place> places_;

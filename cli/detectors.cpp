@@ -19,15 +19,18 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
       ->check(CLI::IsMember({"all", "mapped"}));
 }
 
+ContextKind context_kind(const std::string& context) {
+  if (context == "egl") return ContextKind::kEgl;
+  if (context == "osmesa") return ContextKind::kOsMesa;
+  return ContextKind::kAuto;
+}
+
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes) {
   const DetectorOptions options = {choice.surface_kind(), planes};
   if (name != "paper") return make_cpu_detector(avatar, map, options);
-  ContextKind kind = ContextKind::kAuto;
-  if (context == "egl") kind = ContextKind::kEgl;
-  if (context == "osmesa") kind = ContextKind::kOsMesa;
-  return make_paper_detector(make_gl_context(kind, choice.device), avatar, map, options);
+  return make_paper_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
 }
 
 }  // namespace vestige::cli

@@ -24,6 +24,9 @@ struct DetectorChoice {
 /// Adds --device, --method, --skip and --surface, which mean the same in every verb.
 void add_detector_options(CLI::App& verb, DetectorChoice& choice);
 
+/// "auto", "egl" or "osmesa".
+ContextKind context_kind(const std::string& context);
+
 /// Makes a detector: "auto" (now: cpu), "cpu" or "paper". `context`: "auto", "egl" or "osmesa".
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,

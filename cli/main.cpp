@@ -67,8 +67,9 @@ int run(int argc, char** argv) {
   add_claims(program, invocation);
   // After the verbs, which would take it over.
   program.footer(
-      "'vestige VERB --help' explains each. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but data was\n"
-      "lost or repaired, 4 a check failed.");
+      "'vestige VERB --help' explains each. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but not with all of "
+      "the\n"
+      "data (a damaged trace, or interrupted), 4 a check failed.");
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
       throw UsageError(fmt::format("argument {}", i), "is empty",

@@ -70,10 +70,13 @@ struct Verification {
   ReplayExpectation expectation() const { return {detector.get(), from_csv ? &contacts : nullptr}; }
 };
 
-Verification load_verification(const ReplayOptions& options, const OpenTrace& trace) {
+Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector) {
   Verification verification;
   if (options.verify.empty()) return verification;
   if (options.verify == "cpu" || options.verify == "paper") {
+    if (options.verify == detector.name())
+      throw UsageError("--verify", fmt::format("'{}' would be compared with itself", options.verify),
+                       "name the other detector, or a file");
     verification.detector =
         make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, kHashedPlanes);
   } else if (options.verify.ends_with(".csv")) {
@@ -166,6 +169,10 @@ std::string summary(const ReplayResult& result, const OpenTrace& trace, std::siz
 int report_verification(const ReplayOptions& options, const ReplayResult& result, const Verification& verification,
                         const std::vector<std::string>& outputs) {
   if (options.verify.empty()) return kDone;
+  if (result.interrupted) {
+    print_summary(fmt::format("verify against {}: not to the end\n", options.verify), outputs, options.common);
+    return kDataLost;
+  }
   const bool by_hash = !result.comparison;
   const bool same = by_hash ? result.texture_hash == verification.texture_hash : result.comparison->differing() == 0;
   std::string text = by_hash ? std::string(same ? "the texture hashes are equal" : "the texture hashes differ")
@@ -188,8 +195,9 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (!options.contacts.empty()) planes = PlaneSet::all();
   const auto detector =
       make_detector(options.choice.detector, options.choice.context, options.choice, trace.avatar, trace.map, planes);
-  const Verification verification = load_verification(options, trace);
+  const Verification verification = load_verification(options, trace, *detector);
 
+  catch_interrupts();  // before the first temporary file
   std::optional<ContactsCsv> contacts;
   std::optional<TextureExr> textures;
   std::optional<OutputFile> texture_file;
@@ -206,7 +214,6 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     textures.emplace(texture_planes, collider_ids.size(), std::move(attributes));
   }
 
-  catch_interrupts();
   ReplayResult result;
   {
     Progress progress("Replaying", verbosity);

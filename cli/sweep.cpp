@@ -32,12 +32,16 @@ struct SweepOptions {
   std::string output;
 };
 
-/// A list in which nothing may stand twice.
-std::vector<std::string> parse_names(const std::string& list, const std::string& flag) {
-  std::vector<std::string> names = parse_list(list);
-  if (std::set<std::string>(names.begin(), names.end()).size() != names.size())
-    throw UsageError(flag, fmt::format("'{}' names one twice", list), "name each once");
-  return names;
+/// Every name of a list must be known, and stand there once.
+void check_names(const std::string& list, const std::vector<std::string>& known, const std::string& flag) {
+  std::set<std::string> seen;
+  for (const std::string& name : parse_list(list)) {
+    if (std::ranges::find(known, name) == known.end())
+      throw UsageError(flag, fmt::format("there is no '{}'", name),
+                       fmt::format("choose of: {}", fmt::join(known, ", ")));
+    if (!seen.insert(name).second)
+      throw UsageError(flag, fmt::format("'{}' stands there twice", name), "name each once");
+  }
 }
 
 /// Every detector asked for, `paper` once in every context that this machine has; a context that it lacks is said.
@@ -48,19 +52,14 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
                              return make_detector(detector, context, options.choice, trace.avatar, trace.map, planes);
                            }});
   };
-  for (const std::string& context : parse_names(options.contexts, "--context"))
-    if (context != "egl" && context != "osmesa" && context != "auto")
-      throw UsageError("--context", fmt::format("there is no context '{}'", context), "choose of: egl, osmesa, auto");
-  for (const std::string& detector : parse_names(options.detectors, "--detector")) {
+  for (const std::string& detector : parse_list(options.detectors)) {
     if (detector == "cpu") {
       add(detector, "");
       continue;
     }
-    if (detector != "paper")
-      throw UsageError("--detector", fmt::format("there is no detector '{}'", detector), "choose of: paper, cpu");
     for (const std::string& context : parse_list(options.contexts)) {
       try {
-        make_gl_context(context == "osmesa" ? ContextKind::kOsMesa : ContextKind::kEgl, options.choice.device);
+        make_gl_context(context_kind(context), options.choice.device);
       } catch (const Error& error) {
         warn(fmt::format("no series 'paper' on {}: {}", context, error.what()), verbosity);
         continue;
@@ -75,8 +74,7 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
 }
 
 /// Without a trace, the built-in avatar in a swarm as large as the largest count, kept beside the results.
-std::string record_default_trace(const SweepOptions& options, const Invocation& invocation) {
-  std::string path = options.output + "/trace.mcap";
+void record_default_trace(const std::string& path, const SweepOptions& options, const Invocation& invocation) {
   const Scene scene = load_scene("builtin", "builtin", Verbosity::kQuiet);
   const Animation* animation = find_animation(scene.avatar, "");
   const auto swarm =
@@ -87,7 +85,6 @@ std::string record_default_trace(const SweepOptions& options, const Invocation& 
                      writing);
   record(writer, scene.avatar, animation, *swarm, {}, [](double) { return !interrupted(); });
   writer.finish();
-  return path;
 }
 
 /// The series' own GL first; the whole file's is that of the first series that has one.
@@ -112,15 +109,19 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   options.settings.counts = parse_counts(options.counts, "--counts");
   options.settings.seed = options.common.seed;
+  check_names(options.detectors, {"paper", "cpu"}, "--detector");
+  check_names(options.contexts, {"egl", "osmesa", "auto"}, "--context");
   const std::string json_path = options.output + "/sweep.json";
   const std::string times_path = options.output + "/frame_times.csv.zst";
   std::error_code failure;
   std::filesystem::create_directories(options.output, failure);
   if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
-  check_outputs({json_path, times_path, options.common.json}, {options.trace}, options.common);
+  const std::string new_trace = options.trace.empty() ? options.output + "/trace.mcap" : "";
+  check_outputs({json_path, times_path, new_trace, options.common.json}, {options.trace}, options.common);
 
   catch_interrupts();
-  const std::string path = options.trace.empty() ? record_default_trace(options, invocation) : options.trace;
+  if (!new_trace.empty()) record_default_trace(new_trace, options, invocation);
+  const std::string path = new_trace.empty() ? options.trace : new_trace;
   OpenTrace trace(path, verbosity);
   const std::vector<Contestant> contestants = make_contestants(options, trace, verbosity);
   std::vector<SweepSeries> series;
@@ -133,7 +134,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   if (std::ranges::all_of(series, [](const SweepSeries& one) {
         return std::ranges::all_of(one.points, [](const SweepPoint& point) { return point.repetitions.empty(); });
       }))
-    throw Error("sweep", "was stopped before anything had been measured", "nothing was written; start it again");
+    throw Error("sweep", "was stopped before anything had been measured", "start it again, with --force");
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["gl"] = first_gl(series);
@@ -155,7 +156,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   print_summary(sweep_table(series, options.settings.seed), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {options.common.json}, options.common);
   std::fflush(stdout);  // before the child that draws prints its own
-  if (!options.no_figure) draw_figure(options);
+  if (!options.no_figure && !interrupted()) draw_figure(options);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
   if (interrupted()) invocation.exit_code = kDataLost;
 }

@@ -37,7 +37,7 @@ Progress::Progress(std::string label, Verbosity verbosity)
       last_(start_) {}
 
 Progress::~Progress() {
-  if (shown_) fmt::print(stderr, "\r\033[K");
+  if (shown_) std::fputs("\r\033[K", stderr);  // does not throw when the terminal has gone
 }
 
 bool Progress::update(double share) {

@@ -72,7 +72,6 @@ bool read_header(const PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png())) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's own way
   png_read_info(reader.png(), reader.info());
   png_set_expand_gray_1_2_4_to_8(reader.png());
-  png_set_strip_alpha(reader.png());
   png_set_swap(reader.png());  // 16-bit samples in the machine's (little-endian) order
   png_set_interlace_handling(reader.png());
   png_read_update_info(reader.png(), reader.info());
@@ -98,8 +97,9 @@ GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name)
   if (!read_header(reader)) throw fail();
   const int colour = png_get_color_type(reader.png(), reader.info());
   if (colour != PNG_COLOR_TYPE_GRAY)
-    throw Error(name, "is a colour image; grey levels are the actuators",
-                "convert it to greyscale (in GIMP: Image > Mode > Greyscale) and export it again");
+    throw Error(name, "has colours or an alpha channel; grey levels alone are the actuators",
+                "convert it to greyscale without alpha (in GIMP: Image > Mode > Greyscale, Layer > Transparency > "
+                "Remove Alpha)");
   GreyImage image;
   image.width = png_get_image_width(reader.png(), reader.info());
   image.height = png_get_image_height(reader.png(), reader.info());

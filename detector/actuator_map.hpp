@@ -28,7 +28,7 @@ struct ActuatorMap {
 /// Reads a PNG of 8 or 16 bit grey. Without a sidecar, actuators 1 … n are the distinct non-zero greys in ascending
 /// order. `sidecar_json` (may be empty) says which grey is which: {"actuators": [{"grey": 40, "name": "chest left"},
 /// …]}, in the order of their numbers; a grey in the image that it does not list is an error. `name` stands in errors:
-/// no PNG, truncated, colour or palette image, alpha channel, more than 65535 actuators, unusable sidecar.
+/// no PNG, truncated, colour or palette image, alpha channel, more than 65534 actuators, unusable sidecar.
 ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view sidecar_json, std::string_view name);
 
 }  // namespace vestige

@@ -37,7 +37,7 @@ struct GlInfo {
 
 /// Finds, for every collider, where its segment first meets the avatar's skin.
 ///
-/// `paper` reproduces HAVE 2010; `geometry`, `cpu` and `exact` keep the contract of detector/CONTRACT.md.
+/// `paper` reproduces HAVE 2010, `cpu` keeps detector/CONTRACT.md.
 /// A detector holds references to the avatar and map that it was made with, and belongs to the thread that made it.
 class Detector {
  public:

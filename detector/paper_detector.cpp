@@ -65,9 +65,13 @@ class PaperDetector final : public Detector {
   }
 
   ~PaperDetector() override {
-    context_->make_current();
-    gl_.DeleteVertexArrays(1, &vertex_array_);
-    gl_.DeleteTextures(1, &map_texture_);
+    try {
+      context_->make_current();
+      gl_.DeleteVertexArrays(1, &vertex_array_);
+      gl_.DeleteTextures(1, &map_texture_);
+    } catch (const Error&) {
+      // The context is lost, and with it all that was in it.
+    }
   }
 
   const char* name() const override { return "paper"; }

@@ -48,9 +48,9 @@ bool contains(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b, con
   return ab >= 0 && bc >= 0 && ca >= 0;
 }
 
-/// Segment and triangle in one plane, or a triangle without area.
-std::optional<SegmentHit> coplanar_hit(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec3& a,
-                                       const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& normal) {
+/// The first overlap, given that all lie in one plane. `normal` is zero for a triangle without area.
+std::optional<SegmentHit> flat_hit(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec3& a, const glm::dvec3& b,
+                                   const glm::dvec3& c, const glm::dvec3& normal) {
   if (!is_zero(normal) && contains(p, a, b, c, normal)) return SegmentHit{0, 0};
   std::optional<double> first;
   for (const auto& t : {first_on_edge(p, d, a, b - a), first_on_edge(p, d, b, c - b), first_on_edge(p, d, c, a - c)})
@@ -59,8 +59,26 @@ std::optional<SegmentHit> coplanar_hit(const glm::dvec3& p, const glm::dvec3& d,
   return SegmentHit{*first, 0};
 }
 
-}  // namespace
+/// Segment and triangle in one plane, or a triangle without area.
+std::optional<SegmentHit> coplanar_hit(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec3& a,
+                                       const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& normal) {
+  if (!is_zero(normal)) {
+    // In the plane's own two dimensions: without the coordinate in which the normal is longest. There the edges'
+    // lines are coplanar with the segment exactly, not only up to rounding.
+    const glm::dvec3 size = glm::abs(normal);
+    const int dropped = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
+    const auto flat = [dropped](glm::dvec3 v) {
+      v[dropped] = 0;
+      return v;
+    };
+    const glm::dvec3 flat_normal = glm::cross(flat(b) - flat(a), flat(c) - flat(a));
+    if (normal[dropped] != 0 && !(is_zero(flat_normal)))
+      return flat_hit(flat(p), flat(d), flat(a), flat(b), flat(c), flat_normal);
+  }
+  return flat_hit(p, d, a, b, c, normal);
+}
 
+}  // namespace
 std::optional<SegmentHit> segment_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a,
                                            const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 normal = glm::cross(b - a, c - a);

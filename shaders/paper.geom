@@ -1,6 +1,6 @@
 // One triangle against a block of segments; one point for each contact, to the collider's pixel of the collision
 // texture: HAVE 2010 §III.A. The test is Möller & Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection", in
-// fp32. Depth is t / 2, so the depth test keeps the earliest contact (the paper leaves open which is kept).
+// fp32; `precise` gives the same bits whatever planes and however many segments the program is compiled for. Depth is t / 2, so the depth test keeps the earliest contact (the paper leaves open which is kept).
 
 layout(triangles) in;
 layout(points, max_vertices = BLOCK_SEGMENTS) out;
@@ -53,28 +53,28 @@ flat out float contact_side;
 
 void main() {
   vec3 a = skinned[0].position;
-  vec3 edge_1 = skinned[1].position - a;
-  vec3 edge_2 = skinned[2].position - a;
+  precise vec3 edge_1 = skinned[1].position - a;
+  precise vec3 edge_2 = skinned[2].position - a;
   int first = skinned[0].block * BLOCK_SEGMENTS;
   int last = min(first + BLOCK_SEGMENTS, segment_count);
   for (int i = first; i < last; ++i) {
     vec3 start = segments[i].start;
-    vec3 direction = segments[i].end - start;
-    vec3 p = cross(direction, edge_2);
-    float determinant = dot(edge_1, p);
+    precise vec3 direction = segments[i].end - start;
+    precise vec3 p = cross(direction, edge_2);
+    precise float determinant = dot(edge_1, p);
     if (determinant == 0.0) continue;  // parallel
-    float inverse = 1.0 / determinant;
-    vec3 from_a = start - a;
-    float u = dot(from_a, p) * inverse;
+    precise float inverse = 1.0 / determinant;
+    precise vec3 from_a = start - a;
+    precise float u = dot(from_a, p) * inverse;
     if (!(u >= 0.0 && u <= 1.0)) continue;
-    vec3 q = cross(from_a, edge_1);
-    float v = dot(direction, q) * inverse;
+    precise vec3 q = cross(from_a, edge_1);
+    precise float v = dot(direction, q) * inverse;
     if (!(v >= 0.0 && u + v <= 1.0)) continue;
-    float t = dot(edge_2, q) * inverse;
+    precise float t = dot(edge_2, q) * inverse;
     if (!(t >= 0.0 && t <= 1.0)) continue;
     t = abs(t);  // never -0
 
-    vec2 texture_coordinate = skinned[0].texture_coordinate +
+    precise vec2 texture_coordinate = skinned[0].texture_coordinate +
                               u * (skinned[1].texture_coordinate - skinned[0].texture_coordinate) +
                               v * (skinned[2].texture_coordinate - skinned[0].texture_coordinate);
     uint actuator = textureLod(actuator_map, texture_coordinate, 0.0).r;

@@ -68,7 +68,7 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const std::file
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite) {
   if (is_standard_output(path)) return;
   std::error_code ignored;
-  const auto status = std::filesystem::symlink_status(path, ignored);
+  const auto status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status)) {
     const auto parent = path.parent_path();
     if (!parent.empty() && !std::filesystem::is_directory(parent, ignored))
@@ -93,6 +93,8 @@ OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite)
   }
   refuse_overwrite(path_, overwrite_);
   std::error_code ignored;
+  // A link keeps being a link: what it leads to is what is written.
+  if (std::filesystem::is_symlink(path_, ignored)) path_ = std::filesystem::weakly_canonical(path_);
   if (std::filesystem::exists(path_, ignored) && !std::filesystem::is_regular_file(path_, ignored)) {
     // A device or a pipe has no complete-or-absent: write to it as it comes.
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
@@ -137,7 +139,7 @@ void OutputFile::commit() {
     if (::link(temporary_path_.c_str(), path_.c_str()) == 0) {
       ::unlink(temporary_path_.c_str());
     } else if (errno == EEXIST) {
-      refuse_overwrite(path_, overwrite_);
+      throw Error(path_.string(), "was made by another program meanwhile", "choose another name, or add --force");
     } else if (::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
       throw system_error(path_, "could not give the finished file its name", errno);
     }

@@ -30,8 +30,6 @@ class OutputFile {
   void commit();
 
   const std::filesystem::path& path() const { return path_; }
-  /// Where the bytes are until `commit`, for libraries that insist on a file name of their own.
-  const std::filesystem::path& temporary_path() const { return temporary_path_; }
 
  private:
   void flush();

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "traces/mcap/decode.hpp"
 
@@ -22,11 +23,11 @@ std::string_view text_of(const flatbuffers::String* text) {
   return text == nullptr ? std::string_view() : std::string_view(text->c_str(), text->size());
 }
 
-/// `ids` is sorted on the way.
-void require_unique(std::vector<std::uint32_t>& ids) {
+/// An id that is there twice, if there is one. `ids` is sorted on the way.
+std::optional<std::uint32_t> find_duplicate(std::vector<std::uint32_t>& ids) {
   std::sort(ids.begin(), ids.end());
   const auto twice = std::adjacent_find(ids.begin(), ids.end());
-  if (twice != ids.end()) throw mcap::Malformed(fmt::format("collider {} is in it twice", *twice));
+  return twice == ids.end() ? std::nullopt : std::optional(*twice);
 }
 
 }  // namespace
@@ -117,7 +118,10 @@ void MessageDecoder::colliders(mcap::Bytes message, std::vector<ColliderSample>&
   if (ascending) return;
   ids_.clear();
   for (const ColliderSample& collider : colliders) ids_.push_back(collider.id);
-  require_unique(ids_);
+  if (const auto twice = find_duplicate(ids_)) {
+    colliders.clear();
+    throw mcap::Malformed(fmt::format("collider {} is in it twice", *twice));
+  }
 }
 
 TraceEvent MessageDecoder::event(mcap::Bytes message) {

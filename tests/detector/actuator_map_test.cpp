@@ -106,6 +106,8 @@ TEST(ActuatorMap, RefusesWhatIsNoGreyPngAndSaysWhere) {
   }
   const auto colour = make_png<std::uint8_t>({1, 2, 3}, 1, PNG_COLOR_TYPE_RGB, 3);
   EXPECT_THAT(message_of([&] { parse_actuator_map(colour, "", "map.png"); }), HasSubstr("greyscale"));
+  const auto alpha = make_png<std::uint8_t>({40, 0}, 1, PNG_COLOR_TYPE_GRAY_ALPHA, 2);
+  EXPECT_THAT(message_of([&] { parse_actuator_map(alpha, "", "map.png"); }), HasSubstr("greyscale"));
   EXPECT_THAT(message_of([&] { parse_actuator_map({}, "", "map.png"); }), HasSubstr("is not a PNG"));
 }
 

@@ -46,6 +46,26 @@ TEST(SegmentTriangle, FindsTheFirstInstantOfOverlapInThePlane) {
   EXPECT_FALSE(segment_triangle({-2, 0, 0}, {-1, 0, 0}, kA, kB, kC));
 }
 
+TEST(SegmentTriangle, FindsOverlapInPlanesThatLieObliquely) {
+  // Corners and ends on the plane x + 2 y + 4 z = 1, exactly.
+  const auto on_plane = [](double y, double z) { return glm::dvec3(1 - 2 * y - 4 * z, y, z); };
+  std::mt19937 random(3);
+  const auto coordinate = [&] { return std::ldexp(static_cast<double>(random() % 4096), -11) - 1; };
+  int hits = 0;
+  for (int i = 0; i < 2000; ++i) {
+    std::array<glm::dvec3, 5> x = {};
+    for (glm::dvec3& point : x) point = on_plane(coordinate(), coordinate());
+    const auto found = segment_triangle(x[0], x[1], x[2], x[3], x[4]);
+    const auto truth = test::exact_first_contact(x[0], x[1], x[2], x[3], x[4]);
+    ASSERT_EQ(found.has_value(), truth.has_value()) << i;
+    if (!truth) continue;
+    ++hits;
+    EXPECT_NEAR(found->t, static_cast<double>(*truth), 1e-12) << i;
+    EXPECT_EQ(found->side, 0) << i;
+  }
+  EXPECT_GT(hits, 300);
+}
+
 TEST(SegmentTriangle, TreatsARestingColliderAsAPoint) {
   EXPECT_EQ(segment_triangle({0.25, 0.25, 0}, {0.25, 0.25, 0}, kA, kB, kC)->t, 0);
   EXPECT_TRUE(segment_triangle({0.5, 0, 0}, {0.5, 0, 0}, kA, kB, kC));

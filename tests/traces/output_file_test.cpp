@@ -59,6 +59,19 @@ TEST(OutputFile, DoesNotReplaceAFileThatAppearedMeanwhile) {
   EXPECT_EQ(read_text_file(folder / "a.csv"), "theirs");
 }
 
+TEST(OutputFile, FollowsALinkAndLeavesItALink) {
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "real.csv") << "old";
+  std::filesystem::create_symlink("real.csv", folder / "link.csv");
+  EXPECT_THROW(OutputFile(folder / "link.csv", Overwrite::kRefuse), Error);
+  OutputFile file(folder / "link.csv", Overwrite::kAllow);
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
+  EXPECT_EQ(read_text_file(folder / "real.csv"), "new");
+  EXPECT_EQ(entries_in(folder.path()), 2U);
+}
+
 TEST(OutputFile, ReportsAFullDisk) {
   OutputFile file("/dev/full", Overwrite::kAllow);
   file.write("x");
