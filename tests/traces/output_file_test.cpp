@@ -38,7 +38,7 @@ TEST(OutputFile, RefusesToOverwriteAndSaysHowTo) {
   const test::TemporaryFolder folder;
   std::ofstream(folder / "a.csv") << "precious";
   try {
-    OutputFile(folder / "a.csv", Overwrite::kRefuse);
+    const OutputFile unwanted(folder / "a.csv", Overwrite::kRefuse);
     FAIL() << "overwrote";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("exists already"));
@@ -86,7 +86,7 @@ TEST(OutputFile, ReportsAFullDisk) {
 
 TEST(OutputFile, NamesAMissingFolder) {
   try {
-    OutputFile("/nowhere/at/all/a.csv", Overwrite::kRefuse);
+    const OutputFile unwanted("/nowhere/at/all/a.csv", Overwrite::kRefuse);
     FAIL() << "opened";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("/nowhere/at/all"));
