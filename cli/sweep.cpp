@@ -143,7 +143,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   json["complete"] = !interrupted();
   json["series"] = to_json(series, options.settings.seed);
   write_json(json_path, json, options.common);
-  if (!options.common.json.empty()) write_json(options.common.json, json, options.common);
+  write_json(options.common.json, json, options.common);
   std::vector<std::byte> compressed;
   const std::string times = frame_times_csv(series);
   mcap::compress(Compression::kZstd, std::as_bytes(std::span(times)), compressed);

@@ -72,8 +72,7 @@ std::optional<SegmentHit> coplanar_hit(const glm::dvec3& p, const glm::dvec3& d,
       return v;
     };
     const glm::dvec3 flat_normal = glm::cross(flat(b) - flat(a), flat(c) - flat(a));
-    if (normal[dropped] != 0 && !(is_zero(flat_normal)))
-      return flat_hit(flat(p), flat(d), flat(a), flat(b), flat(c), flat_normal);
+    return flat_hit(flat(p), flat(d), flat(a), flat(b), flat(c), flat_normal);
   }
   return flat_hit(p, d, a, b, c, normal);
 }

@@ -65,10 +65,10 @@ void CollisionTexture::create(std::size_t texels) {
   gl_.NamedFramebufferRenderbuffer(framebuffer_, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depth_);
   gl_.NamedFramebufferDrawBuffers(framebuffer_, static_cast<GLsizei>(draw_buffers.size()), draw_buffers.data());
   const GLenum status = gl_.CheckNamedFramebufferStatus(framebuffer_, GL_FRAMEBUFFER);
-  if (status != GL_FRAMEBUFFER_COMPLETE) release();
-  if (status != GL_FRAMEBUFFER_COMPLETE)
-    throw Error("OpenGL", fmt::format("the driver refuses a collision texture (status {:#06x})", status),
-                "ask for fewer planes, or use another --context");
+  if (status == GL_FRAMEBUFFER_COMPLETE) return;
+  release();
+  throw Error("OpenGL", fmt::format("the driver refuses a collision texture (status {:#06x})", status),
+              "ask for fewer planes, or use another --context");
 }
 
 void CollisionTexture::release() {
