@@ -62,6 +62,7 @@ int run(int argc, char** argv) {
   add_replay(program, invocation);
   add_sweep(program, invocation);
   add_inspect(program, invocation);
+  add_avatar(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);
   add_claims(program, invocation);

@@ -6,11 +6,12 @@
 
 namespace vestige {
 
-/// The avatar that comes with Vestige: a closed, smooth body 1.75 m tall on a chain of 20 joints, 5000 triangles, with
-/// the animation `sway`. Binary glTF 2.0; the same bytes at every call.
+/// The avatar that comes with Vestige, the mannequin: one closed surface of a person 1.75 m tall, 5000 triangles, on 21
+/// joints, with the animations `idle`, `walk`, `reach` and `spin`; metres, y up, facing +z. Binary glTF 2.0; the same
+/// bytes in every build (traces/mannequin/README.md says how they were made).
 std::vector<std::byte> builtin_avatar_glb();
 
-/// Its actuator map: six regions of the torso, left and right at three heights (after HAVE 2010, Fig. 4). 8-bit grey
+/// Its actuator map: six regions of the torso, right and left at three heights (after HAVE 2010, Fig. 4). 8-bit grey
 /// PNG.
 std::vector<std::byte> builtin_actuator_map_png();
 

@@ -280,7 +280,7 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige record -o x.mcap --duration inf", 2, {"--duration"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --origin 1,nan,0", 2, {"--origin"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --colliders tornado", 2, {"tornado", "swarm"}, "x.mcap");
-  expect_failure("vestige record -o x.mcap --animation dance", 2, {"dance", "sway"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --animation dance", 2, {"dance", "idle", "spin"}, "x.mcap");
   expect_failure("vestige replay small.mcap --detector magic", 2, {"--detector"});
   expect_failure("vestige replay small.mcap --planes colour --textures t.exr", 2, {"colour", "triangle"}, "t.exr");
   expect_failure("vestige replay small.mcap --hold -1", 2, {"--hold"});
@@ -321,7 +321,7 @@ TEST_F(CommandLine, ReadsColliderFilesAndRefusesBrokenOnesByLine) {
   };
   const std::string header = "time_s,id,x,y,z\n";
   // Straight through the body, from 0.2 s to 0.6 s.
-  ASSERT_EQ(run(with(header + "0.2,7,-1,1,0\r\n\r\n0.6,7,1,1,0\n")).exit_code, 0);
+  ASSERT_EQ(run(with(header + "0.2,7,0.03,1.2,-1\r\n\r\n0.6,7,0.03,1.2,1\n")).exit_code, 0);
   const test::Outcome contacts = run("vestige replay x.mcap --contacts - -q");
   EXPECT_EQ(std::ranges::count(contacts.standard_output, '\n'), 3);  // header, in, out
   EXPECT_THAT(contacts.standard_output, HasSubstr(",7,"));
@@ -371,7 +371,7 @@ TEST_F(CommandLine, SweepMeasuresEverySeriesAndKeepsEveryFrame) {
   EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("HAVE 2010"), HasSubstr("paper, osmesa"), HasSubstr("cpu")));
   const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
   EXPECT_EQ(json["schema_version"], 1);
-  EXPECT_EQ(json["avatar"]["joints"], 20);
+  EXPECT_EQ(json["avatar"]["joints"], 21);
   ASSERT_EQ(json["series"].size(), 3U);
   for (const auto& series : json["series"]) {
     EXPECT_EQ(series["points"].size(), 5U);

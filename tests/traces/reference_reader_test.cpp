@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/npm.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_fixture.hpp"
 
@@ -14,29 +13,11 @@ namespace vestige {
 namespace {
 
 nlohmann::json seen_by_reference_reader(const std::filesystem::path& trace) {
-  const std::string command =
-      fmt::format("node '{}/tests/npm/read_trace.mjs' '{}'", VESTIGE_SOURCE_DIR, trace.string());
-  std::FILE* pipe = ::popen(command.c_str(), "r");
-  std::string output;
-  char block[4096];
-  for (std::size_t count = 0; (count = std::fread(block, 1, sizeof block, pipe)) > 0;) output.append(block, count);
-  EXPECT_EQ(::pclose(pipe), 0);
-  return nlohmann::json::parse(output);
-}
-
-/// Where the reference reader is, or should be: without network it stays missing.
-std::filesystem::path reference_reader() {
-  const auto folder = std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/npm";
-  auto module = folder / "node_modules/@mcap/core";
-  if (!std::filesystem::exists(module)) {
-    const std::string command = fmt::format("cd '{}' && npm ci --no-audit --no-fund >&2", folder.string());
-    if (std::system(command.c_str()) != 0) std::fputs("npm ci failed\n", stderr);
-  }
-  return module;
+  return nlohmann::json::parse(test::run_node("read_trace.mjs", trace));
 }
 
 TEST(ReferenceReader, SeesAllThatIsInATrace) {
-  VESTIGE_REQUIRE_DATA(reference_reader());
+  VESTIGE_REQUIRE_DATA(test::npm_package("@mcap/core"));
   const test::TemporaryFolder folder;
   const auto glb = test::skeleton_glb(test::kNodes);
   for (const Compression compression : {Compression::kNone, Compression::kZstd}) {

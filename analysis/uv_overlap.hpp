@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// How an avatar's triangles share a texture: where several lie upon each other, an actuator map cannot tell them
+/// apart.
+struct UvCoverage {
+  std::uint32_t side = 0;  ///< texels a side
+  std::vector<std::uint8_t>
+      layers;                      ///< triangles over each texel's centre, row by row from the top (v = 0), 255 at most
+  std::size_t covered_texels = 0;  ///< by one triangle or more
+  std::size_t overlap_texels = 0;  ///< by two or more
+};
+
+/// Counts over a texture of `side` x `side` texels, coordinates outside [0, 1] wrapped as an actuator map wraps them
+/// (detector/CONTRACT.md, 8). A texel belongs to the triangles that its centre lies in; on a common edge, to one of
+/// them (top-left rule). Triangles without area in UV space cover nothing. One that is wider or higher than 4 textures
+/// covers each texel that its bounding box covers.
+UvCoverage uv_coverage(const Avatar& avatar, std::uint32_t side);
+
+}  // namespace vestige

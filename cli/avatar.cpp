@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+#include <png.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <tuple>
+
+#include "analysis/provenance.hpp"
+#include "analysis/uv_overlap.hpp"
+#include "cli/verbs.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/error.hpp"
+#include "traces/reference_skinning.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+constexpr std::uint32_t kTextureSide = 1024;
+
+struct AvatarOptions {
+  CommonOptions common;
+  std::string avatar = "builtin";
+  std::string output;
+  std::string map_output;
+  std::string uv_output;
+};
+
+struct Bounds {
+  glm::dvec3 low, high;
+};
+
+/// Of the rest pose, in the file's own units.
+Bounds rest_bounds(const Avatar& avatar) {
+  std::vector<glm::dvec3> positions;
+  skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), positions);
+  Bounds bounds = {positions.front(), positions.front()};
+  for (const glm::dvec3& p : positions) bounds = {glm::min(bounds.low, p), glm::max(bounds.high, p)};
+  return bounds;
+}
+
+/// Vertices that differ in place: those that only texture seams split count once.
+std::size_t welded_vertices(const Avatar& avatar) {
+  std::set<std::tuple<float, float, float>> places;
+  for (const glm::vec3& p : avatar.position_bind) places.emplace(p.x, p.y, p.z);
+  return places.size();
+}
+
+nlohmann::ordered_json describe(const Avatar& avatar, const UvCoverage& coverage) {
+  nlohmann::ordered_json json = to_json(avatar);
+  json["welded_vertices"] = welded_vertices(avatar);
+  json["animations"] = nlohmann::ordered_json::array();
+  for (const Animation& animation : avatar.animations)
+    json["animations"].push_back({{"name", animation.name}, {"duration_s", animation.duration_s}});
+  json["influences"] = avatar.influence_count;
+  const Bounds bounds = rest_bounds(avatar);
+  json["bounds"] = {{"min", {bounds.low.x, bounds.low.y, bounds.low.z}},
+                    {"max", {bounds.high.x, bounds.high.y, bounds.high.z}}};
+  json["uv_overlap_texels"] = coverage.overlap_texels;
+  json["uv_covered_texels"] = coverage.covered_texels;
+  json["uv_texture_side"] = coverage.side;
+  json["warnings"] = avatar.warnings;
+  return json;
+}
+
+std::string overlap_text(const UvCoverage& coverage) {
+  if (coverage.covered_texels == 0) return "no texture coordinates: an actuator map cannot tell regions apart";
+  const double share =
+      100.0 * static_cast<double>(coverage.overlap_texels) / static_cast<double>(coverage.covered_texels);
+  return fmt::format("{} of {} covered texels have several triangles ({:.1f} %, at {} x {})", coverage.overlap_texels,
+                     coverage.covered_texels, share, coverage.side, coverage.side);
+}
+
+std::string summary(const std::string& name, const nlohmann::ordered_json& json, const Avatar& avatar,
+                    const UvCoverage& coverage) {
+  const auto number = [&](const char* corner, std::size_t axis) { return json["bounds"][corner][axis].get<double>(); };
+  std::string text =
+      fmt::format("{}: {} triangles, {} vertices ({} places), {} joints, {} influence{} a vertex\n", name,
+                  avatar.triangles.size(), avatar.position_bind.size(), json["welded_vertices"].get<std::size_t>(),
+                  avatar.joint_count, avatar.influence_count, avatar.influence_count == 1 ? "" : "s");
+  text += fmt::format(
+      "  bounding box   x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} (rest pose; glTF: metres)\n",
+      number("min", 0), number("max", 0), number("min", 1), number("max", 1), number("min", 2), number("max", 2));
+  text += fmt::format("  UV overlap     {}\n", overlap_text(coverage));
+  if (avatar.animations.empty()) text += "  no animation\n";
+  for (std::size_t i = 0; i < avatar.animations.size(); ++i)
+    text += fmt::format("  animation {:>3}  {} ({:.4g} s)\n", i,
+                        avatar.animations[i].name.empty() ? "unnamed" : avatar.animations[i].name,
+                        avatar.animations[i].duration_s);
+  return text;
+}
+
+/// Nothing is white, one triangle grey, several red, darker the more there are.
+std::vector<std::byte> overlap_picture(const UvCoverage& coverage) {
+  using Colour = std::array<std::uint8_t, 3>;
+  constexpr Colour kNothing = {255, 255, 255};
+  constexpr Colour kOne = {190, 190, 190};
+  constexpr std::array<Colour, 3> kSeveral = {{{240, 110, 90}, {200, 40, 30}, {110, 0, 0}}};
+  std::vector<Colour> pixels;
+  pixels.reserve(coverage.layers.size());
+  for (const std::uint8_t layers : coverage.layers)
+    pixels.push_back(layers == 0   ? kNothing
+                     : layers == 1 ? kOne
+                                   : kSeveral[std::min<std::size_t>(layers - 2U, kSeveral.size() - 1)]);
+  png_image image = {};
+  image.version = PNG_IMAGE_VERSION;
+  image.width = coverage.side;
+  image.height = coverage.side;
+  image.format = PNG_FORMAT_RGB;
+  png_alloc_size_t bytes = 0;
+  std::vector<std::byte> png;
+  if (png_image_write_to_memory(&image, nullptr, &bytes, 0, pixels.data(), 0, nullptr) != 0) {
+    png.resize(bytes);
+    if (png_image_write_to_memory(&image, png.data(), &bytes, 0, pixels.data(), 0, nullptr) != 0) return png;
+  }
+  throw std::runtime_error(image.message);
+}
+
+void write_file(const std::string& path, std::span<const std::byte> bytes, const CommonOptions& options) {
+  if (path.empty()) return;
+  OutputFile file(path, options.overwrite());
+  file.write(bytes);
+  file.commit();
+}
+
+void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
+  const bool is_builtin = options.avatar == "builtin";
+  if (!options.map_output.empty() && !is_builtin)
+    throw UsageError("--map-output", "only the built-in avatar comes with a map", "leave FILE out");
+  std::string sidecar;
+  if (!options.map_output.empty() && options.map_output != "-")
+    sidecar = std::filesystem::path(options.map_output).replace_extension(".json").string();
+  check_outputs({options.output, options.map_output, sidecar, options.uv_output, options.common.json}, {options.avatar},
+                options.common);
+  for (const auto& [flag, path] : {std::pair("-o -", options.output), std::pair("--map-output -", options.map_output),
+                                   std::pair("--uv -", options.uv_output)})
+    if (path == "-") refuse_terminal(flag);
+
+  const std::vector<std::byte> glb = is_builtin ? builtin_avatar_glb() : read_avatar_glb(options.avatar);
+  const Avatar avatar = parse_avatar_glb(glb, options.avatar);
+  for (const std::string& warning : avatar.warnings) warn(warning, options.common.verbosity());
+  const UvCoverage coverage = uv_coverage(avatar, kTextureSide);
+
+  write_file(options.output, glb, options.common);
+  if (!options.map_output.empty()) {
+    write_file(options.map_output, builtin_actuator_map_png(), options.common);
+    const std::string json = builtin_actuator_map_json();
+    write_file(sidecar, std::as_bytes(std::span(json)), options.common);
+  }
+  if (!options.uv_output.empty()) write_file(options.uv_output, overlap_picture(coverage), options.common);
+
+  nlohmann::ordered_json json = provenance(invocation.argv);
+  json["avatar"] = options.avatar;
+  const nlohmann::ordered_json description = describe(avatar, coverage);
+  json.update(description);
+  write_json(options.common.json, json, options.common);
+  print_summary(summary(options.avatar, description, avatar, coverage),
+                {options.output, options.map_output, options.uv_output, options.common.json}, options.common);
+}
+
+}  // namespace
+
+void add_avatar(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<AvatarOptions>();
+  CLI::App* verb = add_verb(program, "avatar", "Describe an avatar; write the built-in one as a file",
+                            "  vestige avatar\n"
+                            "  vestige avatar builtin -o mannequin.glb --map-output mannequin.png\n");
+  verb->add_option("AVATAR", options->avatar, "The built-in one, or a glTF file (.glb, .gltf, .vrm)")
+      ->capture_default_str()
+      ->type_name("builtin|FILE");
+  verb->add_option("-o,--output", options->output, "Write the avatar as one binary glTF file")->type_name("OUT.glb|-");
+  verb->add_option("--map-output", options->map_output,
+                   "Write the built-in avatar's actuator map, and OUT.json, which names its actuators")
+      ->type_name("OUT.png");
+  verb->add_option(
+          "--uv", options->uv_output,
+          "Draw the texture: grey where one triangle lies, red where several do, which a map cannot tell apart")
+      ->type_name("OUT.png");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_avatar(*options, invocation); });
+}
+
+}  // namespace vestige::cli

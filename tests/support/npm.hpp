@@ -1,0 +1,38 @@
+#pragma once
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+namespace vestige::test {
+
+/// Where a package of tests/npm is, or should be: fetched when it is not there yet, it stays missing without network.
+inline std::filesystem::path npm_package(const std::string& name) {
+  const auto folder = std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/npm";
+  auto module = folder / "node_modules" / name;
+  if (!std::filesystem::exists(module)) {
+    // Test programs run beside each other: one of them fetches.
+    const std::string command =
+        fmt::format("cd '{}' && flock package.json sh -c 'test -e node_modules/{} || npm ci --no-audit --no-fund >&2'",
+                    folder.string(), name);
+    if (std::system(command.c_str()) != 0) std::fputs("npm ci failed\n", stderr);
+  }
+  return module;
+}
+
+/// What a script of tests/npm prints about `file`.
+inline std::string run_node(const std::string& script, const std::filesystem::path& file) {
+  const std::string command = fmt::format("node '{}/tests/npm/{}' '{}'", VESTIGE_SOURCE_DIR, script, file.string());
+  std::FILE* pipe = ::popen(command.c_str(), "r");
+  std::string output;
+  char block[4096];
+  for (std::size_t count = 0; (count = std::fread(block, 1, sizeof block, pipe)) > 0;) output.append(block, count);
+  EXPECT_EQ(::pclose(pipe), 0);
+  return output;
+}
+
+}  // namespace vestige::test
