@@ -13,9 +13,11 @@ namespace {
 
 constexpr double kShortest_s = 0.8;  // once around
 constexpr double kLongest_s = 1.6;
+constexpr double kWithin = 0.98;
 
 /// Level circles around the upright axis through the body's centre, half of them either way. Each goes through a random
-/// point of the skin as it is when the trace begins, which gives its height and radius.
+/// point of the skin as it is when the trace begins, which gives its radius and, moved a little towards the middle, its
+/// height: a circle must not skim along a flat sole.
 class Orbit final : public ColliderSource {
  public:
   Orbit(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings)
@@ -27,9 +29,10 @@ class Orbit final : public ColliderSource {
     for (std::uint32_t id = 0; id < settings.count; ++id) {
       Random random(settings.seed, id);
       const glm::dvec3 through_m = skin.place(skin.random_point(random), palette).position_m;
+      const double y_m = centre_m.y + kWithin * (through_m.y - centre_m.y);
       const double turn_s = random.uniform(kShortest_s, kLongest_s);
-      circles_.push_back({std::hypot(through_m.x - centre_m.x, through_m.z - centre_m.z), through_m.y,
-                          random.uniform(0, 1), (random.next() % 2 == 0 ? 1 : -1) / turn_s});
+      circles_.push_back({std::hypot(through_m.x - centre_m.x, through_m.z - centre_m.z), y_m, random.uniform(0, 1),
+                          (random.next() % 2 == 0 ? 1 : -1) / turn_s});
     }
   }
 

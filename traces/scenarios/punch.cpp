@@ -69,7 +69,7 @@ class Punch final : public ColliderSource {
   struct Fist {
     double period_s = 1;
     double phase = 0;
-    double turn = -2;  // number of the last strike; -2: not yet looked
+    double turn = -9;  // number of the last strike; the first of all is -1 or 0
     Strike last;
     Strike next;
   };

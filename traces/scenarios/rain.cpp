@@ -9,8 +9,8 @@ namespace vestige {
 namespace {
 
 constexpr double kSpeed_m_s = 9;  // at which large drops end up falling
-constexpr double kAbove_m = 0.3;  // of the room, where a drop begins
-constexpr double kBelow_m = 0.05;
+constexpr double kAbove_m = 0.3;  // of the room, where a drop begins: none is tested before it has fallen for a frame
+constexpr double kBelow_m = 0.3;
 
 /// A drop falls at an even speed from above the room that the body takes up to below it. Then it is a new one, above
 /// another spot of the ground: it has teleported.

@@ -12,7 +12,7 @@ std::span<const Scenario> scenarios() {
       {"orbit", "points that circle upright around the body, through its skin", 100, make_orbit},
       {"punch", "fists of up to 8 points that strike torso and head from the front, 4 cm deep", 100, make_punch},
       {"slide", "one object that slides over the chest, left to right and back, dipping 4 mm into it", 1, make_slide},
-      {"hug", "points that wander over the skin, in and out, never 2 cm away from it", 100, make_hug},
+      {"hug", "points that wander over the skin, in and out, always within 2 cm of it", 100, make_hug},
       {"still", "points at rest that the moving body runs into", 100, make_still},
   }};
   return kScenarios;

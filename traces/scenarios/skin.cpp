@@ -96,4 +96,13 @@ SkinPlace Skin::place(const SkinPoint& point, const std::vector<glm::dmat4>& pal
   return place;
 }
 
+glm::dvec3 Skin::face_normal(std::uint32_t triangle, const std::vector<glm::dmat4>& palette) const {
+  const glm::uvec3& corners = avatar_.triangles[triangle];
+  const glm::dvec3 a = skin_vertex(avatar_, palette, corners.x);
+  const glm::dvec3 normal = glm::cross(skin_vertex(avatar_, palette, corners.y) - a,  //
+                                       skin_vertex(avatar_, palette, corners.z) - a);
+  const double length = glm::length(normal);
+  return length > 0 ? normal / length : glm::dvec3(0);
+}
+
 }  // namespace vestige

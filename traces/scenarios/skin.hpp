@@ -42,6 +42,9 @@ class Skin {
   /// Under the palette of a pose. The normal blends those of the corners, so it turns without jumps along the skin.
   SkinPlace place(const SkinPoint& point, const std::vector<glm::dmat4>& palette) const;
 
+  /// The normal of a posed triangle itself; 0 where it has no area.
+  glm::dvec3 face_normal(std::uint32_t triangle, const std::vector<glm::dmat4>& palette) const;
+
  private:
   const Avatar& avatar_;
   std::vector<glm::dvec3> rest_m_;

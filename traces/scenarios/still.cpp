@@ -15,6 +15,7 @@ namespace {
 constexpr std::size_t kInstants = 256;  // at most so many poses are looked at
 constexpr std::size_t kCandidates = 4;  // of which the point of skin that moves farthest against itself is taken
 constexpr double kAround_s = 1.0 / 60;  // before and after an instant: what the skin does there
+constexpr double kSlowest_m = 1e-5;     // in that time; less is no sweep
 constexpr double kBesideResting_m = 0.01;
 
 /// A collider rests where some point of the skin will be at some instant of the animation, so that the skin sweeps over
@@ -42,13 +43,13 @@ class Still final : public ColliderSource {
           const SkinPoint point = skin.random_point(random);
           const SkinPlace place = skin.place(point, then);
           const glm::dvec3 way_m = skin.place(point, after).position_m - skin.place(point, before).position_m;
-          const double swept_m = std::abs(glm::dot(way_m, place.normal));
+          const double swept_m = std::abs(glm::dot(way_m, skin.face_normal(point.triangle, then)));
           if (!(swept_m > farthest_m)) continue;
           farthest_m = swept_m;
-          const double off_m = swept_m > 0 ? 0 : kBesideResting_m * body.metre();
+          const double off_m = swept_m > kSlowest_m * body.metre() ? 0 : kBesideResting_m * body.metre();
           resting_[id] = on_grid(place.position_m + off_m * place.normal);
         }
-        moves_ = moves_ || farthest_m > 0;
+        moves_ = moves_ || farthest_m > kSlowest_m * body.metre();
       }
     }
   }
