@@ -30,7 +30,8 @@ void PrintTo(const Counts& counts, std::ostream* out) {
 }
 
 constexpr Counts kCounts[] = {
-    {"swarm", 385, 667}, {"rain", 1305, 733}, {"orbit", 1040, 599}, {"punch", 466, 470}, {"slide", 100, 98}, {"hug", 2026, 2243}, {"still", 0, 0},
+    {"swarm", 385, 667}, {"rain", 1305, 733}, {"orbit", 1040, 599}, {"punch", 466, 470},
+    {"slide", 100, 98},  {"hug", 2026, 2243}, {"still", 0, 0},
 };
 
 struct Touch {
@@ -81,13 +82,13 @@ TEST_P(ScenarioContacts, AreAsManyAsEver) {
   EXPECT_EQ(touches_of(GetParam().scenario, avatar, &avatar.animations.front()).size(), GetParam().builtin);
 }
 
-TEST_P(ScenarioContacts, GoInAndComeOut) {
-  if (std::string_view(GetParam().scenario) == "still") GTEST_SKIP() << "points at rest have no way of their own";
+TEST_P(ScenarioContacts, GoInAndComeOutOfABodyAtRest) {
   const auto touches = touches_of(GetParam().scenario, builtin_avatar(), nullptr);
+  EXPECT_EQ(touches.empty(), std::string_view(GetParam().scenario) == "still");
   const auto entering = std::ranges::count_if(touches, [](const Touch& touch) { return touch.side > 0; });
   const auto leaving = std::ranges::count_if(touches, [](const Touch& touch) { return touch.side < 0; });
-  EXPECT_GT(entering, std::ssize(touches) / 3);
-  EXPECT_GT(leaving, std::ssize(touches) / 3);
+  EXPECT_GE(entering, std::ssize(touches) / 3);
+  EXPECT_GE(leaving, std::ssize(touches) / 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, ScenarioContacts, ::testing::ValuesIn(kCounts),

@@ -10,7 +10,7 @@ namespace vestige {
 
 namespace {
 
-constexpr double kWander_m_s = 0.3;  // along the skin
+constexpr double kWander_m_per_s = 0.3;  // along the skin
 constexpr double kStraight_m = 0.05;
 constexpr double kLeastReach_m = 0.008;  // to either side of the skin
 constexpr double kMostReach_m = 0.018;
@@ -24,7 +24,7 @@ class Hug final : public ColliderSource {
   Hug(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings)
       : body_(avatar, animation),
         skin_(avatar),
-        walk_(skin_, kWander_m_s * body_.metre(), kStraight_m * body_.metre()) {
+        walk_(skin_, kWander_m_per_s * body_.metre(), kStraight_m * body_.metre()) {
     walkers_.reserve(settings.count);
     for (std::uint32_t id = 0; id < settings.count; ++id) {
       Random random(settings.seed, id);

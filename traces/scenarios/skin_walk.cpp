@@ -28,8 +28,8 @@ SkinPoint SkinStep::at(double time_s) const {
   return {from.triangle, glm::mix(from.weight, to_weight, share)};
 }
 
-SkinWalk::SkinWalk(const Skin& skin, double speed_m_s, double straight_m)
-    : skin_(skin), speed_m_s_(speed_m_s), straight_m_(straight_m) {
+SkinWalk::SkinWalk(const Skin& skin, double speed_m_per_s, double straight_m)
+    : skin_(skin), speed_m_per_s_(speed_m_per_s), straight_m_(straight_m) {
   const auto& triangles = skin.avatar().triangles;
   neighbours_.assign(3 * triangles.size(), kNoTriangle);
   std::vector<Edge> edges;
@@ -82,7 +82,7 @@ SkinStep SkinWalk::step_from(double start_s, const SkinPoint& from, const glm::d
   step.to_weight = glm::max(from.weight + length_m * rate, glm::dvec3(0));
   if (step.exit_corner != kNoCorner) step.to_weight[static_cast<int>(step.exit_corner)] = 0;
   step.to_weight /= step.to_weight.x + step.to_weight.y + step.to_weight.z;
-  step.end_s = start_s + std::max(length_m / speed_m_s_, kShortest_s);
+  step.end_s = start_s + std::max(length_m / speed_m_per_s_, kShortest_s);
   return step;
 }
 

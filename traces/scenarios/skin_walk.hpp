@@ -23,8 +23,8 @@ struct SkinStep {
 /// edges that have no other side. Lengths are those of the rest pose. Holds a reference to the skin.
 class SkinWalk {
  public:
-  /// `speed_m_s` and `straight_m` (the longest way without a turn) are above 0.
-  SkinWalk(const Skin& skin, double speed_m_s, double straight_m);
+  /// `speed_m_per_s` and `straight_m` (the longest way without a turn) are above 0.
+  SkinWalk(const Skin& skin, double speed_m_per_s, double straight_m);
 
   SkinStep begin(double time_s, Random& random) const;
   SkinStep next(const SkinStep& step, Random& random) const;
@@ -41,7 +41,7 @@ class SkinWalk {
   const glm::dvec3& corner_m(std::uint32_t triangle, std::uint32_t corner) const;
 
   const Skin& skin_;
-  double speed_m_s_;
+  double speed_m_per_s_;
   double straight_m_;
   std::vector<std::uint32_t> neighbours_;  // three a triangle: beyond the edge opposite to each corner
 };
