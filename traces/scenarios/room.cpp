@@ -20,10 +20,10 @@ constexpr std::size_t kVertices = 500;  // about so many stand for all
 Room::Room(Body& body) : loop_s_(body.loop_s()) {
   const Avatar& avatar = body.avatar();
   const std::size_t stride = std::max<std::size_t>(avatar.position_bind.size() / kVertices, 1);
-  const double intervals = std::clamp(std::ceil(loop_s_ * kRate_hz), 0.0, kMostIntervals);
+  const auto intervals = static_cast<int>(std::clamp(std::ceil(loop_s_ * kRate_hz), 0.0, kMostIntervals));
   std::vector<glm::dmat4> palette;
   std::vector<glm::dvec3> places;
-  for (double i = 0; i <= intervals; ++i) {
+  for (int i = 0; i <= intervals; ++i) {
     const double time_s = intervals > 0 ? loop_s_ * i / intervals : 0;
     // The loop's end itself, which looping never shows, is where the last moments lead to.
     const Animation* animation = body.animation();

@@ -1,12 +1,14 @@
 #include "traces/scenarios/skin.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <iterator>
 #include <numeric>
+#include <tuple>
 
 #include "traces/pose.hpp"
 #include "traces/reference_skinning.hpp"
@@ -16,21 +18,20 @@ namespace vestige {
 namespace {
 
 /// The same bind position under the same influences: moved alike by every pose. An order, by bits.
-int compare(const Avatar& avatar, std::uint32_t a, std::uint32_t b) {
-  const glm::vec3 here = avatar.position_bind[a] + 0.0F;  // -0 is 0
-  const glm::vec3 there = avatar.position_bind[b] + 0.0F;
-  const int position = std::memcmp(&here, &there, sizeof(glm::vec3));
-  if (position != 0) return position;
-  return std::memcmp(&avatar.influences[a], &avatar.influences[b], sizeof(Influences));
+auto weld_key(const Avatar& avatar, std::uint32_t vertex) {
+  const Influences& influences = avatar.influences[vertex];
+  const glm::vec3 position = avatar.position_bind[vertex] + 0.0F;  // -0 is 0
+  return std::tuple(std::bit_cast<std::array<std::uint32_t, 3>>(position), influences.palette,
+                    std::bit_cast<std::array<std::uint32_t, kMaxInfluences>>(influences.weight));
 }
 
 std::vector<std::uint32_t> weld_vertices(const Avatar& avatar) {
   std::vector<std::uint32_t> order(avatar.position_bind.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) { return compare(avatar, a, b) < 0; });
+  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) { return weld_key(avatar, a) < weld_key(avatar, b); });
   std::vector<std::uint32_t> welded(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && compare(avatar, order[i - 1], order[i]) == 0;
+    const bool same = i > 0 && weld_key(avatar, order[i - 1]) == weld_key(avatar, order[i]);
     welded[order[i]] = same ? welded[order[i - 1]] : order[i];
   }
   return welded;
