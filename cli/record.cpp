@@ -2,10 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <iterator>
 #include <memory>
+#include <optional>
+#include <string_view>
+#include <vector>
 
 #include "analysis/provenance.hpp"
 #include "cli/scene.hpp"
+#include "cli/suggest.hpp"
 #include "cli/verbs.hpp"
 #include "traces/colliders.hpp"
 #include "traces/error.hpp"
@@ -25,23 +30,46 @@ struct RecordOptions {
   std::string animation;
   std::string map;
   std::string colliders = "swarm";
-  ScenarioSettings scenario;
+  std::optional<std::uint32_t> count;  ///< of a scenario; none: what it has by default
   RecordingSettings recording;
   std::string origin = "0,0,0";
   std::string compression = "zstd";
   std::string output;
 };
 
+UsageError no_scenario(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
+  const std::string_view nearest = nearest_name(name, names);
+  return {"--colliders", fmt::format("there is no scenario '{}'", name),
+          fmt::format("{}the scenarios are: {}; or name a .csv file",
+                      nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest), fmt::join(names, ", "))};
+}
+
+bool is_file(const std::string& colliders) {
+  return colliders.ends_with(".csv");
+}
+
 std::unique_ptr<ColliderSource> make_colliders(const RecordOptions& options, const Avatar& avatar,
                                                const Animation* animation) {
-  if (options.colliders == "swarm") {
-    ScenarioSettings settings = options.scenario;
-    settings.seed = options.common.seed;
-    return make_swarm(avatar, animation, settings);
-  }
-  if (options.colliders.ends_with(".csv")) return read_collider_csv(options.colliders);
-  throw UsageError("--colliders", fmt::format("there is no scenario '{}'", options.colliders),
-                   "the scenarios are: swarm; or name a .csv file");
+  if (is_file(options.colliders)) return read_collider_csv(options.colliders);
+  const Scenario& scenario = *find_scenario(options.colliders);
+  return scenario.make(avatar, animation, {options.count.value_or(scenario.default_count), options.common.seed});
+}
+
+std::string describe_colliders() {
+  std::string text = "Where the colliders come from:";
+  for (const Scenario& scenario : scenarios())
+    fmt::format_to(std::back_inserter(text), "\n  {:<6} {}", scenario.name, scenario.summary);
+  return text + "\nor a file of rows time_s,id,x,y,z";
+}
+
+std::string describe_count() {
+  std::string text = fmt::format("Colliders of a scenario [default: {}", scenarios().front().default_count);
+  for (const Scenario& scenario : scenarios())
+    if (scenario.default_count != scenarios().front().default_count)
+      fmt::format_to(std::back_inserter(text), "; {}: {}", scenario.name, scenario.default_count);
+  return text + "]";
 }
 
 /// Samples of a file that the recording does not reach are said, and when it reaches none it is refused.
@@ -73,6 +101,8 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   const Animation* animation = find_animation(scene.avatar, options.animation);
   const auto colliders = make_colliders(options, scene.avatar, animation);
   check_span(colliders->span_s(), options, verbosity);
+  for (const std::string& warning : colliders->warnings())
+    warn(fmt::format("--colliders {}: {}", options.colliders, warning), verbosity);
 
   Session session;
   const nlohmann::ordered_json origin = provenance(invocation.argv);
@@ -128,13 +158,10 @@ void add_record(CLI::App& program, Invocation& invocation) {
                    "Actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
                    "[default: builtin for the built-in avatar, else none]")
       ->type_name("builtin|none|FILE.png");
-  verb->add_option("--colliders", options->colliders,
-                   "swarm: points that pierce the body from all sides while it moves; or a file time_s,id,x,y,z")
+  verb->add_option("--colliders", options->colliders, describe_colliders())
       ->capture_default_str()
       ->type_name("SCENARIO|FILE.csv");
-  verb->add_option("--count", options->scenario.count, "Colliders of a scenario")
-      ->capture_default_str()
-      ->check(CLI::Range(1, 1000000));
+  verb->add_option("--count", options->count, describe_count())->check(CLI::Range(1, 1000000));
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")->capture_default_str()->check(kPositive);
   verb->add_option("--duration", options->recording.duration_s, "Seconds")->capture_default_str()->check(kPositive);
   verb->add_option("--origin", options->origin, "Where in the world the scene stands, in metres")
@@ -147,8 +174,10 @@ void add_record(CLI::App& program, Invocation& invocation) {
       ->required()
       ->type_name("OUT.mcap|-");
   add_common_options(*verb, options->common);
-  verb->callback([options, verb, &invocation] {
-    if (verb->count("--count") != 0 && options->colliders.ends_with(".csv"))
+  verb->callback([options, &invocation] {
+    if (!is_file(options->colliders) && find_scenario(options->colliders) == nullptr)
+      throw no_scenario(options->colliders);
+    if (options->count && is_file(options->colliders))
       throw UsageError("--count", "a file has the colliders that it has", "leave --count out");
     run_record(*options, invocation);
   });

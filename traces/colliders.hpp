@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -28,8 +30,17 @@ class ColliderSource {
   /// The colliders present at `time_s`, relative to the scene's origin. Times must not decrease.
   virtual void sample(double time_s, std::vector<ColliderSample>& out) = 0;
 
+  /// Those that jumped to where the last `sample` found them: no segment leads there.
+  const std::vector<std::uint32_t>& teleported() const { return teleported_; }
+
   /// When there are samples: first and last time. A scenario has no bounds.
   virtual TimeSpan span_s() const { return {}; }
+
+  /// Why there may be less to see than expected, one sentence each.
+  virtual std::vector<std::string> warnings() const { return {}; }
+
+ protected:
+  std::vector<std::uint32_t> teleported_;
 };
 
 /// `animation` may be null: then the avatar rests.
@@ -42,6 +53,22 @@ struct ScenarioSettings {
 /// where that vertex will be; a new aim follows every passage. Positions lie on a grid of 2^-20 m.
 std::unique_ptr<ColliderSource> make_swarm(const Avatar& avatar, const Animation* animation,
                                            const ScenarioSettings& settings);
+
+/// A built-in scenario. The same avatar, animation, count and seed give the same positions at the same times, at any
+/// rate of sampling.
+struct Scenario {
+  std::string_view name;
+  std::string_view summary;  ///< one line
+  std::uint32_t default_count;
+  std::unique_ptr<ColliderSource> (*make)(const Avatar& avatar, const Animation* animation,
+                                          const ScenarioSettings& settings);
+};
+
+/// All of them, in the order in which to list them.
+std::span<const Scenario> scenarios();
+
+/// Null where none has this name.
+const Scenario* find_scenario(std::string_view name);
 
 /// Reads `time_s,id,x,y,z` (that header, then a row for each sample, metres; times not decreasing). Between two samples
 /// of a collider its position is interpolated linearly; before its first and after its last it is absent. Throws

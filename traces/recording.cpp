@@ -29,6 +29,7 @@ void record(TraceWriter& writer, const Avatar& avatar, const Animation* animatio
     frame.pose = looped_pose(avatar, animation, time_s);
     frame.pose.origin_m = origin_m;
     colliders.sample(time_s, frame.colliders);
+    frame.teleported = colliders.teleported();
     for (ColliderSample& sample : frame.colliders) sample.position_m += origin_m;
     writer.write(frame);
     if (!progress(static_cast<double>(index + 1) / static_cast<double>(frames))) return;

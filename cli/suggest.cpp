@@ -1,0 +1,41 @@
+#include "cli/suggest.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+namespace vestige::cli {
+
+namespace {
+
+/// Levenshtein's distance: letters put in, left out or exchanged.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+      const std::size_t exchanged = diagonal + (a[i] == b[k] ? 0 : 1);
+      diagonal = row[k + 1];
+      row[k + 1] = std::min({exchanged, row[k] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string_view nearest_name(std::string_view word, std::span<const std::string_view> names) {
+  std::string_view nearest;
+  std::size_t fewest = 3;
+  for (const std::string_view name : names) {
+    const std::size_t changes = distance(word, name);
+    if (changes >= fewest || 2 * changes >= name.size()) continue;
+    fewest = changes;
+    nearest = name;
+  }
+  return nearest;
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,127 @@
+// What the scenarios bring about: contacts under the `cpu` detector in 2 s at 100 Hz, with as many colliders as each
+// has by default. Whoever changes the built-in avatar, a scenario or what a contact is changes these numbers, and says
+// why.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <ostream>
+#include <set>
+
+#include "detector/detector.hpp"
+#include "tests/support/skin_geometry.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/colliders.hpp"
+
+namespace vestige {
+namespace {
+
+struct Counts {
+  const char* scenario;
+  std::size_t box_person;
+  std::size_t builtin;
+};
+
+void PrintTo(const Counts& counts, std::ostream* out) {
+  *out << counts.scenario;
+}
+
+constexpr Counts kCounts[] = {
+    {"swarm", 385, 667}, {"rain", 1305, 733}, {"orbit", 1040, 599}, {"punch", 466, 470},
+    {"slide", 100, 98},  {"hug", 2026, 2243}, {"still", 0, 0},
+};
+
+struct Touch {
+  int frame = 0;
+  std::uint32_t collider = 0;
+  glm::dvec3 place_m = glm::dvec3(0);
+  int side = 0;
+};
+
+std::vector<Touch> touches_of(std::string_view name, const Avatar& avatar, const Animation* animation) {
+  constexpr double kRate_hz = 100;
+  constexpr int kFrames = 200;
+  const Scenario& scenario = *find_scenario(name);
+  const auto source = scenario.make(avatar, animation, {scenario.default_count, 1});
+  ActuatorMap map;
+  const auto detector = make_cpu_detector(avatar, map, {Surface::kAll, PlaneSet::all()});
+  std::vector<std::uint32_t> ids(scenario.default_count);
+  std::iota(ids.begin(), ids.end(), 0U);
+  FrameBuilder builder(avatar, ids);
+  std::vector<Touch> touches;
+  TraceFrame trace_frame;
+  ContactRow row;
+  for (int k = 0; k < kFrames; ++k) {
+    trace_frame.index = static_cast<std::uint64_t>(k);
+    trace_frame.time_ns = std::llround(k / kRate_hz * 1e9);
+    trace_frame.pose = looped_pose(avatar, animation, k / kRate_hz);
+    source->sample(k / kRate_hz, trace_frame.colliders);
+    trace_frame.teleported = source->teleported();
+    detector->detect(builder.next(trace_frame), row);
+    for (std::uint32_t column = 0; column < row.size(); ++column)
+      if (row[column].hit()) touches.push_back({k, column, row[column].position, row[column].side});
+  }
+  return touches;
+}
+
+const Avatar& builtin_avatar() {
+  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  return avatar;
+}
+
+class ScenarioContacts : public ::testing::TestWithParam<Counts> {};
+
+TEST_P(ScenarioContacts, AreAsManyAsEver) {
+  Avatar box = test::box_person();
+  test::add_sway(box);
+  EXPECT_EQ(touches_of(GetParam().scenario, box, &box.animations.front()).size(), GetParam().box_person);
+  const Avatar& avatar = builtin_avatar();
+  EXPECT_EQ(touches_of(GetParam().scenario, avatar, &avatar.animations.front()).size(), GetParam().builtin);
+}
+
+TEST_P(ScenarioContacts, GoInAndComeOutOfABodyAtRest) {
+  const auto touches = touches_of(GetParam().scenario, builtin_avatar(), nullptr);
+  EXPECT_EQ(touches.empty(), std::string_view(GetParam().scenario) == "still");
+  const auto entering = std::ranges::count_if(touches, [](const Touch& touch) { return touch.side > 0; });
+  const auto leaving = std::ranges::count_if(touches, [](const Touch& touch) { return touch.side < 0; });
+  EXPECT_GE(entering, std::ssize(touches) / 3);
+  EXPECT_GE(leaving, std::ssize(touches) / 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, ScenarioContacts, ::testing::ValuesIn(kCounts),
+                         [](const auto& test) { return std::string(test.param.scenario); });
+
+TEST(SlideContacts, LieAllAlongTheWayAcrossTheChestAndBack) {
+  std::set<int> there;  // every 2 cm from the left to the right
+  std::set<int> back;
+  for (const Touch& touch : touches_of("slide", builtin_avatar(), nullptr))
+    (touch.frame < 100 ? there : back).insert(static_cast<int>(std::floor(touch.place_m.x / 0.02)));
+  const std::set<int> all = {-6, -5, -4, -3, -2, -1, 0, 1, 2, 3, 4, 5};
+  EXPECT_TRUE(std::ranges::includes(there, all));
+  EXPECT_TRUE(std::ranges::includes(back, all));
+}
+
+TEST(PunchContacts, LieOnTheFrontOfTorsoAndHead) {
+  for (const Touch& touch : touches_of("punch", builtin_avatar(), nullptr)) {
+    EXPECT_GT(touch.place_m.z, 0);
+    EXPECT_GT(touch.place_m.y, 0.45 * 1.75);
+  }
+}
+
+TEST(HugContacts, ComeToEveryCollider) {
+  std::set<std::uint32_t> touched;
+  for (const Touch& touch : touches_of("hug", builtin_avatar(), nullptr)) touched.insert(touch.collider);
+  EXPECT_EQ(touched.size(), 100U);
+}
+
+TEST(RainContacts, ComeFromAboveOnly) {
+  for (const Touch& touch : touches_of("rain", test::box_person(), nullptr)) {
+    EXPECT_NEAR(touch.place_m.y, touch.side > 0 ? 1.75 : 0, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace vestige

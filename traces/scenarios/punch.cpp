@@ -1,0 +1,151 @@
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "traces/pose.hpp"
+#include "traces/reference_skinning.hpp"
+#include "traces/scenarios/body.hpp"
+#include "traces/scenarios/front_view.hpp"
+#include "traces/scenarios/makers.hpp"
+#include "traces/scenarios/random.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::uint32_t kFistPoints = 8;
+constexpr double kFistRadius_m = 0.035;
+constexpr double kSpeed_m_per_s = 8;  // on the skin
+constexpr double kDepth_m = 0.04;
+constexpr double kReach_m = 0.4;  // from rest to the skin, all of it speeding up
+constexpr double kStop_s = 2 * kDepth_m / kSpeed_m_per_s;
+constexpr double kSwing_s = 2 * kReach_m / kSpeed_m_per_s;
+constexpr double kBack_s = 0.25;
+constexpr double kShortest_s = 0.7;  // from one strike to the next
+constexpr double kLongest_s = 1.1;
+
+constexpr double kLowest = 0.5;  // of the height at rest: hips to head
+constexpr double kHighest = 0.97;
+constexpr double kHalfWidth_m = 0.2;
+constexpr double kFacing = 0.6;  // the cosine between the skin struck and the front
+constexpr double kSpread = 0.2;  // how far a strike may stray from the normal: its tangent, at most
+
+/// Where and which way a fist strikes, and when it reaches the skin.
+struct Strike {
+  double time_s = 0;
+  glm::dvec3 target_m = glm::dvec3(0);
+  glm::dvec3 inwards = glm::dvec3(0, 0, -1);
+};
+
+/// A fist is a disc of points. It speeds up to 8 m/s at the skin, stops evenly within 4 cm, draws back and moves on to
+/// where its next strike begins. It strikes against the skin's normal, where that skin is at the moment of the strike.
+class Punch final : public ColliderSource {
+ public:
+  Punch(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings)
+      : body_(avatar, animation), skin_(avatar), settings_(settings) {
+    find_targets();
+    const std::uint32_t fists = (settings.count + kFistPoints - 1) / kFistPoints;
+    fists_.reserve(fists);
+    for (std::uint32_t number = 0; number < fists; ++number) {
+      Random random(settings.seed, number);
+      Fist fist;
+      fist.period_s = random.uniform(kShortest_s, kLongest_s);
+      fist.phase = random.uniform(0, 1);
+      fists_.push_back(fist);
+    }
+  }
+
+  void sample(double time_s, std::vector<ColliderSample>& out) override {
+    out.clear();
+    for (std::uint32_t id = 0; id < settings_.count; ++id) {
+      Fist& fist = fists_[id / kFistPoints];
+      if (id % kFistPoints == 0) follow(fist, id / kFistPoints, time_s);
+      const glm::dvec2 place = kFistRadius_m * disc_place(id % kFistPoints, kFistPoints);
+      out.push_back({id, on_grid(position_m(fist, place, time_s))});
+    }
+  }
+
+ private:
+  struct Fist {
+    double period_s = 1;
+    double phase = 0;
+    double turn = -9;  // number of the last strike; the first of all is -1 or 0
+    Strike last;
+    Strike next;
+  };
+
+  /// Where the front of torso and head faces the fists, at rest.
+  void find_targets() {
+    const FrontView view(skin_);
+    if (!(view.cell_m() > 0)) return;
+    std::vector<glm::dmat4> rest;
+    palette_matrices(skin_.avatar(), rest_pose(skin_.avatar()), rest);
+    const double middle_m = 0.5 * (view.low_m().x + view.high_m().x);
+    const double half_m = kHalfWidth_m * body_.metre();
+    const int last_row = view.row_of(glm::mix(view.low_m().y, view.high_m().y, kHighest));
+    const int last_column = view.column_of(middle_m + half_m);
+    for (int row = view.row_of(glm::mix(view.low_m().y, view.high_m().y, kLowest)); row <= last_row; ++row) {
+      for (int column = view.column_of(middle_m - half_m); column <= last_column; ++column) {
+        const FrontView::Cell* cell = view.at(column, row);
+        if (cell != nullptr && skin_.place(cell->point, rest).normal.z > kFacing) targets_.push_back(cell->point);
+      }
+    }
+  }
+
+  Strike strike(const Fist& fist, std::uint32_t number, double turn) {
+    Random random(settings_.seed, number, static_cast<std::uint64_t>(turn + 2));
+    const SkinPoint target = targets_.empty() ? skin_.random_point(random) : targets_[random.index(targets_.size())];
+    const double time_s = (turn + fist.phase) * fist.period_s;
+    const SkinPlace place = skin_.place(target, body_.palette(time_s));
+    return {time_s, place.position_m, glm::normalize(kSpread * random.direction() - place.normal)};
+  }
+
+  /// Brings the fist's strikes around `time_s` up to date.
+  void follow(Fist& fist, std::uint32_t number, double time_s) {
+    const double turn = std::floor(time_s / fist.period_s - fist.phase);
+    if (turn == fist.turn) return;
+    fist.last = turn == fist.turn + 1 ? fist.next : strike(fist, number, turn);
+    fist.next = strike(fist, number, turn + 1);
+    fist.turn = turn;
+  }
+
+  /// A point of the fist when its middle is `depth_m` beneath the skin that the strike meets.
+  glm::dvec3 point_m(const Strike& strike, const glm::dvec2& place, double depth_m) const {
+    const Across sideways = across(strike.inwards);
+    return strike.target_m +
+           body_.metre() * (place.x * sideways.first + place.y * sideways.second + depth_m * strike.inwards);
+  }
+
+  glm::dvec3 position_m(const Fist& fist, const glm::dvec2& place, double time_s) const {
+    const double since_s = time_s - fist.last.time_s;
+    const double until_s = fist.next.time_s - time_s;
+    if (since_s < kStop_s) {
+      const double braking = kSpeed_m_per_s / kStop_s;
+      return point_m(fist.last, place, since_s * (kSpeed_m_per_s - 0.5 * braking * since_s));
+    }
+    if (since_s < kStop_s + kBack_s)
+      return point_m(fist.last, place, glm::mix(kDepth_m, -kReach_m, smooth((since_s - kStop_s) / kBack_s)));
+    if (until_s < kSwing_s) {
+      const double swung_s = kSwing_s - until_s;
+      return point_m(fist.next, place, 0.5 * kSpeed_m_per_s / kSwing_s * swung_s * swung_s - kReach_m);
+    }
+    const double idle_s = fist.period_s - kStop_s - kBack_s - kSwing_s;
+    return glm::mix(point_m(fist.last, place, -kReach_m), point_m(fist.next, place, -kReach_m),
+                    smooth((since_s - kStop_s - kBack_s) / idle_s));
+  }
+
+  Body body_;
+  Skin skin_;
+  ScenarioSettings settings_;
+  std::vector<SkinPoint> targets_;
+  std::vector<Fist> fists_;
+};
+
+}  // namespace
+
+std::unique_ptr<ColliderSource> make_punch(const Avatar& avatar, const Animation* animation,
+                                           const ScenarioSettings& settings) {
+  return std::make_unique<Punch>(avatar, animation, settings);
+}
+
+}  // namespace vestige

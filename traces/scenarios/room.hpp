@@ -1,0 +1,29 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "traces/scenarios/body.hpp"
+
+namespace vestige {
+
+/// The room that an animated body takes up: a box that goes with the body's centre and holds all that it does around
+/// it. Found from some of the vertices at 30 times a second.
+class Room {
+ public:
+  explicit Room(Body& body);
+
+  /// The mean of the vertices. Before 0: as at 0.
+  glm::dvec3 centre_m(double time_s) const;
+  /// The box, from the centre.
+  const glm::dvec3& low_m() const { return low_m_; }
+  const glm::dvec3& high_m() const { return high_m_; }
+
+ private:
+  double loop_s_;
+  std::vector<glm::dvec3> centres_m_;  // evenly from the loop's begin to its end
+  glm::dvec3 low_m_;
+  glm::dvec3 high_m_;
+};
+
+}  // namespace vestige
