@@ -33,7 +33,7 @@ void describe_value(const std::string& type, FlagTable& flag) {
     constraint = constraint.substr(kRange.size(), constraint.size() - kRange.size() - 1);
     flag.range = constraint.replace(constraint.find(" - "), 3, " to ");
   } else {
-    flag.range = constraint;
+    flag.range = constraint == "NONNEGATIVE" ? "at least 0" : constraint;
   }
 }
 
