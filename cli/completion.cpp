@@ -11,9 +11,10 @@ namespace vestige::cli {
 
 void add_completion(CLI::App& program, Invocation&) {
   auto shell = std::make_shared<std::string>();
-  CLI::App* verb = add_verb(program, "completion", "Print the script that lets a shell complete verbs, flags and values",
-                            "  vestige completion bash > vestige.bash\n"
-                            "  vestige completion fish > vestige.fish\n");
+  CLI::App* verb =
+      add_verb(program, "completion", "Print the script that lets a shell complete verbs, flags and values",
+               "  vestige completion bash > vestige.bash\n"
+               "  vestige completion fish > vestige.fish\n");
   verb->group(kShellVerbs);
   verb->add_option("SHELL", *shell, "The shell; the script's first lines say how to load it")
       ->required()

@@ -40,7 +40,8 @@ bool is_verb(const CLI::App& program, const std::string& word) {
 
 int run(int argc, char** argv) {
   CLI::App program(
-      "Record traces of an animated avatar and the colliders around it, replay them through a geometry-shader collision "
+      "Record traces of an animated avatar and the colliders around it, replay them through a geometry-shader "
+      "collision "
       "detector, measure that detector, and turn contacts into a haptic vest's vibration",
       "vestige");
   program.formatter(std::make_shared<help::HelpFormatter>(

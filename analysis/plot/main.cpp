@@ -59,10 +59,10 @@ int write_figure(const Options& options, const std::filesystem::path& stem,
   try {
     write_file(options, png, plot::png_of(*figure));
   } catch (const plot::GlUnavailable& error) {
-    fmt::print(
-        stderr,
-        "vestige: warning: {}: left out: {}\n  install libegl1 and libgl1-mesa-dri, or convert the SVG: rsvg-convert -d 300 -p 300\n",
-        png.string(), error.what());
+    fmt::print(stderr,
+               "vestige: warning: {}: left out: {}\n  install libegl1 and libgl1-mesa-dri, or convert the SVG: "
+               "rsvg-convert -d 300 -p 300\n",
+               png.string(), error.what());
     return kIncomplete;
   }
   return kDone;
@@ -117,7 +117,7 @@ int main(int argc, char** argv) {
   CLI::App app("Draw figures of results, as SVG and as PNG (300 dots per inch)", "vestige plot");
   app.formatter(
       std::make_shared<help::HelpFormatter>("  vestige plot sweep results/sweep\n"
-                                      "  vestige plot timeline timeline.csv -o figures/timeline\n"));
+                                            "  vestige plot timeline timeline.csv -o figures/timeline\n"));
   app.set_version_flag("--version", fmt::format("vestige-plot {} ({}{})", vestige::kVersion, vestige::kCommit,
                                                 vestige::kDirty ? ", modified" : ""));
   app.require_subcommand(1);
@@ -125,7 +125,9 @@ int main(int argc, char** argv) {
   CLI::App& sweep = add_command(app, "sweep", "Detection frequency over the number of colliders (frequency.svg, .png)",
                                 "  vestige plot sweep results/sweep\n"
                                 "  vestige plot sweep gpu/sweep.json software/sweep.json -o figures\n");
-  sweep.add_option("INPUT", options.inputs, "The sweep.json to draw, or the folder that holds it; several go into one figure")
+  sweep
+      .add_option("INPUT", options.inputs,
+                  "The sweep.json to draw, or the folder that holds it; several go into one figure")
       ->type_name("DIR|JSON")
       ->required();
   add_common_options(sweep, options, "DIR", "Folder for the figures [default: beside the first input]");

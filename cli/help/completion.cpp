@@ -86,7 +86,8 @@ const FlagTable* find_flag(const CommandTable& command, const std::string& word)
 std::string flags(const CommandTable& command, const std::vector<std::string>& before, const std::string& typed) {
   std::string lines;
   for (const FlagTable& flag : command.flags) {
-    const bool used = std::ranges::any_of(before, [&](const std::string& word) { return find_flag(command, word) == &flag; });
+    const bool used =
+        std::ranges::any_of(before, [&](const std::string& word) { return find_flag(command, word) == &flag; });
     if (flag.positional || used) continue;
     if (fits(flag.names.back(), typed)) {
       lines += line_of(flag.names.back(), flag.description);

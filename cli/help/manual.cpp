@@ -73,8 +73,8 @@ std::string verb_list(const CommandTable& command, VerbPages verb_pages) {
     if (verb_pages == VerbPages::kOwn) {
       text += tagged(bold(verb.verb), verb.summary + ".");
     } else {
-      text += fmt::format(".SS {}\n{}.\n.PP\n{}\n.PP\n{}", escaped(verb.name), escaped(verb.summary),
-                          bold(usage(verb)), examples(verb));
+      text += fmt::format(".SS {}\n{}.\n.PP\n{}\n.PP\n{}", escaped(verb.name), escaped(verb.summary), bold(usage(verb)),
+                          examples(verb));
       for (const FlagTable& flag : verb.flags) text += flag_entry(flag);
     }
   }
