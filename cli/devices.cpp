@@ -158,7 +158,7 @@ void run_devices(const CommonOptions& options, const Invocation& invocation) {
     text += describe(offer, automatic.context);
   }
   text += automatic.context.empty() ? "No OpenGL 4.5 context is to be had here: 'paper' cannot run. 'cpu' needs none.\n"
-                            : "* is what --context auto takes.\n";
+                                    : "* is what --context auto takes.\n";
   write_json(options.json, json, options);
   print_summary(text + limits_table(offers), {options.json}, options);
 }

@@ -61,6 +61,7 @@ int run(int argc, char** argv) {
   add_claims(program, invocation);
   add_completion(program, invocation);
   add_man(program, invocation);
+  program.get_option("--version")->description("Print version and commit");
   program.set_help_flag("-h,--help", "Print this help");
   // After the verbs, which would take it over.
   program.footer(footer());

@@ -83,13 +83,18 @@ CommandTable command_table(const CLI::App& app) {
   return table;
 }
 
-std::vector<std::string> fixed_values(const FlagTable& flag) {
-  std::vector<std::string> words = split(flag.value, '|');
-  std::erase_if(words, [](const std::string& word) {
-    return !std::ranges::all_of(word, [](char c) { return (c >= 'a' && c <= 'z') || c == '_' || c == '-'; }) ||
-           word == "-";
-  });
-  return words;
+std::vector<FixedValue> fixed_values(const FlagTable& flag) {
+  std::vector<FixedValue> values;
+  for (const std::string& word : split(flag.value, '|'))
+    if (word != "-" && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz_-") == std::string::npos)
+      values.push_back({word, ""});
+  for (const std::string& line : split(flag.description, '\n')) {
+    if (!line.starts_with("  ")) continue;
+    const std::size_t end = std::min(line.find(' ', 2), line.size());
+    const std::size_t meaning = std::min(line.find_first_not_of(' ', end), line.size());
+    values.push_back({line.substr(2, end - 2), line.substr(meaning)});
+  }
+  return values;
 }
 
 bool takes_path(const FlagTable& flag) {

@@ -66,13 +66,13 @@ bool fits(const std::string& candidate, const std::string& typed) {
 }
 
 std::string line_of(const std::string& word, const std::string& meaning) {
-  return fmt::format("{}\t{}\n", word, meaning);
+  return fmt::format("{}\t{}\n", word, meaning.substr(0, meaning.find('\n')));
 }
 
 std::string values(const FlagTable& flag, const std::string& typed) {
   std::string lines;
-  for (const std::string& value : fixed_values(flag))
-    if (fits(value, typed)) lines += line_of(value, flag.names.back());
+  for (const FixedValue& value : fixed_values(flag))
+    if (fits(value.word, typed)) lines += line_of(value.word, value.meaning);
   return takes_path(flag) ? lines + ":\n" : lines;
 }
 

@@ -15,10 +15,10 @@ namespace {
 constexpr std::size_t kColumns = 100;
 constexpr std::size_t kNameColumns = 28;
 
-/// Breaks `text` at blanks; every line after the first is indented. `column` is where the first line begins.
-std::string wrap(const std::string& text, std::size_t column, std::size_t indent) {
+/// Breaks a line at blanks; what follows is indented. `column` is where the line begins.
+std::string wrap_line(const std::string& line, std::size_t column, std::size_t indent) {
   std::string wrapped;
-  std::istringstream words(text);
+  std::istringstream words(line);
   for (std::string word; words >> word;) {
     if (!wrapped.empty() && column + 1 + word.size() > kColumns) {
       wrapped += "\n" + std::string(indent, ' ');
@@ -29,6 +29,26 @@ std::string wrap(const std::string& text, std::size_t column, std::size_t indent
     }
     wrapped += word;
     column += word.size();
+  }
+  return wrapped;
+}
+
+/// Breaks every line of `text`. Lines that begin with two blanks, "  swarm  points that …", become a table.
+std::string wrap(const std::string& text, std::size_t column, std::size_t indent) {
+  std::string wrapped;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!wrapped.empty()) {
+      wrapped += "\n" + std::string(indent, ' ');
+      column = indent;
+    }
+    const std::size_t word_end = line.starts_with("  ") ? line.find(' ', 2) : 0;
+    const std::size_t hang = line.find_first_not_of(' ', word_end == std::string::npos ? 0 : word_end);
+    if (word_end != 0 && hang != std::string::npos) {
+      wrapped += line.substr(0, hang) + wrap_line(line.substr(hang), column + hang, indent + hang);
+    } else {
+      wrapped += wrap_line(line, column, indent);
+    }
   }
   return wrapped;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <sstream>
 
 #include "cli/help/help_text.hpp"
@@ -15,7 +16,10 @@ namespace {
 std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
-    if (c == '\\') {
+    if (c == ' ' && result.ends_with('\n')) continue;
+    if (c == '\n') {
+      result += "\n.br\n";
+    } else if (c == '\\') {
       result += "\\e";
     } else if (c == '-') {
       result += "\\-";
@@ -54,13 +58,18 @@ std::string examples(const CommandTable& command) {
   return ".nf\n" + text + ".fi\n";
 }
 
-std::string flags_of(const CommandTable& command, const char* heading) {
+std::string upper_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+  return text;
+}
+
+std::string flags_of(const CommandTable& command) {
   std::string text;
   for (const FlagTable& flag : command.flags)
     if (flag.positional) text += flag_entry(flag);
-  if (!text.empty()) text = fmt::format("{} ARGUMENTS\n", heading) + text;
+  if (!text.empty()) text = ".SH ARGUMENTS\n" + text;
   for (const std::string& group : groups_of(command)) {
-    text += fmt::format("{} {}\n", heading, escaped(group));
+    text += fmt::format(".SH {}\n", escaped(upper_case(group)));
     for (const FlagTable& flag : command.flags)
       if (!flag.positional && flag.group == group) text += flag_entry(flag);
   }
@@ -99,14 +108,13 @@ std::string page_name(const CommandTable& command) {
 
 std::string manual_page(const CommandTable& command, VerbPages verb_pages, const std::string& version,
                         const std::string& date) {
-  std::string title = page_name(command);
-  std::ranges::transform(title, title.begin(), [](char c) { return c >= 'a' && c <= 'z' ? char(c - 32) : c; });
-  std::string text = fmt::format(".TH {} 1 \"{}\" \"vestige {}\" \"User Commands\"\n", escaped(title), date, version);
+  std::string text = fmt::format(".TH {} 1 \"{}\" \"vestige {}\" \"User Commands\"\n",
+                                 escaped(upper_case(page_name(command))), date, version);
   text += fmt::format(".SH NAME\n{} \\- {}\n", escaped(page_name(command)), escaped(command.summary));
   text += fmt::format(".SH SYNOPSIS\n{}\n", bold(usage(command)));
   text += fmt::format(".SH EXAMPLES\n{}", examples(command));
   text += verb_list(command, verb_pages);
-  text += flags_of(command, ".SH");
+  text += flags_of(command);
   text += ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : kExitCodes) text += tagged(bold(std::to_string(code)), meaning);
   text += fmt::format(".SH ENVIRONMENT\n{}",

@@ -122,7 +122,7 @@ TEST_F(Help, ManPagesHaveNoWarnings) {
   EXPECT_EQ(run("mandoc -Tlint -Wwarning man1/*").standard_output, "");
   EXPECT_EQ(run("for page in man1/*; do groff -ww -man -Tutf8 $page >/dev/null; done").standard_error, "");
   const std::string page = run("mandoc -Tascii -Owidth=100 man1/vestige-record.1 | col -b").standard_output;
-  EXPECT_THAT(page, AllOf(HasSubstr("--rate X"), HasSubstr("default: 1000"), HasSubstr("EXIT STATUS"),
+  EXPECT_THAT(page, AllOf(HasSubstr("--rate HZ"), HasSubstr("default: 1000"), HasSubstr("EXIT STATUS"),
                           HasSubstr("vestige record -o man.mcap")));
 }
 
@@ -177,7 +177,7 @@ TEST_F(Completion, InFishOffersVerbsWithTheirMeaningsFlagsAndFiles) {
   };
   EXPECT_EQ(fish("vestige rep"), "replay\tRun a trace through a collision detector\n");
   EXPECT_THAT(fish("vestige replay --det"), StartsWith("--detector\t"));
-  EXPECT_THAT(fish("vestige replay --detector p"), StartsWith("paper\t"));
+  EXPECT_THAT(fish("vestige replay --detector p"), StartsWith("paper"));
   EXPECT_THAT(fish("vestige replay man"), HasSubstr("man.mcap"));
   EXPECT_EQ(fish("vestige record --count "), "");
 }
