@@ -65,7 +65,7 @@ std::vector<std::string> groups_in_order(const Items& items) {
   std::vector<std::string> groups;
   for (const auto& item : items)
     if (std::ranges::find(groups, item.group) == groups.end()) groups.push_back(item.group);
-  std::ranges::stable_partition(groups, [](const std::string& group) { return group != kCommonGroup; });
+  std::stable_partition(groups.begin(), groups.end(), [](const std::string& group) { return group != kCommonGroup; });
   return groups;
 }
 
