@@ -64,7 +64,11 @@ nlohmann::ordered_json to_json(const Machine& machine) {
 
 nlohmann::ordered_json to_json(const GlInfo& gl) {
   if (gl.context.empty()) return nullptr;
-  return {{"renderer", gl.renderer}, {"version", gl.version}, {"context", gl.context}};
+  return {{"renderer", gl.renderer},
+          {"version", gl.version},
+          {"context", gl.context},
+          {"vendor", gl.vendor},
+          {"software", gl.software}};
 }
 
 nlohmann::ordered_json to_json(const Avatar& avatar) {

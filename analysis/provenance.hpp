@@ -24,7 +24,7 @@ Machine this_machine();
 nlohmann::ordered_json provenance(std::span<const std::string> argv);
 
 nlohmann::ordered_json to_json(const Machine& machine);
-nlohmann::ordered_json to_json(const GlInfo& gl);      ///< renderer, version, context; null for a detector without GL
+nlohmann::ordered_json to_json(const GlInfo& gl);      ///< renderer, version, …; null for a detector without GL
 nlohmann::ordered_json to_json(const Avatar& avatar);  ///< vertices, triangles, joints
 
 /// The commit that this program was built from; a "+" behind it says that files had been changed since.

@@ -43,12 +43,26 @@ std::vector<Claim> claims_of_files(const std::vector<std::string>& files, const 
   return claims;
 }
 
+nlohmann::ordered_json to_json(const std::vector<Claim>& claims) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Claim& claim : claims)
+    list.push_back({{"claim", claim.claim},
+                    {"command", claim.command},
+                    {"time", claim.time},
+                    {"machine", claim.machine},
+                    {"commit", claim.commit},
+                    {"file", claim.file}});
+  return {{"claims", list}};
+}
+
 void run_claims(const ClaimsOptions& options) {
   const std::vector<std::string> files = json_files_under(options.folder);
-  check_outputs({options.output}, files, options.common);
+  check_outputs({options.output, options.common.json}, files, options.common);
   const std::vector<Claim> claims = claims_of_files(files, options.folder);
   if (claims.empty())
     throw Error(options.folder, "holds no result", "write one with 'vestige sweep -o' or 'vestige replay --json'");
+  write_json(options.common.json, to_json(claims), options.common);
+  if (options.output.empty()) return;
   OutputFile file(options.output, options.common.overwrite());
   file.write(
       fmt::format("# Results\n\nWritten by `vestige claims`: what the committed runs show. Frequencies are frames / "
@@ -66,11 +80,15 @@ void add_claims(CLI::App& program, Invocation&) {
                             "  vestige claims results\n"
                             "  vestige claims results --force -o results/README.md\n");
   verb->add_option("DIR", options->folder, "Folder of JSON files that sweep and replay wrote")->required();
-  verb->add_option("-o,--output", options->output, "The file to write, or '-' for standard output")
+  verb->add_option("-o,--output", options->output, "The table to write, or '-' for standard output")
       ->capture_default_str()
       ->type_name("OUT.md|-");
   add_common_options(*verb, options->common);
-  verb->callback([options] { run_claims(*options); });
+  verb->callback([options, verb] {
+    // --json - takes standard output over from the table.
+    if (options->common.json == "-" && verb->count("--output") == 0) options->output.clear();
+    run_claims(*options);
+  });
 }
 
 }  // namespace vestige::cli

@@ -3,18 +3,20 @@
 namespace vestige::cli {
 
 void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
-  verb.add_option("--device", choice.device, "EGL device, as 'vestige devices' counts them [default: the best]")
+  const auto add = [&](const char* name, auto& value, const char* description) {
+    return verb.add_option(name, value, description)->group(kDetectorGroup);
+  };
+  add("--device", choice.device, "EGL device, as 'vestige devices' counts them [default: the first GPU, else software]")
       ->check(CLI::NonNegativeNumber)
       ->type_name("K");
-  verb.add_option("--method", choice.method,
-                  "static: each segment against the triangle as it is now, as the paper does")
+  add("--method", choice.method, "static: each segment against the triangle as it is now, as the paper does")
       ->capture_default_str()
       ->check(CLI::IsMember({"static"}));
-  verb.add_option("--skip", choice.skip, "off: every segment meets every triangle")
+  add("--skip", choice.skip, "off: every segment meets every triangle")
       ->capture_default_str()
       ->check(CLI::IsMember({"off"}));
-  verb.add_option("--surface", choice.surface,
-                  "all: skin without an actuator hides what lies behind it; mapped: it is passed through")
+  add("--surface", choice.surface,
+      "all: skin without an actuator hides what lies behind it; mapped: it is passed through")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "mapped"}));
 }

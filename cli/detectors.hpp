@@ -21,6 +21,9 @@ struct DetectorChoice {
   Surface surface_kind() const { return surface == "mapped" ? Surface::kMapped : Surface::kAll; }
 };
 
+/// The group of help that they stand in, with --detector and --context.
+inline constexpr const char* kDetectorGroup = "Detector";
+
 /// Adds --device, --method, --skip and --surface, which mean the same in every verb.
 void add_detector_options(CLI::App& verb, DetectorChoice& choice);
 

@@ -76,7 +76,7 @@ void add_inspect(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<InspectOptions>();
   CLI::App* verb = add_verb(program, "inspect", "Say what a trace, or any MCAP file, holds",
                             "  vestige inspect man.mcap\n"
-                            "  vestige inspect man.mcap --json - | jq .channels\n");
+                            "  vestige inspect man.mcap --json inspect.json\n");
   verb->add_option("TRACE", options->trace, "The file, or '-' for standard input")->required();
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_inspect(*options, invocation); });

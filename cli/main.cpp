@@ -9,37 +9,30 @@
 #include <new>
 #include <utility>
 
+#include "cli/help/help_text.hpp"
+#include "cli/help/manual.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
 #include "version.hpp"
 
 namespace vestige::cli {
 
-namespace {
-
-/// CLI11's help, opened by the examples of the verb that it is for.
-class HelpFormatter : public CLI::Formatter {
- public:
-  explicit HelpFormatter(std::string examples) : examples_(std::move(examples)) {}
-  std::string make_description(const CLI::App* app) const override {
-    return fmt::format("Examples:\n{}\n{}", examples_, CLI::Formatter::make_description(app));
-  }
-
- private:
-  std::string examples_;
-};
-
-}  // namespace
-
 CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& summary,
                    const std::string& examples) {
   CLI::App* verb = program.add_subcommand(name, summary);
-  verb->formatter(std::make_shared<HelpFormatter>(examples));
+  verb->formatter(std::make_shared<help::HelpFormatter>(examples));
   verb->group("Verbs");
   return verb;
 }
 
 namespace {
+
+std::string footer() {
+  std::string text = "'vestige VERB --help' explains each verb. Exit codes:";
+  for (const auto& [code, meaning] : help::kExitCodes) text += fmt::format(" {} {};", code, meaning);
+  text.back() = '.';
+  return text;
+}
 
 bool is_verb(const CLI::App& program, const std::string& word) {
   return !program.get_subcommands([&](const CLI::App* verb) { return verb->check_name(word); }).empty();
@@ -47,12 +40,13 @@ bool is_verb(const CLI::App& program, const std::string& word) {
 
 int run(int argc, char** argv) {
   CLI::App program(
-      "Vestige records traces of an animated avatar and the colliders around it, replays them through a\n"
-      "geometry-shader collision detector, measures that detector, and turns contacts into a haptic vest's vibration.",
+      "Record traces of an animated avatar and the colliders around it, replay them through a geometry-shader "
+      "collision "
+      "detector, measure that detector, and turn contacts into a haptic vest's vibration",
       "vestige");
-  program.formatter(
-      std::make_shared<HelpFormatter>("  vestige record -o man.mcap\n"
-                                      "  vestige replay man.mcap --contacts contacts.csv --timeline timeline.csv\n"));
+  program.formatter(std::make_shared<help::HelpFormatter>(
+      "  vestige record -o man.mcap\n"
+      "  vestige replay man.mcap --contacts contacts.csv --timeline timeline.csv\n"));
   program.set_version_flag("--version",
                            fmt::format("vestige {} ({}{})", kVersion, kCommit, kDirty ? ", modified" : ""));
   program.require_subcommand(1);
@@ -66,11 +60,13 @@ int run(int argc, char** argv) {
   add_devices(program, invocation);
   add_plot(program, invocation);
   add_claims(program, invocation);
+  add_completion(program, invocation);
+  add_man(program, invocation);
+  program.get_option("--version")->description("Print version and commit");
+  program.set_help_flag("-h,--help", "Print this help");
   // After the verbs, which would take it over.
-  program.footer(
-      "'vestige VERB --help' explains each. Exit codes: 0 done, 1 failed, 2 wrong usage, 3 done but not with all of "
-      "the\n"
-      "data (a damaged trace, or interrupted), 4 a check failed.");
+  program.footer(footer());
+  if (argc > 1 && std::string_view(argv[1]) == "complete") return complete(program, {argv + 2, argv + argc});
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
       throw UsageError(fmt::format("argument {}", i), "is empty",

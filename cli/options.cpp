@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 
+#include "cli/help/help_text.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::cli {
@@ -43,16 +44,18 @@ bool is_standard_output(const std::string& path) {
 
 }  // namespace
 
-const CLI::Validator kPositive([](std::string& text) { return check_number(text, false); }, "> 0");
-const CLI::Validator kNotNegative([](std::string& text) { return check_number(text, true); }, ">= 0");
+const CLI::Validator kPositive([](std::string& text) { return check_number(text, false); }, "above 0");
+const CLI::Validator kNotNegative([](std::string& text) { return check_number(text, true); }, "at least 0");
 
 void add_common_options(CLI::App& verb, CommonOptions& options) {
-  verb.add_option("--json", options.json, "Write the result as JSON to FILE, or '-' for standard output")
+  const auto common = [](CLI::Option* option) { return option->group(help::kCommonGroup); };
+  common(verb.add_option("--json", options.json, "Write the result as JSON to FILE, or '-' for standard output"))
       ->type_name("FILE|-");
-  verb.add_flag("-q,--quiet", options.quiet, "Print errors only");
-  verb.add_flag("-v,--verbose", options.verbose, "Print more");
-  verb.add_flag("--force", options.force, "Overwrite existing files");
-  verb.add_option("--seed", options.seed, "Seed of whatever is random")->capture_default_str()->check(kSeed);
+  common(verb.add_flag("-q,--quiet", options.quiet, "Print errors only"));
+  common(verb.add_flag("-v,--verbose", options.verbose, "Print more"));
+  common(verb.add_flag("--force", options.force, "Overwrite existing files"));
+  common(verb.add_option("--seed", options.seed, "Seed of whatever is random"))->capture_default_str()->check(kSeed);
+  common(verb.set_help_flag("-h,--help", "Print this help"));
 }
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,

@@ -35,8 +35,10 @@ int run_plot(const std::vector<std::string>& arguments) {
   pid_t child = 0;
   const int failure = ::posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ);
   if (failure != 0)
-    throw Error("vestige-plot", fmt::format("cannot be run: {}", std::strerror(failure)),
-                "it draws with VTK: install libvtk9-dev and build again, or put vestige-plot on the PATH");
+    throw Error(
+        "vestige-plot", fmt::format("cannot be run: {}", std::strerror(failure)),
+        "it draws with VTK: install the package vestige-plot, or libvtk9-dev and build again, or put vestige-plot on "
+        "the PATH");
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }

@@ -148,26 +148,32 @@ void add_record(CLI::App& program, Invocation& invocation) {
   CLI::App* verb = add_verb(program, "record", "Write a trace of an avatar and the colliders around it",
                             "  vestige record -o man.mcap\n"
                             "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n");
-  verb->add_option("--avatar", options->avatar, "Avatar: the built-in one, or a glTF file (.glb, .gltf, .vrm)")
+  verb->add_option("--avatar", options->avatar, "The avatar: the built-in one, or a glTF file (.glb, .gltf, .vrm)")
       ->capture_default_str()
       ->type_name("builtin|FILE");
   verb->add_option("--animation", options->animation,
                    "Its animation, looping: a name, an index, or none [default: the first]")
       ->type_name("NAME|INDEX|none");
   verb->add_option("--map", options->map,
-                   "Actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
+                   "The actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
                    "[default: builtin for the built-in avatar, else none]")
       ->type_name("builtin|none|FILE.png");
   verb->add_option("--colliders", options->colliders, describe_colliders())
       ->capture_default_str()
       ->type_name("SCENARIO|FILE.csv");
   verb->add_option("--count", options->count, describe_count())->check(CLI::Range(1, 1000000));
-  verb->add_option("--rate", options->recording.rate_hz, "Frames per second")->capture_default_str()->check(kPositive);
-  verb->add_option("--duration", options->recording.duration_s, "Seconds")->capture_default_str()->check(kPositive);
+  verb->add_option("--rate", options->recording.rate_hz, "Frames per second")
+      ->type_name("HZ")
+      ->capture_default_str()
+      ->check(kPositive);
+  verb->add_option("--duration", options->recording.duration_s, "How long, in seconds")
+      ->type_name("S")
+      ->capture_default_str()
+      ->check(kPositive);
   verb->add_option("--origin", options->origin, "Where in the world the scene stands, in metres")
       ->capture_default_str()
       ->type_name("X,Y,Z");
-  verb->add_option("--compression", options->compression, "Of the trace's chunks")
+  verb->add_option("--compression", options->compression, "How the trace's chunks are compressed")
       ->capture_default_str()
       ->check(CLI::IsMember({"zstd", "lz4", "none"}));
   verb->add_option("-o,--output", options->output, "The trace to write, or '-' for standard output")

@@ -252,32 +252,37 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   verb->add_option("--detector", options->choice.detector,
                    "paper: HAVE 2010's geometry shader, as published; cpu: the same contacts in double precision; "
                    "auto: cpu")
+      ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "paper", "cpu"}));
-  verb->add_option("--context", options->choice.context, "OpenGL context of paper")
+  verb->add_option("--context", options->choice.context, "OpenGL context that paper runs in")
+      ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
   add_detector_options(*verb, options->choice);
-  verb->add_option(
-          "--hold", options->hold_ms,
-          "How long a contact keeps its actuator on, in ms: a coin motor cannot answer a single frame; 0 gives "
-          "the raw frames")
-      ->capture_default_str()
-      ->check(kNotNegative);
-  verb->add_option("--contacts", options->contacts, "Write one row a contact")->type_name("OUT.csv|-");
-  verb->add_option("--textures", options->textures,
-                   "Write the collision textures as OpenEXR: a row a frame, a column a collider")
+  const auto add_result = [&](const char* name, auto& value, const char* description) {
+    return verb->add_option(name, value, description)->group("Results");
+  };
+  add_result("--contacts", options->contacts, "Write the contacts, one row each")->type_name("OUT.csv|-");
+  add_result("--textures", options->textures,
+             "Write the collision textures as OpenEXR: a row a frame, a column a collider")
       ->type_name("OUT.exr|-");
-  verb->add_option("--planes", options->planes,
-                   "What the textures hold: actuator, t, triangle, barycentric, texture, position, speed, side")
+  add_result("--planes", options->planes,
+             "What the textures hold, of: actuator, t, triangle, barycentric, texture, position, speed, side")
       ->capture_default_str()
       ->type_name("LIST");
-  verb->add_option("--timeline", options->timeline, "Write the actuators' duties, 0 to 255, one row a frame")
+  add_result("--timeline", options->timeline, "Write the actuators' duties, 0 to 255, one row a frame")
       ->type_name("OUT.csv|-");
-  verb->add_option("--verify", options->verify,
-                   "Compare with another detector (cpu, paper), or with the --contacts or --json of an earlier replay; "
-                   "exit 4 if contacts differ")
-      ->type_name("DETECTOR|FILE");
+  add_result("--hold", options->hold_ms,
+             "How long a contact keeps its actuator on, in ms: a coin motor cannot answer a single frame; 0 gives the "
+             "raw frames")
+      ->capture_default_str()
+      ->check(kNotNegative)
+      ->type_name("MS");
+  add_result("--verify", options->verify,
+             "Compare with another detector (cpu, paper), or with the --contacts or --json of an earlier replay; exit "
+             "4 if contacts differ")
+      ->type_name("cpu|paper|FILE");
   add_common_options(*verb, options->common);
   // Flags that would do nothing are refused.
   verb->get_option("--planes")->needs(verb->get_option("--textures"));

@@ -169,12 +169,16 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
                             "  vestige sweep -o sweep\n"
                             "  vestige sweep man.mcap --counts 1,10,40,100 --detector paper,cpu -o sweep\n");
   verb->add_option("TRACE", options->trace, "The trace to measure on [default: the built-in avatar in a swarm]");
-  verb->add_option("--counts", options->counts, "Numbers of colliders")->capture_default_str()->type_name("LIST");
-  verb->add_option("--detector", options->detectors, "Detectors to measure: paper, cpu")
+  verb->add_option("--counts", options->counts, "Numbers of colliders, as 1,10,40,100 or 1:100 or 5:100:5")
       ->capture_default_str()
       ->type_name("LIST");
-  verb->add_option("--context", options->contexts, "OpenGL contexts to measure paper in: egl, osmesa")
+  verb->add_option("--detector", options->detectors, "Detectors to measure: paper, cpu")
       ->capture_default_str()
+      ->group(kDetectorGroup)
+      ->type_name("LIST");
+  verb->add_option("--context", options->contexts, "OpenGL contexts to measure paper in: egl, osmesa, auto")
+      ->capture_default_str()
+      ->group(kDetectorGroup)
       ->type_name("LIST");
   add_detector_options(*verb, options->choice);
   verb->add_option("--runs", options->settings.runs, "Places of the trace, evenly spread, that are measured")
@@ -185,7 +189,8 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
       ->check(CLI::Range(1, 100000));
   verb->add_option("--min-time", options->settings.min_time_s, "Seconds spent on every point, at least")
       ->capture_default_str()
-      ->check(kPositive);
+      ->check(kPositive)
+      ->type_name("S");
   verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
   verb->add_option("-o,--output", options->output, "Folder for sweep.json, every frame's duration, and the figure")
       ->required()

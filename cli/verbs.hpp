@@ -15,9 +15,17 @@ void add_avatar(CLI::App& program, Invocation& invocation);
 void add_devices(CLI::App& program, Invocation& invocation);
 void add_plot(CLI::App& program, Invocation& invocation);
 void add_claims(CLI::App& program, Invocation& invocation);
+void add_completion(CLI::App& program, Invocation& invocation);
+void add_man(CLI::App& program, Invocation& invocation);
+
+/// The group of the verbs that serve the shell.
+inline constexpr const char* kShellVerbs = "For the shell";
 
 /// Makes a verb. `examples`, two that run as they are, open its help.
 CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& summary, const std::string& examples);
+
+/// Prints what could complete the last of `words`, which follow the program's name, and returns the exit code.
+int complete(const CLI::App& program, const std::vector<std::string>& words);
 
 /// Runs `vestige-plot` with these arguments and returns its exit code; throws `Error` where it is not installed.
 int run_plot(const std::vector<std::string>& arguments);

@@ -33,6 +33,8 @@ struct GlInfo {
   std::string context;  ///< "egl-surfaceless", "egl-device-0", "osmesa"
   std::string renderer;
   std::string version;
+  std::string vendor;
+  bool software = false;  ///< drawn by the processor
 };
 
 /// Finds, for every collider, where its segment first meets the avatar's skin.

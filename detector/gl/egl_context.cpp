@@ -28,6 +28,7 @@ struct EglFunctions {
   PFNEGLGETPLATFORMDISPLAYEXTPROC GetPlatformDisplay = nullptr;
   PFNEGLQUERYDEVICESEXTPROC QueryDevices = nullptr;            // null without EGL_EXT_device_enumeration
   PFNEGLQUERYDEVICESTRINGEXTPROC QueryDeviceString = nullptr;  // likewise
+  PFNEGLQUERYDEVICEATTRIBEXTPROC QueryDeviceAttrib = nullptr;  // likewise
 
   EglFunctions() {
     const SharedLibrary library("libEGL.so.1");
@@ -44,6 +45,7 @@ struct EglFunctions {
       throw Error("libEGL.so.1", "has no eglGetPlatformDisplayEXT", "use a newer version of it");
     QueryDevices = reinterpret_cast<PFNEGLQUERYDEVICESEXTPROC>(GetProcAddress("eglQueryDevicesEXT"));
     QueryDeviceString = reinterpret_cast<PFNEGLQUERYDEVICESTRINGEXTPROC>(GetProcAddress("eglQueryDeviceStringEXT"));
+    QueryDeviceAttrib = reinterpret_cast<PFNEGLQUERYDEVICEATTRIBEXTPROC>(GetProcAddress("eglQueryDeviceAttribEXT"));
   }
 };
 
@@ -71,6 +73,25 @@ std::string device_string(EGLDeviceEXT device, EGLint name) {
   return text == nullptr ? "" : text;
 }
 
+/// A driver is only asked for what its extensions promise: some crash on other names.
+EglDevice describe_device(EGLDeviceEXT device) {
+  EglDevice found;
+  found.extensions = device_string(device, EGL_EXTENSIONS);
+  const std::string padded = " " + found.extensions + " ";
+  const auto offers = [&](const std::string& extension) {
+    return padded.find(" " + extension + " ") != std::string::npos;
+  };
+  found.software = offers("EGL_MESA_device_software");
+  if (offers("EGL_EXT_device_query_name")) found.vendor = device_string(device, EGL_VENDOR);
+  if (offers("EGL_EXT_device_drm")) found.drm_node = device_string(device, EGL_DRM_DEVICE_FILE_EXT);
+  if (offers("EGL_EXT_device_drm_render_node")) found.render_node = device_string(device, EGL_DRM_RENDER_NODE_FILE_EXT);
+  EGLAttrib cuda = 0;
+  if (offers("EGL_NV_device_cuda") && egl().QueryDeviceAttrib != nullptr &&
+      egl().QueryDeviceAttrib(device, EGL_CUDA_DEVICE_NV, &cuda) == EGL_TRUE)
+    found.cuda_device = static_cast<int>(cuda);
+  return found;
+}
+
 class EglContext final : public GlContext {
  public:
   EglContext(const std::string& name, EGLenum platform, void* native) {
@@ -85,15 +106,14 @@ class EglContext final : public GlContext {
         EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
     context_ = egl().CreateContext(display_, EGLConfig(nullptr), EGL_NO_CONTEXT, kAttributes.data());
     if (context_ == EGL_NO_CONTEXT) throw egl_error(name, "eglCreateContext for OpenGL 4.5 core");
-    try {
-      make_current();
-      load(name, [](const char* symbol) { return reinterpret_cast<void*>(egl().GetProcAddress(symbol)); });
-    } catch (...) {
-      destroy();
-      throw;
-    }
   }
-  ~EglContext() override { destroy(); }
+  ~EglContext() override {
+    leave();
+    egl().DestroyContext(display_, context_);
+  }
+  static std::unique_ptr<GlContext> make(const std::string& name, EGLenum platform, void* native) {
+    return loaded(std::make_unique<EglContext>(name, platform, native), name);
+  }
 
  private:
   void bind() override {
@@ -103,9 +123,8 @@ class EglContext final : public GlContext {
       throw egl_error("EGL", "eglMakeCurrent without a surface");
   }
   void unbind() override { egl().MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT); }
-  void destroy() {
-    leave();
-    egl().DestroyContext(display_, context_);
+  void* address_of(const char* function) const override {
+    return reinterpret_cast<void*>(egl().GetProcAddress(function));
   }
 
   EGLDisplay display_ = EGL_NO_DISPLAY;
@@ -117,12 +136,7 @@ class EglContext final : public GlContext {
 std::vector<EglDevice> list_egl_devices() {
   std::vector<EglDevice> found;
   try {
-    for (EGLDeviceEXT device : query_devices()) {
-      const std::string extensions = device_string(device, EGL_EXTENSIONS);
-      std::string name = device_string(device, EGL_VENDOR);
-      if (name.empty()) name = device_string(device, EGL_DRM_DEVICE_FILE_EXT);
-      found.push_back({extensions.find("EGL_MESA_device_software") != std::string::npos, name});
-    }
+    for (EGLDeviceEXT device : query_devices()) found.push_back(describe_device(device));
   } catch (const Error&) {
     found.clear();  // no EGL at all: no devices
   }
@@ -130,7 +144,7 @@ std::vector<EglDevice> list_egl_devices() {
 }
 
 std::unique_ptr<GlContext> make_egl_surfaceless_context() {
-  return std::make_unique<EglContext>("egl-surfaceless", EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
+  return EglContext::make("egl-surfaceless", EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY);
 }
 
 std::unique_ptr<GlContext> make_egl_device_context(int device) {
@@ -138,8 +152,8 @@ std::unique_ptr<GlContext> make_egl_device_context(int device) {
   if (device < 0 || static_cast<std::size_t>(device) >= devices.size())
     throw Error(fmt::format("--device {}", device), fmt::format("this machine has {} EGL devices", devices.size()),
                 "'vestige devices' lists them");
-  return std::make_unique<EglContext>(fmt::format("egl-device-{}", device), EGL_PLATFORM_DEVICE_EXT,
-                                      devices[static_cast<std::size_t>(device)]);
+  return EglContext::make(fmt::format("egl-device-{}", device), EGL_PLATFORM_DEVICE_EXT,
+                          devices[static_cast<std::size_t>(device)]);
 }
 
 }  // namespace vestige

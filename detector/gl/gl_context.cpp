@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <functional>
 #include <utility>
 
 #include "traces/error.hpp"
@@ -21,6 +25,15 @@ std::string text_of(const GLubyte* text) {
   return text == nullptr ? "" : reinterpret_cast<const char*>(text);
 }
 
+/// Mesa may serve a GPU's device with its software renderer, which must not win over another device's GPU.
+std::unique_ptr<GlContext> make_hardware_context(int device) {
+  if (list_egl_devices()[static_cast<std::size_t>(device)].software)
+    throw Error(fmt::format("egl-device-{}", device), "is software", "");
+  auto context = make_egl_device_context(device);
+  if (context->info().software) throw Error(context->info().context, "is served by software", "");
+  return context;
+}
+
 }  // namespace
 
 void GlContext::make_current() {
@@ -37,37 +50,49 @@ void GlContext::leave() {
   current_context = nullptr;
 }
 
-void GlContext::load(std::string name, const std::function<void*(const char*)>& address_of) {
-#define VESTIGE_GL_LOAD(type, function)                                     \
-  functions_.function = reinterpret_cast<type>(address_of("gl" #function)); \
-  if (functions_.function == nullptr)                                       \
+std::unique_ptr<GlContext> GlContext::loaded(std::unique_ptr<GlContext> context, std::string name) {
+  context->make_current();
+  GlFunctions& functions = context->functions_;
+#define VESTIGE_GL_LOAD(type, function)                                             \
+  functions.function = reinterpret_cast<type>(context->address_of("gl" #function)); \
+  if (functions.function == nullptr)                                                \
     throw Error(name, "the driver has no gl" #function, "OpenGL 4.5 is needed: use a newer driver");
   VESTIGE_GL_FUNCTIONS(VESTIGE_GL_LOAD)
 #undef VESTIGE_GL_LOAD
-  info_ = {std::move(name), text_of(functions_.GetString(GL_RENDERER)), text_of(functions_.GetString(GL_VERSION))};
+  const std::string renderer = text_of(functions.GetString(GL_RENDERER));
+  context->info_ = {std::move(name), renderer, text_of(functions.GetString(GL_VERSION)),
+                    text_of(functions.GetString(GL_VENDOR)), is_software_renderer(renderer)};
   GLint major = 0;
   GLint minor = 0;
-  functions_.GetIntegerv(GL_MAJOR_VERSION, &major);
-  functions_.GetIntegerv(GL_MINOR_VERSION, &minor);
+  functions.GetIntegerv(GL_MAJOR_VERSION, &major);
+  functions.GetIntegerv(GL_MINOR_VERSION, &minor);
   if (major * 10 + minor < 45)
-    throw Error(info_.context, fmt::format("offers OpenGL {}.{} ({}); 4.5 is needed", major, minor, info_.renderer),
+    throw Error(context->info_.context, fmt::format("offers OpenGL {}.{} ({}); 4.5 is needed", major, minor, renderer),
                 "use a newer driver, or another --context");
+  return context;
+}
+
+bool is_software_renderer(std::string_view renderer) {
+  std::string name(renderer);
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  // "llvmpipe" also stands in lavapipe's name, and "Software Rasterizer" is what swrast calls itself.
+  return std::ranges::any_of(
+      std::array{"llvmpipe", "softpipe", "swrast", "software rasterizer", "openswr", "lavapipe", "swiftshader"},
+      [&](const char* known) { return name.find(known) != std::string::npos; });
 }
 
 std::unique_ptr<GlContext> make_gl_context(ContextKind kind, int device) {
   if (kind == ContextKind::kOsMesa) return make_osmesa_context();
   if (device >= 0) return make_egl_device_context(device);
 
-  const std::vector<EglDevice> devices = list_egl_devices();
+  const auto device_count = static_cast<int>(list_egl_devices().size());
   std::vector<std::function<std::unique_ptr<GlContext>()>> attempts;
-  const auto add_devices = [&](bool software) {
-    for (int i = 0; i < static_cast<int>(devices.size()); ++i)
-      if (devices[static_cast<std::size_t>(i)].software == software)
-        attempts.emplace_back([i] { return make_egl_device_context(i); });
+  const auto add_devices = [&](auto make) {
+    for (int i = 0; i < device_count; ++i) attempts.emplace_back([i, make] { return make(i); });
   };
-  add_devices(false);
+  add_devices(make_hardware_context);
   attempts.emplace_back(make_egl_surfaceless_context);
-  add_devices(true);
+  add_devices(make_egl_device_context);
   if (kind == ContextKind::kAuto) attempts.emplace_back(make_osmesa_context);
 
   std::string failures;

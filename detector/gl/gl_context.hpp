@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -25,13 +24,15 @@ class GlContext {
 
  protected:
   GlContext() = default;
-  /// Loads all functions and reads the driver's names; throws `Error` when one is missing or the version is below 4.5.
-  void load(std::string name, const std::function<void*(const char*)>& address_of);
+  /// Makes a new context current, loads all functions and reads the driver's names; throws `Error` when one is missing
+  /// or the version is below 4.5. Called once the object is whole, so that its destructor lets go after a failure.
+  static std::unique_ptr<GlContext> loaded(std::unique_ptr<GlContext> context, std::string name);
   /// For destructors: lets go of the context if it is current.
   void leave();
 
   virtual void bind() = 0;
   virtual void unbind() = 0;
+  virtual void* address_of(const char* function) const = 0;
 
  private:
   GlFunctions functions_;
@@ -48,13 +49,21 @@ enum class ContextKind {
 /// `Error` saying what was tried, what each answered, and what to install.
 std::unique_ptr<GlContext> make_gl_context(ContextKind kind, int device);
 
+/// An EGL device, as far as its driver speaks of it: what it does not say is empty.
 struct EglDevice {
   bool software = false;
-  std::string name;  ///< what the driver calls it; may be empty
+  std::string vendor;
+  std::string drm_node;     ///< "/dev/dri/card0"
+  std::string render_node;  ///< "/dev/dri/renderD128"
+  int cuda_device = -1;     ///< its number in CUDA, or -1
+  std::string extensions;   ///< EGL_EXTENSIONS of the device
 };
 
 /// The EGL devices of this machine; empty where EGL is missing or cannot enumerate.
 std::vector<EglDevice> list_egl_devices();
+
+/// Whether a renderer of this name draws on the processor: llvmpipe, softpipe, swrast, SWR, lavapipe, SwiftShader.
+bool is_software_renderer(std::string_view renderer);
 
 /// One attempt each; throw `Error` on failure.
 std::unique_ptr<GlContext> make_egl_surfaceless_context();

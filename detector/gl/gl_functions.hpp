@@ -39,6 +39,7 @@ namespace vestige {
   X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)           \
   X(PFNGLENDTRANSFORMFEEDBACKPROC, EndTransformFeedback)                 \
   X(PFNGLGETERRORPROC, GetError)                                         \
+  X(PFNGLGETINTEGER64VPROC, GetInteger64v)                               \
   X(PFNGLGETINTEGERVPROC, GetIntegerv)                                   \
   X(PFNGLGETNAMEDBUFFERSUBDATAPROC, GetNamedBufferSubData)               \
   X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                       \

@@ -49,15 +49,12 @@ class OsMesaGlContext final : public GlContext {
                                                 0};
     context_ = osmesa().CreateContextAttribs(kAttributes.data(), nullptr);
     if (context_ == nullptr) throw Error("osmesa", "offers no OpenGL 4.5 core context", "use a newer Mesa");
-    try {
-      make_current();
-      load("osmesa", [](const char* symbol) { return reinterpret_cast<void*>(osmesa().GetProcAddress(symbol)); });
-    } catch (...) {
-      destroy();
-      throw;
-    }
   }
-  ~OsMesaGlContext() override { destroy(); }
+  ~OsMesaGlContext() override {
+    leave();
+    osmesa().DestroyContext(context_);
+  }
+  static std::unique_ptr<GlContext> make() { return loaded(std::make_unique<OsMesaGlContext>(), "osmesa"); }
 
  private:
   void bind() override {
@@ -65,9 +62,8 @@ class OsMesaGlContext final : public GlContext {
       throw Error("osmesa", "OSMesaMakeCurrent failed", "");
   }
   void unbind() override { osmesa().MakeCurrent(nullptr, nullptr, 0, 0, 0); }
-  void destroy() {
-    leave();
-    osmesa().DestroyContext(context_);
+  void* address_of(const char* function) const override {
+    return reinterpret_cast<void*>(osmesa().GetProcAddress(function));
   }
 
   OSMesaContext context_ = nullptr;
@@ -77,7 +73,7 @@ class OsMesaGlContext final : public GlContext {
 }  // namespace
 
 std::unique_ptr<GlContext> make_osmesa_context() {
-  return std::make_unique<OsMesaGlContext>();
+  return OsMesaGlContext::make();
 }
 
 }  // namespace vestige

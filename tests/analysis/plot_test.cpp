@@ -223,7 +223,7 @@ TEST_P(BadInputTest, IsRefusedNamingFileAndCauseAndLeavesNothing) {
   const std::size_t files_before = file_count();
   const Outcome outcome = run(fmt::format("{} input", bad.command));
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.standard_error, StartsWith("input"));
+  EXPECT_THAT(outcome.standard_error, StartsWith("vestige: error: input"));
   EXPECT_THAT(outcome.standard_error, HasSubstr(bad.cause));
   EXPECT_EQ(file_count(), files_before);
 }
@@ -268,7 +268,7 @@ TEST_F(PlotTest, ACutOffExrIsRefused) {
     write_text(folder_ / "cut.exr", std::string_view(whole).substr(0, bytes));
     const Outcome outcome = run("textures cut.exr");
     EXPECT_EQ(outcome.exit_code, 1) << bytes;
-    EXPECT_THAT(outcome.standard_error, StartsWith("cut.exr"));
+    EXPECT_THAT(outcome.standard_error, StartsWith("vestige: error: cut.exr"));
     EXPECT_EQ(file_count(), 2U);
   }
 }

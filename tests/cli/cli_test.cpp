@@ -403,6 +403,16 @@ TEST_F(CommandLine, FiresEveryActuatorOfARealAvatarsMap) {
   for (const auto& actuator : replay["actuators"]) EXPECT_GT(actuator["contacts"], 0);
 }
 
+TEST_F(CommandLine, ClaimsGoToPeopleOrToPrograms) {
+  record_small();
+  ASSERT_EQ(run("mkdir r && vestige replay small.mcap --json r/replay.json").exit_code, 0);
+  EXPECT_THAT(run("vestige claims r").standard_output, HasSubstr("| claim | command |"));
+  const auto claims = json_of("vestige claims r --json -")["claims"];
+  ASSERT_EQ(claims.size(), 1U);
+  EXPECT_EQ(claims[0]["file"], "replay.json");
+  expect_failure("vestige claims r --json - -o -", 2, {"standard output"});
+}
+
 TEST_F(CommandLine, PlotWithoutVtkSaysWhatToInstall) {
   ASSERT_EQ(run("cp \"$(command -v vestige)\" here").exit_code, 0);
   expect_failure("PATH=/usr/bin:/bin ./here plot sweep s", 1, {"vestige-plot", "libvtk9-dev"});

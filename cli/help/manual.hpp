@@ -1,0 +1,29 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "cli/help/command_table.hpp"
+
+namespace vestige::help {
+
+/// What a script may rely on.
+inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {{
+    {0, "done"},
+    {1, "failed"},
+    {2, "wrong usage"},
+    {3, "done, but not with all of the data (a damaged trace, or interrupted)"},
+    {4, "a check failed"},
+}};
+
+/// A man page of section 1 (roff with the man macros). Verbs of `command` that have no page of their own stand on it.
+/// `version`: "0.1.0"; `date`: "2026-11-21", or empty.
+enum class VerbPages { kOwn, kNone };
+std::string manual_page(const CommandTable& command, VerbPages verb_pages, const std::string& version,
+                        const std::string& date);
+
+/// "vestige record" has the page "vestige-record".
+std::string page_name(const CommandTable& command);
+
+}  // namespace vestige::help

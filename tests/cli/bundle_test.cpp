@@ -1,0 +1,163 @@
+// Runs the bundle in a root that holds glibc and nothing else, and on this machine beside the program it was made of.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "tests/support/process.hpp"
+#include "tests/support/test_data.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kBundle = VESTIGE_BUNDLE_DIR;
+
+/// All of glibc that a program needs to start.
+constexpr const char* kGlibc =
+    "/lib64/ld-linux-x86-64.so.2 /lib/x86_64-linux-gnu/libc.so.6 /lib/x86_64-linux-gnu/libm.so.6 "
+    "/lib/x86_64-linux-gnu/libdl.so.2 /lib/x86_64-linux-gnu/libpthread.so.0";
+
+class Bundle : public ::testing::Test {
+ protected:
+  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
+
+  nlohmann::json json_of(const std::string& command) const {
+    const test::Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
+    return nlohmann::json::parse(outcome.standard_output, nullptr, false);
+  }
+
+  const test::TemporaryFolder folder_;
+};
+
+class BundleAlone : public Bundle {
+ protected:
+  void SetUp() override {
+    const std::string root = (folder_ / "root").string();
+    ASSERT_EQ(run("mkdir root && cp --parents -L " + std::string(kGlibc) + " root && cp -r '" + kBundle +
+                  "' root/vestige && mkdir root/tmp root/proc")
+                  .exit_code,
+              0);
+    const std::string with_proc =
+        " sh -c 'mount --rbind /proc \"$0/proc\" && exec chroot \"$0\" \"$@\"' '" + root + "' ";
+    const std::string plain = "chroot '" + root + "' ";
+    // Where /proc cannot be had, the loader must be told by its command line where the program lies.
+    const std::string loader = "/lib64/ld-linux-x86-64.so.2 ";
+    const std::pair<std::string, std::string> ways[] = {{"unshare -m" + with_proc, ""},
+                                                        {"unshare -rm" + with_proc, ""},
+                                                        {plain, loader},
+                                                        {"unshare -r " + plain, loader}};
+    for (const auto& [enter, start] : ways) {
+      enter_ = "env -i PATH=\"$PATH\" " + enter;
+      vestige_ = enter_ + start + "/vestige/bin/vestige ";
+      if (run(enter_ + loader + "--version").exit_code == 0) return;
+    }
+    if (std::getenv("CI") != nullptr) FAIL() << "neither chroot nor unshare works here";
+    GTEST_SKIP() << "NEITHER chroot NOR unshare WORKS HERE; THE BUNDLE WAS NOT TESTED ALONE";
+  }
+
+  std::string enter_;
+  std::string vestige_;
+};
+
+TEST_F(BundleAlone, FindsEveryLibraryInItself) {
+  const test::Outcome list = run(enter_ + "/lib64/ld-linux-x86-64.so.2 --list /vestige/bin/vestige");
+  EXPECT_EQ(list.exit_code, 0) << list.standard_error;
+  EXPECT_THAT(list.standard_output, Not(HasSubstr("not found")));
+  EXPECT_THAT(list.standard_output, HasSubstr("libstdc++.so.6 => /vestige/bin/../lib/fallback/"));
+}
+
+TEST_F(BundleAlone, RecordsReplaysOnTheCpuAndSaysThatThereIsNoOpenGl) {
+  const test::Outcome recorded = run(vestige_ + "record --count 20 --rate 60 --duration 1 -o /tmp/t.mcap");
+  ASSERT_EQ(recorded.exit_code, 0) << recorded.standard_error;
+  ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 -o t.mcap").exit_code, 0);
+  const auto alone = json_of(vestige_ + "replay /tmp/t.mcap --detector cpu --json -");
+  EXPECT_GT(alone["contacts"], 20);
+  EXPECT_EQ(alone["texture_hash"], json_of("vestige replay t.mcap --json -")["texture_hash"]);
+
+  const test::Outcome devices = run(vestige_ + "devices");
+  EXPECT_EQ(devices.exit_code, 0);
+  EXPECT_THAT(devices.standard_output, HasSubstr("No OpenGL 4.5 context is to be had here"));
+  EXPECT_THAT(devices.standard_output, HasSubstr("libEGL.so.1: cannot be opened"));
+  EXPECT_TRUE(json_of(vestige_ + "devices --json -")["auto"].is_null());
+  const test::Outcome paper = run(vestige_ + "replay /tmp/t.mcap --detector paper");
+  EXPECT_EQ(paper.exit_code, 1);
+  EXPECT_THAT(paper.standard_error, HasSubstr("--detector cpu needs no OpenGL"));
+}
+
+TEST_F(Bundle, UsesItsOwnLibrariesAndTheMachinesOpenGl) {
+  const std::string vestige = "env -u LD_LIBRARY_PATH '" + kBundle + "/bin/vestige' ";
+  const std::string list = run("env -u LD_LIBRARY_PATH ldd '" + kBundle + "/bin/vestige'").standard_output;
+  EXPECT_THAT(list, HasSubstr("libfmt.so.9 => " + kBundle + "/bin/../lib/libfmt.so.9"));
+  EXPECT_THAT(list, Not(HasSubstr("/lib/fallback/"))) << "a driver may need the machine's newer one";
+  ASSERT_EQ(run(vestige + "record --count 20 --rate 60 --duration 1 -o t.mcap").exit_code, 0);
+  for (const char* context : {"egl", "osmesa"}) {
+    const std::string flags = std::string("replay t.mcap --detector paper --json - --context ") + context;
+    const auto bundled = json_of(vestige + flags);
+    EXPECT_EQ(bundled["texture_hash"], json_of("vestige " + flags)["texture_hash"]) << context;
+    EXPECT_FALSE(bundled["gl"]["renderer"].get<std::string>().empty());
+  }
+}
+
+TEST_F(Bundle, NeedsNoGlibcNewerThan236) {
+  const test::Outcome needs = run("cd '" + kBundle + "' && objdump -T bin/vestige lib/*.so* lib/fallback/*.so*");
+  ASSERT_EQ(needs.exit_code, 0) << needs.standard_error;
+  const std::regex version("GLIBC_2\\.([0-9]+)");
+  std::set<int> minors;
+  for (std::sregex_iterator i(needs.standard_output.begin(), needs.standard_output.end(), version), end; i != end; ++i)
+    minors.insert(std::stoi((*i)[1]));
+  ASSERT_FALSE(minors.empty());
+  EXPECT_LE(*minors.rbegin(), 36);
+}
+
+TEST_F(Bundle, IsSmallAndSaysWhatItsPartsAreLicensedUnder) {
+  std::uintmax_t bytes = 0;
+  std::size_t libraries = 0;
+  std::size_t licences = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(kBundle)) {
+    if (!entry.is_regular_file()) continue;
+    bytes += entry.file_size();
+    if (entry.path().string().find(".so") != std::string::npos) ++libraries;
+    if (entry.path().parent_path().filename() == "licences") ++licences;
+    EXPECT_THAT(entry.path().filename().string(), Not(::testing::AnyOf(HasSubstr("libc.so"), HasSubstr("libGL"))));
+  }
+  EXPECT_LT(bytes, 40U << 20U);
+  EXPECT_GE(libraries, 10U);
+  EXPECT_GE(licences, 10U);
+}
+
+TEST_F(Bundle, MeasureLeavesAFolderOfResults) {
+  const test::Outcome measured = run("'" + kBundle + "/measure' --quick results");
+  ASSERT_EQ(measured.exit_code, 0) << measured.standard_output << measured.standard_error;
+  for (const char* file : {"devices.json", "devices.txt", "swarm.mcap", "replay-swarm-cpu.json",
+                           "replay-swarm-paper.json", "sweep/sweep.json", "README.md", "log/machine.txt"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "results" / file)) << file;
+  EXPECT_THAT(run("tar -tzf results.tar.gz").standard_output, HasSubstr("results/sweep/sweep.json"));
+  const auto sweep = nlohmann::json::parse(read_text_file(folder_ / "results/sweep/sweep.json"));
+  EXPECT_EQ(sweep["series"].size(), 3U);
+  EXPECT_NE(run("'" + kBundle + "/measure' --quick results").exit_code, 0) << "overwrote results";
+}
+
+TEST_F(Bundle, MeasureGoesOnAfterAFailureAndSaysSo) {
+  // A loader path of stubs hides EGL, and a vestige that cannot sweep stands in for one that crashes there.
+  ASSERT_EQ(run("cp -r '" + kBundle + "' b && mv b/bin/vestige b/bin/real").exit_code, 0);
+  std::ofstream(folder_ / "b/bin/vestige") << "#!/bin/sh\n[ \"$1\" = sweep ] && { echo broken >&2; exit 139; }\n"
+                                              "exec \"$(dirname \"$0\")/real\" \"$@\"\n";
+  ASSERT_EQ(run("chmod +x b/bin/vestige").exit_code, 0);
+  const test::Outcome measured = run("b/measure --quick results");
+  EXPECT_EQ(measured.exit_code, 1);
+  EXPECT_THAT(measured.standard_error, HasSubstr("these steps failed: sweep(139)"));
+  EXPECT_THAT(read_text_file(folder_ / "results/README.md"), HasSubstr("FAILED: sweep(139)"));
+  EXPECT_THAT(read_text_file(folder_ / "results/log/sweep.txt"), HasSubstr("broken"));
+}
+
+}  // namespace
+}  // namespace vestige

@@ -1,0 +1,67 @@
+// The texts made of a command's tables, on a program that has every kind of flag.
+
+#include "cli/help/command_table.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cli/help/completion.hpp"
+#include "cli/help/help_text.hpp"
+#include "cli/help/manual.hpp"
+
+namespace vestige::help {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class Tables : public ::testing::Test {
+ protected:
+  Tables() {
+    program_.formatter(std::make_shared<HelpFormatter>("  prog draw -o x\n"));
+    CLI::App* draw = program_.add_subcommand("draw", "Draw a thing");
+    draw->formatter(std::make_shared<HelpFormatter>("  prog draw -o x\n  prog draw 'it''s' -o \\x\n"));
+    draw->group("Verbs");
+    draw->add_option("--kind", kind_, "What to draw:\n  dot    small and round\n  line   long\nor a file")
+        ->capture_default_str()
+        ->type_name("KIND|FILE");
+    draw->add_option("--count", count_, "How many")->capture_default_str()->check(CLI::Range(1, 9));
+    draw->add_option("-o,--output", output_, ".hidden things first")->required()->type_name("OUT");
+    draw->add_flag("--secret", secret_, "Not told")->group("");
+    program_.add_subcommand("ghost", "Not told")->group("");
+  }
+
+  std::string kind_ = "dot";
+  std::string output_;
+  int count_ = 3;
+  bool secret_ = false;
+  CLI::App program_{"A program", "prog"};
+};
+
+TEST_F(Tables, HelpShowsValuesOneALineWithRangesAndDefaults) {
+  const std::string help = program_.get_subcommand("draw")->help();
+  EXPECT_THAT(help, HasSubstr("What to draw:\n" + std::string(28, ' ') + "  dot    small and round\n"));
+  EXPECT_THAT(help, HasSubstr("How many [1 to 9; default: 3]"));
+  EXPECT_THAT(help, HasSubstr("Usage: prog draw [OPTIONS] -o OUT\n"));
+  EXPECT_THAT(help, Not(HasSubstr("secret")));
+  EXPECT_THAT(program_.help(), Not(HasSubstr("ghost")));
+}
+
+TEST_F(Tables, CompletionOffersExplainedValuesWithTheirMeaning) {
+  const CommandTable table = command_table(program_);
+  EXPECT_EQ(completions(table, {"draw", "--kind", ""}), "dot\tsmall and round\nline\tlong\n:\n");
+  EXPECT_EQ(completions(table, {"draw", "--ki"}), "--kind\tWhat to draw:\n");
+  EXPECT_EQ(completions(table, {"gh"}), "");
+  EXPECT_EQ(completions(table, {}), "draw\tDraw a thing\n");
+}
+
+TEST_F(Tables, ManPagesEscapeWhatRoffWouldObey) {
+  const CommandTable draw = command_table(*program_.get_subcommand("draw"));
+  const std::string page = manual_page(draw, VerbPages::kOwn, "1.2", "2026-01-02");
+  EXPECT_THAT(page, HasSubstr("\n\\&.hidden things first"));
+  EXPECT_THAT(page, HasSubstr("prog draw \\(aqit\\(aq\\(aqs\\(aq \\-o \\ex\n"));
+  EXPECT_THAT(page, HasSubstr("What to draw:\n.br\ndot    small and round\n.br\nline   long\n.br\nor a file"));
+}
+
+}  // namespace
+}  // namespace vestige::help

@@ -1,0 +1,210 @@
+// Help, man pages and completion, as a terminal, man's own checkers and the real shells see them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/support/process.hpp"
+#include "tests/support/test_data.hpp"
+#include "traces/builtin_avatar.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::Not;
+using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+class Help : public ::testing::Test {
+ protected:
+  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
+  bool has_plot() const { return run("vestige plot --help").exit_code == 0; }
+
+  /// "vestige record", …, "vestige plot sweep", …: every command that does something.
+  std::vector<std::string> commands() const {
+    std::vector<std::string> commands;
+    for (const std::string& line : lines_of(run("vestige complete ''").standard_output)) {
+      const std::string verb = line.substr(0, line.find('\t'));
+      if (verb != "plot") commands.push_back("vestige " + verb);
+    }
+    for (const std::string& line : lines_of(run("vestige complete plot ''").standard_output))
+      commands.push_back("vestige plot " + line.substr(0, line.find('\t')));
+    return commands;
+  }
+
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(Help, OfEveryCommandFitsATerminalAndShowsItsDefaults) {
+  const std::vector<std::string> all = commands();
+  EXPECT_GE(all.size(), 8U);
+  for (const std::string& command : all) {
+    const test::Outcome help = run(command + " --help");
+    EXPECT_EQ(help.exit_code, 0) << command;
+    EXPECT_THAT(help.standard_output,
+                AllOf(StartsWith("Examples:\n  vestige "), HasSubstr("\nUsage: " + command), HasSubstr("-h, --help")));
+    for (const std::string& line : lines_of(help.standard_output)) {
+      // An example is one line, whatever its length: it is there to be copied.
+      if (line.starts_with("  vestige ")) continue;
+      EXPECT_LE(line.size(), 100U) << command << ": " << line;
+    }
+  }
+  EXPECT_THAT(
+      run("vestige replay --help").standard_output,
+      AllOf(HasSubstr("--surface all|mapped"), HasSubstr("default: actuator,t,triangle"), HasSubstr("default: 60")));
+}
+
+/// Each verb has two examples, and both run as they stand, on files of the names that they use.
+TEST_F(Help, ExamplesRunAsTheyStand) {
+  const auto avatar = builtin_avatar_glb();
+  const auto map = builtin_actuator_map_png();
+  const auto write = [&](const char* name, const std::vector<std::byte>& bytes) {
+    std::ofstream(folder_ / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  };
+  ASSERT_EQ(
+      run("vestige record --rate 100 --duration 0.3 -o man.mcap && "
+          "vestige replay man.mcap --timeline timeline.csv --textures textures.exr --contacts contacts.csv && "
+          "mkdir -p results/sweep gpu software figures && "
+          "vestige sweep man.mcap --counts 1,10 --detector cpu --min-time 0.01 --runs 1 --run-frames 5 "
+          "--no-figure -o results/sweep -q && cp results/sweep/sweep.json gpu && cp results/sweep/sweep.json software "
+          "&& vestige claims results -o results/README.md && mkdir given && mv [!g]* gpu given")
+          .exit_code,
+      0);
+  for (const std::string& command : commands()) {
+    std::vector<std::string> examples;
+    for (const std::string& line : lines_of(run(command + " --help").standard_output))
+      if (line.starts_with("  " + command)) examples.push_back(line.substr(2));
+    EXPECT_EQ(examples.size(), 2U) << command;
+    for (const std::string& example : examples) {
+      ASSERT_EQ(run("mkdir here && cp -r given/. here").exit_code, 0);
+      write("here/man.glb", avatar);
+      write("here/regions.png", map);
+      // What the example writes must not be there yet; and a long measurement is only begun.
+      if (command == "vestige record") std::filesystem::remove(folder_ / "here/man.mcap");
+      if (command == "vestige replay") run("rm here/*.csv here/*.exr");
+      const bool is_long = command == "vestige sweep";
+      const test::Outcome outcome =
+          run("cd here && { " + std::string(is_long ? "timeout -s INT 6 " : "") + example + "\n}");
+      if (is_long) {
+        EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(0, 3, 124)) << example << "\n" << outcome.standard_error;
+      } else {
+        EXPECT_EQ(outcome.exit_code, 0) << example << "\n" << outcome.standard_error;
+      }
+      ASSERT_EQ(run("rm -rf here").exit_code, 0);
+    }
+  }
+}
+
+TEST_F(Help, ManPagesHaveNoWarnings) {
+  ASSERT_EQ(run("vestige man --pages man1").exit_code, 0);
+  if (has_plot()) {
+    ASSERT_EQ(run("vestige man plot > man1/vestige-plot.1").exit_code, 0);
+  }
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "man1/vestige.1"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "man1/vestige-replay.1"));
+  EXPECT_EQ(run("vestige man replay").standard_output, read_text_file(folder_ / "man1/vestige-replay.1"));
+  if (run("command -v mandoc groff").exit_code != 0)
+    GTEST_SKIP() << "mandoc OR groff IS NOT INSTALLED: THE MAN PAGES WERE NOT CHECKED";
+  EXPECT_EQ(run("mandoc -Tlint -Wwarning man1/*").standard_output, "");
+  EXPECT_EQ(run("for page in man1/*; do groff -ww -man -Tutf8 $page >/dev/null; done").standard_error, "");
+  const std::string page = run("mandoc -Tascii -Owidth=100 man1/vestige-record.1 | col -b").standard_output;
+  EXPECT_THAT(page, AllOf(HasSubstr("--rate HZ"), HasSubstr("default: 1000"), HasSubstr("EXIT STATUS"),
+                          HasSubstr("vestige record -o man.mcap")));
+}
+
+TEST_F(Help, ManPagesAreNotOverwrittenWithoutForce) {
+  ASSERT_EQ(run("mkdir man1 && echo mine > man1/vestige.1").exit_code, 0);
+  EXPECT_EQ(run("vestige man --pages man1").exit_code, 1);
+  EXPECT_EQ(read_text_file(folder_ / "man1/vestige.1"), "mine\n");
+  EXPECT_EQ(run("vestige man --pages man1 --force").exit_code, 0);
+  EXPECT_EQ(run("vestige man frobnicate").exit_code, 2);
+}
+
+class Completion : public Help {
+ protected:
+  /// What bash offers for a line; its last word is the one being typed.
+  std::vector<std::string> bash(const std::string& words) const {
+    const test::Outcome outcome =
+        run("cat > ask.bash <<'END'\nsource <(vestige completion bash)\nCOMP_WORDS=(" + words +
+            ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n$(complete -p vestige | sed 's/.*-F \\([^ ]*\\).*/\\1/')\n"
+            "printf '%s\\n' \"${COMPREPLY[@]}\"\nEND\nbash --norc ask.bash");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+    return lines_of(outcome.standard_output);
+  }
+};
+
+TEST_F(Completion, InBashOffersVerbsFlagsValuesAndFiles) {
+  ASSERT_EQ(run("touch 'a man.mcap' man.csv && mkdir mans").exit_code, 0);
+  EXPECT_THAT(bash("vestige ''"), IsSupersetOf({"record", "replay", "sweep", "inspect", "devices", "plot", "claims"}));
+  EXPECT_THAT(bash("vestige ''"), Not(Contains("complete")));
+  EXPECT_THAT(bash("vestige re"), UnorderedElementsAre("record", "replay"));
+  EXPECT_THAT(bash("vestige --"), UnorderedElementsAre("--help", "--version"));
+  EXPECT_THAT(bash("vestige replay --de"), UnorderedElementsAre("--detector", "--device"));
+  EXPECT_THAT(bash("vestige replay --detector ''"), IsSupersetOf({"auto", "paper", "cpu"}));
+  EXPECT_THAT(bash("vestige replay --detector c"), UnorderedElementsAre("cpu"));
+  EXPECT_THAT(bash("vestige replay --detector cpu --det"), UnorderedElementsAre("")) << "offered twice";
+  EXPECT_THAT(bash("vestige replay a"), UnorderedElementsAre("a man.mcap", "ask.bash"));
+  EXPECT_THAT(bash("vestige record --map "), Contains("--map"));
+  EXPECT_THAT(bash("vestige record --map m"), UnorderedElementsAre("man.csv", "mans"));
+  EXPECT_THAT(bash("vestige record --avatar b"), UnorderedElementsAre("builtin"));
+  EXPECT_THAT(bash("vestige record --count ''"), UnorderedElementsAre(""));
+  EXPECT_THAT(bash("vestige completion ''"), UnorderedElementsAre("bash", "zsh", "fish"));
+  if (!has_plot()) GTEST_SKIP() << "BUILT WITHOUT VTK: vestige plot WAS NOT COMPLETED";
+  EXPECT_THAT(bash("vestige plot ''"), IsSupersetOf({"sweep", "timeline", "textures"}));
+  EXPECT_THAT(bash("vestige plot sweep --f"), UnorderedElementsAre("--force"));
+}
+
+TEST_F(Completion, InFishOffersVerbsWithTheirMeaningsFlagsAndFiles) {
+  if (run("command -v fish").exit_code != 0) GTEST_SKIP() << "fish IS NOT INSTALLED: ITS COMPLETION WAS NOT TESTED";
+  ASSERT_EQ(run("touch man.mcap").exit_code, 0);
+  const auto fish = [&](const std::string& line) {
+    return run("HOME=$PWD fish --no-config -c 'vestige completion fish | source; complete -C \"" + line + "\"'")
+        .standard_output;
+  };
+  EXPECT_EQ(fish("vestige rep"), "replay\tRun a trace through a collision detector\n");
+  EXPECT_THAT(fish("vestige replay --det"), StartsWith("--detector\t"));
+  EXPECT_THAT(fish("vestige replay --detector p"), StartsWith("paper"));
+  EXPECT_THAT(fish("vestige replay man"), HasSubstr("man.mcap"));
+  EXPECT_EQ(fish("vestige record --count "), "");
+}
+
+TEST_F(Completion, InZshOffersVerbsFlagsAndFiles) {
+  if (run("command -v zsh").exit_code != 0) GTEST_SKIP() << "zsh IS NOT INSTALLED: ITS COMPLETION WAS NOT TESTED";
+  ASSERT_EQ(run("touch man.mcap && mkdir site && vestige completion zsh > site/_vestige").exit_code, 0);
+  EXPECT_EQ(run("zsh -n site/_vestige").standard_error, "");
+  // A zsh in a terminal of its own, to which Tab is typed.
+  std::ofstream(folder_ / "ask.zsh") << R"(zmodload zsh/zpty
+zpty shell zsh -f -i
+zpty -w shell 'PS1=; fpath=($PWD/site $fpath); autoload -Uz compinit; compinit -u -D; LISTMAX=1000; stty cols 200; zstyle ":completion:*" list-prompt ""'
+sleep 1
+zpty -r -t shell ignored
+zpty -w -n shell "$1"$'\t'$'\t'
+sleep 2
+while zpty -r -t shell part; do print -r -- "$part"; done
+zpty -d shell
+)";
+  const auto zsh = [&](const std::string& line) {
+    return run("HOME=$PWD zsh -f ask.zsh '" + line + "'").standard_output;
+  };
+  EXPECT_THAT(zsh("vestige re"), AllOf(HasSubstr("record"), HasSubstr("Run a trace through a collision detector")));
+  EXPECT_THAT(zsh("vestige replay --de"), AllOf(HasSubstr("--detector"), HasSubstr("--device")));
+  EXPECT_THAT(zsh("vestige replay --detector pa"), HasSubstr("paper"));
+  EXPECT_THAT(zsh("vestige replay ma"), HasSubstr("man.mcap"));
+}
+
+}  // namespace
+}  // namespace vestige
