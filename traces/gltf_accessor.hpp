@@ -23,10 +23,14 @@ enum Component : unsigned {
   kNormalizedUint16 = 1U << 9,
 };
 
+/// Only vertex attributes may be interleaved, and only they start at multiples of 4 bytes (glTF 2.0 §3.6.2.4).
+enum class Layout { kTight, kVertices };
+
 /// What a use of an accessor demands of it.
 struct Format {
   int type = 0;             ///< TINYGLTF_TYPE_…
   unsigned components = 0;  ///< a set of `Component`
+  Layout layout = Layout::kTight;
 };
 
 /// Checks, without touching their data, that all accessors lie inside their buffer views and those inside their
@@ -51,7 +55,7 @@ class AccessorReader {
   /// The same for kUint8, kUint16 and kUint32.
   std::uint32_t integer(std::size_t i, std::size_t c) const;
 
-  /// Warns when the file's min or max is not that of the data: wrong, but nothing relies on it.
+  /// Warns when the file's min or max is not that of the data, or is missing: wrong, but nothing relies on it.
   void compare_bounds(Report& report) const;
 
  private:
@@ -59,7 +63,7 @@ class AccessorReader {
   double stored(std::size_t i, std::size_t c) const;
   void substitute_sparse(const Document& document, const Report& report);
 
-  const tinygltf::Accessor& accessor_;
+  const Accessor& accessor_;
   int index_ = 0;
   std::string use_;
   const Report& report_;

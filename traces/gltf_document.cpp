@@ -3,13 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <nlohmann/json.hpp>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "traces/glb_container.hpp"
 #include "traces/gltf_accessor.hpp"
-#include "traces/gltf_json.hpp"
+#include "traces/gltf_extensions.hpp"
+#include "traces/gltf_meshopt.hpp"
 #include "traces/gltf_uri.hpp"
 
 namespace vestige::gltf {
@@ -18,100 +19,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view kQuantization = "KHR_mesh_quantization";
-constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
-
-/// Extensions that change neither geometry nor skin nor motion, and the one that is supported.
-bool is_harmless(std::string_view extension) {
-  constexpr std::array<std::string_view, 11> kHarmless = {"KHR_materials_", "KHR_texture_",  "KHR_lights_",   "KHR_xmp",
-                                                          "EXT_texture_",   "EXT_lights_",   "MSFT_texture_", "VRMC_",
-                                                          "EXT_materials",  "MSFT_packing_", "FB_material"};
-  return extension == kQuantization || extension == "VRM" ||
-         std::any_of(kHarmless.begin(), kHarmless.end(), [&](auto prefix) { return extension.starts_with(prefix); });
-}
-
-std::string harmful_extensions(const json& document, const char* list) {
-  std::string names;
-  for (const json& name : document.value(list, json::array()))
-    if (!is_harmless(name.get_ref<const std::string&>()))
-      names.append(names.empty() ? "" : ", ").append(name.get_ref<const std::string&>());
-  return names;
-}
-
-/// A mesh that only Draco can unpack has accessors without data, which glTF would otherwise read as zeros.
-void refuse_draco_without_fallback(const json& document, const Report& report) {
-  const json none = json::array();
-  const json& meshes = document.contains("meshes") ? document["meshes"] : none;
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const json& primitives = meshes[m]["primitives"];
-    for (std::size_t p = 0; p < primitives.size(); ++p) {
-      const json& primitive = primitives[p];
-      if (!primitive.contains("extensions") || !primitive["extensions"].is_object() ||
-          !primitive["extensions"].contains(kDraco) || !primitive["attributes"].contains("POSITION"))
-        continue;
-      const auto position = primitive["attributes"]["POSITION"].get<std::size_t>();
-      if (!document["accessors"][position].contains("bufferView"))
-        report.fail(fmt::format("meshes[{}].primitives[{}]", m, p), fmt::format("is compressed by {}", kDraco),
-                    "export the file without compression");
-    }
-  }
-}
-
-bool check_extensions(const json& document, Report& report) {
-  if (const std::string names = harmful_extensions(document, "extensionsRequired"); !names.empty())
-    report.fail("extensionsRequired", fmt::format("cannot be read without {}, which is not supported", names),
-                "export the file without it");
-  if (const std::string names = harmful_extensions(document, "extensionsUsed"); !names.empty())
-    report.warn("extensionsUsed", fmt::format("ignored {}", names));
-  refuse_draco_without_fallback(document, report);
-  const auto names_quantization = [&](const char* list) {
-    const json names = document.value(list, json::array());
-    return std::find(names.begin(), names.end(), kQuantization) != names.end();
-  };
-  return names_quantization("extensionsUsed") || names_quantization("extensionsRequired");
-}
-
-void resolve_buffers(const json& document, std::span<const std::byte> bin, Document& result, Report& report) {
-  const std::vector<bool> is_read = buffers_read(document);
-  result.buffers.resize(is_read.size());
-  for (std::size_t i = 0; i < is_read.size(); ++i) {
-    if (!is_read[i]) continue;
-    const json& buffer = document["buffers"][i];
-    const auto byte_length = buffer["byteLength"].get<std::size_t>();
-    const std::string path = fmt::format("buffers[{}]", i);
-    std::span<const std::byte> bytes;
-    if (const auto uri = buffer.find("uri"); uri == buffer.end()) {
-      if (i != 0 || bin.empty()) report.fail(path, "has neither a uri nor a BIN chunk: there is no data");
-      bytes = bin;
-    } else if (const auto& text = uri->get_ref<const std::string&>(); is_data_uri(text)) {
-      bytes = result.decoded.emplace_back(decode_data_uri(text, path + ".uri", report));
-    } else {
-      report.fail(path + ".uri", "is in another file, where only one binary file was given",
-                  "export a .glb, which holds everything");
-    }
-    if (bytes.size() < byte_length)
-      report.fail(path + ".byteLength", fmt::format("says {} bytes, but there are only {}", byte_length, bytes.size()));
-    result.buffers[i] = bytes.first(byte_length);
-  }
-}
-
-/// tinygltf drops a channel without a node, which would renumber the others: give it one, and a path that is ignored.
-void keep_channels_without_node(json& document) {
-  const auto animations = document.find("animations");
-  if (animations == document.end()) return;
-  for (json& animation : *animations)
-    for (json& channel : animation["channels"])
-      if (!channel["target"].contains("node")) channel["target"] = {{"node", 0}, {"path", "pointer"}};
-}
+// tinygltf looks up whatever a primitive calls its indices, at once, and refuses those that are all sparse. Among the
+// attributes it lets them pass; no attribute has such a name.
+constexpr const char* kIndicesAsAttribute = "(indices)";
 
 /// Turns JSON that is known to be sound into tinygltf's types. It sees neither buffers nor images, reads no file, and
 /// decodes nothing.
-tinygltf::Model to_model(json document, const Report& report) {
-  keep_channels_without_node(document);
-  document.erase("buffers");
-  const std::string text = document.dump();
-  document = nullptr;  // the tree is larger than the text, and tinygltf builds one of its own
-
+tinygltf::Model to_model(const std::string& text, const Report& report) {
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
                            void*) { return true; },
@@ -125,34 +39,254 @@ tinygltf::Model to_model(json document, const Report& report) {
   return model;
 }
 
-}  // namespace
+/// Hands a list to tinygltf, some elements at a time: its tree of their JSON takes ten times as much memory as the
+/// text. `prepare` may look at an element and change it; `take` gets a model that holds some of them.
+template <typename Prepare, typename Take>
+void read_list(const Json& source, const std::string& list, Report& report, const Prepare& prepare, const Take& take) {
+  constexpr std::size_t kPieceBytes = 1 << 14;
+  std::string piece;
+  for (std::size_t i = 0; i < source.count(list); ++i) {
+    json element = source.element(list, i, report);
+    prepare(element, i);
+    element.erase("extensions");
+    piece += fmt::format("{}{}", piece.empty() ? "" : ",", element.dump());
+    if (piece.size() < kPieceBytes && i + 1 < source.count(list)) continue;
+    take(to_model(fmt::format("{{\"{}\":[{}]}}", list, piece), report));
+    piece.clear();
+  }
+}
 
-std::vector<bool> buffers_read(const json& document) {
-  const json none = json::array();
-  const auto list = [&](const char* name) -> const json& { return document.contains(name) ? document[name] : none; };
-  std::vector<bool> is_read(list("buffers").size());
-  const auto read_view = [&](const json& object) {
-    const auto view = object.find("bufferView");
-    if (view != object.end())
-      is_read[list("bufferViews")[view->get<std::size_t>()]["buffer"].get<std::size_t>()] = true;
+template <typename T>
+void append(std::vector<T>& all, std::vector<T>&& some) {
+  all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
+}
+
+std::size_t component_count(std::string_view type) {
+  if (type == "SCALAR") return 1;
+  const auto size = static_cast<std::size_t>(type.back() - '0');
+  return type.starts_with("MAT") ? size * size : size;
+}
+
+Accessor to_accessor(const tinygltf::Accessor& source) {
+  Accessor accessor;
+  accessor.view = source.bufferView;
+  accessor.component_type = source.componentType;
+  accessor.type = source.type;
+  accessor.normalized = source.normalized;
+  accessor.count = static_cast<std::uint32_t>(source.count);
+  accessor.offset = source.byteOffset;
+  const auto bound = [](const std::vector<double>& numbers) -> std::optional<std::array<double, 3>> {
+    if (numbers.empty()) return std::nullopt;
+    std::array<double, 3> first = {};
+    std::copy_n(numbers.begin(), std::min(numbers.size(), first.size()), first.begin());
+    return first;
   };
-  for (const json& accessor : list("accessors")) {
-    read_view(accessor);
-    if (!accessor.contains("sparse")) continue;
-    read_view(accessor["sparse"]["indices"]);
-    read_view(accessor["sparse"]["values"]);
+  accessor.min = bound(source.minValues);
+  accessor.max = bound(source.maxValues);
+  if (source.sparse.isSparse)
+    accessor.sparse = {static_cast<std::uint32_t>(source.sparse.count),
+                       source.sparse.indices.bufferView,
+                       static_cast<std::uint32_t>(source.sparse.indices.byteOffset),
+                       source.sparse.indices.componentType,
+                       source.sparse.values.bufferView,
+                       static_cast<std::uint32_t>(source.sparse.values.byteOffset)};
+  return accessor;
+}
+
+std::vector<Accessor> read_accessors(const Json& source, Report& report) {
+  std::vector<Accessor> accessors;
+  accessors.reserve(source.count("accessors"));
+  read_list(
+      source, "accessors", report,
+      [&](json& accessor, std::size_t i) {
+        const auto components = component_count(accessor["type"].get_ref<const std::string&>());
+        for (const char* bound : {"min", "max"})
+          if (accessor.contains(bound) && accessor[bound].size() != components) {
+            report.warn(fmt::format("accessors[{}].{}", i, bound), "has not as many numbers as an element");
+            accessor.erase(bound);
+          }
+        accessor.erase("name");
+      },
+      [&](tinygltf::Model&& model) {
+        for (const tinygltf::Accessor& accessor : model.accessors) accessors.push_back(to_accessor(accessor));
+      });
+  return accessors;
+}
+
+struct Views {
+  std::vector<BufferView> all;
+  std::map<std::size_t, PackedView> packed;  ///< by the number of their view
+};
+
+Views read_views(const Json& source, Report& report) {
+  Views views;
+  views.all.reserve(source.count("bufferViews"));
+  read_list(
+      source, "bufferViews", report,
+      [&](json& view, std::size_t i) {
+        const std::string path = fmt::format("bufferViews[{}]", i);
+        if (view.value("byteStride", 0U) % 4 != 0)
+          report.fail(path + ".byteStride", fmt::format("{} is no multiple of 4", view["byteStride"].get<unsigned>()));
+        if (const auto packed = read_packed_view(view, path, source.count("buffers"), report))
+          views.packed.emplace(i, *packed);
+        view.erase("name");
+      },
+      [&](tinygltf::Model&& model) {
+        for (const tinygltf::BufferView& view : model.bufferViews)
+          views.all.push_back(
+              {static_cast<std::size_t>(view.buffer), view.byteOffset, view.byteLength, view.byteStride});
+      });
+  return views;
+}
+
+/// For each view whether an accessor reads it.
+std::vector<bool> views_read(const Views& views, const std::vector<Accessor>& accessors) {
+  std::vector<bool> is_read(views.all.size());
+  const auto read = [&](int view) { is_read[static_cast<std::size_t>(view)] = true; };
+  for (const Accessor& accessor : accessors) {
+    if (accessor.view >= 0) read(accessor.view);
+    if (!accessor.sparse) continue;
+    read(accessor.sparse->indices_view);
+    read(accessor.sparse->values_view);
   }
   return is_read;
 }
 
+/// For each buffer whether a view that is read has its bytes there, packed or not.
+std::vector<bool> buffers_read(const Views& views, const std::vector<bool>& is_view_read, std::size_t buffer_count) {
+  std::vector<bool> is_read(buffer_count);
+  for (std::size_t i = 0; i < is_view_read.size(); ++i) {
+    if (!is_view_read[i]) continue;
+    const auto packed = views.packed.find(i);
+    is_read[packed == views.packed.end() ? views.all[i].buffer : packed->second.buffer] = true;
+  }
+  return is_read;
+}
+
+void resolve_buffer(Document& document, std::size_t index, std::span<const std::byte> bin, Report& report) {
+  const json buffer = document.json.element("buffers", index, report);
+  const auto byte_length = buffer["byteLength"].get<std::size_t>();
+  const std::string path = fmt::format("buffers[{}]", index);
+  std::span<const std::byte> bytes;
+  if (const auto uri = buffer.find("uri"); uri == buffer.end()) {
+    if (index != 0 || bin.empty()) report.fail(path, "has neither a uri nor a BIN chunk: there is no data");
+    bytes = bin;
+  } else if (const auto& text = uri->get_ref<const std::string&>(); is_data_uri(text)) {
+    bytes = document.decoded.emplace_back(decode_data_uri(text, path + ".uri", report));
+  } else {
+    report.fail(path + ".uri", "is in another file, where only one binary file was given",
+                "name the file that lies beside it, or export a .glb, which holds everything");
+  }
+  if (bytes.size() < byte_length)
+    report.fail(path + ".byteLength", fmt::format("says {} bytes, but there are only {}", byte_length, bytes.size()));
+  document.buffers[index] = bytes.first(byte_length);
+}
+
+void resolve_buffers(Document& document, Views&& views, std::span<const std::byte> bin, Report& report) {
+  const std::vector<bool> is_view_read = views_read(views, document.accessors);
+  document.buffers.resize(document.json.count("buffers"));
+  const std::vector<bool> is_read = buffers_read(views, is_view_read, document.buffers.size());
+  document.views = std::move(views.all);
+  for (std::size_t i = 0; i < is_read.size(); ++i)
+    if (is_read[i]) resolve_buffer(document, i, bin, report);
+
+  // No mode packs more than 64 bytes into one; many views may name the same packed bytes.
+  std::uint64_t left_bytes = 64 * (document.data_bytes + 1024);
+  for (const auto& [view, packed] : views.packed) {
+    if (!is_view_read[view]) continue;
+    const std::string path = fmt::format("bufferViews[{}].extensions.{}", view, kMeshopt);
+    const std::span<const std::byte> buffer = document.buffers[packed.buffer];
+    if (packed.offset + packed.length > buffer.size())
+      report.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes",
+                                    packed.length, packed.offset, packed.buffer, buffer.size()));
+    const std::uint64_t size = packed.count * packed.stride;
+    if (size > left_bytes) report.fail(path, fmt::format("{} bytes cannot be packed in this file", size));
+    left_bytes -= size;
+    document.decoded.push_back(unpack(packed, buffer.subspan(packed.offset, packed.length), path, report));
+    document.views[view].buffer = document.buffers.size();
+    document.views[view].offset = 0;
+    document.buffers.emplace_back(document.decoded.back());
+    document.data_bytes += size;
+  }
+}
+
+void read_meshes_of_model(Document& document, Report& report) {
+  read_list(
+      document.json, "meshes", report,
+      [&](json& mesh, std::size_t m) {
+        for (std::size_t p = 0; p < mesh["primitives"].size(); ++p) {
+          json& primitive = mesh["primitives"][p];
+          const auto position = primitive["attributes"].find("POSITION");
+          const bool has_data = position != primitive["attributes"].end() &&
+                                document.accessors[position->get<std::size_t>()].view >= 0;
+          if (!has_data)
+            refuse_draco(primitive, fmt::format("meshes[{}].primitives[{}]", m, p), report);
+          primitive.erase("extensions");
+          const auto indices = primitive.find("indices");
+          if (indices == primitive.end()) continue;
+          primitive["attributes"][kIndicesAsAttribute] = *indices;
+          primitive.erase(indices);
+        }
+      },
+      [&](tinygltf::Model&& model) {
+        for (tinygltf::Mesh& mesh : model.meshes)
+          for (tinygltf::Primitive& primitive : mesh.primitives)
+            if (const auto indices = primitive.attributes.extract(kIndicesAsAttribute); !indices.empty())
+              primitive.indices = indices.mapped();
+        append(document.model.meshes, std::move(model.meshes));
+      });
+}
+
+void read_model(Document& document, Report& report) {
+  const auto nothing = [](json&, std::size_t) {};
+  tinygltf::Model& all = document.model;
+  read_meshes_of_model(document, report);
+  read_list(document.json, "skins", report, nothing,
+            [&](tinygltf::Model&& some) { append(all.skins, std::move(some.skins)); });
+  read_list(
+      document.json, "nodes", report,
+      [&](const json& node, std::size_t i) {
+        const auto has = [&](const char* name) { return node.contains(name); };
+        if (has("matrix") && (has("translation") || has("rotation") || has("scale")))
+          report.fail(fmt::format("nodes[{}].matrix", i), "stands beside a translation, rotation or scale");
+        if (has("skin") && !has("mesh")) report.warn(fmt::format("nodes[{}].skin", i), "is of no use without a mesh");
+      },
+      [&](tinygltf::Model&& some) { append(all.nodes, std::move(some.nodes)); });
+  read_list(document.json, "scenes", report, nothing,
+            [&](tinygltf::Model&& some) { append(all.scenes, std::move(some.scenes)); });
+  all.defaultScene = document.json.head().value("scene", -1);
+}
+
+}  // namespace
+
+tinygltf::Animation load_animation(const Document& document, std::size_t index, Report& report) {
+  json animation = document.json.element("animations", index, report);
+  // tinygltf drops a channel without a node, which would renumber the others: give it one, and a path that is ignored.
+  for (json& channel : animation["channels"]) {
+    if (!channel["target"].contains("node")) channel["target"] = {{"node", 0}, {"path", "pointer"}};
+    channel.erase("extensions");
+  }
+  for (json& sampler : animation["samplers"]) sampler.erase("extensions");
+  std::string text = animation.dump();
+  animation = nullptr;
+  text = fmt::format("{{\"animations\":[{}]}}", text);
+  return std::move(to_model(text, report).animations.front());
+}
+
+std::vector<bool> buffers_read(const Json& json, Report& report) {
+  const Views views = read_views(json, report);
+  return buffers_read(views, views_read(views, read_accessors(json, report)), json.count("buffers"));
+}
+
 Document load_document(std::span<const std::byte> glb, Report& report) {
   const GlbChunks chunks = split_glb(glb, report);
-  Document result;
-  result.file_bytes = glb.size();
-  json document = parse_json(chunks.json, report);
-  result.quantized = check_extensions(document, report);
-  resolve_buffers(document, chunks.bin, result, report);
-  result.model = to_model(std::move(document), report);
+  Document result(Json(chunks.json, report));
+  result.data_bytes = glb.size();
+  result.quantized = check_extensions(result.json.head(), report);
+  Views views = read_views(result.json, report);
+  result.accessors = read_accessors(result.json, report);
+  resolve_buffers(result, std::move(views), chunks.bin, report);
+  read_model(result, report);
   check_accessors(result, report);
   return result;
 }

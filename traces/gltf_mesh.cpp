@@ -15,9 +15,11 @@ namespace vestige::gltf {
 
 namespace {
 
-// One small file can show one mesh thousands of times; an avatar of this size would be beyond any use.
+// An avatar of this size would be beyond any use.
 constexpr std::size_t kMostVertices = std::size_t{1} << 23;
 constexpr std::size_t kMostTriangles = std::size_t{1} << 24;
+// One small file can show one mesh thousands of times: its bytes and this many vertices bound what it can ask for.
+constexpr std::size_t kMostRepeated = std::size_t{1} << 20;
 
 /// A primitive as one node shows it.
 struct Part {
@@ -42,10 +44,17 @@ std::size_t triangle_count(int mode, std::size_t corners) {
   return corners < 3 ? 0 : corners - 2;
 }
 
+std::uint32_t largest_index(int component_type) {
+  if (component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return 0xFF;
+  return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 0xFFFF : 0xFFFFFFFF;
+}
+
 class MeshReader {
  public:
   MeshReader(const Document& document, const std::vector<Skin>& skins, Avatar& avatar, Report& report)
-      : document_(document), skins_(skins), skin_palette_(skins.size()), avatar_(avatar), report_(report) {}
+      : document_(document), skins_(skins), skin_palette_(skins.size()), avatar_(avatar), report_(report) {
+    world_matrices(avatar, rest_pose(avatar), world_);
+  }
 
   void read(const std::vector<bool>& drawn) {
     const std::vector<Part> parts = collect(drawn);
@@ -65,8 +74,8 @@ class MeshReader {
     return document_.model.meshes[part.mesh].primitives[part.primitive];
   }
 
-  const tinygltf::Accessor& accessor(int index) const {
-    return document_.model.accessors[static_cast<std::size_t>(index)];
+  const Accessor& accessor(int index) const {
+    return document_.accessors[static_cast<std::size_t>(index)];
   }
 
   Key key(const Part& part) const {
@@ -106,14 +115,29 @@ class MeshReader {
       report_.warn(part_path(part), "skipped what has no POSITION");
       return false;
     }
-    if (!source.targets.empty()) report_.warn(part_path(part, ".targets"), "ignored morph targets");
-    check_binding(part);
     part.vertex_count = accessor(position->second).count;
+    check_counts(part);
+    check_binding(part);
     part.corner_count = source.indices < 0 ? part.vertex_count : accessor(source.indices).count;
     if (triangle_count(source.mode, part.corner_count) == 0 ||
         (source.mode == TINYGLTF_MODE_TRIANGLES && part.corner_count % 3 != 0))
       report_.warn(part_path(part), "ignored corners that make no whole triangle");
     return triangle_count(source.mode, part.corner_count) > 0;
+  }
+
+  /// All attributes, read or not, and morph targets, which are not, speak of the same vertices.
+  void check_counts(const Part& part) {
+    const auto check = [&](const std::string& path, int index) {
+      if (accessor(index).count != part.vertex_count)
+        report_.fail(path,
+                     fmt::format("has {} elements for {} vertices", accessor(index).count, part.vertex_count));
+    };
+    const tinygltf::Primitive& source = primitive(part);
+    for (const auto& [name, index] : source.attributes) check(attribute_path(part, name), index);
+    for (std::size_t i = 0; i < source.targets.size(); ++i)
+      for (const auto& [name, index] : source.targets[i])
+        check(part_path(part, fmt::format(".targets[{}].{}", i, name)), index);
+    if (!source.targets.empty()) report_.warn(part_path(part, ".targets"), "ignored morph targets");
   }
 
   void check_binding(const Part& part) {
@@ -126,15 +150,17 @@ class MeshReader {
   }
 
   void reserve(const std::vector<Part>& parts) {
+    const std::size_t most_vertices = std::min(kMostVertices, kMostRepeated + document_.data_bytes);
+    const std::size_t most_triangles = std::min(kMostTriangles, 2 * kMostRepeated + document_.data_bytes);
     std::size_t vertices = 0;
     std::size_t triangles = 0;
     std::map<Key, bool> seen;
     for (const Part& part : parts) {
       if (seen.try_emplace(key(part), true).second) vertices += part.vertex_count;
       triangles += triangle_count(primitive(part).mode, part.corner_count);
-      if (vertices > kMostVertices || triangles > kMostTriangles)
+      if (vertices > most_vertices || triangles > most_triangles)
         report_.fail(part_path(part),
-                     fmt::format("takes the avatar beyond {} vertices or {} triangles", kMostVertices, kMostTriangles),
+                     fmt::format("takes the avatar beyond {} vertices or {} triangles", most_vertices, most_triangles),
                      "simplify the mesh");
     }
     avatar_.position_bind.reserve(vertices);
@@ -147,7 +173,7 @@ class MeshReader {
     const auto found = primitive(part).attributes.find(name);
     const std::string path = attribute_path(part, name);
     if (found == primitive(part).attributes.end()) report_.fail(path, "is missing");
-    AccessorReader reader(document_, found->second, {type, components}, path, report_);
+    AccessorReader reader(document_, found->second, {type, components, Layout::kVertices}, path, report_);
     if (reader.count() != part.vertex_count)
       report_.fail(path, fmt::format("has {} elements for {} vertices", reader.count(), part.vertex_count));
     return reader;
@@ -196,11 +222,15 @@ class MeshReader {
     for (std::size_t n = 0;; ++n) {
       const std::string joints = fmt::format("JOINTS_{}", n);
       const std::string weights = fmt::format("WEIGHTS_{}", n);
-      if (!attributes.contains(joints) && !attributes.contains(weights)) return sets;
+      if (!attributes.contains(joints) && !attributes.contains(weights)) break;
       sets.push_back({attribute(part, joints, TINYGLTF_TYPE_VEC4, kUint8 | kUint16),
                       attribute(part, weights, TINYGLTF_TYPE_VEC4, kFloat | kNormalizedUint8 | kNormalizedUint16),
                       attribute_path(part, joints), attribute_path(part, weights)});
     }
+    const auto is_joints = [](const auto& attribute) { return attribute.first.starts_with("JOINTS_"); };
+    if (static_cast<std::size_t>(std::count_if(attributes.begin(), attributes.end(), is_joints)) != sets.size())
+      report_.fail(part_path(part, ".attributes"), "has JOINTS_n that do not count up from 0");
+    return sets;
   }
 
   void read_influences(const Part& part) {
@@ -253,6 +283,7 @@ class MeshReader {
   }
 
   /// glTF 2.0 §3.7.2.1: how the corners of strips and fans make triangles.
+  /// §3.7.4: mirrored by its node, a triangle's front is where it looks clockwise. Skinned meshes ignore their node.
   void read_triangles(const Part& part, std::size_t first_vertex) {
     const tinygltf::Primitive& source = primitive(part);
     std::vector<std::uint32_t> corners(part.corner_count);
@@ -262,18 +293,24 @@ class MeshReader {
       const std::string path = part_path(part, ".indices");
       const AccessorReader indices(document_, source.indices, {TINYGLTF_TYPE_SCALAR, kUint8 | kUint16 | kUint32}, path,
                                    report_);
+      const std::uint32_t restart = largest_index(accessor(source.indices).component_type);
       for (std::size_t i = 0; i < corners.size(); ++i) {
         corners[i] = indices.integer(i, 0);
+        if (corners[i] == restart)
+          report_.fail(path, fmt::format("index {} is {}, which restarts a primitive and is not allowed", i, restart));
         if (corners[i] >= part.vertex_count)
           report_.fail(path,
                        fmt::format("index {} is {}, but there are {} vertices", i, corners[i], part.vertex_count));
       }
     }
+    const bool is_mirrored =
+        part.skin < 0 && glm::determinant(glm::dmat3(world_[static_cast<std::size_t>(part.node)])) < 0;
     const std::size_t count = triangle_count(source.mode, corners.size());
     for (std::size_t i = 0; i < count; ++i) {
       std::array<std::size_t, 3> at = {3 * i, 3 * i + 1, 3 * i + 2};
       if (source.mode == TINYGLTF_MODE_TRIANGLE_STRIP) at = {i, i + 1 + i % 2, i + 2 - i % 2};
       if (source.mode == TINYGLTF_MODE_TRIANGLE_FAN) at = {i + 1, i + 2, 0};
+      if (is_mirrored) std::swap(at[1], at[2]);
       const glm::uvec3 triangle(corners[at[0]], corners[at[1]], corners[at[2]]);
       avatar_.triangles.push_back(triangle + static_cast<std::uint32_t>(first_vertex));
     }
@@ -282,6 +319,7 @@ class MeshReader {
   const Document& document_;
   const std::vector<Skin>& skins_;
   std::vector<std::vector<std::uint16_t>> skin_palette_;  ///< for each skin's joints, once it is drawn
+  std::vector<glm::dmat4> world_;                         ///< of each node, in the rest pose
   std::map<std::pair<int, std::array<double, 16>>, std::size_t> palette_;
   std::map<Key, std::size_t> first_vertex_;
   Avatar& avatar_;

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "traces/gltf_report.hpp"
+
+namespace vestige::gltf {
+
+/// A glTF's JSON, cut into its parts as text: they are parsed one at a time, since a tree of all of them would be ten
+/// times as large as the text.
+struct Outline {
+  std::map<std::string, std::string_view> properties;           ///< those of the document that are no list
+  std::map<std::string, std::vector<std::string_view>> lists;  ///< the elements of those that are one
+};
+
+/// Checks the grammar of JSON (RFC 8259) from end to end and cuts it. Lists that are never read (materials, textures,
+/// images, texture samplers, cameras) and the document's extras and extensions are left out. Fails naming the byte, and
+/// on nesting deeper than any glTF's.
+Outline outline_json(std::string_view text, const Report& report);
+
+/// An element of the document's list `list` as text, without what is never read in it: extras, references to what
+/// `outline_json` leaves out, and extensions, except where one may say that geometry is compressed. Fails, at `path`,
+/// where an object that is read has a property twice. Precondition: `outline_json` returned this element.
+std::string reduce_element(std::string_view element, std::string_view list, std::string_view path,
+                           const Report& report);
+
+}  // namespace vestige::gltf
