@@ -154,7 +154,7 @@ void check_accessors(const Document& document, Report& report) {
     if (accessor.normalized && type.normalized == type.plain)
       report.warn(accessor_path(i, ".normalized"), fmt::format("means nothing for {}", type.name));
     // Without data of its own an accessor is all zeros, of a length that nothing else would bound.
-    if (accessor.view < 0 && accessor.count > document.data_bytes)
+    if (accessor.count > document.data_bytes)
       report.fail(accessor_path(i, ".count"),
                   fmt::format("{} elements do not fit into a file of {} bytes", accessor.count, document.data_bytes));
     const std::size_t size = element_bytes(accessor.type, type.bytes);
@@ -190,15 +190,8 @@ AccessorReader::AccessorReader(const Document& document, int accessor, const For
   const std::size_t size = element_bytes(accessor_.type, component_bytes_);
   if (accessor_.view >= 0) {
     const BufferView& view = document.views[static_cast<std::size_t>(accessor_.view)];
-    if (format.layout == Layout::kTight && view.stride != 0)
-      report.fail(fmt::format("bufferViews[{}].byteStride", accessor_.view),
-                  fmt::format("is only for vertex attributes, not for {}", use));
     first_ = document.buffers[view.buffer].data() + view.offset + accessor_.offset;
     stride_ = view.stride != 0 ? view.stride : size;
-    if (format.layout == Layout::kVertices && ((view.offset + accessor_.offset) % 4 != 0 || stride_ % 4 != 0))
-      report.fail(accessor_path(index), fmt::format("has elements that do not start at multiples of 4 bytes, as {} "
-                                                    "must (glTF 2.0 §3.6.2.4)",
-                                                    use));
   } else {
     static constexpr std::array<std::byte, 64> kZeros = {};
     first_ = kZeros.data();

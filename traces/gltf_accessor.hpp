@@ -23,14 +23,10 @@ enum Component : unsigned {
   kNormalizedUint16 = 1U << 9,
 };
 
-/// Only vertex attributes may be interleaved, and only they start at multiples of 4 bytes (glTF 2.0 §3.6.2.4).
-enum class Layout { kTight, kVertices };
-
 /// What a use of an accessor demands of it.
 struct Format {
   int type = 0;             ///< TINYGLTF_TYPE_…
   unsigned components = 0;  ///< a set of `Component`
-  Layout layout = Layout::kTight;
 };
 
 /// Checks, without touching their data, that all accessors lie inside their buffer views and those inside their

@@ -79,6 +79,8 @@ class AnimationReader {
     result.node = channel.target_node;
     result.property = property;
     result.interpolation = interpolation(sampler.interpolation);
+    refuse_stride(document_, sampler.input, sampler_path + ".input", report_);
+    refuse_stride(document_, sampler.output, sampler_path + ".output", report_);
     const AccessorReader times(document_, sampler.input, {TINYGLTF_TYPE_SCALAR, kFloat}, sampler_path + ".input",
                                report_);
     const bool is_rotation = property == AnimatedProperty::kRotation;

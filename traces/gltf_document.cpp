@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -93,11 +92,10 @@ Accessor to_accessor(const tinygltf::Accessor& source) {
   return accessor;
 }
 
-std::vector<Accessor> read_accessors(const Json& source, Report& report) {
-  std::vector<Accessor> accessors;
-  accessors.reserve(source.count("accessors"));
+void read_accessors(Document& document, Report& report) {
+  document.accessors.reserve(document.json.count("accessors"));
   read_list(
-      source, "accessors", report,
+      document.json, "accessors", report,
       [&](json& accessor, std::size_t i) {
         const auto components = component_count(accessor["type"].get_ref<const std::string&>());
         for (const char* bound : {"min", "max"})
@@ -108,59 +106,44 @@ std::vector<Accessor> read_accessors(const Json& source, Report& report) {
         accessor.erase("name");
       },
       [&](tinygltf::Model&& model) {
-        for (const tinygltf::Accessor& accessor : model.accessors) accessors.push_back(to_accessor(accessor));
+        for (const tinygltf::Accessor& accessor : model.accessors) document.accessors.push_back(to_accessor(accessor));
       });
-  return accessors;
 }
 
-struct Views {
-  std::vector<BufferView> all;
-  std::map<std::size_t, PackedView> packed;  ///< by the number of their view
-};
-
-Views read_views(const Json& source, Report& report) {
-  Views views;
-  views.all.reserve(source.count("bufferViews"));
+void read_views(Document& document, Report& report) {
+  document.views.reserve(document.json.count("bufferViews"));
   read_list(
-      source, "bufferViews", report,
+      document.json, "bufferViews", report,
       [&](json& view, std::size_t i) {
         const std::string path = fmt::format("bufferViews[{}]", i);
-        if (view.value("byteStride", 0U) % 4 != 0)
-          report.fail(path + ".byteStride", fmt::format("{} is no multiple of 4", view["byteStride"].get<unsigned>()));
-        if (const auto packed = read_packed_view(view, path, source.count("buffers"), report))
-          views.packed.emplace(i, *packed);
+        const auto stride = view.value("byteStride", std::uint64_t{0});
+        if (stride % 4 != 0) report.fail(path + ".byteStride", fmt::format("{} is no multiple of 4", stride));
+        if (const auto packed = read_packed_view(view, path, document.json.count("buffers"), report))
+          document.packed.emplace(i, *packed);
         view.erase("name");
       },
       [&](tinygltf::Model&& model) {
         for (const tinygltf::BufferView& view : model.bufferViews)
-          views.all.push_back(
+          document.views.push_back(
               {static_cast<std::size_t>(view.buffer), view.byteOffset, view.byteLength, view.byteStride});
       });
-  return views;
 }
 
-/// For each view whether an accessor reads it.
-std::vector<bool> views_read(const Views& views, const std::vector<Accessor>& accessors) {
-  std::vector<bool> is_read(views.all.size());
-  const auto read = [&](int view) { is_read[static_cast<std::size_t>(view)] = true; };
-  for (const Accessor& accessor : accessors) {
+void mark_what_is_read(Document& document) {
+  document.is_view_read.resize(document.views.size());
+  const auto read = [&](int view) { document.is_view_read[static_cast<std::size_t>(view)] = true; };
+  for (const Accessor& accessor : document.accessors) {
     if (accessor.view >= 0) read(accessor.view);
     if (!accessor.sparse) continue;
     read(accessor.sparse->indices_view);
     read(accessor.sparse->values_view);
   }
-  return is_read;
-}
-
-/// For each buffer whether a view that is read has its bytes there, packed or not.
-std::vector<bool> buffers_read(const Views& views, const std::vector<bool>& is_view_read, std::size_t buffer_count) {
-  std::vector<bool> is_read(buffer_count);
-  for (std::size_t i = 0; i < is_view_read.size(); ++i) {
-    if (!is_view_read[i]) continue;
-    const auto packed = views.packed.find(i);
-    is_read[packed == views.packed.end() ? views.all[i].buffer : packed->second.buffer] = true;
+  document.is_buffer_read.resize(document.json.count("buffers"));
+  for (std::size_t i = 0; i < document.views.size(); ++i) {
+    if (!document.is_view_read[i]) continue;
+    const auto packed = document.packed.find(i);
+    document.is_buffer_read[packed == document.packed.end() ? document.views[i].buffer : packed->second.buffer] = true;
   }
-  return is_read;
 }
 
 void resolve_buffer(Document& document, std::size_t index, std::span<const std::byte> bin, Report& report) {
@@ -182,18 +165,15 @@ void resolve_buffer(Document& document, std::size_t index, std::span<const std::
   document.buffers[index] = bytes.first(byte_length);
 }
 
-void resolve_buffers(Document& document, Views&& views, std::span<const std::byte> bin, Report& report) {
-  const std::vector<bool> is_view_read = views_read(views, document.accessors);
-  document.buffers.resize(document.json.count("buffers"));
-  const std::vector<bool> is_read = buffers_read(views, is_view_read, document.buffers.size());
-  document.views = std::move(views.all);
-  for (std::size_t i = 0; i < is_read.size(); ++i)
-    if (is_read[i]) resolve_buffer(document, i, bin, report);
+void resolve_buffers(Document& document, std::span<const std::byte> bin, Report& report) {
+  document.buffers.resize(document.is_buffer_read.size());
+  for (std::size_t i = 0; i < document.is_buffer_read.size(); ++i)
+    if (document.is_buffer_read[i]) resolve_buffer(document, i, bin, report);
 
   // No mode packs more than 64 bytes into one; many views may name the same packed bytes.
   std::uint64_t left_bytes = 64 * (document.data_bytes + 1024);
-  for (const auto& [view, packed] : views.packed) {
-    if (!is_view_read[view]) continue;
+  for (const auto& [view, packed] : document.packed) {
+    if (!document.is_view_read[view]) continue;
     const std::string path = fmt::format("bufferViews[{}].extensions.{}", view, kMeshopt);
     const std::span<const std::byte> buffer = document.buffers[packed.buffer];
     if (packed.offset + packed.length > buffer.size())
@@ -257,6 +237,16 @@ void read_model(Document& document, Report& report) {
   all.defaultScene = document.json.head().value("scene", -1);
 }
 
+void check_strides(const Document& document, const Report& report) {
+  for (std::size_t i = 0; i < document.model.skins.size(); ++i)
+    if (const int matrices = document.model.skins[i].inverseBindMatrices; matrices >= 0)
+      refuse_stride(document, matrices, fmt::format("skins[{}].inverseBindMatrices", i), report);
+  for (std::size_t m = 0; m < document.model.meshes.size(); ++m)
+    for (std::size_t p = 0; p < document.model.meshes[m].primitives.size(); ++p)
+      if (const int indices = document.model.meshes[m].primitives[p].indices; indices >= 0)
+        refuse_stride(document, indices, fmt::format("meshes[{}].primitives[{}].indices", m, p), report);
+}
+
 }  // namespace
 
 tinygltf::Animation load_animation(const Document& document, std::size_t index, Report& report) {
@@ -273,22 +263,31 @@ tinygltf::Animation load_animation(const Document& document, std::size_t index, 
   return std::move(to_model(text, report).animations.front());
 }
 
-std::vector<bool> buffers_read(const Json& json, Report& report) {
-  const Views views = read_views(json, report);
-  return buffers_read(views, views_read(views, read_accessors(json, report)), json.count("buffers"));
+void refuse_stride(const Document& document, int accessor, std::string_view use, const Report& report) {
+  const int view = document.accessors[static_cast<std::size_t>(accessor)].view;
+  if (view >= 0 && document.views[static_cast<std::size_t>(view)].stride != 0)
+    report.fail(fmt::format("bufferViews[{}].byteStride", view),
+                fmt::format("is only for vertex attributes, not for {}", use));
+}
+
+Document parse_document(Json json, Report& report) {
+  Document document(std::move(json));
+  document.quantized = check_extensions(document.json.head(), report);
+  read_views(document, report);
+  read_accessors(document, report);
+  mark_what_is_read(document);
+  read_model(document, report);
+  check_strides(document, report);
+  return document;
 }
 
 Document load_document(std::span<const std::byte> glb, Report& report) {
   const GlbChunks chunks = split_glb(glb, report);
-  Document result(Json(chunks.json, report));
-  result.data_bytes = glb.size();
-  result.quantized = check_extensions(result.json.head(), report);
-  Views views = read_views(result.json, report);
-  result.accessors = read_accessors(result.json, report);
-  resolve_buffers(result, std::move(views), chunks.bin, report);
-  read_model(result, report);
-  check_accessors(result, report);
-  return result;
+  Document document = parse_document(Json(chunks.json, report), report);
+  document.data_bytes = glb.size();
+  resolve_buffers(document, chunks.bin, report);
+  check_accessors(document, report);
+  return document;
 }
 
 }  // namespace vestige::gltf

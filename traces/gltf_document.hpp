@@ -5,12 +5,15 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "traces/gltf_json.hpp"
+#include "traces/gltf_meshopt.hpp"
 #include "traces/gltf_report.hpp"
 
 namespace vestige::gltf {
@@ -45,8 +48,7 @@ struct Accessor {
   std::optional<Sparse> sparse;
 };
 
-/// A glTF whose JSON fits the schema (animations excepted) and whose accessors all lie inside their buffers. What they
-/// hold is not checked yet.
+/// A glTF whose JSON fits the schema (animations excepted). What its accessors hold is not checked yet.
 struct Document {
   explicit Document(Json source) : json(std::move(source)) {}
 
@@ -54,20 +56,28 @@ struct Document {
   tinygltf::Model model;  ///< nodes, meshes, skins and scenes; indices are those of the file
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
+  std::vector<bool> is_view_read;                   ///< for each view whether an accessor reads it
+  std::map<std::size_t, PackedView> packed;         ///< by the number of their view
+  std::vector<bool> is_buffer_read;                 ///< for each buffer; images and other unread data may be missing
   std::vector<std::span<const std::byte>> buffers;  ///< one for each of the file's; empty where no accessor reads it
   std::vector<std::vector<std::byte>> decoded;      ///< what `buffers` refer to where it was a data: URI
   std::size_t data_bytes = 0;  ///< of the file and of what was unpacked: bounds what the avatar may need
   bool quantized = false;  ///< KHR_mesh_quantization: integer positions and texture coordinates are allowed
 };
 
-/// Splits, parses and checks a GLB, which the result keeps referring to. Fails on required extensions that are not
-/// supported, and on whatever `split_glb`, `Json` and `check_accessors` refuse.
+/// All but the animations and the data. Fails on required extensions that are not supported, on whatever does not fit the
+/// schema, and on interleaved data that is no vertex attribute.
+Document parse_document(Json json, Report& report);
+
+/// Splits, parses and checks a GLB, which the result keeps referring to: all accessors lie inside their buffers. Fails
+/// on whatever `split_glb`, `Json`, `parse_document` and `check_accessors` refuse.
 Document load_document(std::span<const std::byte> glb, Report& report);
 
 /// Animations are most of the JSON of some avatars, and are parsed one at a time.
 tinygltf::Animation load_animation(const Document& document, std::size_t index, Report& report);
 
-/// For each buffer whether an accessor reads it; images and other unread data may be missing.
-std::vector<bool> buffers_read(const Json& json, Report& report);
+/// Only vertex attributes may be interleaved (glTF 2.0 §3.6.2.1): fails, naming `use`, where a byteStride stands behind
+/// an accessor.
+void refuse_stride(const Document& document, int accessor, std::string_view use, const Report& report);
 
 }  // namespace vestige::gltf

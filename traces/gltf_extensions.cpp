@@ -53,7 +53,7 @@ bool check_extensions(const json& head, Report& report) {
     report.warn("extensionsUsed", fmt::format("ignored {}", names));
   for (const json& name : required)
     if (!holds(used, name.get_ref<const std::string&>()))
-      report.warn("extensionsRequired", "names what extensionsUsed does not");
+      report.warn("extensionsRequired", fmt::format("names {}, which extensionsUsed does not", name.get_ref<const std::string&>()));
   return holds(used, kQuantization) || holds(required, kQuantization);
 }
 

@@ -173,7 +173,7 @@ class MeshReader {
     const auto found = primitive(part).attributes.find(name);
     const std::string path = attribute_path(part, name);
     if (found == primitive(part).attributes.end()) report_.fail(path, "is missing");
-    AccessorReader reader(document_, found->second, {type, components, Layout::kVertices}, path, report_);
+    AccessorReader reader(document_, found->second, {type, components}, path, report_);
     if (reader.count() != part.vertex_count)
       report_.fail(path, fmt::format("has {} elements for {} vertices", reader.count(), part.vertex_count));
     return reader;

@@ -113,7 +113,7 @@ class Packer {
 
  private:
   void pack_buffers() {
-    is_read_ = gltf::buffers_read(source_, report_);
+    is_read_ = gltf::parse_document(source_, report_).is_buffer_read;
     start_.resize(is_read_.size());
     byte_length_.resize(is_read_.size());
     for (std::size_t i = 0; i < is_read_.size(); ++i) {
@@ -125,16 +125,15 @@ class Packer {
 
   template <typename Change>
   void add_list(const char* name, std::string& text, const Change& change) {
-    const std::size_t count = source_.count(name);
-    if (count == 0) return;
+    if (!source_.has(name)) return;
     text += fmt::format("\"{}\":[", name);
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < source_.count(name); ++i) {
       json element = source_.element(name, i, report_);
       change(element, i);
+      text += i > 0 ? "," : "";
       text += element.dump();
-      text += i + 1 < count ? ',' : ']';
     }
-    text += ',';
+    text += "],";
   }
 
   /// Makes a view refer to the one buffer of a GLB. Views of buffers that are not read held images, or what is packed
