@@ -154,7 +154,7 @@ void resolve_buffer(Document& document, std::size_t index, std::span<const std::
   if (const auto uri = buffer.find("uri"); uri == buffer.end()) {
     if (index != 0 || bin.empty()) report.fail(path, "has neither a uri nor a BIN chunk: there is no data");
     bytes = bin;
-  } else if (const auto& text = uri->get_ref<const std::string&>(); is_data_uri(text)) {
+  } else if (const std::string_view text = document.json.buffer_uri(index, buffer, report); is_data_uri(text)) {
     bytes = document.decoded.emplace_back(decode_data_uri(text, path + ".uri", report));
   } else {
     report.fail(path + ".uri", "is in another file, where only one binary file was given",

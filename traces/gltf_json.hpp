@@ -29,6 +29,9 @@ class Json {
   /// One of them, checked by `check_element`. Precondition: index < count(list).
   nlohmann::json element(std::string_view list, std::size_t index, Report& report) const;
 
+  /// The `uri` of a buffer, which is `element("buffers", index)`: there, one that holds data is shortened to "data:".
+  std::string_view buffer_uri(std::size_t index, const nlohmann::json& buffer, const Report& report) const;
+
  private:
   Outline outline_;
   nlohmann::json head_;

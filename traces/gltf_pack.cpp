@@ -39,24 +39,13 @@ class BufferPacker {
       : folder_(std::move(folder)), bin_(bin), report_(report) {}
 
   /// Where in `bytes` this buffer starts. A buffer that several entries name is packed once.
-  std::size_t add(const json& buffer, std::size_t index) {
+  std::size_t add(const Json& source, const json& buffer, std::size_t index) {
     const std::string path = fmt::format("buffers[{}]", index);
-    const auto uri = buffer.find("uri");
-    if (uri == buffer.end() && (index != 0 || bin_.empty()))
-      report_.fail(path, "has no uri: there is no data", "export a .glb, or a .gltf together with its .bin");
-    const std::string text = uri == buffer.end() ? std::string() : uri->get<std::string>();
     const auto byte_length = buffer["byteLength"].get<std::size_t>();
-    // A data: URI is as long as what it holds: its text is no key.
-    const bool is_named = uri != buffer.end() && !gltf::is_data_uri(text);
-    auto known = packed_.find(is_named ? text : path);
-    if (known == packed_.end()) {
-      const Place place = uri == buffer.end() ? append(bin_) : append(content_of(text, path + ".uri"));
-      known = packed_.emplace(is_named ? text : path, place).first;
-    }
-    if (known->second.size < byte_length)
-      report_.fail(path + ".byteLength",
-                   fmt::format("says {} bytes, but there are only {}", byte_length, known->second.size));
-    return known->second.start;
+    const Place place = place_of(source, buffer, index, path);
+    if (place.size < byte_length)
+      report_.fail(path + ".byteLength", fmt::format("says {} bytes, but there are only {}", byte_length, place.size));
+    return place.start;
   }
 
   const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -67,9 +56,17 @@ class BufferPacker {
     std::size_t size = 0;
   };
 
-  std::vector<std::byte> content_of(const std::string& uri, const std::string& path) const {
-    return gltf::is_data_uri(uri) ? gltf::decode_data_uri(uri, path, report_)
-                                  : read_file(folder_ / gltf::decode_relative_uri(uri, path, report_));
+  Place place_of(const Json& source, const json& buffer, std::size_t index, const std::string& path) {
+    if (!buffer.contains("uri")) {
+      if (index != 0 || bin_.empty())
+        report_.fail(path, "has no uri: there is no data", "export a .glb, or a .gltf together with its .bin");
+      return append(bin_);
+    }
+    const std::string_view uri = source.buffer_uri(index, buffer, report_);
+    if (gltf::is_data_uri(uri)) return append(gltf::decode_data_uri(uri, path + ".uri", report_));
+    const std::filesystem::path file = gltf::decode_relative_uri(uri, path + ".uri", report_);
+    const auto known = packed_.find(file);
+    return known != packed_.end() ? known->second : packed_.emplace(file, append(read_file(folder_ / file))).first->second;
   }
 
   Place append(std::span<const std::byte> content) {
@@ -86,7 +83,7 @@ class BufferPacker {
   std::filesystem::path folder_;
   std::span<const std::byte> bin_;
   Report& report_;
-  std::map<std::string, Place> packed_;
+  std::map<std::filesystem::path, Place> packed_;
   std::vector<std::byte> bytes_;
 };
 
@@ -119,7 +116,7 @@ class Packer {
     for (std::size_t i = 0; i < is_read_.size(); ++i) {
       const json buffer = source_.element("buffers", i, report_);
       byte_length_[i] = buffer["byteLength"].get<std::size_t>();
-      if (is_read_[i]) start_[i] = packer_.add(buffer, i);
+      if (is_read_[i]) start_[i] = packer_.add(source_, buffer, i);
     }
   }
 
@@ -178,8 +175,7 @@ class Packer {
 bool names_other_files(const Json& source, Report& report) {
   for (std::size_t i = 0; i < source.count("buffers"); ++i) {
     const json buffer = source.element("buffers", i, report);
-    const auto uri = buffer.find("uri");
-    if (uri != buffer.end() && !gltf::is_data_uri(uri->get_ref<const std::string&>())) return true;
+    if (buffer.contains("uri") && !gltf::is_data_uri(source.buffer_uri(i, buffer, report))) return true;
   }
   return false;
 }

@@ -79,6 +79,16 @@ class Scanner {
     return result;
   }
 
+  std::string_view data_uri() {
+    std::string_view found;
+    each_member(3, [&](const std::string& key, std::string_view) {
+      const std::size_t start = at_;
+      skip_value(4);
+      if (key == "uri") found = text_.substr(start + 1, at_ - start - 2);
+    });
+    return found;
+  }
+
   /// Appends the value to `out`, without what is not read.
   void reduce(int depth, std::string_view list, std::string_view path, std::string& out) {
     const std::size_t start = at_;
@@ -89,8 +99,13 @@ class Scanner {
         if (!is_read(key, depth, list)) return skip_value(depth + 1);
         if (!keys.empty()) out += ',';
         out.append(quoted) += ':';
+        const bool may_hold_data = depth == 3 && list == "buffers" && key == "uri";
         keys.push_back(std::move(key));
-        reduce(depth + 1, list, path, out);
+        if (!may_hold_data || peek() != '"') return reduce(depth + 1, list, path, out);
+        const std::size_t first = at_;
+        skip_string();
+        const std::string_view uri = text_.substr(first, at_ - first);
+        out += is_plain_data_uri(uri) ? kShortened : uri;
       });
       out += '}';
       std::sort(keys.begin(), keys.end());
@@ -112,6 +127,13 @@ class Scanner {
   }
 
  private:
+  static constexpr std::string_view kShortened = "\"data:\"";
+
+  /// Without escapes, the text as it stands is the URI.
+  static bool is_plain_data_uri(std::string_view value) {
+    return value.starts_with("\"data:") && value.find('\\') == std::string_view::npos;
+  }
+
   /// The end of the text reads as a zero, which JSON has nowhere.
   char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
 
@@ -242,6 +264,10 @@ std::string reduce_element(std::string_view element, std::string_view list, std:
   std::string result;
   Scanner(element, report).reduce(3, list, path, result);
   return result;
+}
+
+std::string_view find_data_uri(std::string_view element, const Report& report) {
+  return Scanner(element, report).data_uri();
 }
 
 }  // namespace vestige::gltf
