@@ -43,13 +43,15 @@ tinygltf::Model to_model(const std::string& text, const Report& report) {
 template <typename Prepare, typename Take>
 void read_list(const Json& source, const std::string& list, Report& report, const Prepare& prepare, const Take& take) {
   constexpr std::size_t kPieceBytes = 1 << 14;
+  const std::size_t count = source.count(list);
   std::string piece;
-  for (std::size_t i = 0; i < source.count(list); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     json element = source.element(list, i, report);
     prepare(element, i);
     element.erase("extensions");
-    piece += fmt::format("{}{}", piece.empty() ? "" : ",", element.dump());
-    if (piece.size() < kPieceBytes && i + 1 < source.count(list)) continue;
+    if (!piece.empty()) piece += ',';
+    piece += element.dump();
+    if (piece.size() < kPieceBytes && i + 1 < count) continue;
     take(to_model(fmt::format("{{\"{}\":[{}]}}", list, piece), report));
     piece.clear();
   }

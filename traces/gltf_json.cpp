@@ -42,18 +42,18 @@ Json::Json(std::string_view text, Report& report)
 }
 
 std::size_t Json::count(std::string_view list) const {
-  const auto found = outline_.lists.find(std::string(list));
+  const auto found = outline_.lists.find(list);
   return found == outline_.lists.end() ? 0 : found->second.size();
 }
 
 std::string_view Json::buffer_uri(std::size_t index, const json& buffer, const Report& report) const {
   const auto& uri = buffer["uri"].get_ref<const std::string&>();
-  return uri == "data:" ? find_data_uri(outline_.lists.at("buffers")[index], report) : uri;
+  return uri == "data:" ? find_data_uri(outline_.lists.find("buffers")->second[index], report) : uri;
 }
 
 json Json::element(std::string_view list, std::size_t index, Report& report) const {
   const std::string path = fmt::format("{}[{}]", list, index);
-  const std::string text = reduce_element(outline_.lists.at(std::string(list))[index], list, path, report);
+  const std::string text = reduce_element(outline_.lists.find(list)->second[index], list, path, report);
   json element = parse(text, path, report);
   check_element(element, list, index, outline_, report);
   return element;

@@ -21,7 +21,7 @@ class Json {
   /// What stands at the top, without the lists.
   const nlohmann::json& head() const { return head_; }
 
-  bool has(std::string_view list) const { return outline_.lists.contains(std::string(list)); }
+  bool has(std::string_view list) const { return outline_.lists.contains(list); }
 
   /// The elements of a list such as "nodes", 0 where there is none.
   std::size_t count(std::string_view list) const;

@@ -183,7 +183,10 @@ bool names_other_files(const Json& source, Report& report) {
 }  // namespace
 
 std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path) {
-  std::vector<std::byte> content = read_file(path);
+  return pack_avatar_glb(read_file(path), path);
+}
+
+std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std::filesystem::path& path) {
   const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
   Report report(path.string());
   if (is_text(text)) {
@@ -191,6 +194,7 @@ std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path) {
     return Packer(source, {}, path, report).pack();
   }
   const gltf::GlbChunks chunks = gltf::split_glb(content, report);
+  if (chunks.json.find("\"uri\"") == std::string_view::npos) return content;
   const Json source(chunks.json, report);
   if (!names_other_files(source, report)) return content;
   return Packer(source, chunks.bin, path, report).pack();

@@ -22,6 +22,11 @@ bool is_hex_digit(char character) {
   return is_digit(character) || (character >= 'a' && character <= 'f') || (character >= 'A' && character <= 'F');
 }
 
+/// ASCII that stands for itself inside a text.
+bool is_plain(char character) {
+  return character >= 0x20 && character != '"' && character != '\\';
+}
+
 /// The length of the UTF-8 sequence (RFC 3629) that `text` starts with, 0 where it is none.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
@@ -202,7 +207,9 @@ class Scanner {
   void skip_string() {
     constexpr std::string_view kEscapes = "\"\\/bfnrtu";
     ++at_;
-    while (!take('"')) {
+    for (;;) {
+      while (at_ < text_.size() && is_plain(text_[at_])) ++at_;
+      if (take('"')) return;
       if (at_ >= text_.size()) fail("ends inside a text");
       if (static_cast<unsigned char>(peek()) < 0x20) fail("has a control character inside a text");
       if (take('\\')) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <string>
 #include <string_view>
@@ -12,8 +13,8 @@ namespace vestige::gltf {
 /// A glTF's JSON, cut into its parts as text: they are parsed one at a time, since a tree of all of them would be ten
 /// times as large as the text.
 struct Outline {
-  std::map<std::string, std::string_view> properties;           ///< those of the document that are no list
-  std::map<std::string, std::vector<std::string_view>> lists;  ///< the elements of those that are one
+  std::map<std::string, std::string_view, std::less<>> properties;          ///< those of the document that are no list
+  std::map<std::string, std::vector<std::string_view>, std::less<>> lists;  ///< the elements of those that are one
 };
 
 /// Checks the grammar of JSON (RFC 8259) from end to end and cuts it. Lists that are never read (materials, textures,

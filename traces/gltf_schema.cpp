@@ -320,7 +320,7 @@ class Checker {
 
   void check_index(json& value, const Property& property) {
     check_unsigned(value, 0, std::numeric_limits<std::uint64_t>::max());
-    const auto list = outline_.lists.find(std::string(property.into));
+    const auto list = outline_.lists.find(property.into);
     const std::size_t size = list == outline_.lists.end() ? 0 : list->second.size();
     if (value.get<std::uint64_t>() >= size)
       fail(fmt::format("{} does not exist: there are {} {}", value.get<std::uint64_t>(), size, property.into));
