@@ -191,6 +191,7 @@ AccessorReader::AccessorReader(const Document& document, int accessor, const For
   if (accessor_.view >= 0) {
     const BufferView& view = document.views[static_cast<std::size_t>(accessor_.view)];
     first_ = document.buffers[view.buffer].data() + view.offset + accessor_.offset;
+    start_ = view.offset + accessor_.offset;
     stride_ = view.stride != 0 ? view.stride : size;
   } else {
     static constexpr std::array<std::byte, 64> kZeros = {};
@@ -274,6 +275,12 @@ float AccessorReader::finite(std::size_t i, std::size_t c) const {
 
 std::uint32_t AccessorReader::integer(std::size_t i, std::size_t c) const {
   return read_unsigned(at(i, c), component_bytes_);
+}
+
+void AccessorReader::check_vertex_alignment(Report& report) const {
+  if (accessor_.view >= 0 && (start_ % 4 != 0 || (stride_ % 4 != 0 && !accessor_.sparse)))
+    report.warn(accessor_path(static_cast<std::size_t>(index_)),
+                "has vertices that do not start at multiples of 4 bytes");
 }
 
 void AccessorReader::compare_bounds(Report& report) const {

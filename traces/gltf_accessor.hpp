@@ -51,6 +51,9 @@ class AccessorReader {
   /// The same for kUint8, kUint16 and kUint32.
   std::uint32_t integer(std::size_t i, std::size_t c) const;
 
+  /// Warns when elements do not start at multiples of 4 bytes, as vertex attributes must (glTF 2.0 §3.6.2.4).
+  void check_vertex_alignment(Report& report) const;
+
   /// Warns when the file's min or max is not that of the data, or is missing: wrong, but nothing relies on it.
   void compare_bounds(Report& report) const;
 
@@ -65,6 +68,7 @@ class AccessorReader {
   const Report& report_;
   const std::byte* first_ = nullptr;
   std::size_t stride_ = 0;
+  std::uint64_t start_ = 0;  ///< where in its buffer the accessor starts
   std::size_t count_ = 0;
   std::size_t component_bytes_ = 0;
   Component component_ = kFloat;

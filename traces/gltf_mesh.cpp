@@ -44,6 +44,13 @@ std::size_t triangle_count(int mode, std::size_t corners) {
   return corners < 3 ? 0 : corners - 2;
 }
 
+/// Those of §3.7.2.1 and, with an underscore, a file's own.
+bool is_known_attribute(std::string_view name) {
+  constexpr std::array<std::string_view, 4> kNumbered = {"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"};
+  return name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with('_') ||
+         std::any_of(kNumbered.begin(), kNumbered.end(), [&](auto prefix) { return name.starts_with(prefix); });
+}
+
 std::uint32_t largest_index(int component_type) {
   if (component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return 0xFF;
   return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 0xFFFF : 0xFFFFFFFF;
@@ -133,7 +140,10 @@ class MeshReader {
                      fmt::format("has {} elements for {} vertices", accessor(index).count, part.vertex_count));
     };
     const tinygltf::Primitive& source = primitive(part);
-    for (const auto& [name, index] : source.attributes) check(attribute_path(part, name), index);
+    for (const auto& [name, index] : source.attributes) {
+      check(attribute_path(part, name), index);
+      if (!is_known_attribute(name)) report_.warn(attribute_path(part, name), "is no attribute that glTF knows");
+    }
     for (std::size_t i = 0; i < source.targets.size(); ++i)
       for (const auto& [name, index] : source.targets[i])
         check(part_path(part, fmt::format(".targets[{}].{}", i, name)), index);
@@ -169,13 +179,14 @@ class MeshReader {
     avatar_.triangles.reserve(triangles);
   }
 
-  AccessorReader attribute(const Part& part, const std::string& name, int type, unsigned components) const {
+  AccessorReader attribute(const Part& part, const std::string& name, int type, unsigned components) {
     const auto found = primitive(part).attributes.find(name);
     const std::string path = attribute_path(part, name);
     if (found == primitive(part).attributes.end()) report_.fail(path, "is missing");
     AccessorReader reader(document_, found->second, {type, components}, path, report_);
     if (reader.count() != part.vertex_count)
       report_.fail(path, fmt::format("has {} elements for {} vertices", reader.count(), part.vertex_count));
+    reader.check_vertex_alignment(report_);
     return reader;
   }
 
@@ -216,7 +227,7 @@ class MeshReader {
     std::string weights_path;
   };
 
-  std::vector<InfluenceSet> influence_sets(const Part& part) const {
+  std::vector<InfluenceSet> influence_sets(const Part& part) {
     std::vector<InfluenceSet> sets;
     const auto& attributes = primitive(part).attributes;
     for (std::size_t n = 0;; ++n) {
@@ -252,6 +263,10 @@ class MeshReader {
             report_.warn(set.joints_path, "names joints that do not exist, without a weight");
             continue;
           }
+          if (weight > 0 && std::any_of(influences.begin(), influences.end(), [&](const Influence& other) {
+                return other.palette == palette[joint] && other.weight > 0;
+              }))
+            report_.warn(set.joints_path, "names a joint twice for one vertex; the weights were added");
           influences.push_back({palette[joint], weight});
         }
       const std::uint16_t first = influences.empty() ? palette.front() : influences.front().palette;

@@ -23,6 +23,7 @@ enum class Type {
   kAny,
   kBoolean,
   kString,
+  kLabel,  ///< a text that only people read
   kStrings,
   kNumbers,  ///< each fits into a float
   kBounds,   ///< numbers on which nothing relies
@@ -60,8 +61,8 @@ constexpr std::uint64_t kInt32Max = 0x7FFFFFFF;  // tinygltf keeps a sparse acce
 constexpr std::array kAsset = {
     Property{.name = "version", .type = Type::kString, .need = Need::kRequired},
     Property{.name = "minVersion", .type = Type::kString},
-    Property{.name = "generator", .type = Type::kString},
-    Property{.name = "copyright", .type = Type::kString},
+    Property{.name = "generator", .type = Type::kLabel},
+    Property{.name = "copyright", .type = Type::kLabel},
 };
 constexpr std::array kSparseIndices = {
     Property{.name = "bufferView", .type = Type::kIndex, .need = Need::kRequired, .into = "bufferViews"},
@@ -90,13 +91,13 @@ constexpr std::array kAccessor = {
     Property{.name = "max", .type = Type::kBounds},
     Property{.name = "min", .type = Type::kBounds},
     Property{.name = "sparse", .type = Type::kObject, .object = kSparse},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kBuffer = {
     Property{.name = "uri", .type = Type::kString},
     Property{.name = "extensions"},
     Property{.name = "byteLength", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kBufferView = {
     Property{.name = "buffer", .type = Type::kIndex, .need = Need::kRequired, .into = "buffers"},
@@ -105,7 +106,7 @@ constexpr std::array kBufferView = {
     Property{.name = "byteStride", .type = Type::kUnsigned, .at_least = 4, .at_most = 252},
     Property{.name = "target", .type = Type::kUnsigned},
     Property{.name = "extensions"},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kChannelTarget = {
     Property{.name = "node", .type = Type::kIndex, .into = "nodes"},
@@ -126,7 +127,7 @@ constexpr std::array kSampler = {
 constexpr std::array kAnimation = {
     Property{.name = "channels", .type = Type::kObjects, .need = Need::kRequired, .object = kChannel},
     Property{.name = "samplers", .type = Type::kObjects, .need = Need::kRequired, .object = kSampler},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kPrimitive = {
     Property{.name = "attributes",
@@ -146,7 +147,7 @@ constexpr std::array kMesh = {
              .empty = Empty::kRefused,
              .object = kPrimitive},
     Property{.name = "weights", .type = Type::kNumbers},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kNode = {
     Property{.name = "children", .type = Type::kIndices, .into = "nodes"},
@@ -157,18 +158,18 @@ constexpr std::array kNode = {
     Property{.name = "rotation", .type = Type::kNumbers, .length = 4},
     Property{.name = "scale", .type = Type::kNumbers, .length = 3},
     Property{.name = "weights", .type = Type::kNumbers},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kScene = {
     Property{.name = "nodes", .type = Type::kIndices, .into = "nodes"},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kSkin = {
     Property{.name = "inverseBindMatrices", .type = Type::kIndex, .into = "accessors"},
     Property{.name = "skeleton", .type = Type::kIndex, .into = "nodes"},
     Property{
         .name = "joints", .type = Type::kIndices, .need = Need::kRequired, .empty = Empty::kRefused, .into = "nodes"},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kDocument = {
     Property{.name = "asset", .type = Type::kObject, .need = Need::kRequired, .object = kAsset},
@@ -243,6 +244,11 @@ class Checker {
         return;
       case Type::kString:
         return check_string(value, property);
+      case Type::kLabel:
+        if (value.is_string()) return;
+        report_.warn(path(), "is not a text");
+        value = "";
+        return;
       case Type::kStrings:
         return check_each(value, property, [&](json& element) { check_string(element, property); });
       case Type::kBounds:
@@ -313,6 +319,7 @@ class Checker {
         report_.warn(path(), "is a whole number written as a decimal");
       }
     }
+    if (value == 0) value = std::uint64_t{0};  // it may be written as -0
     if (!value.is_number_unsigned()) fail(fmt::format("{} is no whole number from 0 up", value.dump()));
     const auto number = value.get<std::uint64_t>();
     if (number < at_least || number > at_most) fail(fmt::format("{} is not in {} … {}", number, at_least, at_most));

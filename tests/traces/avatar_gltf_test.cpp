@@ -176,7 +176,7 @@ TEST(ParseAvatar, SortsMergesAndNormalisesInfluences) {
   EXPECT_EQ(avatar.influences[0].weight,
             (std::array<float, 8>{static_cast<float>(1 / 3.0), static_cast<float>(2 / 3.0)}));
   EXPECT_EQ(avatar.influence_count, 2U);
-  EXPECT_THAT(avatar.warnings, ElementsAre(AllOf(HasSubstr("WEIGHTS_0"), HasSubstr("sum is not 1"))));
+  EXPECT_THAT(avatar.warnings, ElementsAre(HasSubstr("names a joint twice"), AllOf(HasSubstr("WEIGHTS_0"), HasSubstr("sum is not 1"))));
 }
 
 TEST(ParseAvatar, ReadsNormalisedWeights) {

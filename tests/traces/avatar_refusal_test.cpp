@@ -338,7 +338,9 @@ TEST(RefuseAvatar, NamesWhatIsWrongWithATextFilesBuffers) {
   EXPECT_THAT(refusal_of("%00"), HasSubstr("names no file"));
   EXPECT_THAT(refusal_of(""), HasSubstr("names no file"));
   EXPECT_THAT(refusal_of("."), HasSubstr("folder"));
-  EXPECT_THAT(refusal_of("data:,hello"), HasSubstr("is not base64"));
+  EXPECT_THAT(refusal_of("data:,h%65llo"), HasSubstr("says 36 bytes, but there are only 5"));
+  EXPECT_THAT(refusal_of("data:,h%6"), HasSubstr("broken %-escape"));
+  EXPECT_THAT(refusal_of("data:a/b;base64"), HasSubstr("no comma"));
   EXPECT_THAT(refusal_of("data:a/b;base64,AA?A"), HasSubstr("base64 does not know"));
   EXPECT_THAT(refusal_of("data:a/b;base64,AAAAA"), HasSubstr("no whole number of bytes"));
   EXPECT_THAT(refusal_of("data:a/b;base64,AAAA"), HasSubstr("says 36 bytes, but there are only 3"));
