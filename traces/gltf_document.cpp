@@ -179,8 +179,8 @@ void resolve_buffers(Document& document, std::span<const std::byte> bin, Report&
     const std::string path = fmt::format("bufferViews[{}].extensions.{}", view, kMeshopt);
     const std::span<const std::byte> buffer = document.buffers[packed.buffer];
     if (packed.offset + packed.length > buffer.size())
-      report.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes",
-                                    packed.length, packed.offset, packed.buffer, buffer.size()));
+      report.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", packed.length,
+                                    packed.offset, packed.buffer, buffer.size()));
     const std::uint64_t size = packed.count * packed.stride;
     if (size > left_bytes) report.fail(path, fmt::format("{} bytes cannot be packed in this file", size));
     left_bytes -= size;
@@ -199,10 +199,9 @@ void read_meshes_of_model(Document& document, Report& report) {
         for (std::size_t p = 0; p < mesh["primitives"].size(); ++p) {
           json& primitive = mesh["primitives"][p];
           const auto position = primitive["attributes"].find("POSITION");
-          const bool has_data = position != primitive["attributes"].end() &&
-                                document.accessors[position->get<std::size_t>()].view >= 0;
-          if (!has_data)
-            refuse_draco(primitive, fmt::format("meshes[{}].primitives[{}]", m, p), report);
+          const bool has_data =
+              position != primitive["attributes"].end() && document.accessors[position->get<std::size_t>()].view >= 0;
+          if (!has_data) refuse_draco(primitive, fmt::format("meshes[{}].primitives[{}]", m, p), report);
           primitive.erase("extensions");
           const auto indices = primitive.find("indices");
           if (indices == primitive.end()) continue;

@@ -62,11 +62,11 @@ struct Document {
   std::vector<std::span<const std::byte>> buffers;  ///< one for each of the file's; empty where no accessor reads it
   std::vector<std::vector<std::byte>> decoded;      ///< what `buffers` refer to where it was a data: URI
   std::size_t data_bytes = 0;  ///< of the file and of what was unpacked: bounds what the avatar may need
-  bool quantized = false;  ///< KHR_mesh_quantization: integer positions and texture coordinates are allowed
+  bool quantized = false;      ///< KHR_mesh_quantization: integer positions and texture coordinates are allowed
 };
 
-/// All but the animations and the data. Fails on required extensions that are not supported, on whatever does not fit the
-/// schema, and on interleaved data that is no vertex attribute.
+/// All but the animations and the data. Fails on required extensions that are not supported, on whatever does not fit
+/// the schema, and on interleaved data that is no vertex attribute.
 Document parse_document(Json json, Report& report);
 
 /// Splits, parses and checks a GLB, which the result keeps referring to: all accessors lie inside their buffers. Fails

@@ -21,9 +21,13 @@ constexpr const char* kDraco = "KHR_draco_mesh_compression";
 bool is_harmless(std::string_view extension) {
   constexpr std::array<std::string_view, 3> kNames = {kQuantization, kMeshopt, "VRM"};
   constexpr std::array<std::string_view, 14> kPrefixes = {
-      "KHR_materials_", "KHR_texture_",  "KHR_lights_", "KHR_xmp",                "EXT_texture_",
-      "EXT_lights_",    "MSFT_texture_", "VRMC_",       "EXT_materials",          "MSFT_packing_",
-      "FB_material",    "GODOT_single",  "KHR_audio",   "KHR_node_selectability",
+      "KHR_materials_", "KHR_texture_",
+      "KHR_lights_",    "KHR_xmp",
+      "EXT_texture_",   "EXT_lights_",
+      "MSFT_texture_",  "VRMC_",
+      "EXT_materials",  "MSFT_packing_",
+      "FB_material",    "GODOT_single",
+      "KHR_audio",      "KHR_node_selectability",
   };
   return std::find(kNames.begin(), kNames.end(), extension) != kNames.end() ||
          std::any_of(kPrefixes.begin(), kPrefixes.end(), [&](auto prefix) { return extension.starts_with(prefix); });
@@ -53,7 +57,8 @@ bool check_extensions(const json& head, Report& report) {
     report.warn("extensionsUsed", fmt::format("ignored {}", names));
   for (const json& name : required)
     if (!holds(used, name.get_ref<const std::string&>()))
-      report.warn("extensionsRequired", fmt::format("names {}, which extensionsUsed does not", name.get_ref<const std::string&>()));
+      report.warn("extensionsRequired",
+                  fmt::format("names {}, which extensionsUsed does not", name.get_ref<const std::string&>()));
   return holds(used, kQuantization) || holds(required, kQuantization);
 }
 

@@ -21,6 +21,8 @@ constexpr std::size_t kMostTriangles = std::size_t{1} << 24;
 // One small file can show one mesh thousands of times: its bytes and this many vertices bound what it can ask for.
 constexpr std::size_t kMostRepeated = std::size_t{1} << 20;
 
+constexpr int kNoNode = -1;
+
 /// A primitive as one node shows it.
 struct Part {
   int node = 0;
@@ -63,8 +65,25 @@ class MeshReader {
     world_matrices(avatar, rest_pose(avatar), world_);
   }
 
-  void read(const std::vector<bool>& drawn) {
-    const std::vector<Part> parts = collect(drawn);
+  /// The parts that have triangles, in node, primitive order.
+  std::vector<Part> shown(const std::vector<bool>& drawn) {
+    std::vector<Part> parts;
+    for (std::size_t node = 0; node < drawn.size(); ++node) {
+      const tinygltf::Node& source = document_.model.nodes[node];
+      if (drawn[node] && source.mesh >= 0)
+        collect(static_cast<std::size_t>(source.mesh), static_cast<int>(node), source.skin, parts);
+    }
+    return parts;
+  }
+
+  /// Those of a mesh that no node shows.
+  std::vector<Part> unshown(std::size_t mesh) {
+    std::vector<Part> parts;
+    collect(mesh, kNoNode, -1, parts);
+    return parts;
+  }
+
+  void read(const std::vector<Part>& parts) {
     reserve(parts);
     for (const Part& part : parts) {
       const auto [vertices, is_new] = first_vertex_.try_emplace(key(part), avatar_.position_bind.size());
@@ -81,9 +100,7 @@ class MeshReader {
     return document_.model.meshes[part.mesh].primitives[part.primitive];
   }
 
-  const Accessor& accessor(int index) const {
-    return document_.accessors[static_cast<std::size_t>(index)];
-  }
+  const Accessor& accessor(int index) const { return document_.accessors[static_cast<std::size_t>(index)]; }
 
   Key key(const Part& part) const {
     Key result = {{part.skin, part.skin < 0 ? part.node : -1}, {}};
@@ -94,21 +111,14 @@ class MeshReader {
     return result;
   }
 
-  /// The parts that have triangles, in node, primitive order.
-  std::vector<Part> collect(const std::vector<bool>& drawn) {
-    std::vector<Part> parts;
-    for (std::size_t node = 0; node < drawn.size(); ++node) {
-      const tinygltf::Node& source = document_.model.nodes[node];
-      if (!drawn[node] || source.mesh < 0) continue;
-      Part part;
-      part.node = static_cast<int>(node);
-      part.skin = source.skin;
-      part.mesh = static_cast<std::size_t>(source.mesh);
-      const std::size_t count = document_.model.meshes[part.mesh].primitives.size();
-      for (part.primitive = 0; part.primitive < count; ++part.primitive)
-        if (has_triangles(part)) parts.push_back(part);
-    }
-    return parts;
+  void collect(std::size_t mesh, int node, int skin, std::vector<Part>& parts) {
+    Part part;
+    part.node = node;
+    part.skin = skin;
+    part.mesh = mesh;
+    const std::size_t count = document_.model.meshes[mesh].primitives.size();
+    for (part.primitive = 0; part.primitive < count; ++part.primitive)
+      if (has_triangles(part)) parts.push_back(part);
   }
 
   bool has_triangles(Part& part) {
@@ -136,8 +146,7 @@ class MeshReader {
   void check_counts(const Part& part) {
     const auto check = [&](const std::string& path, int index) {
       if (accessor(index).count != part.vertex_count)
-        report_.fail(path,
-                     fmt::format("has {} elements for {} vertices", accessor(index).count, part.vertex_count));
+        report_.fail(path, fmt::format("has {} elements for {} vertices", accessor(index).count, part.vertex_count));
     };
     const tinygltf::Primitive& source = primitive(part);
     for (const auto& [name, index] : source.attributes) {
@@ -155,7 +164,7 @@ class MeshReader {
     if (part.skin >= 0 && !has_joints)
       report_.fail(part_path(part, ".attributes"),
                    fmt::format("has no JOINTS_0, but nodes[{}] shows it with skins[{}]", part.node, part.skin));
-    if (part.skin < 0 && has_joints)
+    if (part.skin < 0 && part.node != kNoNode && has_joints)
       report_.warn(part_path(part, ".attributes"), "has joints, but is shown without a skin");
   }
 
@@ -318,8 +327,8 @@ class MeshReader {
                        fmt::format("index {} is {}, but there are {} vertices", i, corners[i], part.vertex_count));
       }
     }
-    const bool is_mirrored =
-        part.skin < 0 && glm::determinant(glm::dmat3(world_[static_cast<std::size_t>(part.node)])) < 0;
+    const bool is_mirrored = part.skin < 0 && part.node != kNoNode &&
+                             glm::determinant(glm::dmat3(world_[static_cast<std::size_t>(part.node)])) < 0;
     const std::size_t count = triangle_count(source.mode, corners.size());
     for (std::size_t i = 0; i < count; ++i) {
       std::array<std::size_t, 3> at = {3 * i, 3 * i + 1, 3 * i + 2};
@@ -345,7 +354,19 @@ class MeshReader {
 
 void read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
                  Avatar& avatar, Report& report) {
-  MeshReader(document, skins, avatar, report).read(drawn);
+  MeshReader reader(document, skins, avatar, report);
+  reader.read(reader.shown(drawn));
+
+  std::vector<bool> is_shown(document.model.meshes.size());
+  for (std::size_t node = 0; node < drawn.size(); ++node)
+    if (const int mesh = document.model.nodes[node].mesh; drawn[node] && mesh >= 0)
+      is_shown[static_cast<std::size_t>(mesh)] = true;
+  for (std::size_t mesh = 0; mesh < is_shown.size(); ++mesh) {
+    if (is_shown[mesh]) continue;
+    Avatar unseen;
+    MeshReader checker(document, skins, unseen, report);
+    checker.read(checker.unshown(mesh));
+  }
 }
 
 }  // namespace vestige::gltf

@@ -40,8 +40,8 @@ class Reader {
   std::size_t word(const char* name, const std::array<std::string_view, N>& words) const {
     const auto found = extension_.find(name);
     if (found == extension_.end()) return 0;
-    const auto word = found->is_string() ? std::find(words.begin(), words.end(), found->get_ref<const std::string&>())
-                                         : words.end();
+    const auto word =
+        found->is_string() ? std::find(words.begin(), words.end(), found->get_ref<const std::string&>()) : words.end();
     if (word == words.end()) fail(name, fmt::format("is none of {}", fmt::join(words, ", ")));
     return static_cast<std::size_t>(word - words.begin());
   }

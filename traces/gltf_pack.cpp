@@ -66,7 +66,8 @@ class BufferPacker {
     if (gltf::is_data_uri(uri)) return append(gltf::decode_data_uri(uri, path + ".uri", report_));
     const std::filesystem::path file = gltf::decode_relative_uri(uri, path + ".uri", report_);
     const auto known = packed_.find(file);
-    return known != packed_.end() ? known->second : packed_.emplace(file, append(read_file(folder_ / file))).first->second;
+    return known != packed_.end() ? known->second
+                                  : packed_.emplace(file, append(read_file(folder_ / file))).first->second;
   }
 
   Place append(std::span<const std::byte> content) {
@@ -96,7 +97,8 @@ class Packer {
   std::vector<std::byte> pack() {
     pack_buffers();
     std::string text = "{";
-    for (const auto& [name, value] : source_.head().items()) text += fmt::format("{}:{},", json(name).dump(), value.dump());
+    for (const auto& [name, value] : source_.head().items())
+      text += fmt::format("{}:{},", json(name).dump(), value.dump());
     for (const char* name : {"accessors", "animations", "meshes", "nodes", "scenes", "skins"})
       add_list(name, text, [](json&, std::size_t) {});
     if (packer_.bytes().empty()) {

@@ -26,8 +26,8 @@ Outline outline_json(std::string_view text, const Report& report);
 /// `outline_json` leaves out, and extensions, except where one may say that geometry is compressed. Fails, at `path`,
 /// where an object that is read has a property twice. Precondition: `outline_json` returned this element.
 ///
-/// The `uri` of a buffer that holds its data becomes "data:", and `find_data_uri` returns it: it may be most of the file,
-/// and is no text that needs to be parsed.
+/// The `uri` of a buffer that holds its data becomes "data:", and `find_data_uri` returns it: it may be most of the
+/// file, and is no text that needs to be parsed.
 std::string reduce_element(std::string_view element, std::string_view list, std::string_view path,
                            const Report& report);
 

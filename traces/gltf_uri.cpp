@@ -103,7 +103,8 @@ bool is_data_uri(std::string_view uri) {
 
 std::vector<std::byte> decode_data_uri(std::string_view uri, std::string_view path, Report& report) {
   const std::size_t comma = uri.find(',');
-  if (comma == std::string_view::npos) report.fail(path, fmt::format("'{}' has no comma before its data", shorten(uri)));
+  if (comma == std::string_view::npos)
+    report.fail(path, fmt::format("'{}' has no comma before its data", shorten(uri)));
   std::string_view type = uri.substr(kDataScheme.size(), comma - kDataScheme.size());
   std::string_view data = uri.substr(comma + 1);
   constexpr std::string_view kBase64 = ";base64";

@@ -31,7 +31,8 @@ void check(const Avatar& avatar) {
   for (const glm::uvec3& triangle : avatar.triangles)
     require(std::max({triangle.x, triangle.y, triangle.z}) < vertices, "triangles refer to vertices");
   for (const glm::vec3& position : avatar.position_bind)
-    require(std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z), "positions are finite");
+    require(std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z),
+            "positions are finite");
   for (const Influences& influences : avatar.influences) {
     double sum = 0;
     for (std::size_t i = 0; i < kMaxInfluences; ++i) {
@@ -44,14 +45,16 @@ void check(const Avatar& avatar) {
   std::vector<glm::dvec3> positions;
   skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), positions);
   for (const Animation& animation : avatar.animations)
-    for (const double part : {-1.0, 0.0, 0.3, 1.0, 2.0}) sample_animation(avatar, animation, part * animation.duration_s);
+    for (const double part : {-1.0, 0.0, 0.3, 1.0, 2.0})
+      sample_animation(avatar, animation, part * animation.duration_s);
 }
 
 /// JSON, a zero and binary data are taken as the chunks of a GLB: so one byte more or less breaks no length.
 std::vector<std::byte> joined(std::span<const std::byte> input) {
   const auto zero = std::find(input.begin(), input.end(), std::byte{0});
   if (zero == input.end() || input.front() != std::byte{'{'}) return {input.begin(), input.end()};
-  const std::string_view json(reinterpret_cast<const char*>(input.data()), static_cast<std::size_t>(zero - input.begin()));
+  const std::string_view json(reinterpret_cast<const char*>(input.data()),
+                              static_cast<std::size_t>(zero - input.begin()));
   return gltf::join_glb(json, {zero + 1, input.end()}, gltf::Report("fuzz"));
 }
 

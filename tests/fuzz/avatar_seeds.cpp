@@ -60,15 +60,12 @@ GltfBuilder packed() {
   bytes.resize(meshopt_encodeVertexBuffer(bytes.data(), bytes.size(), builder.bin.data(), 3, 12));
   builder.bin.resize(bytes.size());
   std::memcpy(builder.bin.data(), bytes.data(), bytes.size());
-  builder.document["bufferViews"][0] = {{"buffer", 1},
-                                        {"byteLength", 36},
-                                        {"extensions",
-                                         {{"EXT_meshopt_compression",
-                                           {{"buffer", 0},
-                                            {"byteLength", bytes.size()},
-                                            {"byteStride", 12},
-                                            {"count", 3},
-                                            {"mode", "ATTRIBUTES"}}}}}};
+  builder.document["bufferViews"][0] = {
+      {"buffer", 1},
+      {"byteLength", 36},
+      {"extensions",
+       {{"EXT_meshopt_compression",
+         {{"buffer", 0}, {"byteLength", bytes.size()}, {"byteStride", 12}, {"count", 3}, {"mode", "ATTRIBUTES"}}}}}};
   builder.document["buffers"] = {{{"byteLength", bytes.size()}}, {{"byteLength", 36}}};
   builder.document["extensionsUsed"] = builder.document["extensionsRequired"] = {"EXT_meshopt_compression"};
   return builder;

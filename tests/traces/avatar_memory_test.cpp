@@ -127,8 +127,8 @@ TEST(AvatarMemory, StaysBelowFiveTimesTheFileWhereNearlyAllOfItIsADataUri) {
   const test::TemporaryFolder folder;
   test::GltfBuilder builder = test::one_triangle();
   builder.add("VEC3", std::vector<float>(300000));
-  builder.document["buffers"] = {
-      {{"byteLength", builder.bin.size()}, {"uri", "data:;base64," + std::string((builder.bin.size() + 2) / 3 * 4, 'A')}}};
+  builder.document["buffers"] = {{{"byteLength", builder.bin.size()},
+                                  {"uri", "data:;base64," + std::string((builder.bin.size() + 2) / 3 * 4, 'A')}}};
   std::ofstream(folder / "a.gltf") << builder.document.dump();
   EXPECT_LT(growth(folder / "a.gltf", std::filesystem::file_size(folder / "a.gltf")), 5);
 }
