@@ -71,7 +71,9 @@ struct Avatar {
   std::vector<Influences> influences;
   std::size_t influence_count = 1;  ///< the most that any vertex has, 1 … 8
 
-  std::vector<glm::uvec3> triangles;  ///< in node, primitive, index order; duplicates and degenerate ones included
+  /// In node, primitive, index order; duplicates and degenerate ones included. Counter-clockwise seen from the front,
+  /// in the rest pose.
+  std::vector<glm::uvec3> triangles;
   std::vector<Animation> animations;
   std::size_t joint_count = 0;        ///< distinct joints over all skins
   std::vector<std::string> warnings;  ///< what was odd in the file but did no harm, one sentence each

@@ -10,11 +10,14 @@
 
 namespace vestige {
 
-/// A glTF avatar as one self-contained binary file: a .glb (or .vrm) byte for byte as it is; a .gltf, told by its
-/// content, packed together with the buffers that are read (images, materials and extras are left out; the same input
-/// gives the same bytes). "-" is standard input. Throws `Error`: missing file, no glTF, a buffer that is missing or too
-/// short, a URI that leaves the folder.
+/// A glTF avatar as one self-contained binary file: a .glb (or .vrm) that is one, byte for byte as it is; otherwise,
+/// and for a .gltf, told by its content, packed together with the buffers that are read (images, materials and extras
+/// are left out; the same input gives the same bytes). "-" is standard input. Throws `Error`: missing file, no glTF, a
+/// buffer that is missing or too short, a URI that leaves the folder.
 std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path);
+
+/// The same for what `path` holds; its buffers are looked for beside it.
+std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std::filesystem::path& path);
 
 /// Parses and validates a binary glTF 2.0 file. `name` stands in errors and warnings. Images are never looked at.
 ///

@@ -86,33 +86,48 @@ std::string accessor_path(std::size_t index, std::string_view property = {}) {
 void check_range(const Document& document, int view_index, std::uint64_t offset, std::uint64_t count,
                  std::uint64_t stride, std::uint64_t size, const std::string& path, const Report& report) {
   const auto index = static_cast<std::size_t>(view_index);
-  const tinygltf::BufferView& view = document.model.bufferViews[index];
-  const std::uint64_t buffer_bytes = document.buffers[static_cast<std::size_t>(view.buffer)].size();
-  if (std::uint64_t{view.byteOffset} + view.byteLength > buffer_bytes)
+  const BufferView& view = document.views[index];
+  const std::uint64_t buffer_bytes = document.buffers[view.buffer].size();
+  if (view.offset + view.length > buffer_bytes)
     report.fail(fmt::format("bufferViews[{}]", index),
-                fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", view.byteLength,
-                            view.byteOffset, view.buffer, buffer_bytes));
-  if (offset + (count - 1) * stride + size > view.byteLength)
+                fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", view.length,
+                            view.offset, view.buffer, buffer_bytes));
+  if (offset + (count - 1) * stride + size > view.length)
     report.fail(path, fmt::format("{} elements of {} bytes from byte {} on, {} bytes apart, do not lie inside "
                                   "bufferViews[{}] of {} bytes",
-                                  count, size, offset, stride, index, view.byteLength));
+                                  count, size, offset, stride, index, view.length));
 }
 
-void check_sparse(const Document& document, const tinygltf::Accessor& accessor, std::size_t index, std::size_t size,
+/// glTF 2.0 §3.6.2.4: `offset` and where that is in the buffer are multiples of the component's size.
+void check_alignment(const Document& document, int view, std::uint64_t offset, std::uint64_t component_bytes,
+                     const std::string& path, const Report& report) {
+  const std::uint64_t start = document.views[static_cast<std::size_t>(view)].offset + offset;
+  if (offset % component_bytes != 0 || start % component_bytes != 0)
+    report.fail(path, fmt::format("starts at byte {} of its buffer, which is no multiple of its component's {} bytes",
+                                  start, component_bytes));
+}
+
+void check_sparse(const Document& document, const Accessor& accessor, std::size_t index, std::size_t size,
                   const Report& report) {
-  const auto count = static_cast<std::uint64_t>(accessor.sparse.count);
-  if (count > accessor.count)
+  const Accessor::Sparse& sparse = *accessor.sparse;
+  if (sparse.count > accessor.count)
     report.fail(accessor_path(index, ".sparse.count"),
-                fmt::format("{} is more than the accessor's {} elements", count, accessor.count));
-  const ComponentType& type = component_type(accessor.sparse.indices.componentType);
+                fmt::format("{} is more than the accessor's {} elements", sparse.count, accessor.count));
+  const ComponentType& type = component_type(sparse.indices_component_type);
   if ((type.plain & (kUint8 | kUint16 | kUint32)) == 0)
     report.fail(accessor_path(index, ".sparse.indices.componentType"), "is no unsigned integer type");
-  check_range(document, accessor.sparse.indices.bufferView,
-              static_cast<std::uint64_t>(accessor.sparse.indices.byteOffset), count, type.bytes, type.bytes,
-              accessor_path(index, ".sparse.indices"), report);
-  check_range(document, accessor.sparse.values.bufferView,
-              static_cast<std::uint64_t>(accessor.sparse.values.byteOffset), count, size, size,
-              accessor_path(index, ".sparse.values"), report);
+  const std::string indices = accessor_path(index, ".sparse.indices");
+  const std::string values = accessor_path(index, ".sparse.values");
+  check_range(document, sparse.indices_view, sparse.indices_offset, sparse.count, type.bytes, type.bytes, indices,
+              report);
+  check_range(document, sparse.values_view, sparse.values_offset, sparse.count, size, size, values, report);
+  check_alignment(document, sparse.indices_view, sparse.indices_offset, type.bytes, indices, report);
+  check_alignment(document, sparse.values_view, sparse.values_offset, component_type(accessor.component_type).bytes,
+                  values, report);
+  for (const int view : {sparse.indices_view, sparse.values_view})
+    if (document.views[static_cast<std::size_t>(view)].stride != 0)
+      report.fail(fmt::format("bufferViews[{}].byteStride", view),
+                  fmt::format("is only for vertex attributes, not for {}", accessor_path(index, ".sparse")));
 }
 
 std::uint32_t read_unsigned(const std::byte* bytes, std::size_t size) {
@@ -131,39 +146,41 @@ double read_as(const std::byte* bytes) {
 }  // namespace
 
 void check_accessors(const Document& document, Report& report) {
-  for (std::size_t i = 0; i < document.model.accessors.size(); ++i) {
-    const tinygltf::Accessor& accessor = document.model.accessors[i];
-    const ComponentType& type = component_type(accessor.componentType);
+  for (std::size_t i = 0; i < document.accessors.size(); ++i) {
+    const Accessor& accessor = document.accessors[i];
+    const ComponentType& type = component_type(accessor.component_type);
     if (type.bytes == 0)
-      report.fail(accessor_path(i, ".componentType"), fmt::format("{} does not exist", accessor.componentType));
+      report.fail(accessor_path(i, ".componentType"), fmt::format("{} does not exist", accessor.component_type));
+    if (accessor.normalized && type.normalized == type.plain)
+      report.warn(accessor_path(i, ".normalized"), fmt::format("means nothing for {}", type.name));
     // Without data of its own an accessor is all zeros, of a length that nothing else would bound.
-    if (accessor.count > document.file_bytes)
+    if (accessor.count > document.data_bytes)
       report.fail(accessor_path(i, ".count"),
-                  fmt::format("{} elements do not fit into a file of {} bytes", accessor.count, document.file_bytes));
+                  fmt::format("{} elements do not fit into a file of {} bytes", accessor.count, document.data_bytes));
     const std::size_t size = element_bytes(accessor.type, type.bytes);
-    if (accessor.bufferView >= 0) {
-      const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(accessor.bufferView)];
-      const std::size_t stride = view.byteStride != 0 ? view.byteStride : size;
+    if (accessor.view >= 0) {
+      const BufferView& view = document.views[static_cast<std::size_t>(accessor.view)];
+      const std::uint64_t stride = view.stride != 0 ? view.stride : size;
       if (stride < size)
         report.fail(accessor_path(i),
-                    fmt::format("elements of {} bytes overlap at a byteStride of {}", size, view.byteStride));
-      check_range(document, accessor.bufferView, accessor.byteOffset, accessor.count, stride, size, accessor_path(i),
-                  report);
-      if ((view.byteOffset + accessor.byteOffset) % type.bytes != 0 || stride % type.bytes != 0)
-        report.warn(accessor_path(i), "is not aligned to its component type");
+                    fmt::format("elements of {} bytes overlap at a byteStride of {}", size, view.stride));
+      check_range(document, accessor.view, accessor.offset, accessor.count, stride, size, accessor_path(i), report);
+      check_alignment(document, accessor.view, accessor.offset, type.bytes, accessor_path(i), report);
+    } else if (accessor.offset != 0) {
+      report.warn(accessor_path(i, ".byteOffset"), "means nothing without a bufferView");
     }
-    if (accessor.sparse.isSparse) check_sparse(document, accessor, i, size, report);
+    if (accessor.sparse) check_sparse(document, accessor, i, size, report);
   }
 }
 
 AccessorReader::AccessorReader(const Document& document, int accessor, const Format& format, std::string_view use,
                                const Report& report)
-    : accessor_(document.model.accessors[static_cast<std::size_t>(accessor)]),
+    : accessor_(document.accessors[static_cast<std::size_t>(accessor)]),
       index_(accessor),
       use_(use),
       report_(report),
       count_(accessor_.count) {
-  const ComponentType& type = component_type(accessor_.componentType);
+  const ComponentType& type = component_type(accessor_.component_type);
   component_ = accessor_.normalized ? type.normalized : type.plain;
   component_bytes_ = type.bytes;
   const auto index = static_cast<std::size_t>(accessor);
@@ -171,15 +188,16 @@ AccessorReader::AccessorReader(const Document& document, int accessor, const For
     report.fail(accessor_path(index), fmt::format("is {}, but {} needs {}", format_name(accessor_.type, component_),
                                                   use, format_name(format.type, format.components)));
   const std::size_t size = element_bytes(accessor_.type, component_bytes_);
-  if (accessor_.bufferView >= 0) {
-    const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(accessor_.bufferView)];
-    first_ = document.buffers[static_cast<std::size_t>(view.buffer)].data() + view.byteOffset + accessor_.byteOffset;
-    stride_ = view.byteStride != 0 ? view.byteStride : size;
+  if (accessor_.view >= 0) {
+    const BufferView& view = document.views[static_cast<std::size_t>(accessor_.view)];
+    first_ = document.buffers[view.buffer].data() + view.offset + accessor_.offset;
+    start_ = view.offset + accessor_.offset;
+    stride_ = view.stride != 0 ? view.stride : size;
   } else {
     static constexpr std::array<std::byte, 64> kZeros = {};
     first_ = kZeros.data();
   }
-  if (accessor_.sparse.isSparse) substitute_sparse(document, report);
+  if (accessor_.sparse) substitute_sparse(document, report);
 }
 
 void AccessorReader::substitute_sparse(const Document& document, const Report& report) {
@@ -189,17 +207,16 @@ void AccessorReader::substitute_sparse(const Document& document, const Report& r
   first_ = dense_.data();
   stride_ = size;
 
-  const auto bytes_at = [&](int view_index, int offset) {
-    const tinygltf::BufferView& view = document.model.bufferViews[static_cast<std::size_t>(view_index)];
-    return document.buffers[static_cast<std::size_t>(view.buffer)].data() + view.byteOffset +
-           static_cast<std::size_t>(offset);
+  const auto bytes_at = [&](int view_index, std::uint32_t offset) {
+    const BufferView& view = document.views[static_cast<std::size_t>(view_index)];
+    return document.buffers[view.buffer].data() + view.offset + offset;
   };
-  const auto& sparse = accessor_.sparse;
-  const std::byte* indices = bytes_at(sparse.indices.bufferView, sparse.indices.byteOffset);
-  const std::byte* values = bytes_at(sparse.values.bufferView, sparse.values.byteOffset);
-  const std::size_t index_bytes = component_type(sparse.indices.componentType).bytes;
+  const Accessor::Sparse& sparse = *accessor_.sparse;
+  const std::byte* indices = bytes_at(sparse.indices_view, sparse.indices_offset);
+  const std::byte* values = bytes_at(sparse.values_view, sparse.values_offset);
+  const std::size_t index_bytes = component_type(sparse.indices_component_type).bytes;
   std::uint64_t next = 0;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(sparse.count); ++i) {
+  for (std::size_t i = 0; i < sparse.count; ++i) {
     const std::uint32_t target = read_unsigned(indices + i * index_bytes, index_bytes);
     if (target < next || target >= count_)
       report.fail(accessor_path(static_cast<std::size_t>(index_), ".sparse.indices"),
@@ -260,22 +277,29 @@ std::uint32_t AccessorReader::integer(std::size_t i, std::size_t c) const {
   return read_unsigned(at(i, c), component_bytes_);
 }
 
+void AccessorReader::check_vertex_alignment(Report& report) const {
+  if (accessor_.view >= 0 && (start_ % 4 != 0 || (stride_ % 4 != 0 && !accessor_.sparse)))
+    report.warn(accessor_path(static_cast<std::size_t>(index_)),
+                "has vertices that do not start at multiples of 4 bytes");
+}
+
 void AccessorReader::compare_bounds(Report& report) const {
   // Exporters print these numbers with six digits.
   const auto differs = [](double said, double found) {
     return !(std::abs(said - found) <= 1e-5 * std::max(1.0, std::abs(found)));
   };
-  for (std::size_t c = 0; c < component_count(accessor_.type); ++c) {
+  const auto index = static_cast<std::size_t>(index_);
+  if (!accessor_.min || !accessor_.max) report.warn(accessor_path(index), "has no min and max");
+  for (std::size_t c = 0; c < std::min<std::size_t>(component_count(accessor_.type), 3); ++c) {
     double least = stored(0, c);
     double most = least;
     for (std::size_t i = 1; i < count_; ++i) {
       least = std::min(least, stored(i, c));
       most = std::max(most, stored(i, c));
     }
-    const auto index = static_cast<std::size_t>(index_);
-    if (c < accessor_.minValues.size() && differs(accessor_.minValues[c], least))
+    if (accessor_.min && differs((*accessor_.min)[c], least))
       report.warn(accessor_path(index, ".min"), "is not the minimum of the data");
-    if (c < accessor_.maxValues.size() && differs(accessor_.maxValues[c], most))
+    if (accessor_.max && differs((*accessor_.max)[c], most))
       report.warn(accessor_path(index, ".max"), "is not the maximum of the data");
   }
 }

@@ -51,7 +51,10 @@ class AccessorReader {
   /// The same for kUint8, kUint16 and kUint32.
   std::uint32_t integer(std::size_t i, std::size_t c) const;
 
-  /// Warns when the file's min or max is not that of the data: wrong, but nothing relies on it.
+  /// Warns when elements do not start at multiples of 4 bytes, as vertex attributes must (glTF 2.0 §3.6.2.4).
+  void check_vertex_alignment(Report& report) const;
+
+  /// Warns when the file's min or max is not that of the data, or is missing: wrong, but nothing relies on it.
   void compare_bounds(Report& report) const;
 
  private:
@@ -59,12 +62,13 @@ class AccessorReader {
   double stored(std::size_t i, std::size_t c) const;
   void substitute_sparse(const Document& document, const Report& report);
 
-  const tinygltf::Accessor& accessor_;
+  const Accessor& accessor_;
   int index_ = 0;
   std::string use_;
   const Report& report_;
   const std::byte* first_ = nullptr;
   std::size_t stride_ = 0;
+  std::uint64_t start_ = 0;  ///< where in its buffer the accessor starts
   std::size_t count_ = 0;
   std::size_t component_bytes_ = 0;
   Component component_ = kFloat;

@@ -14,9 +14,13 @@ namespace vestige::gltf {
 
 namespace {
 
-// Channels may share accessors, but are stored one by one: bounds what a small file can ask for. Ten minutes of 60
-// joints at 120 Hz are half of it.
+// Channels may share accessors, but are stored one by one. Ten minutes of 60 joints at 120 Hz are half of it.
 constexpr std::size_t kMostNumbers = std::size_t{1} << 26;
+
+/// Bounds what a small file can ask for: no channel stores more than four numbers for each of its bytes.
+std::size_t most_numbers(const Document& document) {
+  return std::min(kMostNumbers, (std::size_t{1} << 22) + 4 * document.data_bytes);
+}
 
 std::optional<AnimatedProperty> animated_property(const std::string& path) {
   if (path == "translation") return AnimatedProperty::kTranslation;
@@ -33,12 +37,14 @@ Interpolation interpolation(const std::string& name) {
 
 class AnimationReader {
  public:
-  AnimationReader(const Document& document, Report& report) : document_(document), report_(report) {}
+  AnimationReader(const Document& document, Report& report)
+      : document_(document), report_(report), most_numbers_(most_numbers(document)) {}
 
   Animation read(std::size_t index) {
-    const tinygltf::Animation& source = document_.model.animations[index];
+    const tinygltf::Animation source = load_animation(document_, index, report_);
     Animation animation;
     animation.name = source.name;
+    animation.channels.reserve(source.channels.size());
     std::set<std::pair<int, AnimatedProperty>> targets;
     for (std::size_t c = 0; c < source.channels.size(); ++c) {
       const tinygltf::AnimationChannel& channel = source.channels[c];
@@ -73,6 +79,8 @@ class AnimationReader {
     result.node = channel.target_node;
     result.property = property;
     result.interpolation = interpolation(sampler.interpolation);
+    refuse_stride(document_, sampler.input, sampler_path + ".input", report_);
+    refuse_stride(document_, sampler.output, sampler_path + ".output", report_);
     const AccessorReader times(document_, sampler.input, {TINYGLTF_TYPE_SCALAR, kFloat}, sampler_path + ".input",
                                report_);
     const bool is_rotation = property == AnimatedProperty::kRotation;
@@ -83,8 +91,8 @@ class AnimationReader {
     check_counts(times, values, result.interpolation, sampler_path);
     const std::size_t components = is_rotation ? 4 : 3;
     numbers_ += times.count() + components * values.count();
-    if (numbers_ > kMostNumbers)
-      report_.fail(path, fmt::format("takes the animations beyond {} numbers", kMostNumbers),
+    if (numbers_ > most_numbers_)
+      report_.fail(path, fmt::format("takes the animations beyond {} numbers", most_numbers_),
                    "leave out animations, or resample them");
     read_times(times, sampler_path + ".input", result);
     read_values(values, components, result);
@@ -134,6 +142,7 @@ class AnimationReader {
 
   const Document& document_;
   Report& report_;
+  std::size_t most_numbers_ = 0;
   std::size_t numbers_ = 0;
   std::set<int> checked_bounds_;
 };
@@ -142,7 +151,9 @@ class AnimationReader {
 
 void read_animations(const Document& document, Avatar& avatar, Report& report) {
   AnimationReader reader(document, report);
-  for (std::size_t i = 0; i < document.model.animations.size(); ++i) avatar.animations.push_back(reader.read(i));
+  const std::size_t count = document.json.count("animations");
+  avatar.animations.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) avatar.animations.push_back(reader.read(i));
 }
 
 }  // namespace vestige::gltf

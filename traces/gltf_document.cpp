@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "traces/glb_container.hpp"
 #include "traces/gltf_accessor.hpp"
-#include "traces/gltf_json.hpp"
+#include "traces/gltf_extensions.hpp"
+#include "traces/gltf_meshopt.hpp"
 #include "traces/gltf_uri.hpp"
 
 namespace vestige::gltf {
@@ -18,100 +18,13 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view kQuantization = "KHR_mesh_quantization";
-constexpr std::string_view kDraco = "KHR_draco_mesh_compression";
-
-/// Extensions that change neither geometry nor skin nor motion, and the one that is supported.
-bool is_harmless(std::string_view extension) {
-  constexpr std::array<std::string_view, 11> kHarmless = {"KHR_materials_", "KHR_texture_",  "KHR_lights_",   "KHR_xmp",
-                                                          "EXT_texture_",   "EXT_lights_",   "MSFT_texture_", "VRMC_",
-                                                          "EXT_materials",  "MSFT_packing_", "FB_material"};
-  return extension == kQuantization || extension == "VRM" ||
-         std::any_of(kHarmless.begin(), kHarmless.end(), [&](auto prefix) { return extension.starts_with(prefix); });
-}
-
-std::string harmful_extensions(const json& document, const char* list) {
-  std::string names;
-  for (const json& name : document.value(list, json::array()))
-    if (!is_harmless(name.get_ref<const std::string&>()))
-      names.append(names.empty() ? "" : ", ").append(name.get_ref<const std::string&>());
-  return names;
-}
-
-/// A mesh that only Draco can unpack has accessors without data, which glTF would otherwise read as zeros.
-void refuse_draco_without_fallback(const json& document, const Report& report) {
-  const json none = json::array();
-  const json& meshes = document.contains("meshes") ? document["meshes"] : none;
-  for (std::size_t m = 0; m < meshes.size(); ++m) {
-    const json& primitives = meshes[m]["primitives"];
-    for (std::size_t p = 0; p < primitives.size(); ++p) {
-      const json& primitive = primitives[p];
-      if (!primitive.contains("extensions") || !primitive["extensions"].is_object() ||
-          !primitive["extensions"].contains(kDraco) || !primitive["attributes"].contains("POSITION"))
-        continue;
-      const auto position = primitive["attributes"]["POSITION"].get<std::size_t>();
-      if (!document["accessors"][position].contains("bufferView"))
-        report.fail(fmt::format("meshes[{}].primitives[{}]", m, p), fmt::format("is compressed by {}", kDraco),
-                    "export the file without compression");
-    }
-  }
-}
-
-bool check_extensions(const json& document, Report& report) {
-  if (const std::string names = harmful_extensions(document, "extensionsRequired"); !names.empty())
-    report.fail("extensionsRequired", fmt::format("cannot be read without {}, which is not supported", names),
-                "export the file without it");
-  if (const std::string names = harmful_extensions(document, "extensionsUsed"); !names.empty())
-    report.warn("extensionsUsed", fmt::format("ignored {}", names));
-  refuse_draco_without_fallback(document, report);
-  const auto names_quantization = [&](const char* list) {
-    const json names = document.value(list, json::array());
-    return std::find(names.begin(), names.end(), kQuantization) != names.end();
-  };
-  return names_quantization("extensionsUsed") || names_quantization("extensionsRequired");
-}
-
-void resolve_buffers(const json& document, std::span<const std::byte> bin, Document& result, Report& report) {
-  const std::vector<bool> is_read = buffers_read(document);
-  result.buffers.resize(is_read.size());
-  for (std::size_t i = 0; i < is_read.size(); ++i) {
-    if (!is_read[i]) continue;
-    const json& buffer = document["buffers"][i];
-    const auto byte_length = buffer["byteLength"].get<std::size_t>();
-    const std::string path = fmt::format("buffers[{}]", i);
-    std::span<const std::byte> bytes;
-    if (const auto uri = buffer.find("uri"); uri == buffer.end()) {
-      if (i != 0 || bin.empty()) report.fail(path, "has neither a uri nor a BIN chunk: there is no data");
-      bytes = bin;
-    } else if (const auto& text = uri->get_ref<const std::string&>(); is_data_uri(text)) {
-      bytes = result.decoded.emplace_back(decode_data_uri(text, path + ".uri", report));
-    } else {
-      report.fail(path + ".uri", "is in another file, where only one binary file was given",
-                  "export a .glb, which holds everything");
-    }
-    if (bytes.size() < byte_length)
-      report.fail(path + ".byteLength", fmt::format("says {} bytes, but there are only {}", byte_length, bytes.size()));
-    result.buffers[i] = bytes.first(byte_length);
-  }
-}
-
-/// tinygltf drops a channel without a node, which would renumber the others: give it one, and a path that is ignored.
-void keep_channels_without_node(json& document) {
-  const auto animations = document.find("animations");
-  if (animations == document.end()) return;
-  for (json& animation : *animations)
-    for (json& channel : animation["channels"])
-      if (!channel["target"].contains("node")) channel["target"] = {{"node", 0}, {"path", "pointer"}};
-}
+// tinygltf looks up whatever a primitive calls its indices, at once, and refuses those that are all sparse. Among the
+// attributes it lets them pass; no attribute has such a name.
+constexpr const char* kIndicesAsAttribute = "(indices)";
 
 /// Turns JSON that is known to be sound into tinygltf's types. It sees neither buffers nor images, reads no file, and
 /// decodes nothing.
-tinygltf::Model to_model(json document, const Report& report) {
-  keep_channels_without_node(document);
-  document.erase("buffers");
-  const std::string text = document.dump();
-  document = nullptr;  // the tree is larger than the text, and tinygltf builds one of its own
-
+tinygltf::Model to_model(const std::string& text, const Report& report) {
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
                            void*) { return true; },
@@ -125,36 +38,257 @@ tinygltf::Model to_model(json document, const Report& report) {
   return model;
 }
 
+/// Hands a list to tinygltf, some elements at a time: its tree of their JSON takes ten times as much memory as the
+/// text. `prepare` may look at an element and change it; `take` gets a model that holds some of them.
+template <typename Prepare, typename Take>
+void read_list(const Json& source, const std::string& list, Report& report, const Prepare& prepare, const Take& take) {
+  constexpr std::size_t kPieceBytes = 1 << 14;
+  const std::size_t count = source.count(list);
+  std::string piece;
+  for (std::size_t i = 0; i < count; ++i) {
+    json element = source.element(list, i, report);
+    prepare(element, i);
+    element.erase("extensions");
+    if (!piece.empty()) piece += ',';
+    piece += element.dump();
+    if (piece.size() < kPieceBytes && i + 1 < count) continue;
+    take(to_model(fmt::format("{{\"{}\":[{}]}}", list, piece), report));
+    piece.clear();
+  }
+}
+
+template <typename T>
+void append(std::vector<T>& all, std::vector<T>&& some) {
+  all.insert(all.end(), std::make_move_iterator(some.begin()), std::make_move_iterator(some.end()));
+}
+
+std::size_t component_count(std::string_view type) {
+  if (type == "SCALAR") return 1;
+  const auto size = static_cast<std::size_t>(type.back() - '0');
+  return type.starts_with("MAT") ? size * size : size;
+}
+
+Accessor to_accessor(const tinygltf::Accessor& source) {
+  Accessor accessor;
+  accessor.view = source.bufferView;
+  accessor.component_type = source.componentType;
+  accessor.type = source.type;
+  accessor.normalized = source.normalized;
+  accessor.count = static_cast<std::uint32_t>(source.count);
+  accessor.offset = source.byteOffset;
+  const auto bound = [](const std::vector<double>& numbers) -> std::optional<std::array<double, 3>> {
+    if (numbers.empty()) return std::nullopt;
+    std::array<double, 3> first = {};
+    std::copy_n(numbers.begin(), std::min(numbers.size(), first.size()), first.begin());
+    return first;
+  };
+  accessor.min = bound(source.minValues);
+  accessor.max = bound(source.maxValues);
+  if (source.sparse.isSparse)
+    accessor.sparse = {static_cast<std::uint32_t>(source.sparse.count),
+                       source.sparse.indices.bufferView,
+                       static_cast<std::uint32_t>(source.sparse.indices.byteOffset),
+                       source.sparse.indices.componentType,
+                       source.sparse.values.bufferView,
+                       static_cast<std::uint32_t>(source.sparse.values.byteOffset)};
+  return accessor;
+}
+
+void read_accessors(Document& document, Report& report) {
+  document.accessors.reserve(document.json.count("accessors"));
+  read_list(
+      document.json, "accessors", report,
+      [&](json& accessor, std::size_t i) {
+        const auto components = component_count(accessor["type"].get_ref<const std::string&>());
+        for (const char* bound : {"min", "max"})
+          if (accessor.contains(bound) && accessor[bound].size() != components) {
+            report.warn(fmt::format("accessors[{}].{}", i, bound), "has not as many numbers as an element");
+            accessor.erase(bound);
+          }
+        accessor.erase("name");
+      },
+      [&](tinygltf::Model&& model) {
+        for (const tinygltf::Accessor& accessor : model.accessors) document.accessors.push_back(to_accessor(accessor));
+      });
+}
+
+void read_views(Document& document, Report& report) {
+  document.views.reserve(document.json.count("bufferViews"));
+  read_list(
+      document.json, "bufferViews", report,
+      [&](json& view, std::size_t i) {
+        const std::string path = fmt::format("bufferViews[{}]", i);
+        const auto stride = view.value("byteStride", std::uint64_t{0});
+        if (stride % 4 != 0) report.fail(path + ".byteStride", fmt::format("{} is no multiple of 4", stride));
+        if (const auto packed = read_packed_view(view, path, document.json.count("buffers"), report))
+          document.packed.emplace(i, *packed);
+        view.erase("name");
+      },
+      [&](tinygltf::Model&& model) {
+        for (const tinygltf::BufferView& view : model.bufferViews)
+          document.views.push_back(
+              {static_cast<std::size_t>(view.buffer), view.byteOffset, view.byteLength, view.byteStride});
+      });
+}
+
+void mark_what_is_read(Document& document) {
+  document.is_view_read.resize(document.views.size());
+  const auto read = [&](int view) { document.is_view_read[static_cast<std::size_t>(view)] = true; };
+  for (const Accessor& accessor : document.accessors) {
+    if (accessor.view >= 0) read(accessor.view);
+    if (!accessor.sparse) continue;
+    read(accessor.sparse->indices_view);
+    read(accessor.sparse->values_view);
+  }
+  document.is_buffer_read.resize(document.json.count("buffers"));
+  for (std::size_t i = 0; i < document.views.size(); ++i) {
+    if (!document.is_view_read[i]) continue;
+    const auto packed = document.packed.find(i);
+    document.is_buffer_read[packed == document.packed.end() ? document.views[i].buffer : packed->second.buffer] = true;
+  }
+}
+
+void resolve_buffer(Document& document, std::size_t index, std::span<const std::byte> bin, Report& report) {
+  const json buffer = document.json.element("buffers", index, report);
+  const auto byte_length = buffer["byteLength"].get<std::size_t>();
+  const std::string path = fmt::format("buffers[{}]", index);
+  std::span<const std::byte> bytes;
+  if (const auto uri = buffer.find("uri"); uri == buffer.end()) {
+    if (index != 0 || bin.empty()) report.fail(path, "has neither a uri nor a BIN chunk: there is no data");
+    bytes = bin;
+  } else if (const std::string_view text = document.json.buffer_uri(index, buffer, report); is_data_uri(text)) {
+    bytes = document.decoded.emplace_back(decode_data_uri(text, path + ".uri", report));
+  } else {
+    report.fail(path + ".uri", "is in another file, where only one binary file was given",
+                "name the file that lies beside it, or export a .glb, which holds everything");
+  }
+  if (bytes.size() < byte_length)
+    report.fail(path + ".byteLength", fmt::format("says {} bytes, but there are only {}", byte_length, bytes.size()));
+  document.buffers[index] = bytes.first(byte_length);
+}
+
+void resolve_buffers(Document& document, std::span<const std::byte> bin, Report& report) {
+  document.buffers.resize(document.is_buffer_read.size());
+  for (std::size_t i = 0; i < document.is_buffer_read.size(); ++i)
+    if (document.is_buffer_read[i]) resolve_buffer(document, i, bin, report);
+
+  // No mode packs more than 64 bytes into one; many views may name the same packed bytes.
+  std::uint64_t left_bytes = 64 * (document.data_bytes + 1024);
+  for (const auto& [view, packed] : document.packed) {
+    if (!document.is_view_read[view]) continue;
+    const std::string path = fmt::format("bufferViews[{}].extensions.{}", view, kMeshopt);
+    const std::span<const std::byte> buffer = document.buffers[packed.buffer];
+    if (packed.offset + packed.length > buffer.size())
+      report.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", packed.length,
+                                    packed.offset, packed.buffer, buffer.size()));
+    const std::uint64_t size = packed.count * packed.stride;
+    if (size > left_bytes) report.fail(path, fmt::format("{} bytes cannot be packed in this file", size));
+    left_bytes -= size;
+    document.decoded.push_back(unpack(packed, buffer.subspan(packed.offset, packed.length), path, report));
+    document.views[view].buffer = document.buffers.size();
+    document.views[view].offset = 0;
+    document.buffers.emplace_back(document.decoded.back());
+    document.data_bytes += size;
+  }
+}
+
+void read_meshes_of_model(Document& document, Report& report) {
+  read_list(
+      document.json, "meshes", report,
+      [&](json& mesh, std::size_t m) {
+        for (std::size_t p = 0; p < mesh["primitives"].size(); ++p) {
+          json& primitive = mesh["primitives"][p];
+          const auto position = primitive["attributes"].find("POSITION");
+          const bool has_data =
+              position != primitive["attributes"].end() && document.accessors[position->get<std::size_t>()].view >= 0;
+          if (!has_data) refuse_draco(primitive, fmt::format("meshes[{}].primitives[{}]", m, p), report);
+          primitive.erase("extensions");
+          const auto indices = primitive.find("indices");
+          if (indices == primitive.end()) continue;
+          primitive["attributes"][kIndicesAsAttribute] = *indices;
+          primitive.erase(indices);
+        }
+      },
+      [&](tinygltf::Model&& model) {
+        for (tinygltf::Mesh& mesh : model.meshes)
+          for (tinygltf::Primitive& primitive : mesh.primitives)
+            if (const auto indices = primitive.attributes.extract(kIndicesAsAttribute); !indices.empty())
+              primitive.indices = indices.mapped();
+        append(document.model.meshes, std::move(model.meshes));
+      });
+}
+
+void read_model(Document& document, Report& report) {
+  const auto nothing = [](json&, std::size_t) {};
+  tinygltf::Model& all = document.model;
+  read_meshes_of_model(document, report);
+  read_list(document.json, "skins", report, nothing,
+            [&](tinygltf::Model&& some) { append(all.skins, std::move(some.skins)); });
+  read_list(
+      document.json, "nodes", report,
+      [&](const json& node, std::size_t i) {
+        const auto has = [&](const char* name) { return node.contains(name); };
+        if (has("matrix") && (has("translation") || has("rotation") || has("scale")))
+          report.fail(fmt::format("nodes[{}].matrix", i), "stands beside a translation, rotation or scale");
+        if (has("skin") && !has("mesh")) report.warn(fmt::format("nodes[{}].skin", i), "is of no use without a mesh");
+      },
+      [&](tinygltf::Model&& some) { append(all.nodes, std::move(some.nodes)); });
+  read_list(document.json, "scenes", report, nothing,
+            [&](tinygltf::Model&& some) { append(all.scenes, std::move(some.scenes)); });
+  all.defaultScene = document.json.head().value("scene", -1);
+}
+
+void check_strides(const Document& document, const Report& report) {
+  for (std::size_t i = 0; i < document.model.skins.size(); ++i)
+    if (const int matrices = document.model.skins[i].inverseBindMatrices; matrices >= 0)
+      refuse_stride(document, matrices, fmt::format("skins[{}].inverseBindMatrices", i), report);
+  for (std::size_t m = 0; m < document.model.meshes.size(); ++m)
+    for (std::size_t p = 0; p < document.model.meshes[m].primitives.size(); ++p)
+      if (const int indices = document.model.meshes[m].primitives[p].indices; indices >= 0)
+        refuse_stride(document, indices, fmt::format("meshes[{}].primitives[{}].indices", m, p), report);
+}
+
 }  // namespace
 
-std::vector<bool> buffers_read(const json& document) {
-  const json none = json::array();
-  const auto list = [&](const char* name) -> const json& { return document.contains(name) ? document[name] : none; };
-  std::vector<bool> is_read(list("buffers").size());
-  const auto read_view = [&](const json& object) {
-    const auto view = object.find("bufferView");
-    if (view != object.end())
-      is_read[list("bufferViews")[view->get<std::size_t>()]["buffer"].get<std::size_t>()] = true;
-  };
-  for (const json& accessor : list("accessors")) {
-    read_view(accessor);
-    if (!accessor.contains("sparse")) continue;
-    read_view(accessor["sparse"]["indices"]);
-    read_view(accessor["sparse"]["values"]);
+tinygltf::Animation load_animation(const Document& document, std::size_t index, Report& report) {
+  json animation = document.json.element("animations", index, report);
+  // tinygltf drops a channel without a node, which would renumber the others: give it one, and a path that is ignored.
+  for (json& channel : animation["channels"]) {
+    if (!channel["target"].contains("node")) channel["target"] = {{"node", 0}, {"path", "pointer"}};
+    channel.erase("extensions");
   }
-  return is_read;
+  for (json& sampler : animation["samplers"]) sampler.erase("extensions");
+  std::string text = animation.dump();
+  animation = nullptr;
+  text = fmt::format("{{\"animations\":[{}]}}", text);
+  return std::move(to_model(text, report).animations.front());
+}
+
+void refuse_stride(const Document& document, int accessor, std::string_view use, const Report& report) {
+  const int view = document.accessors[static_cast<std::size_t>(accessor)].view;
+  if (view >= 0 && document.views[static_cast<std::size_t>(view)].stride != 0)
+    report.fail(fmt::format("bufferViews[{}].byteStride", view),
+                fmt::format("is only for vertex attributes, not for {}", use));
+}
+
+Document parse_document(Json json, Report& report) {
+  Document document(std::move(json));
+  document.quantized = check_extensions(document.json.head(), report);
+  read_views(document, report);
+  read_accessors(document, report);
+  mark_what_is_read(document);
+  read_model(document, report);
+  check_strides(document, report);
+  return document;
 }
 
 Document load_document(std::span<const std::byte> glb, Report& report) {
   const GlbChunks chunks = split_glb(glb, report);
-  Document result;
-  result.file_bytes = glb.size();
-  json document = parse_json(chunks.json, report);
-  result.quantized = check_extensions(document, report);
-  resolve_buffers(document, chunks.bin, result, report);
-  result.model = to_model(std::move(document), report);
-  check_accessors(result, report);
-  return result;
+  Document document = parse_document(Json(chunks.json, report), report);
+  document.data_bytes = glb.size();
+  resolve_buffers(document, chunks.bin, report);
+  check_accessors(document, report);
+  return document;
 }
 
 }  // namespace vestige::gltf

@@ -1,27 +1,47 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <cstddef>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "traces/gltf_report.hpp"
+#include "traces/gltf_scan.hpp"
 
 namespace vestige::gltf {
 
-/// Parses a glTF's JSON and drops what detection never reads while doing so: extras, materials, textures, images,
-/// texture samplers, cameras, references to them, and extensions (except where they say that geometry is compressed).
-/// So a missing or broken image cannot stop the geometry, and the result still refers to nothing that is gone. Then
-/// `check_schema`.
-///
-/// Fails on anything that is not JSON, and on JSON nested deeper than any glTF is.
-nlohmann::json parse_json(std::string_view text, Report& report);
+/// A glTF's JSON, of which one element is a tree at a time. What detection never reads is dropped unseen: extras,
+/// materials, textures, images, texture samplers, cameras, references to them, and most extensions. So a missing or
+/// broken image cannot stop the geometry.
+class Json {
+ public:
+  /// Checks the grammar of all of it, what stands at the top (asset, scene, the names of extensions), and which lists
+  /// there are. Refers to `text`. Fails on anything that is not JSON, is nested deeper than any glTF is, or is of
+  /// another version.
+  Json(std::string_view text, Report& report);
 
-/// Checks against the glTF 2.0 schema (§5): required properties, types, ranges, array lengths, allowed words, and that
-/// every index refers to something that exists. Unknown properties and empty lists that do no harm are warned of. Whole
-/// numbers written as 3.0 become 3.
-void check_schema(nlohmann::json& document, Report& report);
+  /// What stands at the top, without the lists.
+  const nlohmann::json& head() const { return head_; }
 
-/// Only vertex attributes may be interleaved (glTF 2.0 §3.6.2.1): fails where a byteStride stands behind indices,
-/// inverse bind matrices or animations. Precondition: the schema fits.
-void check_strides(const nlohmann::json& document, const Report& report);
+  bool has(std::string_view list) const { return outline_.lists.contains(list); }
+
+  /// The elements of a list such as "nodes", 0 where there is none.
+  std::size_t count(std::string_view list) const;
+
+  /// One of them, checked by `check_element`. Precondition: index < count(list).
+  nlohmann::json element(std::string_view list, std::size_t index, Report& report) const;
+
+  /// The `uri` of a buffer, which is `element("buffers", index)`: there, one that holds data is shortened to "data:".
+  std::string_view buffer_uri(std::size_t index, const nlohmann::json& buffer, const Report& report) const;
+
+ private:
+  Outline outline_;
+  nlohmann::json head_;
+};
+
+/// Both check against the glTF 2.0 schema (§5): required properties, types, ranges, array lengths, allowed words, and
+/// that every index refers to something that exists. Unknown properties and empty lists that do no harm are warned of.
+/// Whole numbers written as 3.0 become 3, with a warning.
+void check_head(nlohmann::json& head, const Outline& outline, Report& report);
+void check_element(nlohmann::json& element, std::string_view list, std::size_t index, const Outline& outline,
+                   Report& report);
 
 }  // namespace vestige::gltf

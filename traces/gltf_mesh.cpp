@@ -15,9 +15,13 @@ namespace vestige::gltf {
 
 namespace {
 
-// One small file can show one mesh thousands of times; an avatar of this size would be beyond any use.
+// An avatar of this size would be beyond any use.
 constexpr std::size_t kMostVertices = std::size_t{1} << 23;
 constexpr std::size_t kMostTriangles = std::size_t{1} << 24;
+// One small file can show one mesh thousands of times: its bytes and this many vertices bound what it can ask for.
+constexpr std::size_t kMostRepeated = std::size_t{1} << 20;
+
+constexpr int kNoNode = -1;
 
 /// A primitive as one node shows it.
 struct Part {
@@ -42,13 +46,44 @@ std::size_t triangle_count(int mode, std::size_t corners) {
   return corners < 3 ? 0 : corners - 2;
 }
 
+/// Those of §3.7.2.1 and, with an underscore, a file's own.
+bool is_known_attribute(std::string_view name) {
+  constexpr std::array<std::string_view, 4> kNumbered = {"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"};
+  return name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with('_') ||
+         std::any_of(kNumbered.begin(), kNumbered.end(), [&](auto prefix) { return name.starts_with(prefix); });
+}
+
+std::uint32_t largest_index(int component_type) {
+  if (component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return 0xFF;
+  return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 0xFFFF : 0xFFFFFFFF;
+}
+
 class MeshReader {
  public:
   MeshReader(const Document& document, const std::vector<Skin>& skins, Avatar& avatar, Report& report)
-      : document_(document), skins_(skins), skin_palette_(skins.size()), avatar_(avatar), report_(report) {}
+      : document_(document), skins_(skins), skin_palette_(skins.size()), avatar_(avatar), report_(report) {
+    world_matrices(avatar, rest_pose(avatar), world_);
+  }
 
-  void read(const std::vector<bool>& drawn) {
-    const std::vector<Part> parts = collect(drawn);
+  /// The parts that have triangles, in node, primitive order.
+  std::vector<Part> shown(const std::vector<bool>& drawn) {
+    std::vector<Part> parts;
+    for (std::size_t node = 0; node < drawn.size(); ++node) {
+      const tinygltf::Node& source = document_.model.nodes[node];
+      if (drawn[node] && source.mesh >= 0)
+        collect(static_cast<std::size_t>(source.mesh), static_cast<int>(node), source.skin, parts);
+    }
+    return parts;
+  }
+
+  /// Those of a mesh that no node shows.
+  std::vector<Part> unshown(std::size_t mesh) {
+    std::vector<Part> parts;
+    collect(mesh, kNoNode, -1, parts);
+    return parts;
+  }
+
+  void read(const std::vector<Part>& parts) {
     reserve(parts);
     for (const Part& part : parts) {
       const auto [vertices, is_new] = first_vertex_.try_emplace(key(part), avatar_.position_bind.size());
@@ -65,9 +100,7 @@ class MeshReader {
     return document_.model.meshes[part.mesh].primitives[part.primitive];
   }
 
-  const tinygltf::Accessor& accessor(int index) const {
-    return document_.model.accessors[static_cast<std::size_t>(index)];
-  }
+  const Accessor& accessor(int index) const { return document_.accessors[static_cast<std::size_t>(index)]; }
 
   Key key(const Part& part) const {
     Key result = {{part.skin, part.skin < 0 ? part.node : -1}, {}};
@@ -78,21 +111,14 @@ class MeshReader {
     return result;
   }
 
-  /// The parts that have triangles, in node, primitive order.
-  std::vector<Part> collect(const std::vector<bool>& drawn) {
-    std::vector<Part> parts;
-    for (std::size_t node = 0; node < drawn.size(); ++node) {
-      const tinygltf::Node& source = document_.model.nodes[node];
-      if (!drawn[node] || source.mesh < 0) continue;
-      Part part;
-      part.node = static_cast<int>(node);
-      part.skin = source.skin;
-      part.mesh = static_cast<std::size_t>(source.mesh);
-      const std::size_t count = document_.model.meshes[part.mesh].primitives.size();
-      for (part.primitive = 0; part.primitive < count; ++part.primitive)
-        if (has_triangles(part)) parts.push_back(part);
-    }
-    return parts;
+  void collect(std::size_t mesh, int node, int skin, std::vector<Part>& parts) {
+    Part part;
+    part.node = node;
+    part.skin = skin;
+    part.mesh = mesh;
+    const std::size_t count = document_.model.meshes[mesh].primitives.size();
+    for (part.primitive = 0; part.primitive < count; ++part.primitive)
+      if (has_triangles(part)) parts.push_back(part);
   }
 
   bool has_triangles(Part& part) {
@@ -106,9 +132,9 @@ class MeshReader {
       report_.warn(part_path(part), "skipped what has no POSITION");
       return false;
     }
-    if (!source.targets.empty()) report_.warn(part_path(part, ".targets"), "ignored morph targets");
-    check_binding(part);
     part.vertex_count = accessor(position->second).count;
+    check_counts(part);
+    check_binding(part);
     part.corner_count = source.indices < 0 ? part.vertex_count : accessor(source.indices).count;
     if (triangle_count(source.mode, part.corner_count) == 0 ||
         (source.mode == TINYGLTF_MODE_TRIANGLES && part.corner_count % 3 != 0))
@@ -116,25 +142,44 @@ class MeshReader {
     return triangle_count(source.mode, part.corner_count) > 0;
   }
 
+  /// All attributes, read or not, and morph targets, which are not, speak of the same vertices.
+  void check_counts(const Part& part) {
+    const auto check = [&](const std::string& path, int index) {
+      if (accessor(index).count != part.vertex_count)
+        report_.fail(path, fmt::format("has {} elements for {} vertices", accessor(index).count, part.vertex_count));
+    };
+    const tinygltf::Primitive& source = primitive(part);
+    for (const auto& [name, index] : source.attributes) {
+      check(attribute_path(part, name), index);
+      if (!is_known_attribute(name)) report_.warn(attribute_path(part, name), "is no attribute that glTF knows");
+    }
+    for (std::size_t i = 0; i < source.targets.size(); ++i)
+      for (const auto& [name, index] : source.targets[i])
+        check(part_path(part, fmt::format(".targets[{}].{}", i, name)), index);
+    if (!source.targets.empty()) report_.warn(part_path(part, ".targets"), "ignored morph targets");
+  }
+
   void check_binding(const Part& part) {
     const bool has_joints = primitive(part).attributes.contains("JOINTS_0");
     if (part.skin >= 0 && !has_joints)
       report_.fail(part_path(part, ".attributes"),
                    fmt::format("has no JOINTS_0, but nodes[{}] shows it with skins[{}]", part.node, part.skin));
-    if (part.skin < 0 && has_joints)
+    if (part.skin < 0 && part.node != kNoNode && has_joints)
       report_.warn(part_path(part, ".attributes"), "has joints, but is shown without a skin");
   }
 
   void reserve(const std::vector<Part>& parts) {
+    const std::size_t most_vertices = std::min(kMostVertices, kMostRepeated + document_.data_bytes);
+    const std::size_t most_triangles = std::min(kMostTriangles, 2 * kMostRepeated + document_.data_bytes);
     std::size_t vertices = 0;
     std::size_t triangles = 0;
     std::map<Key, bool> seen;
     for (const Part& part : parts) {
       if (seen.try_emplace(key(part), true).second) vertices += part.vertex_count;
       triangles += triangle_count(primitive(part).mode, part.corner_count);
-      if (vertices > kMostVertices || triangles > kMostTriangles)
+      if (vertices > most_vertices || triangles > most_triangles)
         report_.fail(part_path(part),
-                     fmt::format("takes the avatar beyond {} vertices or {} triangles", kMostVertices, kMostTriangles),
+                     fmt::format("takes the avatar beyond {} vertices or {} triangles", most_vertices, most_triangles),
                      "simplify the mesh");
     }
     avatar_.position_bind.reserve(vertices);
@@ -143,13 +188,14 @@ class MeshReader {
     avatar_.triangles.reserve(triangles);
   }
 
-  AccessorReader attribute(const Part& part, const std::string& name, int type, unsigned components) const {
+  AccessorReader attribute(const Part& part, const std::string& name, int type, unsigned components) {
     const auto found = primitive(part).attributes.find(name);
     const std::string path = attribute_path(part, name);
     if (found == primitive(part).attributes.end()) report_.fail(path, "is missing");
     AccessorReader reader(document_, found->second, {type, components}, path, report_);
     if (reader.count() != part.vertex_count)
       report_.fail(path, fmt::format("has {} elements for {} vertices", reader.count(), part.vertex_count));
+    reader.check_vertex_alignment(report_);
     return reader;
   }
 
@@ -190,17 +236,21 @@ class MeshReader {
     std::string weights_path;
   };
 
-  std::vector<InfluenceSet> influence_sets(const Part& part) const {
+  std::vector<InfluenceSet> influence_sets(const Part& part) {
     std::vector<InfluenceSet> sets;
     const auto& attributes = primitive(part).attributes;
     for (std::size_t n = 0;; ++n) {
       const std::string joints = fmt::format("JOINTS_{}", n);
       const std::string weights = fmt::format("WEIGHTS_{}", n);
-      if (!attributes.contains(joints) && !attributes.contains(weights)) return sets;
+      if (!attributes.contains(joints) && !attributes.contains(weights)) break;
       sets.push_back({attribute(part, joints, TINYGLTF_TYPE_VEC4, kUint8 | kUint16),
                       attribute(part, weights, TINYGLTF_TYPE_VEC4, kFloat | kNormalizedUint8 | kNormalizedUint16),
                       attribute_path(part, joints), attribute_path(part, weights)});
     }
+    const auto is_joints = [](const auto& attribute) { return attribute.first.starts_with("JOINTS_"); };
+    if (static_cast<std::size_t>(std::count_if(attributes.begin(), attributes.end(), is_joints)) != sets.size())
+      report_.fail(part_path(part, ".attributes"), "has JOINTS_n that do not count up from 0");
+    return sets;
   }
 
   void read_influences(const Part& part) {
@@ -222,6 +272,10 @@ class MeshReader {
             report_.warn(set.joints_path, "names joints that do not exist, without a weight");
             continue;
           }
+          if (weight > 0 && std::any_of(influences.begin(), influences.end(), [&](const Influence& other) {
+                return other.palette == palette[joint] && other.weight > 0;
+              }))
+            report_.warn(set.joints_path, "names a joint twice for one vertex; the weights were added");
           influences.push_back({palette[joint], weight});
         }
       const std::uint16_t first = influences.empty() ? palette.front() : influences.front().palette;
@@ -253,6 +307,7 @@ class MeshReader {
   }
 
   /// glTF 2.0 §3.7.2.1: how the corners of strips and fans make triangles.
+  /// §3.7.4: mirrored by its node, a triangle's front is where it looks clockwise. Skinned meshes ignore their node.
   void read_triangles(const Part& part, std::size_t first_vertex) {
     const tinygltf::Primitive& source = primitive(part);
     std::vector<std::uint32_t> corners(part.corner_count);
@@ -262,18 +317,24 @@ class MeshReader {
       const std::string path = part_path(part, ".indices");
       const AccessorReader indices(document_, source.indices, {TINYGLTF_TYPE_SCALAR, kUint8 | kUint16 | kUint32}, path,
                                    report_);
+      const std::uint32_t restart = largest_index(accessor(source.indices).component_type);
       for (std::size_t i = 0; i < corners.size(); ++i) {
         corners[i] = indices.integer(i, 0);
+        if (corners[i] == restart)
+          report_.fail(path, fmt::format("index {} is {}, which restarts a primitive and is not allowed", i, restart));
         if (corners[i] >= part.vertex_count)
           report_.fail(path,
                        fmt::format("index {} is {}, but there are {} vertices", i, corners[i], part.vertex_count));
       }
     }
+    const bool is_mirrored = part.skin < 0 && part.node != kNoNode &&
+                             glm::determinant(glm::dmat3(world_[static_cast<std::size_t>(part.node)])) < 0;
     const std::size_t count = triangle_count(source.mode, corners.size());
     for (std::size_t i = 0; i < count; ++i) {
       std::array<std::size_t, 3> at = {3 * i, 3 * i + 1, 3 * i + 2};
       if (source.mode == TINYGLTF_MODE_TRIANGLE_STRIP) at = {i, i + 1 + i % 2, i + 2 - i % 2};
       if (source.mode == TINYGLTF_MODE_TRIANGLE_FAN) at = {i + 1, i + 2, 0};
+      if (is_mirrored) std::swap(at[1], at[2]);
       const glm::uvec3 triangle(corners[at[0]], corners[at[1]], corners[at[2]]);
       avatar_.triangles.push_back(triangle + static_cast<std::uint32_t>(first_vertex));
     }
@@ -282,6 +343,7 @@ class MeshReader {
   const Document& document_;
   const std::vector<Skin>& skins_;
   std::vector<std::vector<std::uint16_t>> skin_palette_;  ///< for each skin's joints, once it is drawn
+  std::vector<glm::dmat4> world_;                         ///< of each node, in the rest pose
   std::map<std::pair<int, std::array<double, 16>>, std::size_t> palette_;
   std::map<Key, std::size_t> first_vertex_;
   Avatar& avatar_;
@@ -292,7 +354,19 @@ class MeshReader {
 
 void read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
                  Avatar& avatar, Report& report) {
-  MeshReader(document, skins, avatar, report).read(drawn);
+  MeshReader reader(document, skins, avatar, report);
+  reader.read(reader.shown(drawn));
+
+  std::vector<bool> is_shown(document.model.meshes.size());
+  for (std::size_t node = 0; node < drawn.size(); ++node)
+    if (const int mesh = document.model.nodes[node].mesh; drawn[node] && mesh >= 0)
+      is_shown[static_cast<std::size_t>(mesh)] = true;
+  for (std::size_t mesh = 0; mesh < is_shown.size(); ++mesh) {
+    if (is_shown[mesh]) continue;
+    Avatar unseen;
+    MeshReader checker(document, skins, unseen, report);
+    checker.read(checker.unshown(mesh));
+  }
 }
 
 }  // namespace vestige::gltf

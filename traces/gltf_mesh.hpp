@@ -17,7 +17,9 @@ struct Skin {
 /// not finite; warns of joints without a common root and of a wrong `skeleton`, on which nothing here relies.
 std::vector<Skin> read_skins(const Document& document, const Avatar& avatar, Report& report);
 
-/// Fills palette, vertices and triangles with the meshes of the nodes that are drawn.
+/// Fills palette, vertices and triangles with the meshes of the nodes that are drawn. The other meshes are checked all
+/// the same. A rigid node that mirrors (its global matrix at rest has a negative determinant) turns its triangles
+/// around, so that their front stays outside (glTF 2.0 §3.7.4).
 void read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
                  Avatar& avatar, Report& report);
 

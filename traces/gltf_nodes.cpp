@@ -65,13 +65,15 @@ std::optional<NodeLocal> decompose(const glm::dmat4& matrix) {
   return local;
 }
 
-void read_matrix(const std::vector<double>& numbers, Index index, Node& node, const Report& report) {
+void read_matrix(const std::vector<double>& numbers, Index index, Node& node, Report& report) {
   const std::optional<glm::dmat4> matrix = affine_matrix(numbers.data());
   if (!matrix) report.fail(node_path(index, ".matrix"), "is no affine transform: its last row is not 0 0 0 1");
-  if (const std::optional<NodeLocal> local = decompose(*matrix))
+  if (const std::optional<NodeLocal> local = decompose(*matrix)) {
     node.rest = *local;
-  else
-    node.fixed_matrix = matrix;
+    return;
+  }
+  report.warn(node_path(index, ".matrix"), "is no product of translation, rotation and scale; it is used as it is");
+  node.fixed_matrix = matrix;
 }
 
 void read_translation_rotation_scale(const tinygltf::Node& source, Index index, Node& node, Report& report) {
@@ -118,6 +120,7 @@ std::vector<bool> nodes_drawn(const Document& document, const Avatar& avatar, Re
   std::vector<bool> drawn(avatar.nodes.size());
   const auto scene = static_cast<Index>(std::max(document.model.defaultScene, 0));
   for (const int root : scenes[scene].nodes) {
+    if (drawn[static_cast<Index>(root)]) report.warn(fmt::format("scenes[{}].nodes", scene), "names a node twice");
     drawn[static_cast<Index>(root)] = true;
     if (avatar.nodes[static_cast<Index>(root)].parent >= 0)
       report.warn(fmt::format("scenes[{}].nodes", scene), "names a node that is a child of another");

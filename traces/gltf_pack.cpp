@@ -11,6 +11,7 @@
 #include "traces/glb_container.hpp"
 #include "traces/gltf_document.hpp"
 #include "traces/gltf_json.hpp"
+#include "traces/gltf_meshopt.hpp"
 #include "traces/gltf_uri.hpp"
 #include "traces/input_file.hpp"
 
@@ -18,6 +19,7 @@ namespace vestige {
 
 namespace {
 
+using gltf::Json;
 using gltf::Report;
 using nlohmann::json;
 
@@ -32,21 +34,18 @@ bool is_text(std::string_view content) {
 /// Puts the buffers that are read one behind the other.
 class BufferPacker {
  public:
-  BufferPacker(std::filesystem::path folder, const Report& report) : folder_(std::move(folder)), report_(report) {}
+  /// `bin` is what a first buffer without a uri holds; empty where the file is no GLB.
+  BufferPacker(std::filesystem::path folder, std::span<const std::byte> bin, Report& report)
+      : folder_(std::move(folder)), bin_(bin), report_(report) {}
 
   /// Where in `bytes` this buffer starts. A buffer that several entries name is packed once.
-  std::size_t add(const json& buffer, const std::string& path) {
-    const auto uri = buffer.find("uri");
-    if (uri == buffer.end())
-      report_.fail(path, "has no uri: there is no data", "export a .glb, or a .gltf together with its .bin");
-    const auto& text = uri->get_ref<const std::string&>();
+  std::size_t add(const Json& source, const json& buffer, std::size_t index) {
+    const std::string path = fmt::format("buffers[{}]", index);
     const auto byte_length = buffer["byteLength"].get<std::size_t>();
-    auto known = packed_.find(text);
-    if (known == packed_.end()) known = packed_.emplace(text, append(text, path + ".uri")).first;
-    if (known->second.size < byte_length)
-      report_.fail(path + ".byteLength",
-                   fmt::format("says {} bytes, but there are only {}", byte_length, known->second.size));
-    return known->second.start;
+    const Place place = place_of(source, buffer, index, path);
+    if (place.size < byte_length)
+      report_.fail(path + ".byteLength", fmt::format("says {} bytes, but there are only {}", byte_length, place.size));
+    return place.start;
   }
 
   const std::vector<std::byte>& bytes() const { return bytes_; }
@@ -57,74 +56,150 @@ class BufferPacker {
     std::size_t size = 0;
   };
 
-  Place append(const std::string& uri, const std::string& path) {
-    const std::vector<std::byte> content = gltf::is_data_uri(uri)
-                                               ? gltf::decode_data_uri(uri, path, report_)
-                                               : read_file(folder_ / gltf::decode_relative_uri(uri, path, report_));
+  Place place_of(const Json& source, const json& buffer, std::size_t index, const std::string& path) {
+    if (!buffer.contains("uri")) {
+      if (index != 0 || bin_.empty())
+        report_.fail(path, "has no uri: there is no data", "export a .glb, or a .gltf together with its .bin");
+      return append(bin_);
+    }
+    const std::string_view uri = source.buffer_uri(index, buffer, report_);
+    if (gltf::is_data_uri(uri)) return append(gltf::decode_data_uri(uri, path + ".uri", report_));
+    const std::filesystem::path file = gltf::decode_relative_uri(uri, path + ".uri", report_);
+    const auto known = packed_.find(file);
+    return known != packed_.end() ? known->second
+                                  : packed_.emplace(file, append(read_file(folder_ / file))).first->second;
+  }
+
+  Place append(std::span<const std::byte> content) {
     const std::size_t start = (bytes_.size() + 3) / 4 * 4;
     if (content.size() > kMostBytes - start)
-      report_.fail(path, "takes the file beyond the 4 GiB that a GLB can hold",
+      report_.fail("buffers", "take the file beyond the 4 GiB that a GLB can hold",
                    "leave out what the avatar does not need");
+    if (content.size() > bytes_.size()) bytes_.reserve(start + content.size());
     bytes_.resize(start);
     bytes_.insert(bytes_.end(), content.begin(), content.end());
     return {start, content.size()};
   }
 
   std::filesystem::path folder_;
-  const Report& report_;
-  std::map<std::string, Place> packed_;
+  std::span<const std::byte> bin_;
+  Report& report_;
+  std::map<std::filesystem::path, Place> packed_;
   std::vector<std::byte> bytes_;
 };
 
-/// Makes all views that are read refer to the one buffer of a GLB. Views of other buffers held images; nothing refers
-/// to them any more, but they keep their place so that the others keep their number.
-void redirect_views(json& document, const std::vector<bool>& is_read, const std::vector<std::size_t>& start,
-                    const Report& report) {
-  const auto views = document.find("bufferViews");
-  if (views == document.end()) return;
-  for (std::size_t i = 0; i < views->size(); ++i) {
-    json& view = (*views)[i];
-    const auto buffer = view["buffer"].get<std::size_t>();
-    const auto offset = view.value("byteOffset", std::size_t{0});
-    const auto length = view["byteLength"].get<std::size_t>();
-    const auto byte_length = document["buffers"][buffer]["byteLength"].get<std::size_t>();
-    view["buffer"] = 0;
-    if (!is_read[buffer]) {
-      view = {{"buffer", 0}, {"byteLength", 1}};
-      continue;
-    }
-    if (offset + length > byte_length)
-      report.fail(fmt::format("bufferViews[{}]", i),
-                  fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", length, offset,
-                              buffer, byte_length));
-    view["byteOffset"] = start[buffer] + offset;
-  }
-}
+/// What was read of a file, as one GLB.
+class Packer {
+ public:
+  Packer(const Json& source, std::span<const std::byte> bin, const std::filesystem::path& path, Report& report)
+      : source_(source), packer_(path.parent_path(), bin, report), report_(report) {}
 
-std::vector<std::byte> pack(std::string_view text, const std::filesystem::path& path) {
-  Report report(path.string());
-  json document = gltf::parse_json(text, report);
-  const std::vector<bool> is_read = gltf::buffers_read(document);
-  BufferPacker packer(path.parent_path(), report);
-  std::vector<std::size_t> start(is_read.size());
-  for (std::size_t i = 0; i < is_read.size(); ++i)
-    if (is_read[i]) start[i] = packer.add(document["buffers"][i], fmt::format("buffers[{}]", i));
-  redirect_views(document, is_read, start, report);
-  if (packer.bytes().empty()) {
-    document.erase("buffers");
-    document.erase("bufferViews");
-  } else {
-    document["buffers"] = json::array({{{"byteLength", packer.bytes().size()}}});
+  std::vector<std::byte> pack() {
+    pack_buffers();
+    std::string text = "{";
+    for (const auto& [name, value] : source_.head().items())
+      text += fmt::format("{}:{},", json(name).dump(), value.dump());
+    for (const char* name : {"accessors", "animations", "meshes", "nodes", "scenes", "skins"})
+      add_list(name, text, [](json&, std::size_t) {});
+    if (packer_.bytes().empty()) {
+      text.back() = '}';
+    } else {
+      add_list("bufferViews", text, [&](json& view, std::size_t i) { redirect(view, i); });
+      text += fmt::format("\"buffers\":[{{\"byteLength\":{}}}]}}", packer_.bytes().size());
+    }
+    return gltf::join_glb(text, packer_.bytes(), report_);
   }
-  return gltf::join_glb(document.dump(), packer.bytes(), report);
+
+ private:
+  void pack_buffers() {
+    is_read_ = gltf::parse_document(source_, report_).is_buffer_read;
+    start_.resize(is_read_.size());
+    byte_length_.resize(is_read_.size());
+    for (std::size_t i = 0; i < is_read_.size(); ++i) {
+      const json buffer = source_.element("buffers", i, report_);
+      byte_length_[i] = buffer["byteLength"].get<std::size_t>();
+      if (is_read_[i]) start_[i] = packer_.add(source_, buffer, i);
+    }
+  }
+
+  template <typename Change>
+  void add_list(const char* name, std::string& text, const Change& change) {
+    if (!source_.has(name)) return;
+    text += fmt::format("\"{}\":[", name);
+    for (std::size_t i = 0; i < source_.count(name); ++i) {
+      json element = source_.element(name, i, report_);
+      change(element, i);
+      text += i > 0 ? "," : "";
+      text += element.dump();
+    }
+    text += "],";
+  }
+
+  /// Makes a view refer to the one buffer of a GLB. Views of buffers that are not read held images, or what is packed
+  /// elsewhere; they keep their place so that the others keep their number.
+  void redirect(json& view, std::size_t index) const {
+    const std::string path = fmt::format("bufferViews[{}]", index);
+    if (const auto packed = gltf::read_packed_view(view, path, is_read_.size(), report_);
+        packed && is_read_[packed->buffer]) {
+      check_inside(packed->buffer, packed->offset, packed->length, path);
+      json& extension = view["extensions"][gltf::kMeshopt];
+      extension["buffer"] = 0;
+      extension["byteOffset"] = start_[packed->buffer] + packed->offset;
+      view["buffer"] = 0;
+      view.erase("byteOffset");
+      return;
+    }
+    const auto buffer = view["buffer"].get<std::size_t>();
+    if (!is_read_[buffer]) {
+      view = {{"buffer", 0}, {"byteLength", 1}};
+      return;
+    }
+    const auto offset = view.value("byteOffset", std::size_t{0});
+    check_inside(buffer, offset, view["byteLength"].get<std::size_t>(), path);
+    view["buffer"] = 0;
+    view["byteOffset"] = start_[buffer] + offset;
+  }
+
+  void check_inside(std::size_t buffer, std::size_t offset, std::size_t length, const std::string& path) const {
+    if (offset + length > byte_length_[buffer])
+      report_.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", length,
+                                     offset, buffer, byte_length_[buffer]));
+  }
+
+  const Json& source_;
+  BufferPacker packer_;
+  Report& report_;
+  std::vector<bool> is_read_;
+  std::vector<std::size_t> start_;
+  std::vector<std::size_t> byte_length_;
+};
+
+bool names_other_files(const Json& source, Report& report) {
+  for (std::size_t i = 0; i < source.count("buffers"); ++i) {
+    const json buffer = source.element("buffers", i, report);
+    if (buffer.contains("uri") && !gltf::is_data_uri(source.buffer_uri(i, buffer, report))) return true;
+  }
+  return false;
 }
 
 }  // namespace
 
 std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path) {
-  std::vector<std::byte> content = read_file(path);
+  return pack_avatar_glb(read_file(path), path);
+}
+
+std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std::filesystem::path& path) {
   const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
-  return is_text(text) ? pack(text, path) : content;
+  Report report(path.string());
+  if (is_text(text)) {
+    const Json source(text, report);
+    return Packer(source, {}, path, report).pack();
+  }
+  const gltf::GlbChunks chunks = gltf::split_glb(content, report);
+  if (chunks.json.find("\"uri\"") == std::string_view::npos) return content;
+  const Json source(chunks.json, report);
+  if (!names_other_files(source, report)) return content;
+  return Packer(source, chunks.bin, path, report).pack();
 }
 
 }  // namespace vestige

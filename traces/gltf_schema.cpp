@@ -23,12 +23,15 @@ enum class Type {
   kAny,
   kBoolean,
   kString,
+  kLabel,  ///< a text that only people read
   kStrings,
-  kNumbers,
+  kNumbers,  ///< each fits into a float
+  kBounds,   ///< numbers on which nothing relies
   kUnsigned,
   kIndex,
   kIndices,
-  kIndexMap,  ///< an object whose values are indices, such as a primitive's attributes
+  kIndexMap,   ///< an object whose values are indices, such as a primitive's attributes
+  kIndexMaps,  ///< a list of such objects
   kObject,
   kObjects,
 };
@@ -58,8 +61,8 @@ constexpr std::uint64_t kInt32Max = 0x7FFFFFFF;  // tinygltf keeps a sparse acce
 constexpr std::array kAsset = {
     Property{.name = "version", .type = Type::kString, .need = Need::kRequired},
     Property{.name = "minVersion", .type = Type::kString},
-    Property{.name = "generator", .type = Type::kString},
-    Property{.name = "copyright", .type = Type::kString},
+    Property{.name = "generator", .type = Type::kLabel},
+    Property{.name = "copyright", .type = Type::kLabel},
 };
 constexpr std::array kSparseIndices = {
     Property{.name = "bufferView", .type = Type::kIndex, .need = Need::kRequired, .into = "bufferViews"},
@@ -85,15 +88,16 @@ constexpr std::array kAccessor = {
     Property{.name = "normalized", .type = Type::kBoolean},
     Property{.name = "count", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
     Property{.name = "type", .type = Type::kString, .need = Need::kRequired, .words = kAccessorTypes},
-    Property{.name = "max", .type = Type::kNumbers},
-    Property{.name = "min", .type = Type::kNumbers},
+    Property{.name = "max", .type = Type::kBounds},
+    Property{.name = "min", .type = Type::kBounds},
     Property{.name = "sparse", .type = Type::kObject, .object = kSparse},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kBuffer = {
     Property{.name = "uri", .type = Type::kString},
+    Property{.name = "extensions"},
     Property{.name = "byteLength", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kBufferView = {
     Property{.name = "buffer", .type = Type::kIndex, .need = Need::kRequired, .into = "buffers"},
@@ -101,7 +105,8 @@ constexpr std::array kBufferView = {
     Property{.name = "byteLength", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
     Property{.name = "byteStride", .type = Type::kUnsigned, .at_least = 4, .at_most = 252},
     Property{.name = "target", .type = Type::kUnsigned},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "extensions"},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kChannelTarget = {
     Property{.name = "node", .type = Type::kIndex, .into = "nodes"},
@@ -122,7 +127,7 @@ constexpr std::array kSampler = {
 constexpr std::array kAnimation = {
     Property{.name = "channels", .type = Type::kObjects, .need = Need::kRequired, .object = kChannel},
     Property{.name = "samplers", .type = Type::kObjects, .need = Need::kRequired, .object = kSampler},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kPrimitive = {
     Property{.name = "attributes",
@@ -132,7 +137,7 @@ constexpr std::array kPrimitive = {
              .into = "accessors"},
     Property{.name = "indices", .type = Type::kIndex, .into = "accessors"},
     Property{.name = "mode", .type = Type::kUnsigned, .at_most = 6},
-    Property{.name = "targets"},
+    Property{.name = "targets", .type = Type::kIndexMaps, .into = "accessors"},
     Property{.name = "extensions"},
 };
 constexpr std::array kMesh = {
@@ -142,7 +147,7 @@ constexpr std::array kMesh = {
              .empty = Empty::kRefused,
              .object = kPrimitive},
     Property{.name = "weights", .type = Type::kNumbers},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kNode = {
     Property{.name = "children", .type = Type::kIndices, .into = "nodes"},
@@ -153,18 +158,18 @@ constexpr std::array kNode = {
     Property{.name = "rotation", .type = Type::kNumbers, .length = 4},
     Property{.name = "scale", .type = Type::kNumbers, .length = 3},
     Property{.name = "weights", .type = Type::kNumbers},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kScene = {
     Property{.name = "nodes", .type = Type::kIndices, .into = "nodes"},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kSkin = {
     Property{.name = "inverseBindMatrices", .type = Type::kIndex, .into = "accessors"},
     Property{.name = "skeleton", .type = Type::kIndex, .into = "nodes"},
     Property{
         .name = "joints", .type = Type::kIndices, .need = Need::kRequired, .empty = Empty::kRefused, .into = "nodes"},
-    Property{.name = "name", .type = Type::kString},
+    Property{.name = "name", .type = Type::kLabel},
 };
 constexpr std::array kDocument = {
     Property{.name = "asset", .type = Type::kObject, .need = Need::kRequired, .object = kAsset},
@@ -183,16 +188,35 @@ constexpr std::array kDocument = {
 
 class Checker {
  public:
-  Checker(json& document, Report& report) : document_(document), report_(report) {}
+  Checker(const Outline& outline, Report& report) : outline_(outline), report_(report) {}
+
+  void check_element(json& value, const Property& list, std::size_t index) {
+    path_ = {std::string(list.name), index};
+    check_object(value, list.object);
+  }
+
+  void check_top(json& head) {
+    for (const auto& [name, elements] : outline_.lists) {
+      path_ = {name};
+      const Property* property = find(kDocument, name);
+      if (property == nullptr)
+        report_.warn(name, kUnknown);
+      else if (property->type != Type::kObjects)
+        fail("is not of the type that glTF gives it");
+      else if (elements.empty())
+        report_.warn(name, "is empty");
+    }
+    path_.clear();
+    check_object(head, kDocument);
+  }
 
   void check_object(json& value, Object object) {
     if (!value.is_object()) fail("is not an object");
     for (auto entry = value.begin(); entry != value.end(); ++entry) {
-      const auto is_named = [&](const Property& property) { return property.name == entry.key(); };
-      const auto property = std::find_if(object.begin(), object.end(), is_named);
+      const Property* property = find(object, entry.key());
       path_.emplace_back(entry.key());
-      if (property == object.end())
-        report_.warn(path(), "is no property that glTF knows");
+      if (property == nullptr)
+        report_.warn(path(), kUnknown);
       else
         check(entry.value(), *property);
       path_.pop_back();
@@ -203,6 +227,14 @@ class Checker {
   }
 
  private:
+  static constexpr std::string_view kUnknown = "is no property that glTF knows";
+
+  static const Property* find(Object object, std::string_view name) {
+    const auto found =
+        std::find_if(object.begin(), object.end(), [&](const Property& property) { return property.name == name; });
+    return found == object.end() ? nullptr : &*found;
+  }
+
   void check(json& value, const Property& property) {
     switch (property.type) {
       case Type::kAny:
@@ -212,8 +244,17 @@ class Checker {
         return;
       case Type::kString:
         return check_string(value, property);
+      case Type::kLabel:
+        if (value.is_string()) return;
+        report_.warn(path(), "is not a text");
+        value = "";
+        return;
       case Type::kStrings:
         return check_each(value, property, [&](json& element) { check_string(element, property); });
+      case Type::kBounds:
+        return check_each(value, property, [&](const json& element) {
+          if (!element.is_number()) fail("is not a number");
+        });
       case Type::kNumbers:
         return check_numbers(value, property);
       case Type::kUnsigned:
@@ -224,6 +265,8 @@ class Checker {
         return check_each(value, property, [&](json& element) { check_index(element, property); });
       case Type::kIndexMap:
         return check_index_map(value, property);
+      case Type::kIndexMaps:
+        return check_each(value, property, [&](json& element) { check_index_map(element, property); });
       case Type::kObject:
         return check_object(value, property.object);
       case Type::kObjects:
@@ -271,8 +314,12 @@ class Checker {
     constexpr double kExact = 9007199254740992.0;
     if (value.is_number_float()) {
       const auto number = value.get<double>();
-      if (number >= 0 && number < kExact && std::trunc(number) == number) value = static_cast<std::uint64_t>(number);
+      if (number >= 0 && number < kExact && std::trunc(number) == number) {
+        value = static_cast<std::uint64_t>(number);
+        report_.warn(path(), "is a whole number written as a decimal");
+      }
     }
+    if (value == 0) value = std::uint64_t{0};  // it may be written as -0
     if (!value.is_number_unsigned()) fail(fmt::format("{} is no whole number from 0 up", value.dump()));
     const auto number = value.get<std::uint64_t>();
     if (number < at_least || number > at_most) fail(fmt::format("{} is not in {} … {}", number, at_least, at_most));
@@ -280,8 +327,8 @@ class Checker {
 
   void check_index(json& value, const Property& property) {
     check_unsigned(value, 0, std::numeric_limits<std::uint64_t>::max());
-    const auto list = document_.find(property.into);
-    const std::size_t size = list != document_.end() && list->is_array() ? list->size() : 0;
+    const auto list = outline_.lists.find(property.into);
+    const std::size_t size = list == outline_.lists.end() ? 0 : list->second.size();
     if (value.get<std::uint64_t>() >= size)
       fail(fmt::format("{} does not exist: there are {} {}", value.get<std::uint64_t>(), size, property.into));
   }
@@ -309,20 +356,27 @@ class Checker {
 
   [[noreturn]] void fail(std::string_view cause) const { report_.fail(path(), cause); }
 
-  json& document_;
+  const Outline& outline_;
   Report& report_;
   std::vector<std::variant<std::size_t, std::string>> path_;
 };
 
 }  // namespace
 
-void check_schema(json& document, Report& report) {
-  Checker(document, report).check_object(document, kDocument);
-  const auto& version = document["asset"]["version"].get_ref<const std::string&>();
-  const std::string least = document["asset"].value("minVersion", "2.0");
-  if (!version.starts_with("2.") || least != "2.0")
+void check_head(json& head, const Outline& outline, Report& report) {
+  Checker(outline, report).check_top(head);
+  const auto& version = head["asset"]["version"].get_ref<const std::string&>();
+  const std::string least = head["asset"].value("minVersion", "2.0");
+  const bool is_number = version.size() > 2 && version.find_first_not_of("0123456789", 2) == std::string::npos;
+  if (!version.starts_with("2.") || !is_number || least != "2.0")
     report.fail("asset.version", fmt::format("is glTF {} (at least {}), only 2.0 can be read", version, least),
                 "export the file as glTF 2.0");
+}
+
+void check_element(json& element, std::string_view list, std::size_t index, const Outline& outline, Report& report) {
+  const auto property =
+      std::find_if(kDocument.begin(), kDocument.end(), [&](const Property& known) { return known.name == list; });
+  Checker(outline, report).check_element(element, *property, index);
 }
 
 }  // namespace vestige::gltf

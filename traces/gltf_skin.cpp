@@ -86,7 +86,7 @@ void check_counts(const Document& document, const Report& report) {
   for (std::size_t i = 0; i < document.model.skins.size(); ++i) {
     const tinygltf::Skin& skin = document.model.skins[i];
     if (skin.inverseBindMatrices < 0) continue;
-    const std::size_t count = document.model.accessors[static_cast<std::size_t>(skin.inverseBindMatrices)].count;
+    const std::size_t count = document.accessors[static_cast<std::size_t>(skin.inverseBindMatrices)].count;
     if (count < skin.joints.size())
       report.fail(skin_path(i, "inverseBindMatrices"),
                   fmt::format("has {} matrices for {} joints", count, skin.joints.size()));

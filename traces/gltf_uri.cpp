@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 
 namespace vestige::gltf {
@@ -30,27 +31,44 @@ int hex_value(char digit) {
   return -1;
 }
 
+/// `word` is in lower case.
+bool starts_with_any_case(std::string_view text, std::string_view word) {
+  return text.size() >= word.size() && std::equal(word.begin(), word.end(), text.begin(), [](char a, char b) {
+           return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b);
+         });
+}
+
+/// The byte that "%4a" at `at` stands for, or -1.
+int escaped_byte(std::string_view text, std::size_t at) {
+  const int high = at + 2 < text.size() ? hex_value(text[at + 1]) : -1;
+  const int low = at + 2 < text.size() ? hex_value(text[at + 2]) : -1;
+  return high < 0 || low < 0 ? -1 : high * 16 + low;
+}
+
 std::string shorten(std::string_view uri) {
   constexpr std::size_t kShown = 60;
   return uri.size() <= kShown ? std::string(uri) : fmt::format("{}…", uri.substr(0, kShown));
 }
 
-bool has_scheme(std::string_view uri) {
-  const std::size_t colon = uri.find(':');
-  return colon != std::string_view::npos && colon < uri.find('/');
+/// RFC 3986. `uri` stands in errors.
+std::string unescape(std::string_view text, std::string_view uri, std::string_view path, const Report& report) {
+  std::string result;
+  result.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      result += text[i];
+      continue;
+    }
+    const int byte = escaped_byte(text, i);
+    if (byte < 0) report.fail(path, fmt::format("'{}' has a broken %-escape", shorten(uri)));
+    result += static_cast<char>(byte);
+    i += 2;
+  }
+  return result;
 }
 
-}  // namespace
-
-bool is_data_uri(std::string_view uri) {
-  return uri.starts_with(kDataScheme);
-}
-
-std::vector<std::byte> decode_data_uri(std::string_view uri, std::string_view path, const Report& report) {
-  const std::size_t comma = uri.find(',');
-  if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64"))
-    report.fail(path, fmt::format("'{}' is not base64 data", shorten(uri)));
-  std::string_view digits = uri.substr(comma + 1);
+/// Strict RFC 4648, padding optional.
+std::vector<std::byte> decode_base64(std::string_view digits, std::string_view path, const Report& report) {
   const std::size_t written = digits.size();
   for (int padding = 0; padding < 2 && digits.ends_with('='); ++padding) digits.remove_suffix(1);
   const bool padded = digits.size() != written;
@@ -72,21 +90,44 @@ std::vector<std::byte> decode_data_uri(std::string_view uri, std::string_view pa
   return bytes;
 }
 
+bool has_scheme(std::string_view uri) {
+  const std::size_t colon = uri.find(':');
+  return colon != std::string_view::npos && colon < uri.find('/');
+}
+
+}  // namespace
+
+bool is_data_uri(std::string_view uri) {
+  return starts_with_any_case(uri, kDataScheme);
+}
+
+std::vector<std::byte> decode_data_uri(std::string_view uri, std::string_view path, Report& report) {
+  const std::size_t comma = uri.find(',');
+  if (comma == std::string_view::npos)
+    report.fail(path, fmt::format("'{}' has no comma before its data", shorten(uri)));
+  std::string_view type = uri.substr(kDataScheme.size(), comma - kDataScheme.size());
+  std::string_view data = uri.substr(comma + 1);
+  constexpr std::string_view kBase64 = ";base64";
+  const bool is_base64 =
+      type.size() >= kBase64.size() && starts_with_any_case(type.substr(type.size() - kBase64.size()), kBase64);
+  if (is_base64) type.remove_suffix(kBase64.size());
+  if (type != "application/octet-stream" && type != "application/gltf-buffer")
+    report.warn(path, "has a media type that is not for buffers");
+  // Base64 needs no escapes, but its digits may have some.
+  std::string unescaped;
+  if (!is_base64 || data.find('%') != std::string_view::npos) {
+    unescaped = unescape(data, uri, path, report);
+    data = unescaped;
+  }
+  if (is_base64) return decode_base64(data, path, report);
+  const auto bytes = std::as_bytes(std::span(data));
+  return {bytes.begin(), bytes.end()};
+}
+
 std::filesystem::path decode_relative_uri(std::string_view uri, std::string_view path, const Report& report) {
   constexpr std::string_view kRemedy = "put the file beside the glTF, or export a .glb, which holds everything";
   if (has_scheme(uri)) report.fail(path, fmt::format("'{}' is not a file beside the glTF", shorten(uri)), kRemedy);
-  std::string name;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] != '%') {
-      name += uri[i];
-      continue;
-    }
-    const int high = i + 2 < uri.size() ? hex_value(uri[i + 1]) : -1;
-    const int low = i + 2 < uri.size() ? hex_value(uri[i + 2]) : -1;
-    if (high < 0 || low < 0) report.fail(path, fmt::format("'{}' has a broken %-escape", shorten(uri)));
-    name += static_cast<char>(high * 16 + low);
-    i += 2;
-  }
+  const std::string name = unescape(uri, uri, path, report);
   if (name.empty() || name.find('\0') != std::string::npos)
     report.fail(path, fmt::format("'{}' names no file", shorten(uri)), kRemedy);
   std::filesystem::path file(name);

@@ -176,7 +176,8 @@ TEST(ParseAvatar, SortsMergesAndNormalisesInfluences) {
   EXPECT_EQ(avatar.influences[0].weight,
             (std::array<float, 8>{static_cast<float>(1 / 3.0), static_cast<float>(2 / 3.0)}));
   EXPECT_EQ(avatar.influence_count, 2U);
-  EXPECT_THAT(avatar.warnings, ElementsAre(AllOf(HasSubstr("WEIGHTS_0"), HasSubstr("sum is not 1"))));
+  EXPECT_THAT(avatar.warnings,
+              ElementsAre(HasSubstr("names a joint twice"), AllOf(HasSubstr("WEIGHTS_0"), HasSubstr("sum is not 1"))));
 }
 
 TEST(ParseAvatar, ReadsNormalisedWeights) {
@@ -356,6 +357,7 @@ TEST(ParseAvatar, NeverLooksAtImagesMaterialsAndExtras) {
   primitive(builder)["material"] = 12;
   builder.document["nodes"][0]["camera"] = 3;
   builder.document["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_transform", "VRM"};
+  builder.document["extensionsUsed"] = builder.document["extensionsRequired"];
   EXPECT_THAT(parse(builder).warnings, IsEmpty());
 }
 
@@ -366,9 +368,43 @@ TEST(ParseAvatar, WarnsOnceOfWhatDoesNoHarmAndNamesIt) {
   builder.document["accessors"][0]["max"] = {2, 1, 0};
   builder.document["accessors"][0]["min"] = {0, 0, 0};
   builder.document["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
-  EXPECT_THAT(parse(builder).warnings,
-              ElementsAre(HasSubstr("nodes[0].colour (and 1 more): is no property"),
-                          HasSubstr("EXT_mesh_gpu_instancing"), HasSubstr("accessors[0].max: is not the maximum")));
+  EXPECT_THAT(parse(builder).warnings, ElementsAre(HasSubstr("EXT_mesh_gpu_instancing"),
+                                                   HasSubstr("nodes[0].colour (and 1 more): is no property"),
+                                                   HasSubstr("accessors[0].max: is not the maximum")));
+}
+
+TEST(ParseAvatar, WarnsOfWhatTheFormatForbidsButCannotBeMistaken) {
+  const auto warnings = [](const auto& change) {
+    GltfBuilder builder = skinned_triangle();
+    change(builder);
+    return parse(builder).warnings;
+  };
+  EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["nodes"][0]["name"] = 5; }),
+              ElementsAre(HasSubstr("nodes[0].name: is not a text")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["accessors"][0].erase("min"); }),
+              ElementsAre(HasSubstr("accessors[0]: has no min and max")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) {
+                b.document["accessors"][0]["max"] = {1, 1};
+              }),
+              Contains(HasSubstr("accessors[0].max: has not as many numbers")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) {
+                b.document["accessors"][0]["max"] = {1e300, 1, 0};
+              }),
+              ElementsAre(HasSubstr("accessors[0].max: is not the maximum")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["accessors"][0]["normalized"] = true; }),
+              ElementsAre(HasSubstr("accessors[0].normalized: means nothing for float")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) { attributes(b)["COLOUR"] = 0; }),
+              ElementsAre(HasSubstr("attributes.COLOUR: is no attribute")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["nodes"][1]["skin"] = 0; }),
+              ElementsAre(HasSubstr("nodes[1].skin: is of no use without a mesh")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) {
+                b.document["scenes"] = {{{"nodes", {0, 1, 1}}}};
+              }),
+              ElementsAre(HasSubstr("scenes[0].nodes: names a node twice")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["extensionsRequired"] = {"VRM"}; }),
+              ElementsAre(HasSubstr("extensionsRequired: names VRM, which extensionsUsed does not")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["nodes"][0]["mesh"] = 0.0; }),
+              ElementsAre(HasSubstr("nodes[0].mesh: is a whole number written as a decimal")));
 }
 
 TEST(ParseAvatar, AcceptsWholeNumbersWrittenAsDecimals) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -59,6 +60,8 @@ class GltfBuilder {
                                      {"componentType", component_type<Number>()},
                                      {"count", numbers.size() / components},
                                      {"type", type}});
+    // Positions and times need bounds.
+    if (std::is_same_v<Number, float> && components <= 3 && !numbers.empty()) set_bounds(numbers, components);
     return document["accessors"].size() - 1;
   }
 
@@ -69,6 +72,18 @@ class GltfBuilder {
   }
 
  private:
+  template <typename Number>
+  void set_bounds(const std::vector<Number>& numbers, std::size_t components) {
+    std::vector<Number> least(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(components));
+    std::vector<Number> most = least;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      least[i % components] = std::min(least[i % components], numbers[i]);
+      most[i % components] = std::max(most[i % components], numbers[i]);
+    }
+    document["accessors"].back()["min"] = least;
+    document["accessors"].back()["max"] = most;
+  }
+
   template <typename Number>
   static int component_type() {
     if (std::is_same_v<Number, float>) return 5126;

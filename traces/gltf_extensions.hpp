@@ -1,0 +1,17 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "traces/gltf_report.hpp"
+
+namespace vestige::gltf {
+
+/// Fails on required extensions that are not supported, warns of used ones that would change geometry, skin or motion.
+/// Returns whether the file declares KHR_mesh_quantization. `head` is what stands at the top of the JSON.
+bool check_extensions(const nlohmann::json& head, Report& report);
+
+/// Fails when only Draco could unpack the primitive: its accessors have no data, which glTF would else read as zeros.
+void refuse_draco(const nlohmann::json& primitive, const std::string& path, const Report& report);
+
+}  // namespace vestige::gltf
