@@ -7,11 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "analysis/plot/avatar_figure.hpp"
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/headless_window.hpp"
 #include "analysis/plot/sweep_figure.hpp"
 #include "analysis/plot/texture_figure.hpp"
 #include "analysis/plot/timeline_figure.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "version.hpp"
@@ -30,6 +33,8 @@ constexpr int kIncomplete = 3;
 struct Options {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
+  std::string animation;
+  std::size_t poses = 6;
   bool force = false;
   bool quiet = false;
 };
@@ -89,6 +94,27 @@ int draw_timeline(const Options& options) {
 int draw_textures(const Options& options) {
   return write_figure(options, stem_of(options),
                       [&] { return plot::texture_figure(plot::read_texture_contacts(options.inputs.front())); });
+}
+
+/// Larger than that, a figure fits neither on a page nor into OpenGL's windows.
+constexpr std::size_t kMostAnimations = 4;
+
+int draw_avatar(const Options& options) {
+  return write_figure(options, stem_of(options), [&] {
+    const std::string input = options.inputs.front();
+    plot::ContactSheet sheet;
+    sheet.title = input == "builtin" ? "built-in avatar" : std::filesystem::path(input).filename().string();
+    const auto glb = input == "builtin" ? vestige::builtin_avatar_glb() : vestige::read_avatar_glb(input);
+    sheet.avatar = vestige::parse_avatar_glb(glb, input);
+    sheet.animations = plot::ContactSheet::choose(sheet.avatar, options.animation);
+    sheet.poses = options.poses;
+    if (sheet.animations.size() > kMostAnimations) {
+      fmt::print(stderr, "{}: has {} animations, of which the first {} are drawn; name others with --animation\n",
+                 input, sheet.animations.size(), kMostAnimations);
+      sheet.animations.resize(kMostAnimations);
+    }
+    return plot::avatar_figure(std::move(sheet));
+  });
 }
 
 /// Help that opens with examples, which the list of subcommands leaves out.
@@ -154,6 +180,22 @@ int main(int argc, char** argv) {
       ->required();
   add_common_options(textures, options, "OUT", "OUT.svg and OUT.png (default: the input's name)");
 
+  CLI::App& avatar = add_command(app, "avatar", "an avatar from four sides, in poses over its animations",
+                                 "  vestige plot avatar builtin\n"
+                                 "  vestige plot avatar man.glb --animation walk -o figures/walk\n");
+  avatar.add_option("input", options.inputs, "the built-in avatar, or a glTF file (.glb, .gltf, .vrm)")
+      ->type_name("builtin|FILE")
+      ->expected(1)
+      ->required();
+  avatar
+      .add_option("--animation", options.animation,
+                  "one animation: a name, an index, or none for the rest pose [default: all]")
+      ->type_name("NAME|INDEX|none");
+  avatar.add_option("--poses", options.poses, "poses of each animation")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 12));
+  add_common_options(avatar, options, "OUT", "OUT.svg and OUT.png (default: the input's name)");
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -161,6 +203,7 @@ int main(int argc, char** argv) {
   }
   try {
     if (sweep.parsed()) return draw_sweep(options);
+    if (avatar.parsed()) return draw_avatar(options);
     if (timeline.parsed()) return draw_timeline(options);
     return draw_textures(options);
   } catch (const vestige::UsageError& error) {
