@@ -48,6 +48,7 @@ double whole_pt(double length_pt) {
 struct Shown {
   double time_s = 0;
   Surface surface;
+  std::vector<Raster> pictures;  ///< one for each side
 };
 
 struct Block {
@@ -59,12 +60,16 @@ struct Block {
 class AvatarFigure : public Figure {
  public:
   explicit AvatarFigure(const ContactSheet& sheet)
-      : title_(fmt::format("{}: {} triangles, {} vertices, {} joints", sheet.title,
-                           grouped(static_cast<double>(sheet.avatar.triangles.size())),
-                           grouped(static_cast<double>(sheet.avatar.position_bind.size())), sheet.avatar.joint_count)) {
-    const SurfacePoser poser(sheet.avatar);
+      : title_(fmt::format("{}: {} triangles, {} vertices, {} joints", sheet.subject.title,
+                           grouped(static_cast<double>(sheet.subject.avatar.triangles.size())),
+                           grouped(static_cast<double>(sheet.subject.avatar.position_bind.size())),
+                           sheet.subject.avatar.joint_count)) {
+    const SurfacePoser poser(sheet.subject.avatar);
     for (const Animation* animation : sheet.animations) blocks_.push_back(block_of(sheet, poser, animation));
     lay_out();
+    for (Block& block : blocks_)
+      for (Shown& shown : block.poses)
+        for (const Side& side : kSides) shown.pictures.push_back(picture(shown.surface, block.ground_y, side));
   }
 
   double width_pt() const override { return kWidthPt; }
@@ -89,14 +94,14 @@ class AvatarFigure : public Figure {
     block.title = "rest pose";
     const std::size_t count = animation == nullptr ? 1 : sheet.poses;
     if (animation != nullptr)
-      block.title = fmt::format("{}, {:.3g} s", name_of(sheet.avatar, *animation), animation->duration_s);
+      block.title = fmt::format("{}, {:.3g} s", name_of(sheet.subject.avatar, *animation), animation->duration_s);
     for (std::size_t i = 0; i < count; ++i) {
       Shown shown;
       // The end of a loop is its beginning: leave it out.
       if (animation != nullptr)
         shown.time_s = animation->duration_s * static_cast<double>(i) / static_cast<double>(count);
-      const Pose pose =
-          animation == nullptr ? rest_pose(sheet.avatar) : sample_animation(sheet.avatar, *animation, shown.time_s);
+      const Pose pose = animation == nullptr ? rest_pose(sheet.subject.avatar)
+                                             : sample_animation(sheet.subject.avatar, *animation, shown.time_s);
       shown.surface = poser.pose(pose, pose.origin_m);
       block.ground_y = i == 0 ? shown.surface.low.y : std::min(block.ground_y, shown.surface.low.y);
       block.poses.push_back(std::move(shown));
@@ -146,7 +151,7 @@ class AvatarFigure : public Figure {
         const double left_pt = kLabelRoomPt + static_cast<double>(column) * cell_width_pt_;
         const double cell_top_pt = cells_top_pt - static_cast<double>(row) * cell_height_pt_;
         const Box cell = {left_pt, cell_top_pt - cell_height_pt_, left_pt + cell_width_pt_, cell_top_pt};
-        draw_cell(canvas, cell, block, block.poses[i], kSides[side]);
+        canvas.image(cell, block.poses[i].pictures[side]);
         const Place below = {(cell.left_pt + cell.right_pt) / 2, cell.bottom_pt - 6};
         if (only_rest())
           canvas.text(below, kSides[side].name, {7, kInk, Anchor::kCentre});
@@ -161,22 +166,22 @@ class AvatarFigure : public Figure {
     }
   }
 
-  void draw_cell(Canvas& canvas, const Box& cell, const Block& block, const Shown& shown, const Side& side) const {
+  Raster picture(const Surface& surface, double ground_y, const Side& side) const {
     View view;
     view.camera = Camera::from(side.azimuth_degrees, kElevationDegrees);
-    view.width = print_dots(cell.width_pt());
-    view.height = print_dots(cell.height_pt());
-    view.unit_per_dot = unit_per_pt_ * cell.width_pt() / static_cast<double>(view.width);
+    view.width = print_dots(cell_width_pt_);
+    view.height = print_dots(cell_height_pt_);
+    view.unit_per_dot = unit_per_pt_ * cell_width_pt_ / static_cast<double>(view.width);
     // Every pose stands in the middle of its cell, whatever ground the animation covers.
-    glm::dvec3 stand = (shown.surface.low + shown.surface.high) / 2.0;
-    stand.y = block.ground_y;
+    glm::dvec3 stand = (surface.low + surface.high) / 2.0;
+    stand.y = ground_y;
     const glm::dvec3 seen = view.camera.seen(stand);
     view.left = seen.x - static_cast<double>(view.width) / 2 * view.unit_per_dot;
-    const glm::dvec3 size = shown.surface.high - shown.surface.low;
+    const glm::dvec3 size = surface.high - surface.low;
     const double nearest = (std::abs(view.camera.up.x) * size.x + std::abs(view.camera.up.z) * size.z) / 2;
-    view.bottom = seen.y - nearest - 0.02 * shown.surface.height();
-    const StudioShot shot(shown.surface, view, block.ground_y);
-    canvas.image(cell, shot.picture([](std::uint32_t, double, double) { return kSkin; }));
+    view.bottom = seen.y - nearest - 0.02 * surface.height();
+    const StudioShot shot(surface, view, ground_y);
+    return shot.picture([](std::uint32_t, double, double) { return kSkin; });
   }
 
   std::string title_;

@@ -6,15 +6,14 @@
 #include <vector>
 
 #include "analysis/plot/figure.hpp"
-#include "traces/avatar.hpp"
+#include "analysis/plot/subject.hpp"
 
 namespace vestige::plot {
 
 /// What a contact sheet shows of an avatar: the poses of each animation, evenly over its duration.
 struct ContactSheet {
-  std::string title;
-  Avatar avatar;
-  std::vector<const Animation*> animations;  ///< of `avatar`; null: its rest pose
+  Subject subject;
+  std::vector<const Animation*> animations;  ///< of the subject's avatar; null: its rest pose
   std::size_t poses = 6;                     ///< of each animation
 
   /// `animation`: a name, an index, "none" (the rest pose) or empty: all, of which there may be none. Throws

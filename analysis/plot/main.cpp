@@ -8,13 +8,12 @@
 #include <vector>
 
 #include "analysis/plot/avatar_figure.hpp"
+#include "analysis/plot/body_figure.hpp"
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/headless_window.hpp"
 #include "analysis/plot/sweep_figure.hpp"
 #include "analysis/plot/texture_figure.hpp"
 #include "analysis/plot/timeline_figure.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "version.hpp"
@@ -33,6 +32,9 @@ constexpr int kIncomplete = 3;
 struct Options {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
+  std::string avatar;
+  std::string map;
+  std::filesystem::path contacts;
   std::string animation;
   std::size_t poses = 6;
   bool force = false;
@@ -103,10 +105,8 @@ int draw_avatar(const Options& options) {
   return write_figure(options, stem_of(options), [&] {
     const std::string input = options.inputs.front();
     plot::ContactSheet sheet;
-    sheet.title = input == "builtin" ? "built-in avatar" : std::filesystem::path(input).filename().string();
-    const auto glb = input == "builtin" ? vestige::builtin_avatar_glb() : vestige::read_avatar_glb(input);
-    sheet.avatar = vestige::parse_avatar_glb(glb, input);
-    sheet.animations = plot::ContactSheet::choose(sheet.avatar, options.animation);
+    sheet.subject = plot::read_subject(input, "none");
+    sheet.animations = plot::ContactSheet::choose(sheet.subject.avatar, options.animation);
     sheet.poses = options.poses;
     if (sheet.animations.size() > kMostAnimations) {
       fmt::print(stderr, "{}: has {} animations, of which the first {} are drawn; name others with --animation\n",
@@ -114,6 +114,32 @@ int draw_avatar(const Options& options) {
       sheet.animations.resize(kMostAnimations);
     }
     return plot::avatar_figure(std::move(sheet));
+  });
+}
+
+plot::Subject subject_of(const Options& options) {
+  if (options.inputs.empty()) return plot::read_subject(options.avatar, options.map);
+  const vestige::TraceReader trace(options.inputs.front());
+  return plot::read_subject(trace, options.inputs.front(), options.map);
+}
+
+int draw_body(Options options) {
+  if (options.inputs.empty() == options.avatar.empty())
+    throw vestige::UsageError("plot body", "needs either a trace or --avatar", "name one of them");
+  const std::string input = options.inputs.empty() ? options.avatar : options.inputs.front().string();
+  if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-body";
+  return write_figure(options, stem_of(options), [&] {
+    plot::Body body;
+    body.subject = subject_of(options);
+    body.has_contacts = !options.contacts.empty();
+    const std::size_t actuators = body.subject.map.actuator_count;
+    if (actuators == 0 && !body.has_contacts)
+      throw vestige::Error(input, "there is no actuator map, and no contact", "name a --map, or --contacts, or both");
+    vestige::ContactLimits limits;
+    limits.triangles = body.subject.avatar.triangles.size();
+    if (actuators > 0) limits.actuators = actuators;
+    if (body.has_contacts) body.contacts = vestige::read_contacts_csv(options.contacts, limits);
+    return plot::body_figure(std::move(body));
   });
 }
 
@@ -180,6 +206,20 @@ int main(int argc, char** argv) {
       ->required();
   add_common_options(textures, options, "OUT", "OUT.svg and OUT.png (default: the input's name)");
 
+  CLI::App& body =
+      add_command(app, "body", "an avatar with the regions of its actuator map, contacts and their density",
+                  "  vestige plot body man.mcap --contacts contacts.csv\n"
+                  "  vestige plot body --avatar man.glb --map regions.png -o figures/regions\n");
+  body.add_option("input", options.inputs, "a trace, whose avatar and map are drawn")->type_name("MCAP")->expected(1);
+  body.add_option("--avatar", options.avatar, "instead of a trace: the built-in avatar, or a glTF file")
+      ->type_name("builtin|FILE");
+  body.add_option(
+          "--map", options.map,
+          "actuator map, a greyscale PNG whose FILE.json names the actuators if it exists [default: the trace's]")
+      ->type_name("builtin|none|FILE.png");
+  body.add_option("--contacts", options.contacts, "written by 'vestige replay --contacts FILE.csv'")->type_name("CSV");
+  add_common_options(body, options, "OUT", "OUT.svg and OUT.png (default: the input's name with -body)");
+
   CLI::App& avatar = add_command(app, "avatar", "an avatar from four sides, in poses over its animations",
                                  "  vestige plot avatar builtin\n"
                                  "  vestige plot avatar man.glb --animation walk -o figures/walk\n");
@@ -203,6 +243,7 @@ int main(int argc, char** argv) {
   }
   try {
     if (sweep.parsed()) return draw_sweep(options);
+    if (body.parsed()) return draw_body(options);
     if (avatar.parsed()) return draw_avatar(options);
     if (timeline.parsed()) return draw_timeline(options);
     return draw_textures(options);

@@ -19,6 +19,9 @@ inline constexpr Colour kPurple = {204, 121, 167};
 
 /// Lines on white: without yellow, which is too pale, and black (the published points).
 inline constexpr std::array<Colour, 6> kLineColours = {kBlue, kVermillion, kGreen, kPurple, kOrange, kSkyBlue};
+/// Actuators, told apart on white; grey is for unmapped skin.
+inline constexpr std::array<Colour, 7> kActuatorColours = {kBlue,    kOrange, kGreen, kVermillion,
+                                                           kSkyBlue, kPurple, kBlack};
 inline constexpr Colour kUnmapped = {150, 150, 150};
 
 inline constexpr Colour kInk = {40, 40, 40};

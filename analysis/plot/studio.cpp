@@ -16,12 +16,14 @@ constexpr std::size_t kFineness = 3;
 constexpr std::size_t kShares = kFineness * kFineness;
 constexpr std::size_t kKeyLights = 3 * kShares;
 constexpr std::size_t kSkyLights = 6 * kShares;
-constexpr double kKeyShare = 0.62;
+constexpr double kKeyShare = 0.66;
 /// Light that comes from everywhere, shadow or not: without it, creases are black in print.
-constexpr double kEverywhere = 0.20;
-constexpr double kExposure = 1.12;
-constexpr double kGroundShadow = 0.55;
-constexpr std::size_t kShadowDots = 420;
+constexpr double kEverywhere = 0.16;
+constexpr double kExposure = 1.22;
+constexpr double kGroundShadow = 0.6;
+/// Beyond the body, in heights of it: there its shadow has faded.
+constexpr double kShadowReach = 0.22;
+constexpr std::size_t kShadowDots = 320;
 constexpr double kGolden = 2.399963229728653;  // radians; spreads points evenly on a disc or a sphere
 
 /// One direction from which light comes, and what is nearest to it.
@@ -68,7 +70,7 @@ std::vector<Light> make_lights(const Surface& surface, const Camera& camera) {
   const glm::dvec3 front = glm::cross(side, glm::dvec3(0, 1, 0));
   std::vector<Light> lights;
   // A broad lamp, so that shadows have soft edges.
-  const Camera key = looking_along(-0.55 * side + glm::dvec3(0, 0.85, 0) + 0.75 * front);
+  const Camera key = looking_along(-0.75 * side + glm::dvec3(0, 0.8, 0) + 0.65 * front);
   for (std::size_t i = 0; i < kKeyLights; ++i) {
     const double reach = 0.22 * std::sqrt((static_cast<double>(i) + 0.5) / kKeyLights);
     const double turn = kGolden * static_cast<double>(i);
@@ -142,6 +144,8 @@ void StudioShot::light(const Surface& surface, std::optional<double> ground_y) {
   const Camera& camera = view_.camera;
   const double offset = 1.5 * lights.front().view.unit_per_dot;
   light_.assign(samples_.size(), 1.0F);
+  const glm::dvec3 middle = (surface.low + surface.high) / 2.0;
+  const glm::dvec3 half = (surface.high - surface.low) / 2.0;
   for (std::size_t i = 0; i < samples_.size(); ++i) {
     const std::size_t row = i / fine_.width;
     const std::size_t column = i % fine_.width;
@@ -151,6 +155,7 @@ void StudioShot::light(const Surface& surface, std::optional<double> ground_y) {
     const bool is_ground = sample.triangle == Sample::kNothing;
     glm::dvec3 point(0);
     glm::dvec3 normal(0, 1, 0);
+    double strength = 0;
     if (!is_ground) {
       point = surface.point(sample.triangle, double{sample.u}, double{sample.v});
       normal = surface.normal(sample.triangle, double{sample.u}, double{sample.v});
@@ -161,6 +166,11 @@ void StudioShot::light(const Surface& surface, std::optional<double> ground_y) {
       const double y = view_.bottom + (static_cast<double>(fine_.height - row) - 0.5) * fine_.unit_per_dot;
       point = x * camera.right + y * camera.up;
       point += camera.toward * ((*ground_y - point.y) / camera.toward.y);
+      const double beyond = std::hypot(std::max(0.0, std::abs(point.x - middle.x) - half.x),
+                                       std::max(0.0, std::abs(point.z - middle.z) - half.z));
+      strength = 1 - beyond / (kShadowReach * 2 * half.y);
+      if (!(strength > 0)) continue;
+      strength *= kGroundShadow * strength * (3 - 2 * strength);
     }
     const glm::dvec3 raised = point + offset * normal;
     double reaching = 0;
@@ -172,7 +182,7 @@ void StudioShot::light(const Surface& surface, std::optional<double> ground_y) {
       if (lights[k].reaches(raised)) reaching += lights[k].weight * cosine;
     }
     if (is_ground)
-      light_[i] = static_cast<float>(possible > 0 ? 1 - kGroundShadow * (1 - reaching / possible) : 1);
+      light_[i] = static_cast<float>(possible > 0 ? 1 - strength * (1 - reaching / possible) : 1);
     else
       light_[i] = static_cast<float>(kExposure * (kEverywhere + (1 - kEverywhere) * reaching * kShares));
   }

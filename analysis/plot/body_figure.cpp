@@ -1,0 +1,381 @@
+#include "analysis/plot/body_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/vec2.hpp>
+#include <optional>
+
+#include "analysis/plot/axis.hpp"
+#include "analysis/plot/colour_bar.hpp"
+#include "analysis/plot/contact_density.hpp"
+#include "analysis/plot/palette.hpp"
+#include "analysis/plot/region_colours.hpp"
+#include "analysis/plot/scale_bar.hpp"
+#include "analysis/plot/studio.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr double kWidthPt = 510;
+constexpr double kTitleRoomPt = 24;
+constexpr double kRowTitlePt = 16;
+constexpr double kSideNamePt = 13;
+constexpr double kLegendLinePt = 11;
+constexpr double kFootPt = 18;
+constexpr double kBarRoomPt = 66;
+constexpr double kGapPt = 12;
+constexpr double kMostCellHeightPt = 300;
+/// Wider bodies get a row each for map and contacts.
+constexpr double kSlender = 0.62;
+/// How far contacts are spread, in the body's largest extent: 2.5 cm for a grown person.
+constexpr double kSigma = 1.0 / 70;
+
+constexpr Colour kContactColour = kBlack;
+
+/// From skin without contacts to the most: darker throughout.
+Colour heat_ramp(double part) {
+  struct Stop {
+    double part;
+    Colour colour;
+  };
+  constexpr std::array<Stop, 5> kStops = {
+      {{0, {222, 220, 217}}, {0.2, {253, 206, 110}}, {0.45, {236, 130, 30}}, {0.72, {190, 40, 30}}, {1, {80, 4, 40}}}};
+  std::size_t i = 1;
+  while (i + 1 < kStops.size() && part > kStops[i].part) ++i;
+  const double between = (part - kStops[i - 1].part) / (kStops[i].part - kStops[i - 1].part);
+  return blend(kStops[i - 1].colour, kStops[i].colour, std::clamp(between, 0.0, 1.0));
+}
+
+/// The unit of area that suits a body, in metres along its side.
+struct AreaUnit {
+  const char* name;
+  double side_m;
+};
+
+AreaUnit unit_for(double extent_m) {
+  if (extent_m < 0.3) return {"cm²", 0.01};
+  return extent_m < 20 ? AreaUnit{"dm²", 0.1} : AreaUnit{"m²", 1};
+}
+
+struct Side {
+  const char* name;
+  double azimuth_degrees;
+};
+
+/// An actuator's number and where it is written, in dots.
+struct Label {
+  std::size_t actuator = 0;
+  double column = 0;
+  double row = 0;
+};
+
+struct Picture {
+  Raster raster;
+  std::vector<Label> labels;
+};
+
+double whole_pt(double length_pt) {
+  return std::max(6.0, std::floor(length_pt / 6) * 6);
+}
+
+/// Which actuator's skin is seen at each dot; kNone beside the body.
+class RegionImage {
+ public:
+  static constexpr std::int32_t kNone = -1;
+
+  template <typename ActuatorAt>
+  RegionImage(const StudioShot& shot, const ActuatorAt& actuator_at)
+      : width_(shot.view().width), height_(shot.view().height) {
+    for (std::size_t row = 0; row < height_; ++row)
+      for (std::size_t column = 0; column < width_; ++column) {
+        const Sample& sample = shot.at(column, row);
+        region_.push_back(sample.triangle == Sample::kNothing
+                              ? kNone
+                              : std::int32_t{actuator_at(sample.triangle, double{sample.u}, double{sample.v})});
+      }
+  }
+
+  /// A dark line where regions meet, so that they are told apart in grey too.
+  void outline(Raster& raster) const {
+    for (std::size_t row = 1; row < height_; ++row)
+      for (std::size_t column = 1; column < width_; ++column) {
+        const std::int32_t here = at(column, row);
+        for (const std::int32_t other : {at(column - 1, row), at(column, row - 1)})
+          if (here != other && here != kNone && other != kNone)
+            raster.at(column, row) = blend(raster.at(column, row), kInk, 0.65);
+      }
+  }
+
+  /// For every actuator that is seen, the dot that is farthest from other regions.
+  std::vector<Label> labels() const {
+    std::vector<float> distance = distances();
+    std::vector<std::pair<float, std::size_t>> best;
+    for (std::size_t i = 0; i < region_.size(); ++i) {
+      if (region_[i] <= 0) continue;
+      const auto actuator = static_cast<std::size_t>(region_[i]);
+      if (actuator >= best.size()) best.resize(actuator + 1);
+      best[actuator] = std::max(best[actuator], {distance[i], i});
+    }
+    std::vector<Label> labels;
+    constexpr float kLeastDots = 4;  // of a smaller sight a label would hide all
+    for (std::size_t actuator = 1; actuator < best.size(); ++actuator) {
+      const auto [dots, i] = best[actuator];
+      if (dots < kLeastDots) continue;
+      labels.push_back({actuator, static_cast<double>(i % width_) + 0.5, static_cast<double>(i / width_) + 0.5});
+    }
+    return labels;
+  }
+
+ private:
+  std::int32_t at(std::size_t column, std::size_t row) const { return region_[row * width_ + column]; }
+
+  /// Of each dot to the nearest of another region, in dots, to within a tenth: two sweeps, with steps of 1 and √2.
+  std::vector<float> distances() const {
+    constexpr float kDiagonal = 1.41421356F;
+    std::vector<float> distance(region_.size(), 0.0F);
+    const auto sweep = [&](std::size_t column, std::size_t row, std::ptrdiff_t direction) {
+      const std::size_t i = row * width_ + column;
+      if (column == 0 || row == 0 || column + 1 == width_ || row + 1 == height_) return;
+      float nearest = direction > 0 ? 1e9F : distance[i];
+      const auto ask = [&](std::ptrdiff_t x, std::ptrdiff_t y, float step) {
+        const auto other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) +
+                                                    direction * (y * static_cast<std::ptrdiff_t>(width_) + x));
+        nearest = std::min(nearest, region_[other] == region_[i] ? distance[other] + step : step);
+      };
+      ask(-1, 0, 1.0F);
+      ask(-1, -1, kDiagonal);
+      ask(0, -1, 1.0F);
+      ask(1, -1, kDiagonal);
+      distance[i] = nearest;
+    };
+    for (std::size_t row = 0; row < height_; ++row)
+      for (std::size_t column = 0; column < width_; ++column) sweep(column, row, 1);
+    for (std::size_t row = height_; row-- > 0;)
+      for (std::size_t column = width_; column-- > 0;) sweep(column, row, -1);
+    return distance;
+  }
+
+  std::size_t width_;
+  std::size_t height_;
+  std::vector<std::int32_t> region_;
+};
+
+class BodyFigure : public Figure {
+ public:
+  explicit BodyFigure(Body body)
+      : body_(std::move(body)),
+        surface_(SurfacePoser(body_.subject.avatar).pose(rest_pose(body_.subject.avatar), glm::dvec3(0))) {
+    const glm::dvec3 size = surface_.high - surface_.low;
+    extent_ = std::max({size.x, size.y, size.z});
+    if (!(extent_ > 0)) extent_ = 1;
+    sides_ = size.z > 1.2 * size.x ? std::array<Side, 2>{{{"left", 90}, {"right", -90}}}
+                                   : std::array<Side, 2>{{{"front", 0}, {"back", 180}}};
+    lay_out(std::max(size.x, size.z > 1.2 * size.x ? size.z : 0), size.y);
+    contacts_of_.assign(body_.subject.map.actuator_count + 1, 0);
+    for (const RecordedContact& contact : body_.contacts)
+      if (contact.actuator < contacts_of_.size()) ++contacts_of_[contact.actuator];
+    if (body_.has_contacts) {
+      density_.emplace(surface_, body_.contacts, kSigma * extent_);
+      unit_ = unit_for(extent_);
+      const double highest = density_->highest() * unit_.side_m * unit_.side_m;
+      bar_high_ = highest > 0 ? round_up_125(highest) : 1;
+      // Half of a bar unused would waste its colours.
+      if (bar_high_ > 1.5 * highest && highest > 0) bar_high_ = std::ceil(highest / bar_high_ * 10) * bar_high_ / 10;
+    }
+    make_pictures();
+  }
+
+  double width_pt() const override { return kWidthPt; }
+  double height_pt() const override {
+    return kTitleRoomPt + static_cast<double>(rows()) * row_height_pt() + legend_height_pt() + kFootPt;
+  }
+  std::string description() const override {
+    return fmt::format("{}: {} actuator regions on the avatar{}.", body_.subject.title,
+                       body_.subject.map.actuator_count,
+                       body_.has_contacts ? fmt::format(", {} contacts and their density", body_.contacts.size()) : "");
+  }
+
+  void draw(Canvas& canvas) const override {
+    canvas.text({0, height_pt() - 10}, body_.subject.title, {9, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold});
+    const double top_pt = height_pt() - kTitleRoomPt;
+    const std::string dots = body_.has_contacts ? fmt::format(", with {}", contacts_in_words()) : std::string();
+    draw_group(canvas, left_pt_, top_pt, map_title() + dots, regions_);
+    if (body_.has_contacts) {
+      const bool below = rows() == 2;
+      const double left_pt = below ? left_pt_ : left_pt_ + 2 * cell_width_pt_ + kGapPt;
+      const double heat_top_pt = below ? top_pt - row_height_pt() : top_pt;
+      draw_group(canvas, left_pt, heat_top_pt, "Density of contacts", heat_);
+      draw_heat_bar(canvas, left_pt + 2 * cell_width_pt_ + 14, heat_top_pt - kRowTitlePt);
+    }
+    draw_legend(canvas, top_pt - static_cast<double>(rows()) * row_height_pt());
+    draw_scale_bar(canvas, {left_pt_, 7}, unit_per_pt_, 60);
+  }
+
+ private:
+  void lay_out(double width, double height) {
+    width = std::max(width, extent_ / 100) * 1.05;
+    height = std::max(height, extent_ / 100) * 1.04;
+    stacked_ = body_.has_contacts && width / height > kSlender;
+    const double room_pt = kWidthPt - (body_.has_contacts ? kBarRoomPt : 0);
+    const double columns = body_.has_contacts && !stacked_ ? 4 : 2;
+    const double most_width_pt = (room_pt - (columns > 2 ? kGapPt : 0)) / columns;
+    unit_per_pt_ = std::max(width / whole_pt(most_width_pt), height / kMostCellHeightPt);
+    cell_width_pt_ = std::min(whole_pt(width / unit_per_pt_ + 5.9), whole_pt(most_width_pt));
+    cell_height_pt_ = whole_pt(height / unit_per_pt_ + 5.9);
+    left_pt_ = 0;
+  }
+
+  std::size_t rows() const { return stacked_ ? 2 : 1; }
+  double row_height_pt() const { return kRowTitlePt + cell_height_pt_ + kSideNamePt; }
+
+  std::string map_title() const {
+    if (body_.subject.map.actuator_count == 0) return "No actuator map";
+    return fmt::format("Actuator map, {} regions", body_.subject.map.actuator_count);
+  }
+  std::string contacts_in_words() const {
+    return body_.contacts.size() == 1 ? "1 contact"
+                                      : fmt::format("{} contacts", grouped(static_cast<double>(body_.contacts.size())));
+  }
+
+  std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const {
+    const glm::uvec3& corner = body_.subject.avatar.triangles[triangle];
+    const auto& coordinates = body_.subject.avatar.texture_coordinate;
+    return body_.subject.map.at((1 - u - v) * glm::dvec2(coordinates[corner.x]) +
+                                u * glm::dvec2(coordinates[corner.y]) + v * glm::dvec2(coordinates[corner.z]));
+  }
+
+  View view_of(const Side& side) const {
+    View view;
+    view.camera = Camera::from(side.azimuth_degrees, 0);
+    view.width = print_dots(cell_width_pt_);
+    view.height = print_dots(cell_height_pt_);
+    view.unit_per_dot = unit_per_pt_ * cell_width_pt_ / static_cast<double>(view.width);
+    const glm::dvec3 seen = view.camera.seen((surface_.low + surface_.high) / 2.0);
+    view.left = seen.x - static_cast<double>(view.width) / 2 * view.unit_per_dot;
+    view.bottom = seen.y - static_cast<double>(view.height) / 2 * view.unit_per_dot;
+    return view;
+  }
+
+  void make_pictures() {
+    const std::size_t count = body_.subject.map.actuator_count;
+    for (const Side& side : sides_) {
+      const StudioShot shot(surface_, view_of(side), std::nullopt);
+      std::vector<StudioShot::Overlay> dots = {{shot, kWhite}, {shot, kContactColour}};
+      const double width_dots = static_cast<double>(print_dots(contact_size_pt()));
+      for (const RecordedContact& contact : body_.contacts) {
+        const glm::dvec3 point = surface_.point(contact.triangle, contact.barycentric.x, contact.barycentric.y);
+        dots[0].dot(point, width_dots * 1.7, 0.85, 0, 0.01 * extent_);
+        dots[1].dot(point, width_dots, 1, 0, 0.01 * extent_);
+      }
+      const RegionImage regions(
+          shot, [&](std::uint32_t triangle, double u, double v) { return actuator_at(triangle, u, v); });
+      Raster raster = shot.picture(
+          [&](std::uint32_t triangle, double u, double v) { return region_colour(actuator_at(triangle, u, v), count); },
+          dots);
+      regions.outline(raster);
+      regions_.push_back({std::move(raster), regions.labels()});
+      if (!density_) continue;
+      const double scale = unit_.side_m * unit_.side_m / bar_high_;
+      heat_.push_back({shot.picture([&](std::uint32_t triangle, double u, double v) {
+                         return heat_ramp(density_->at(triangle, u, v) * scale);
+                       }),
+                       {}});
+    }
+  }
+
+  double contact_size_pt() const {
+    if (body_.contacts.size() <= 300) return 2;
+    return body_.contacts.size() <= 3000 ? 1.4 : 0.9;
+  }
+
+  void draw_group(Canvas& canvas, double left_pt, double top_pt, const std::string& title,
+                  const std::vector<Picture>& pictures) const {
+    canvas.text({left_pt, top_pt - 5}, title, {8, kInk});
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+      const double cell_left_pt = left_pt + static_cast<double>(i) * cell_width_pt_;
+      const double cell_top_pt = top_pt - kRowTitlePt;
+      const Box cell = {cell_left_pt, cell_top_pt - cell_height_pt_, cell_left_pt + cell_width_pt_, cell_top_pt};
+      canvas.image(cell, pictures[i].raster);
+      const double pt_per_dot = cell.width_pt() / static_cast<double>(pictures[i].raster.width());
+      for (const Label& label : pictures[i].labels) {
+        const Place place = {cell.left_pt + label.column * pt_per_dot, cell.top_pt - label.row * pt_per_dot};
+        canvas.mark(place, Mark::kCircle, label.actuator < 10 ? 9 : 11, kWhite, kInk);
+        canvas.text(place, fmt::format("{}", label.actuator), {7, kBlack, Anchor::kCentre});
+      }
+      canvas.text({(cell.left_pt + cell.right_pt) / 2, cell.bottom_pt - 6}, sides_[i].name, {7, kInk, Anchor::kCentre});
+    }
+  }
+
+  void draw_heat_bar(Canvas& canvas, double left_pt, double top_pt) const {
+    const double bar_top_pt = top_pt - 24;
+    const Box bar = {left_pt, bar_top_pt - std::min(120.0, cell_height_pt_ - 30), left_pt + 7, bar_top_pt};
+    draw_colour_bar(canvas, bar, heat_ramp, linear_ticks(0, bar_high_, 5), bar_high_, "");
+    canvas.text({left_pt, bar_top_pt + 16}, "contacts", {7, kInk, Anchor::kLeft, Level::kFoot});
+    canvas.text({left_pt, bar_top_pt + 7}, fmt::format("per {}", unit_.name), {7, kInk, Anchor::kLeft, Level::kFoot});
+    const double sigma_m = kSigma * extent_;
+    canvas.text({left_pt, bar.bottom_pt - 11}, "spread by", {7, kSmallPrint, Anchor::kLeft, Level::kFoot});
+    canvas.text({left_pt, bar.bottom_pt - 20},
+                sigma_m < 1 ? fmt::format("{:.2g} mm (σ)", sigma_m * 1000) : fmt::format("{:.2g} m (σ)", sigma_m),
+                {7, kSmallPrint, Anchor::kLeft, Level::kFoot});
+  }
+
+  static constexpr std::size_t kLegendColumns = 3;
+  std::size_t legend_entries() const {
+    return body_.subject.map.actuator_count == 0 ? 0 : body_.subject.map.actuator_count + 1;
+  }
+  std::size_t legend_rows() const { return (legend_entries() + kLegendColumns - 1) / kLegendColumns; }
+  double legend_height_pt() const { return static_cast<double>(legend_rows()) * kLegendLinePt + 4; }
+
+  void draw_legend(Canvas& canvas, double top_pt) const {
+    const std::size_t count = body_.subject.map.actuator_count;
+    for (std::size_t i = 0; i < legend_entries(); ++i) {
+      // Column by column; unmapped skin comes last.
+      const std::size_t actuator = i == count ? 0 : i + 1;
+      const double left_pt = kWidthPt / kLegendColumns * static_cast<double>(i / legend_rows());
+      const double y_pt = top_pt - (static_cast<double>(i % legend_rows()) + 0.5) * kLegendLinePt;
+      const Box swatch = {left_pt, y_pt - 4, left_pt + 13, y_pt + 4};
+      const Colour colour = region_colour(actuator, count);
+      canvas.rectangle(swatch, colour);
+      canvas.frame(swatch, {kInk, 0.3, Dash::kSolid});
+      if (actuator > 0)
+        canvas.text({(swatch.left_pt + swatch.right_pt) / 2, y_pt}, fmt::format("{}", actuator),
+                    {7, ink_on(colour), Anchor::kCentre});
+      std::string words = actuator == 0 ? "no actuator" : name_of(actuator);
+      if (body_.has_contacts) words += fmt::format(" ({})", grouped(static_cast<double>(contacts_of_[actuator])));
+      canvas.text({swatch.right_pt + 4, y_pt}, words, {7, kInk});
+    }
+  }
+
+  std::string name_of(std::size_t actuator) const {
+    const std::string& name = body_.subject.map.names[actuator - 1];
+    return name.empty() ? fmt::format("actuator {}", actuator) : name;
+  }
+
+  Body body_;
+  Surface surface_;
+  double extent_ = 1;
+  std::array<Side, 2> sides_ = {};
+  bool stacked_ = false;
+  double left_pt_ = 0;
+  double cell_width_pt_ = 0;
+  double cell_height_pt_ = 0;
+  double unit_per_pt_ = 1;
+  std::vector<std::size_t> contacts_of_;  ///< by actuator
+  std::optional<ContactDensity> density_;
+  AreaUnit unit_ = {"m²", 1};
+  double bar_high_ = 1;  ///< in contacts per `unit_`
+  std::vector<Picture> regions_;
+  std::vector<Picture> heat_;
+};
+
+}  // namespace
+
+std::unique_ptr<Figure> body_figure(Body body) {
+  return std::make_unique<BodyFigure>(std::move(body));
+}
+
+}  // namespace vestige::plot
