@@ -21,10 +21,12 @@ namespace vestige::plot {
 namespace {
 
 constexpr double kWidthPt = 510;
+constexpr double kLeftPt = 3;
 constexpr double kTitleRoomPt = 24;
 constexpr double kRowTitlePt = 16;
 constexpr double kSideNamePt = 13;
 constexpr double kLegendLinePt = 11;
+constexpr double kLegendWidthPt = 140;
 constexpr double kFootPt = 18;
 constexpr double kBarRoomPt = 66;
 constexpr double kGapPt = 12;
@@ -77,6 +79,18 @@ struct Picture {
   Raster raster;
   std::vector<Label> labels;
 };
+
+/// As much of `text` as fits.
+std::string shortened(std::string text, double room_pt) {
+  const TextStyle style = {7, kInk};
+  if (text_width_pt(text, style) <= room_pt) return text;
+  while (!text.empty() && text_width_pt(text + "…", style) > room_pt) {
+    // A whole character, which may be several bytes.
+    while (text.size() > 1 && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+    text.pop_back();
+  }
+  return text + "…";
+}
 
 double whole_pt(double length_pt) {
   return std::max(6.0, std::floor(length_pt / 6) * 6);
@@ -200,19 +214,20 @@ class BodyFigure : public Figure {
   }
 
   void draw(Canvas& canvas) const override {
-    canvas.text({0, height_pt() - 10}, body_.subject.title, {9, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold});
+    canvas.text({kLeftPt, height_pt() - 10}, body_.subject.title,
+                {9, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold});
     const double top_pt = height_pt() - kTitleRoomPt;
     const std::string dots = body_.has_contacts ? fmt::format(", with {}", contacts_in_words()) : std::string();
-    draw_group(canvas, left_pt_, top_pt, map_title() + dots, regions_);
+    draw_group(canvas, kLeftPt, top_pt, map_title() + dots, regions_);
     if (body_.has_contacts) {
       const bool below = rows() == 2;
-      const double left_pt = below ? left_pt_ : left_pt_ + 2 * cell_width_pt_ + kGapPt;
+      const double left_pt = below ? kLeftPt : kLeftPt + 2 * cell_width_pt_ + kGapPt;
       const double heat_top_pt = below ? top_pt - row_height_pt() : top_pt;
       draw_group(canvas, left_pt, heat_top_pt, "Density of contacts", heat_);
       draw_heat_bar(canvas, left_pt + 2 * cell_width_pt_ + 14, heat_top_pt - kRowTitlePt);
     }
-    draw_legend(canvas, top_pt - static_cast<double>(rows()) * row_height_pt());
-    draw_scale_bar(canvas, {left_pt_, 7}, unit_per_pt_, 60);
+    draw_legend(canvas, top_pt);
+    draw_scale_bar(canvas, {kLeftPt, 7}, unit_per_pt_, 60);
   }
 
  private:
@@ -220,13 +235,12 @@ class BodyFigure : public Figure {
     width = std::max(width, extent_ / 100) * 1.05;
     height = std::max(height, extent_ / 100) * 1.04;
     stacked_ = body_.has_contacts && width / height > kSlender;
-    const double room_pt = kWidthPt - (body_.has_contacts ? kBarRoomPt : 0);
+    const double room_pt = kWidthPt - 2 * kLeftPt - (body_.has_contacts ? kBarRoomPt : 0);
     const double columns = body_.has_contacts && !stacked_ ? 4 : 2;
     const double most_width_pt = (room_pt - (columns > 2 ? kGapPt : 0)) / columns;
     unit_per_pt_ = std::max(width / whole_pt(most_width_pt), height / kMostCellHeightPt);
     cell_width_pt_ = std::min(whole_pt(width / unit_per_pt_ + 5.9), whole_pt(most_width_pt));
     cell_height_pt_ = whole_pt(height / unit_per_pt_ + 5.9);
-    left_pt_ = 0;
   }
 
   std::size_t rows() const { return stacked_ ? 2 : 1; }
@@ -289,7 +303,8 @@ class BodyFigure : public Figure {
 
   double contact_size_pt() const {
     if (body_.contacts.size() <= 300) return 2;
-    return body_.contacts.size() <= 3000 ? 1.4 : 0.9;
+    if (body_.contacts.size() <= 1000) return 1.5;
+    return body_.contacts.size() <= 3000 ? 1.1 : 0.8;
   }
 
   void draw_group(Canvas& canvas, double left_pt, double top_pt, const std::string& title,
@@ -323,19 +338,34 @@ class BodyFigure : public Figure {
                 {7, kSmallPrint, Anchor::kLeft, Level::kFoot});
   }
 
-  static constexpr std::size_t kLegendColumns = 3;
   std::size_t legend_entries() const {
     return body_.subject.map.actuator_count == 0 ? 0 : body_.subject.map.actuator_count + 1;
   }
-  std::size_t legend_rows() const { return (legend_entries() + kLegendColumns - 1) / kLegendColumns; }
-  double legend_height_pt() const { return static_cast<double>(legend_rows()) * kLegendLinePt + 4; }
+  /// Where the pictures and their colour bar end.
+  double pictures_right_pt() const {
+    const double columns = body_.has_contacts && !stacked_ ? 4 : 2;
+    return kLeftPt + columns * cell_width_pt_ + (columns > 2 ? kGapPt : 0) + (body_.has_contacts ? kBarRoomPt : 10);
+  }
+  bool legend_is_beside() const {
+    return kWidthPt - pictures_right_pt() >= kLegendWidthPt &&
+           static_cast<double>(legend_entries()) * kLegendLinePt <= cell_height_pt_;
+  }
+  std::size_t legend_columns() const { return legend_is_beside() ? 1 : 3; }
+  std::size_t legend_rows() const { return (legend_entries() + legend_columns() - 1) / legend_columns(); }
+  double legend_height_pt() const {
+    return legend_is_beside() ? 0 : static_cast<double>(legend_rows()) * kLegendLinePt + 4;
+  }
 
-  void draw_legend(Canvas& canvas, double top_pt) const {
+  void draw_legend(Canvas& canvas, double pictures_top_pt) const {
     const std::size_t count = body_.subject.map.actuator_count;
+    const bool beside = legend_is_beside();
+    const double begin_pt = beside ? pictures_right_pt() : kLeftPt;
+    const double column_pt = (kWidthPt - begin_pt) / static_cast<double>(legend_columns());
+    const double top_pt = pictures_top_pt - (beside ? kRowTitlePt : static_cast<double>(rows()) * row_height_pt());
     for (std::size_t i = 0; i < legend_entries(); ++i) {
       // Column by column; unmapped skin comes last.
       const std::size_t actuator = i == count ? 0 : i + 1;
-      const double left_pt = kWidthPt / kLegendColumns * static_cast<double>(i / legend_rows());
+      const double left_pt = begin_pt + column_pt * static_cast<double>(i / legend_rows());
       const double y_pt = top_pt - (static_cast<double>(i % legend_rows()) + 0.5) * kLegendLinePt;
       const Box swatch = {left_pt, y_pt - 4, left_pt + 13, y_pt + 4};
       const Colour colour = region_colour(actuator, count);
@@ -344,9 +374,14 @@ class BodyFigure : public Figure {
       if (actuator > 0)
         canvas.text({(swatch.left_pt + swatch.right_pt) / 2, y_pt}, fmt::format("{}", actuator),
                     {7, ink_on(colour), Anchor::kCentre});
-      std::string words = actuator == 0 ? "no actuator" : name_of(actuator);
-      if (body_.has_contacts) words += fmt::format(" ({})", grouped(static_cast<double>(contacts_of_[actuator])));
-      canvas.text({swatch.right_pt + 4, y_pt}, words, {7, kInk});
+      const std::size_t contacts = contacts_of_[actuator];
+      const std::string behind =
+          !body_.has_contacts
+              ? ""
+              : fmt::format(": {} contact{}", grouped(static_cast<double>(contacts)), contacts == 1 ? "" : "s");
+      const double room_pt = column_pt - 20 - text_width_pt(behind, {7, kInk});
+      canvas.text({swatch.right_pt + 4, y_pt},
+                  shortened(actuator == 0 ? "no actuator" : name_of(actuator), room_pt) + behind, {7, kInk});
     }
   }
 
@@ -360,7 +395,6 @@ class BodyFigure : public Figure {
   double extent_ = 1;
   std::array<Side, 2> sides_ = {};
   bool stacked_ = false;
-  double left_pt_ = 0;
   double cell_width_pt_ = 0;
   double cell_height_pt_ = 0;
   double unit_per_pt_ = 1;

@@ -11,11 +11,13 @@
 #include "analysis/plot/body_figure.hpp"
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/headless_window.hpp"
+#include "analysis/plot/scene_figure.hpp"
 #include "analysis/plot/sweep_figure.hpp"
 #include "analysis/plot/texture_figure.hpp"
 #include "analysis/plot/timeline_figure.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
+#include "traces/trace_reader.hpp"
 #include "version.hpp"
 
 namespace {
@@ -37,6 +39,8 @@ struct Options {
   std::filesystem::path contacts;
   std::string animation;
   std::size_t poses = 6;
+  plot::MomentChoice moments;
+  double trail_ms = 100;
   bool force = false;
   bool quiet = false;
 };
@@ -143,6 +147,36 @@ int draw_body(Options options) {
   });
 }
 
+/// What is wrong with a trace, to standard error; its part of the exit code.
+int report_damage(const vestige::TraceReader& trace, const std::filesystem::path& path) {
+  if (trace.complete()) return kDone;
+  for (const std::string& warning : trace.warnings()) fmt::print(stderr, "{}\n", warning);
+  if (trace.warnings().empty()) fmt::print(stderr, "{}: is not complete\n", path.string());
+  return kIncomplete;
+}
+
+int draw_scene(Options options) {
+  const std::filesystem::path& input = options.inputs.front();
+  if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-scene";
+  options.moments.trail_s = options.trail_ms / 1000;
+  int damage = kDone;
+  const int drawn = write_figure(options, stem_of(options), [&] {
+    vestige::TraceReader trace(input);
+    plot::Scene scene;
+    scene.subject = plot::read_subject(trace, input, options.map);
+    scene.trail_s = options.moments.trail_s;
+    scene.has_contacts = !options.contacts.empty();
+    std::vector<vestige::RecordedContact> contacts;
+    vestige::ContactLimits limits;
+    limits.triangles = scene.subject.avatar.triangles.size();
+    if (scene.has_contacts) contacts = vestige::read_contacts_csv(options.contacts, limits);
+    scene.moments = plot::read_moments(trace, input.string(), options.moments, contacts);
+    damage = report_damage(trace, input);
+    return plot::scene_figure(std::move(scene));
+  });
+  return drawn == kDone ? damage : drawn;
+}
+
 /// Help that opens with examples, which the list of subcommands leaves out.
 class ExamplesFirst : public CLI::Formatter {
  public:
@@ -220,6 +254,28 @@ int main(int argc, char** argv) {
   body.add_option("--contacts", options.contacts, "written by 'vestige replay --contacts FILE.csv'")->type_name("CSV");
   add_common_options(body, options, "OUT", "OUT.svg and OUT.png (default: the input's name with -body)");
 
+  CLI::App& scene = add_command(app, "scene", "a film strip of a trace: the avatar, the colliders and their paths",
+                                "  vestige plot scene man.mcap\n"
+                                "  vestige plot scene man.mcap --contacts contacts.csv --frames 4 --from 0.5 --to 1\n");
+  scene.add_option("input", options.inputs, "a trace")->type_name("MCAP")->expected(1)->required();
+  scene.add_option("--frames", options.moments.count, "how many frames are drawn")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 24));
+  scene.add_option("--from", options.moments.from_s, "leave out what is before [default: the trace's begin]")
+      ->type_name("SECONDS");
+  scene.add_option("--to", options.moments.to_s, "leave out what is after [default: the trace's end]")
+      ->type_name("SECONDS");
+  scene.add_option("--trail", options.trail_ms, "how far back paths and contacts are shown")
+      ->capture_default_str()
+      ->type_name("MS")
+      ->check(CLI::Range(0.001, 1e6));
+  scene
+      .add_option("--contacts", options.contacts,
+                  "written by 'vestige replay --contacts FILE.csv'; the frames drawn are then ones with contacts")
+      ->type_name("CSV");
+  scene.add_option("--map", options.map, "actuator map instead of the trace's")->type_name("builtin|none|FILE.png");
+  add_common_options(scene, options, "OUT", "OUT.svg and OUT.png (default: the input's name with -scene)");
+
   CLI::App& avatar = add_command(app, "avatar", "an avatar from four sides, in poses over its animations",
                                  "  vestige plot avatar builtin\n"
                                  "  vestige plot avatar man.glb --animation walk -o figures/walk\n");
@@ -244,6 +300,7 @@ int main(int argc, char** argv) {
   try {
     if (sweep.parsed()) return draw_sweep(options);
     if (body.parsed()) return draw_body(options);
+    if (scene.parsed()) return draw_scene(options);
     if (avatar.parsed()) return draw_avatar(options);
     if (timeline.parsed()) return draw_timeline(options);
     return draw_textures(options);
