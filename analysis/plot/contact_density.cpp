@@ -19,7 +19,8 @@ struct Place {
 };
 
 constexpr double kReach = 3;  // in sigmas: 99 % of a Gaussian on a plane
-constexpr double kMostParts = 64;
+/// Of all triangles together: a triangle needs 30 000 where it is as large as the body.
+constexpr double kMostPlaces = 4e6;
 
 /// Places by the cube they lie in, as wide as the Gaussian reaches.
 class Neighbourhood {
@@ -67,6 +68,7 @@ class Neighbourhood {
 ContactDensity::ContactDensity(const Surface& surface, std::span<const RecordedContact> contacts, double sigma) {
   std::vector<Place> places;
   cuts_.reserve(surface.triangles.size());
+  const double most_parts = std::ceil(std::sqrt(2 * kMostPlaces / static_cast<double>(surface.triangles.size())));
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
     const glm::dvec3 a = surface.point(t, 0, 0);
     const glm::dvec3 b = surface.point(t, 1, 0);
@@ -76,7 +78,7 @@ ContactDensity::ContactDensity(const Surface& surface, std::span<const RecordedC
     Cut cut;
     cut.first = places.size();
     if (std::isfinite(longest))
-      cut.parts = static_cast<std::size_t>(std::clamp(std::ceil(2 * longest / sigma), 1.0, kMostParts));
+      cut.parts = static_cast<std::size_t>(std::clamp(std::ceil(2 * longest / sigma), 1.0, most_parts));
     cuts_.push_back(cut);
     const auto parts = static_cast<double>(cut.parts);
     for (std::size_t v = 0; v <= cut.parts; ++v)
@@ -94,12 +96,8 @@ ContactDensity::ContactDensity(const Surface& surface, std::span<const RecordedC
       }
   }
   for (const RecordedContact& contact : contacts) {
-    const Cut& cut = cuts_[contact.triangle];
-    const auto parts = static_cast<double>(cut.parts);
-    const auto u = static_cast<std::size_t>(std::lround(std::clamp(contact.barycentric.x, 0.0, 1.0) * parts));
-    const auto v = static_cast<std::size_t>(std::lround(std::clamp(contact.barycentric.y, 0.0, 1.0) * parts));
-    const std::size_t kept_u = std::min(u, cut.parts);
-    places[cut.place(kept_u, std::min(v, cut.parts - kept_u))].contacts += 1;
+    const Spot spot = spot_at(contact.triangle, contact.barycentric.x, contact.barycentric.y);
+    for (std::size_t k = 0; k < 3; ++k) places[spot.place[k]].contacts += spot.weight[k];
   }
   const Neighbourhood neighbourhood(places, kReach * sigma);
   density_.assign(places.size(), 0);
@@ -113,23 +111,28 @@ ContactDensity::ContactDensity(const Surface& surface, std::span<const RecordedC
   }
 }
 
-double ContactDensity::at(std::uint32_t triangle, double u, double v) const {
+ContactDensity::Spot ContactDensity::spot_at(std::uint32_t triangle, double u, double v) const {
   const Cut& cut = cuts_[triangle];
   const auto parts = static_cast<double>(cut.parts);
-  const double x = std::clamp(u, 0.0, 1.0) * parts;
-  const double y = std::clamp(v, 0.0, 1.0 - std::clamp(u, 0.0, 1.0)) * parts;
+  const double kept_u = std::clamp(u, 0.0, 1.0);
+  const double x = kept_u * parts;
+  const double y = std::clamp(v, 0.0, 1.0 - kept_u) * parts;
   const auto column = std::min(static_cast<std::size_t>(x), cut.parts - 1);
   const auto row = std::min(static_cast<std::size_t>(y), cut.parts - 1 - column);
   const double along = x - static_cast<double>(column);
   const double across = y - static_cast<double>(row);
-  const double right = density_[cut.place(column + 1, row)];
-  const double above = density_[cut.place(column, row + 1)];
-  if (along + across <= 1 || column + row + 2 > cut.parts) {
-    const double corner = density_[cut.place(column, row)];
-    return corner + along * (right - corner) + across * (above - corner);
-  }
-  const double corner = density_[cut.place(column + 1, row + 1)];
-  return corner + (1 - along) * (above - corner) + (1 - across) * (right - corner);
+  const std::size_t right = cut.place(column + 1, row);
+  const std::size_t above = cut.place(column, row + 1);
+  if (along + across <= 1 || column + row + 2 > cut.parts)
+    return {{cut.place(column, row), right, above}, {1 - along - across, along, across}};
+  return {{cut.place(column + 1, row + 1), above, right}, {along + across - 1, 1 - along, 1 - across}};
+}
+
+double ContactDensity::at(std::uint32_t triangle, double u, double v) const {
+  const Spot spot = spot_at(triangle, u, v);
+  double sum = 0;
+  for (std::size_t k = 0; k < 3; ++k) sum += spot.weight[k] * density_[spot.place[k]];
+  return sum;
 }
 
 double ContactDensity::highest() const {

@@ -105,7 +105,9 @@ int draw_textures(const Options& options) {
 /// Larger than that, a figure fits neither on a page nor into OpenGL's windows.
 constexpr std::size_t kMostAnimations = 4;
 
-int draw_avatar(const Options& options) {
+int draw_avatar(Options options) {
+  if (options.output.empty())
+    options.output = std::filesystem::path(options.inputs.front()).replace_extension().string() + "-avatar";
   return write_figure(options, stem_of(options), [&] {
     const std::string input = options.inputs.front();
     plot::ContactSheet sheet;
@@ -290,7 +292,7 @@ int main(int argc, char** argv) {
   avatar.add_option("--poses", options.poses, "poses of each animation")
       ->capture_default_str()
       ->check(CLI::Range(1, 12));
-  add_common_options(avatar, options, "OUT", "OUT.svg and OUT.png (default: the input's name)");
+  add_common_options(avatar, options, "OUT", "OUT.svg and OUT.png (default: the input's name with -avatar)");
 
   try {
     app.parse(argc, argv);
