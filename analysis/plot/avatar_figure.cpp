@@ -40,11 +40,6 @@ std::string name_of(const Avatar& avatar, const Animation& animation) {
   return fmt::format("animation {}", &animation - avatar.animations.data());
 }
 
-/// A multiple of 6 pt: whole dots.
-double whole_pt(double length_pt) {
-  return std::max(6.0, std::floor(length_pt / 6) * 6);
-}
-
 struct Shown {
   double time_s = 0;
   Surface surface;
@@ -79,7 +74,7 @@ class AvatarFigure : public Figure {
   std::string description() const override { return fmt::format("{}, posed and seen from four sides.", title_); }
 
   void draw(Canvas& canvas) const override {
-    canvas.text({0, height_pt() - 10}, title_, {9, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold});
+    canvas.text({kLabelRoomPt, height_pt() - 10}, title_, {9, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold});
     double top_pt = height_pt() - kTitleRoomPt;
     for (const Block& block : blocks_) {
       draw_block(canvas, block, top_pt);
@@ -133,10 +128,11 @@ class AvatarFigure : public Figure {
     height *= 1.08;
     if (!(width > 0)) width = 1;
     if (!(height > 0)) height = 1;
-    cell_width_pt_ = whole_pt((kWidthPt - kLabelRoomPt) / static_cast<double>(std::max<std::size_t>(columns(), 4)));
+    cell_width_pt_ =
+        whole_dots_pt((kWidthPt - kLabelRoomPt) / static_cast<double>(std::max<std::size_t>(columns(), 4)));
     const double most_pt = only_rest() ? kRestCellHeightPt : kMostCellHeightPt;
     unit_per_pt_ = std::max(width / cell_width_pt_, height / most_pt);
-    cell_height_pt_ = whole_pt(height / unit_per_pt_ + 5.9);
+    cell_height_pt_ = whole_dots_pt(height / unit_per_pt_ + 5.9);
   }
 
   double block_height_pt() const { return kBlockTitlePt + static_cast<double>(rows()) * cell_height_pt_ + kTimeRoomPt; }
@@ -167,11 +163,8 @@ class AvatarFigure : public Figure {
   }
 
   Raster picture(const Surface& surface, double ground_y, const Side& side) const {
-    View view;
-    view.camera = Camera::from(side.azimuth_degrees, kElevationDegrees);
-    view.width = print_dots(cell_width_pt_);
-    view.height = print_dots(cell_height_pt_);
-    view.unit_per_dot = unit_per_pt_ * cell_width_pt_ / static_cast<double>(view.width);
+    View view = view_of_cell(Camera::from(side.azimuth_degrees, kElevationDegrees), cell_width_pt_, cell_height_pt_,
+                             unit_per_pt_);
     // Every pose stands in the middle of its cell, whatever ground the animation covers.
     glm::dvec3 stand = (surface.low + surface.high) / 2.0;
     stand.y = ground_y;

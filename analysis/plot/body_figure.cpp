@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/vec2.hpp>
 #include <optional>
 
 #include "analysis/plot/axis.hpp"
@@ -13,6 +12,7 @@
 #include "analysis/plot/contact_density.hpp"
 #include "analysis/plot/palette.hpp"
 #include "analysis/plot/region_colours.hpp"
+#include "analysis/plot/region_image.hpp"
 #include "analysis/plot/scale_bar.hpp"
 #include "analysis/plot/studio.hpp"
 
@@ -68,16 +68,9 @@ struct Side {
   double azimuth_degrees;
 };
 
-/// An actuator's number and where it is written, in dots.
-struct Label {
-  std::size_t actuator = 0;
-  double column = 0;
-  double row = 0;
-};
-
 struct Picture {
   Raster raster;
-  std::vector<Label> labels;
+  std::vector<RegionLabel> labels;
 };
 
 /// As much of `text` as fits.
@@ -91,92 +84,6 @@ std::string shortened(std::string text, double room_pt) {
   }
   return text + "…";
 }
-
-double whole_pt(double length_pt) {
-  return std::max(6.0, std::floor(length_pt / 6) * 6);
-}
-
-/// Which actuator's skin is seen at each dot; kNone beside the body.
-class RegionImage {
- public:
-  static constexpr std::int32_t kNone = -1;
-
-  template <typename ActuatorAt>
-  RegionImage(const StudioShot& shot, const ActuatorAt& actuator_at)
-      : width_(shot.view().width), height_(shot.view().height) {
-    for (std::size_t row = 0; row < height_; ++row)
-      for (std::size_t column = 0; column < width_; ++column) {
-        const Sample& sample = shot.at(column, row);
-        region_.push_back(sample.triangle == Sample::kNothing
-                              ? kNone
-                              : std::int32_t{actuator_at(sample.triangle, double{sample.u}, double{sample.v})});
-      }
-  }
-
-  /// A dark line where regions meet, so that they are told apart in grey too.
-  void outline(Raster& raster) const {
-    for (std::size_t row = 1; row < height_; ++row)
-      for (std::size_t column = 1; column < width_; ++column) {
-        const std::int32_t here = at(column, row);
-        for (const std::int32_t other : {at(column - 1, row), at(column, row - 1)})
-          if (here != other && here != kNone && other != kNone)
-            raster.at(column, row) = blend(raster.at(column, row), kInk, 0.65);
-      }
-  }
-
-  /// For every actuator that is seen, the dot that is farthest from other regions.
-  std::vector<Label> labels() const {
-    std::vector<float> distance = distances();
-    std::vector<std::pair<float, std::size_t>> best;
-    for (std::size_t i = 0; i < region_.size(); ++i) {
-      if (region_[i] <= 0) continue;
-      const auto actuator = static_cast<std::size_t>(region_[i]);
-      if (actuator >= best.size()) best.resize(actuator + 1);
-      best[actuator] = std::max(best[actuator], {distance[i], i});
-    }
-    std::vector<Label> labels;
-    constexpr float kLeastDots = 4;  // of a smaller sight a label would hide all
-    for (std::size_t actuator = 1; actuator < best.size(); ++actuator) {
-      const auto [dots, i] = best[actuator];
-      if (dots < kLeastDots) continue;
-      labels.push_back({actuator, static_cast<double>(i % width_) + 0.5, static_cast<double>(i / width_) + 0.5});
-    }
-    return labels;
-  }
-
- private:
-  std::int32_t at(std::size_t column, std::size_t row) const { return region_[row * width_ + column]; }
-
-  /// Of each dot to the nearest of another region, in dots, to within a tenth: two sweeps, with steps of 1 and √2.
-  std::vector<float> distances() const {
-    constexpr float kDiagonal = 1.41421356F;
-    std::vector<float> distance(region_.size(), 0.0F);
-    const auto sweep = [&](std::size_t column, std::size_t row, std::ptrdiff_t direction) {
-      const std::size_t i = row * width_ + column;
-      if (column == 0 || row == 0 || column + 1 == width_ || row + 1 == height_) return;
-      float nearest = direction > 0 ? 1e9F : distance[i];
-      const auto ask = [&](std::ptrdiff_t x, std::ptrdiff_t y, float step) {
-        const auto other = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) +
-                                                    direction * (y * static_cast<std::ptrdiff_t>(width_) + x));
-        nearest = std::min(nearest, region_[other] == region_[i] ? distance[other] + step : step);
-      };
-      ask(-1, 0, 1.0F);
-      ask(-1, -1, kDiagonal);
-      ask(0, -1, 1.0F);
-      ask(1, -1, kDiagonal);
-      distance[i] = nearest;
-    };
-    for (std::size_t row = 0; row < height_; ++row)
-      for (std::size_t column = 0; column < width_; ++column) sweep(column, row, 1);
-    for (std::size_t row = height_; row-- > 0;)
-      for (std::size_t column = width_; column-- > 0;) sweep(column, row, -1);
-    return distance;
-  }
-
-  std::size_t width_;
-  std::size_t height_;
-  std::vector<std::int32_t> region_;
-};
 
 class BodyFigure : public Figure {
  public:
@@ -238,9 +145,9 @@ class BodyFigure : public Figure {
     const double room_pt = kWidthPt - 2 * kLeftPt - (body_.has_contacts ? kBarRoomPt : 0);
     const double columns = body_.has_contacts && !stacked_ ? 4 : 2;
     const double most_width_pt = (room_pt - (columns > 2 ? kGapPt : 0)) / columns;
-    unit_per_pt_ = std::max(width / whole_pt(most_width_pt), height / kMostCellHeightPt);
-    cell_width_pt_ = std::min(whole_pt(width / unit_per_pt_ + 5.9), whole_pt(most_width_pt));
-    cell_height_pt_ = whole_pt(height / unit_per_pt_ + 5.9);
+    unit_per_pt_ = std::max(width / whole_dots_pt(most_width_pt), height / kMostCellHeightPt);
+    cell_width_pt_ = std::min(whole_dots_pt(width / unit_per_pt_ + 5.9), whole_dots_pt(most_width_pt));
+    cell_height_pt_ = whole_dots_pt(height / unit_per_pt_ + 5.9);
   }
 
   std::size_t rows() const { return stacked_ ? 2 : 1; }
@@ -255,19 +162,8 @@ class BodyFigure : public Figure {
                                       : fmt::format("{} contacts", grouped(static_cast<double>(body_.contacts.size())));
   }
 
-  std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const {
-    const glm::uvec3& corner = body_.subject.avatar.triangles[triangle];
-    const auto& coordinates = body_.subject.avatar.texture_coordinate;
-    return body_.subject.map.at((1 - u - v) * glm::dvec2(coordinates[corner.x]) +
-                                u * glm::dvec2(coordinates[corner.y]) + v * glm::dvec2(coordinates[corner.z]));
-  }
-
   View view_of(const Side& side) const {
-    View view;
-    view.camera = Camera::from(side.azimuth_degrees, 0);
-    view.width = print_dots(cell_width_pt_);
-    view.height = print_dots(cell_height_pt_);
-    view.unit_per_dot = unit_per_pt_ * cell_width_pt_ / static_cast<double>(view.width);
+    View view = view_of_cell(Camera::from(side.azimuth_degrees, 0), cell_width_pt_, cell_height_pt_, unit_per_pt_);
     const glm::dvec3 seen = view.camera.seen((surface_.low + surface_.high) / 2.0);
     view.left = seen.x - static_cast<double>(view.width) / 2 * view.unit_per_dot;
     view.bottom = seen.y - static_cast<double>(view.height) / 2 * view.unit_per_dot;
@@ -286,10 +182,11 @@ class BodyFigure : public Figure {
         dots[1].dot(point, width_dots, 1, 0, 0.01 * extent_);
       }
       const RegionImage regions(
-          shot, [&](std::uint32_t triangle, double u, double v) { return actuator_at(triangle, u, v); });
-      Raster raster = shot.picture(
-          [&](std::uint32_t triangle, double u, double v) { return region_colour(actuator_at(triangle, u, v), count); },
-          dots);
+          shot, [&](std::uint32_t triangle, double u, double v) { return body_.subject.actuator_at(triangle, u, v); });
+      Raster raster =
+          shot.picture([&](std::uint32_t triangle, double u,
+                           double v) { return region_colour(body_.subject.actuator_at(triangle, u, v), count); },
+                       dots);
       regions.outline(raster);
       regions_.push_back({std::move(raster), regions.labels()});
       if (!density_) continue;
@@ -316,7 +213,7 @@ class BodyFigure : public Figure {
       const Box cell = {cell_left_pt, cell_top_pt - cell_height_pt_, cell_left_pt + cell_width_pt_, cell_top_pt};
       canvas.image(cell, pictures[i].raster);
       const double pt_per_dot = cell.width_pt() / static_cast<double>(pictures[i].raster.width());
-      for (const Label& label : pictures[i].labels) {
+      for (const RegionLabel& label : pictures[i].labels) {
         const Place place = {cell.left_pt + label.column * pt_per_dot, cell.top_pt - label.row * pt_per_dot};
         canvas.mark(place, Mark::kCircle, label.actuator < 10 ? 9 : 11, kWhite, kInk);
         canvas.text(place, fmt::format("{}", label.actuator), {7, kBlack, Anchor::kCentre});

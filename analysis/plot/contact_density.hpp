@@ -15,8 +15,8 @@ namespace vestige::plot {
 /// faces the same way, and counts one in all, at hems as anywhere. The distance is the straight one.
 class ContactDensity {
  public:
-  /// `sigma` is the Gaussian's, in the surface's unit. The density is computed at places half of it apart, between which
-  /// contacts are shared and densities interpolated: peaks come out lower by up to a twentieth.
+  /// `sigma` is the Gaussian's, in the surface's unit. The density is computed at places half of it apart, between
+  /// which contacts are shared and densities interpolated: peaks come out lower by up to a twentieth.
   ContactDensity(const Surface& surface, std::span<const RecordedContact> contacts, double sigma);
 
   /// Contacts per square unit where the triangle's second and third vertex weigh u and v.

@@ -207,10 +207,11 @@ void add_common_options(CLI::App& command, Options& options, const char* output_
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Draws result files as figures, SVG and PNG (300 dots per inch).", "vestige plot");
+  CLI::App app("Draws results, traces and avatars as figures, SVG and PNG (300 dots per inch).", "vestige plot");
   app.formatter(
       std::make_shared<ExamplesFirst>("  vestige plot sweep results/sweep\n"
-                                      "  vestige plot timeline timeline.csv -o figures/timeline\n"));
+                                      "  vestige plot timeline timeline.csv -o figures/timeline\n"
+                                      "  vestige plot body man.mcap --contacts contacts.csv\n"));
   app.set_version_flag("--version", fmt::format("vestige-plot {} ({}{})", vestige::kVersion, vestige::kCommit,
                                                 vestige::kDirty ? ", changed" : ""));
   app.require_subcommand(1);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -28,6 +29,13 @@ inline constexpr Colour kInk = {40, 40, 40};
 inline constexpr Colour kSmallPrint = {105, 105, 105};
 inline constexpr Colour kGrid = {225, 225, 225};
 inline constexpr Colour kWhite = {255, 255, 255};
+
+/// The sRGB channel that shows so much light, 0..1 (IEC 61966-2-1).
+inline std::uint8_t srgb_channel(double light) {
+  const double value = std::clamp(light, 0.0, 1.0);
+  const double shown = value <= 0.0031308 ? value * 12.92 : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(shown * 255));
+}
 
 /// `part` 0 gives `from`, 1 gives `to`.
 inline Colour blend(Colour from, Colour to, double part) {

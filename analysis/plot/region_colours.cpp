@@ -1,6 +1,5 @@
 #include "analysis/plot/region_colours.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -10,12 +9,6 @@ namespace vestige::plot {
 
 namespace {
 
-std::uint8_t channel(double linear) {
-  const double value = std::clamp(linear, 0.0, 1.0);
-  const double shown = value <= 0.0031308 ? value * 12.92 : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(shown * 255));
-}
-
 /// Ottosson's Oklab (2020): equal lightness looks equally light whatever the hue.
 Colour oklch(double lightness, double chroma, double hue) {
   const double a = chroma * std::cos(hue);
@@ -23,9 +16,9 @@ Colour oklch(double lightness, double chroma, double hue) {
   const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
   const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
   const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
-  return {channel(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
-          channel(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
-          channel(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
+  return {srgb_channel(4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s),
+          srgb_channel(-1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s),
+          srgb_channel(-0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s)};
 }
 
 }  // namespace

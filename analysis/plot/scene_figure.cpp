@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/vec2.hpp>
 #include <limits>
 
 #include "analysis/plot/axis.hpp"
@@ -35,10 +34,6 @@ constexpr Colour kPathColour = kBlue;
 constexpr Colour kContactColour = kVermillion;
 constexpr double kHidden = 0.18;
 constexpr double kContactPt = 3.2;
-
-double whole_pt(double length_pt) {
-  return std::max(6.0, std::floor(length_pt / 6) * 6);
-}
 
 /// Where the avatar stands in the world.
 glm::dvec3 standing_at(const Avatar& avatar, const Pose& pose) {
@@ -146,9 +141,9 @@ class SceneFigure : public Figure {
     const std::size_t count = surfaces.size();
     rows_ = (count + kMostColumns - 1) / kMostColumns;
     columns_ = (count + rows_ - 1) / rows_;
-    cell_width_pt_ = whole_pt((kWidthPt - 2 * kLeftPt) / static_cast<double>(std::max<std::size_t>(columns_, 3)));
+    cell_width_pt_ = whole_dots_pt((kWidthPt - 2 * kLeftPt) / static_cast<double>(std::max<std::size_t>(columns_, 3)));
     unit_per_pt_ = std::max(width / cell_width_pt_, height / kMostCellHeightPt);
-    cell_height_pt_ = whole_pt(height / unit_per_pt_ + 5.9);
+    cell_height_pt_ = whole_dots_pt(height / unit_per_pt_ + 5.9);
   }
 
   /// What stays in place in the picture.
@@ -159,11 +154,7 @@ class SceneFigure : public Figure {
   }
 
   Panel make_panel(const Scene& scene, const Moment& moment, const Surface& surface, const glm::dvec3& origin_m) const {
-    View view;
-    view.camera = camera_;
-    view.width = print_dots(cell_width_pt_);
-    view.height = print_dots(cell_height_pt_);
-    view.unit_per_dot = unit_per_pt_ * cell_width_pt_ / static_cast<double>(view.width);
+    View view = view_of_cell(camera_, cell_width_pt_, cell_height_pt_, unit_per_pt_);
     const glm::dvec3 seen = camera_.seen(middle_of(surface)) + seen_low_;
     view.left = seen.x - (static_cast<double>(view.width) * view.unit_per_dot - seen_width_) / 2;
     view.bottom = seen.y;
@@ -181,15 +172,10 @@ class SceneFigure : public Figure {
       rings.dot(at, 1.5 * dot, 1, 0, 0.01 * extent_);
       contacts.dot(at, dot, 1, 0.35, 0.01 * extent_);
     }
-    const ActuatorMap& map = scene.subject.map;
-    const Avatar& avatar = scene.subject.avatar;
+    const std::size_t count = scene.subject.map.actuator_count;
     const Paint paint = [&](std::uint32_t triangle, double u, double v) {
-      const glm::uvec3& corner = avatar.triangles[triangle];
-      const auto& coordinates = avatar.texture_coordinate;
-      const std::uint16_t actuator =
-          map.at((1 - u - v) * glm::dvec2(coordinates[corner.x]) + u * glm::dvec2(coordinates[corner.y]) +
-                 v * glm::dvec2(coordinates[corner.z]));
-      return actuator == 0 ? kSkin : blend(region_colour(actuator, map.actuator_count), kSkin, 0.6);
+      const std::uint16_t actuator = scene.subject.actuator_at(triangle, u, v);
+      return actuator == 0 ? kSkin : blend(region_colour(actuator, count), kSkin, 0.6);
     };
     return {shot.picture(paint, {paths, segments, rings, contacts}), moment.time_s, moment.contacts.size()};
   }

@@ -14,15 +14,16 @@ namespace {
 
 constexpr std::size_t kFineness = 3;
 constexpr std::size_t kShares = kFineness * kFineness;
-constexpr std::size_t kKeyLights = 3 * kShares;
-constexpr std::size_t kSkyLights = 6 * kShares;
+constexpr std::size_t kKeyLights = 2 * kShares;
+constexpr std::size_t kSkyLights = 4 * kShares;
 constexpr double kKeyShare = 0.66;
 /// Light that comes from everywhere, shadow or not: without it, creases are black in print.
 constexpr double kEverywhere = 0.16;
-constexpr double kExposure = 1.22;
+constexpr double kExposure = 1.28;
 constexpr double kGroundShadow = 0.6;
 /// Beyond the body, in heights of it: there its shadow has faded.
 constexpr double kShadowReach = 0.22;
+constexpr double kShadowEdge = 0.15;  ///< of a picture's width
 constexpr std::size_t kShadowDots = 320;
 constexpr double kGolden = 2.399963229728653;  // radians; spreads points evenly on a disc or a sphere
 
@@ -104,12 +105,6 @@ double linear_of(std::uint8_t channel) {
   return double{table[channel]};
 }
 
-std::uint8_t channel_of(double linear) {
-  const double value = std::clamp(linear, 0.0, 1.0);
-  const double shown = value <= 0.0031308 ? value * 12.92 : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::lround(shown * 255));
-}
-
 glm::dvec3 linear_of(Colour colour) {
   return {linear_of(colour.red), linear_of(colour.green), linear_of(colour.blue)};
 }
@@ -122,6 +117,15 @@ View finer(View view) {
 }
 
 }  // namespace
+
+View view_of_cell(const Camera& camera, double width_pt, double height_pt, double unit_per_pt) {
+  View view;
+  view.camera = camera;
+  view.width = print_dots(width_pt);
+  view.height = print_dots(height_pt);
+  view.unit_per_dot = unit_per_pt * width_pt / static_cast<double>(view.width);
+  return view;
+}
 
 StudioShot::StudioShot(const Surface& surface, const View& view, std::optional<double> ground_y)
     : view_(view), fine_(finer(view)), samples_(draw_surface(surface, fine_)) {
@@ -170,6 +174,9 @@ void StudioShot::light(const Surface& surface, std::optional<double> ground_y) {
                                        std::max(0.0, std::abs(point.z - middle.z) - half.z));
       strength = 1 - beyond / (kShadowReach * 2 * half.y);
       if (!(strength > 0)) continue;
+      // Nothing is cut off at the picture's edges.
+      const double aside = static_cast<double>(std::min(column, fine_.width - 1 - column));
+      strength *= std::min(1.0, aside / (kShadowEdge * static_cast<double>(fine_.width)));
       strength *= kGroundShadow * strength * (3 - 2 * strength);
     }
     const glm::dvec3 raised = point + offset * normal;
@@ -243,7 +250,7 @@ Raster StudioShot::picture(const Paint& paint, const std::vector<Overlay>& overl
         sum += glm::min(shown, glm::dvec3(1));
       }
       sum /= static_cast<double>(kShares);
-      raster.at(column, row) = {channel_of(sum.r), channel_of(sum.g), channel_of(sum.b)};
+      raster.at(column, row) = {srgb_channel(sum.r), srgb_channel(sum.g), srgb_channel(sum.b)};
     }
   }
   return raster;

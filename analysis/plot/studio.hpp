@@ -16,6 +16,9 @@ namespace vestige::plot {
 /// The colour of a surface where a triangle's second and third vertex weigh u and v.
 using Paint = std::function<Colour(std::uint32_t triangle, double u, double v)>;
 
+/// A view that fills a cell of a page, at `unit_per_pt`; where it looks is still to be set.
+View view_of_cell(const Camera& camera, double width_pt, double height_pt, double unit_per_pt);
+
 /// A surface in soft light: a key light from the upper left, sky all around, both with shadows, on white ground.
 /// Lengths are in the surface's unit.
 class StudioShot {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <glm/vec2.hpp>
 #include <span>
 #include <string_view>
 
@@ -27,6 +28,13 @@ std::string_view text_of(std::span<const std::byte> bytes) {
 }
 
 }  // namespace
+
+std::uint16_t Subject::actuator_at(std::uint32_t triangle, double u, double v) const {
+  const glm::uvec3& corner = avatar.triangles[triangle];
+  const auto& coordinates = avatar.texture_coordinate;
+  return map.at((1 - u - v) * glm::dvec2(coordinates[corner.x]) + u * glm::dvec2(coordinates[corner.y]) +
+                v * glm::dvec2(coordinates[corner.z]));
+}
 
 Subject read_subject(const std::string& avatar, const std::string& map) {
   const bool is_builtin = avatar == "builtin";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 
@@ -14,6 +15,10 @@ struct Subject {
   std::string title;
   Avatar avatar;
   ActuatorMap map;  ///< without actuators where there is none
+
+  /// The actuator of the skin where the triangle's second and third vertex weigh u and v, by the very look-up that
+  /// detectors use.
+  std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const;
 };
 
 /// `avatar`: "builtin" or a glTF file. `map`: "builtin", "none" or a PNG file, whose sidecar is the .json of the same

@@ -92,9 +92,10 @@ class PlotBodyTest : public test::PlotTest {
     test::write_box_map(folder_.path());
   }
 
-  /// box.mcap, with one collider that flies through the box once, entering at x = 0.1, y = 0.75 of its front.
-  void record(const std::string& arguments) const {
-    write_text(folder_ / "through.csv", "time_s,id,x,y,z\n0,7,0.1,0.75,0.6\n1,7,0.1,0.75,-0.05\n");
+  /// box.mcap and contacts.csv, with one collider that flies along z, at the x and y of its only contact.
+  void record(const std::string& arguments,
+              const std::string& places = "0,7,0.1,0.75,0.6\n1,7,0.1,0.75,-0.05\n") const {
+    write_text(folder_ / "through.csv", "time_s,id,x,y,z\n" + places);
     const test::Outcome outcome = test::run(
         "vestige record --avatar box.gltf --colliders through.csv --rate 10 --duration 1 -o box.mcap -q " + arguments,
         folder_.path());
@@ -142,13 +143,17 @@ TEST_F(PlotBodyTest, ContactsAreDrawnAndHeatTheSkinWhereTheyAre) {
 }
 
 TEST_F(PlotBodyTest, ContactsOfAMovingAvatarAreDrawnAtTheSkinThatTheyTouched) {
-  // A quarter turn: what flies along z ends at the box's right side.
-  record("--map box.png");
+  // In the frame at 0.5 s the box has turned by 45 degrees, and the collider, at x = 0.05, meets its front where that
+  // is 0.05 √2 - 0.1 to the left of its middle.
+  record("--map box.png", "0,7,0.05,0.75,0.6\n0.4,7,0.05,0.75,0.6\n0.5,7,0.05,0.75,-0.6\n");
   ASSERT_EQ(run("body box.mcap --contacts contacts.csv").exit_code, 0);
   const Picture picture = read_png(folder_ / "box-body.png");
   const std::vector<Extent> found = boxes(picture);
   ASSERT_EQ(found.size(), 4U);
-  EXPECT_NE(spot(picture, found[2], is_hot).across, 0.75);
+  const Spot hot = spot(picture, found[2], is_hot);
+  EXPECT_GT(hot.count, 50U);
+  EXPECT_NEAR(hot.across, (0.2 + 0.0707 - 0.1) / 0.4, 0.02);
+  EXPECT_NEAR(hot.down, 0.25, 0.02);
 }
 
 TEST_F(PlotBodyTest, ContactsWithoutAMapAreDrawnAndNothingToDrawIsRefused) {
