@@ -199,9 +199,9 @@ class BodyFigure : public Figure {
   }
 
   double contact_size_pt() const {
-    if (body_.contacts.size() <= 300) return 2;
-    if (body_.contacts.size() <= 1000) return 1.5;
-    return body_.contacts.size() <= 3000 ? 1.1 : 0.8;
+    const std::size_t count = body_.contacts.size();
+    const double size_pt = count <= 300 ? 2 : count <= 1000 ? 1.5 : count <= 3000 ? 1.2 : 0.8;
+    return size_pt * std::clamp(cell_height_pt_ / kMostCellHeightPt, 0.5, 1.0);
   }
 
   void draw_group(Canvas& canvas, double left_pt, double top_pt, const std::string& title,
