@@ -129,7 +129,7 @@ class AvatarFigure : public Figure {
     if (!(width > 0)) width = 1;
     if (!(height > 0)) height = 1;
     cell_width_pt_ =
-        whole_dots_pt((kWidthPt - kLabelRoomPt) / static_cast<double>(std::max<std::size_t>(columns(), 4)));
+        whole_dots_pt((kWidthPt - kLabelRoomPt) / static_cast<double>(std::max<std::size_t>(columns(), 3)));
     const double most_pt = only_rest() ? kRestCellHeightPt : kMostCellHeightPt;
     unit_per_pt_ = std::max(width / cell_width_pt_, height / most_pt);
     cell_height_pt_ = whole_dots_pt(height / unit_per_pt_ + 5.9);

@@ -44,6 +44,10 @@ glm::dvec3 standing_at(const Avatar& avatar, const Pose& pose) {
   return std::isfinite(at.x + at.y + at.z) ? at : pose.origin_m;
 }
 
+std::string in_words(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", grouped(static_cast<double>(count)), what, count == 1 ? "" : "s");
+}
+
 struct Panel {
   Raster raster;
   double time_s = 0;
@@ -53,8 +57,7 @@ struct Panel {
 class SceneFigure : public Figure {
  public:
   explicit SceneFigure(const Scene& scene)
-      : title_(
-            fmt::format("{}: {} colliders", scene.subject.title, grouped(static_cast<double>(most_colliders(scene))))),
+      : title_(fmt::format("{}: {}", scene.subject.title, in_words(most_colliders(scene), "collider"))),
         trail_s_(scene.trail_s),
         has_contacts_(scene.has_contacts) {
     // Far from the world's origin floats are coarse: everything is drawn relative to where the avatar first stands.
@@ -88,8 +91,7 @@ class SceneFigure : public Figure {
       const double caption_pt = cell.bottom_pt - 7;
       canvas.text({cell.left_pt + 3, caption_pt}, fmt::format("{:.3f} s", panels_[i].time_s), {7, kInk});
       if (has_contacts_)
-        canvas.text({cell.right_pt - 3, caption_pt},
-                    fmt::format("{} contact{}", panels_[i].contacts, panels_[i].contacts == 1 ? "" : "s"),
+        canvas.text({cell.right_pt - 3, caption_pt}, in_words(panels_[i].contacts, "contact"),
                     {7, kInk, Anchor::kRight});
     }
     draw_key(canvas);

@@ -133,12 +133,11 @@ std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, cons
 
   std::vector<Moment> moments;
   Trails trails(choice.trail_s);
-  std::map<std::uint64_t, double> passed;  // frames that the trails know
+  std::map<std::uint64_t, double> passed;  // frames up to the moment, with their times
   TraceFrame frame;
   while (moments.size() < chosen.size() && trace.next(frame)) {
     const FrameTime& wanted = chosen[moments.size()];
     const double time_s = seconds(frame.time_ns);
-    // One frame more than the trail is long: its segment's other end.
     passed[frame.index] = time_s;
     trails.add(frame);
     if (frame.index != wanted.index) continue;

@@ -71,6 +71,7 @@ TEST_F(PlotSceneTest, WithContactsShowsTheFramesThatHaveThem) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   const std::string words = words_of(folder_ / "box-scene.svg");
   EXPECT_THAT(words, HasSubstr("0.900 s"));
+  EXPECT_THAT(words, HasSubstr("box.mcap: 1 collider"));
   EXPECT_THAT(words, HasSubstr("1 contact"));
   constexpr Pixel kContact = {213, 94, 0};
   EXPECT_GT(read_png(folder_ / "box-scene.png").count(kContact, 0, 800), 50U);
