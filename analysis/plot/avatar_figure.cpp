@@ -209,7 +209,7 @@ std::vector<const Animation*> ContactSheet::choose(const Avatar& avatar, const s
   throw UsageError("--animation", fmt::format("there is no animation '{}'", animation), list_animations(avatar));
 }
 
-std::unique_ptr<Figure> avatar_figure(ContactSheet sheet) {
+std::unique_ptr<Figure> avatar_figure(const ContactSheet& sheet) {
   return std::make_unique<AvatarFigure>(sheet);
 }
 

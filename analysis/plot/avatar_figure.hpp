@@ -23,6 +23,6 @@ struct ContactSheet {
 
 /// Poses from the left to the right, each from the front, from half-left, from the left and from behind, all to one
 /// scale, standing on one ground.
-std::unique_ptr<Figure> avatar_figure(ContactSheet sheet);
+std::unique_ptr<Figure> avatar_figure(const ContactSheet& sheet);
 
 }  // namespace vestige::plot

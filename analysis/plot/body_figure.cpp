@@ -262,7 +262,8 @@ class BodyFigure : public Figure {
     for (std::size_t i = 0; i < legend_entries(); ++i) {
       // Column by column; unmapped skin comes last.
       const std::size_t actuator = i == count ? 0 : i + 1;
-      const double left_pt = begin_pt + column_pt * static_cast<double>(i / legend_rows());
+      const std::size_t column = i / legend_rows();
+      const double left_pt = begin_pt + column_pt * static_cast<double>(column);
       const double y_pt = top_pt - (static_cast<double>(i % legend_rows()) + 0.5) * kLegendLinePt;
       const Box swatch = {left_pt, y_pt - 4, left_pt + 13, y_pt + 4};
       const Colour colour = region_colour(actuator, count);

@@ -119,7 +119,7 @@ int draw_avatar(Options options) {
                  input, sheet.animations.size(), kMostAnimations);
       sheet.animations.resize(kMostAnimations);
     }
-    return plot::avatar_figure(std::move(sheet));
+    return plot::avatar_figure(sheet);
   });
 }
 
@@ -174,7 +174,7 @@ int draw_scene(Options options) {
     if (scene.has_contacts) contacts = vestige::read_contacts_csv(options.contacts, limits);
     scene.moments = plot::read_moments(trace, input.string(), options.moments, contacts);
     damage = report_damage(trace, input);
-    return plot::scene_figure(std::move(scene));
+    return plot::scene_figure(scene);
   });
   return drawn == kDone ? damage : drawn;
 }

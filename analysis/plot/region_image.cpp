@@ -44,7 +44,8 @@ std::vector<RegionLabel> RegionImage::labels() const {
   for (std::size_t actuator = 1; actuator < best.size(); ++actuator) {
     const auto [dots, i] = best[actuator];
     if (dots < kLeastDots) continue;
-    labels.push_back({actuator, static_cast<double>(i % width_) + 0.5, static_cast<double>(i / width_) + 0.5});
+    const std::size_t row = i / width_;
+    labels.push_back({actuator, static_cast<double>(i % width_) + 0.5, static_cast<double>(row) + 0.5});
   }
   return labels;
 }

@@ -82,9 +82,9 @@ class SceneFigure : public Figure {
   void draw(Canvas& canvas) const override {
     canvas.text({kLeftPt, height_pt() - 9}, title_, {9, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold});
     for (std::size_t i = 0; i < panels_.size(); ++i) {
+      const std::size_t row = i / columns_;
       const double left_pt = kLeftPt + static_cast<double>(i % columns_) * cell_width_pt_;
-      const double top_pt =
-          height_pt() - kTitleRoomPt - static_cast<double>(i / columns_) * (cell_height_pt_ + kCaptionPt);
+      const double top_pt = height_pt() - kTitleRoomPt - static_cast<double>(row) * (cell_height_pt_ + kCaptionPt);
       const Box cell = {left_pt, top_pt - cell_height_pt_, left_pt + cell_width_pt_, top_pt};
       canvas.image(cell, panels_[i].raster);
       canvas.frame(cell, {{190, 190, 190}, 0.4, Dash::kSolid});
@@ -249,7 +249,7 @@ class SceneFigure : public Figure {
 
 }  // namespace
 
-std::unique_ptr<Figure> scene_figure(Scene scene) {
+std::unique_ptr<Figure> scene_figure(const Scene& scene) {
   return std::make_unique<SceneFigure>(scene);
 }
 

@@ -18,6 +18,6 @@ struct Scene {
 
 /// A film strip: the avatar at each moment from half-left, with the paths that the colliders took, the segments that
 /// are tested, and contacts where they lie on the skin. What the body hides is pale.
-std::unique_ptr<Figure> scene_figure(Scene scene);
+std::unique_ptr<Figure> scene_figure(const Scene& scene);
 
 }  // namespace vestige::plot
