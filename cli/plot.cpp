@@ -46,7 +46,8 @@ int run_plot(const std::vector<std::string>& arguments) {
 }
 
 void add_plot(CLI::App& program, Invocation& invocation) {
-  CLI::App* verb = program.add_subcommand("plot", "Draw figures of results (runs vestige-plot, which links VTK)");
+  CLI::App* verb = program.add_subcommand(
+      "plot", "Draw results, traces and avatars as figures (runs vestige-plot, which links VTK)");
   verb->group("Verbs");
   // Everything behind the verb, --help included, is vestige-plot's business.
   verb->set_help_flag();

@@ -35,17 +35,26 @@ void ContactsCsv::write(const Frame& frame, const ContactRow& row, const std::ve
   file_.write(text_);
 }
 
-std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path) {
+std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path, const ContactLimits& limits) {
   const std::string text = read_text_file(path);
   CsvLines lines(text, path.string(), kHeader, kRemedy);
   std::vector<RecordedContact> contacts;
+  const auto check = [&](const char* what, std::uint64_t number, std::uint64_t count) {
+    if (number < count) return;
+    throw lines.error(fmt::format("refers to {} {}, and there are only {}", what, number, count),
+                      "name the contacts of this very trace, avatar and map");
+  };
   while (lines.next()) {
     RecordedContact contact;
     double ignored = 0;
     if (!lines.take(contact.frame) || !lines.take(ignored) || !lines.take(contact.collider) ||
-        !lines.take(contact.triangle) || !lines.take(contact.t) || !lines.take(ignored) || !lines.take(ignored) ||
-        !lines.take(ignored) || !lines.take(ignored) || !lines.take(contact.actuator))
+        !lines.take(contact.triangle) || !lines.take(contact.t) || !lines.take(contact.barycentric.x) ||
+        !lines.take(contact.barycentric.y) || !lines.take(ignored) || !lines.take(ignored) ||
+        !lines.take(contact.actuator))
       throw lines.error("is no row of contacts");
+    check("frame", contact.frame, limits.frames);
+    check("triangle", contact.triangle, limits.triangles);
+    if (contact.actuator > limits.actuators) check("actuator", contact.actuator, limits.actuators);
     contacts.push_back(contact);
   }
   return contacts;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -24,16 +27,25 @@ class ContactsCsv {
   std::string text_;
 };
 
-/// What a contacts CSV says of one contact, as far as another run is compared with it.
+/// What a contacts CSV says of one contact, as far as another run is compared with it or it is drawn.
 struct RecordedContact {
   std::uint64_t frame = 0;
   std::uint32_t collider = 0;
   std::uint32_t triangle = 0;
   float t = 0;
+  glm::dvec2 barycentric = glm::dvec2(0);  ///< weights of the triangle's second and third vertex
   std::uint16_t actuator = 0;
 };
 
-/// Reads back what `ContactsCsv` wrote. Throws `Error` naming file and line.
-std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path);
+/// What the contacts of a CSV can refer to.
+struct ContactLimits {
+  std::size_t triangles = std::numeric_limits<std::uint32_t>::max();
+  std::size_t actuators = std::numeric_limits<std::uint16_t>::max();
+  std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Reads back what `ContactsCsv` wrote. Throws `Error` naming file and line, also for a contact that refers to what is
+/// not there.
+std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path, const ContactLimits& limits = {});
 
 }  // namespace vestige

@@ -60,6 +60,11 @@ std::size_t print_dots(double length_pt) {
   return static_cast<std::size_t>(std::lround(length_pt * kPrintDotsPerInch / kPointsPerInch));
 }
 
+double whole_dots_pt(double length_pt) {
+  constexpr double kStepPt = 6;
+  return std::max(kStepPt, std::floor(length_pt / kStepPt) * kStepPt);
+}
+
 double text_width_pt(std::string_view text, const TextStyle& style) {
   constexpr int kFineDotsPerInch = 720;
   vtkNew<vtkTextProperty> property;

@@ -88,6 +88,9 @@ class Raster {
 /// so that a raster of as many pixels comes out sharp.
 std::size_t print_dots(double length_pt);
 
+/// The longest such length up to `length_pt`, at least one step.
+double whole_dots_pt(double length_pt);
+
 /// The same on every canvas.
 double text_width_pt(std::string_view text, const TextStyle& style);
 

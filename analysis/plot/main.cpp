@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "analysis/plot/avatar_figure.hpp"
+#include "analysis/plot/body_figure.hpp"
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/headless_window.hpp"
+#include "analysis/plot/scene_figure.hpp"
 #include "analysis/plot/sweep_figure.hpp"
 #include "analysis/plot/texture_figure.hpp"
 #include "analysis/plot/timeline_figure.hpp"
@@ -18,6 +21,7 @@
 #include "cli/help/manual.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
+#include "traces/trace_reader.hpp"
 #include "version.hpp"
 
 namespace {
@@ -35,6 +39,13 @@ constexpr int kIncomplete = 3;
 struct Options {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
+  std::string avatar;
+  std::string map;
+  std::filesystem::path contacts;
+  std::string animation;
+  std::size_t poses = 6;
+  plot::MomentChoice moments;
+  double trail_ms = 100;
   bool force = false;
   bool quiet = false;
 };
@@ -96,6 +107,85 @@ int draw_textures(const Options& options) {
                       [&] { return plot::texture_figure(plot::read_texture_contacts(options.inputs.front())); });
 }
 
+/// Larger than that, a figure fits neither on a page nor into OpenGL's windows.
+constexpr std::size_t kMostAnimations = 4;
+
+int draw_avatar(Options options) {
+  if (options.output.empty())
+    options.output = std::filesystem::path(options.inputs.front()).replace_extension().string() + "-avatar";
+  return write_figure(options, stem_of(options), [&] {
+    const std::string input = options.inputs.front();
+    plot::ContactSheet sheet;
+    sheet.subject = plot::read_subject(input, "none");
+    sheet.animations = plot::ContactSheet::choose(sheet.subject.avatar, options.animation);
+    sheet.poses = options.poses;
+    if (sheet.animations.size() > kMostAnimations) {
+      fmt::print(
+          stderr,
+          "vestige: warning: {}: has {} animations, of which the first {} are drawn; name others with --animation\n",
+          input, sheet.animations.size(), kMostAnimations);
+      sheet.animations.resize(kMostAnimations);
+    }
+    return plot::avatar_figure(sheet);
+  });
+}
+
+plot::Subject subject_of(const Options& options) {
+  if (options.inputs.empty()) return plot::read_subject(options.avatar, options.map);
+  const vestige::TraceReader trace(options.inputs.front());
+  return plot::read_subject(trace, options.inputs.front(), options.map);
+}
+
+int draw_body(Options options) {
+  if (options.inputs.empty() == options.avatar.empty())
+    throw vestige::UsageError("plot body", "needs either a trace or --avatar", "name one of them");
+  const std::string input = options.inputs.empty() ? options.avatar : options.inputs.front().string();
+  if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-body";
+  return write_figure(options, stem_of(options), [&] {
+    plot::Body body;
+    body.subject = subject_of(options);
+    body.has_contacts = !options.contacts.empty();
+    const std::size_t actuators = body.subject.map.actuator_count;
+    if (actuators == 0 && !body.has_contacts)
+      throw vestige::Error(input, "there is no actuator map, and no contact", "name a --map, or --contacts, or both");
+    vestige::ContactLimits limits;
+    limits.triangles = body.subject.avatar.triangles.size();
+    if (actuators > 0) limits.actuators = actuators;
+    if (body.has_contacts) body.contacts = vestige::read_contacts_csv(options.contacts, limits);
+    return plot::body_figure(std::move(body));
+  });
+}
+
+/// What is wrong with a trace, to standard error; its part of the exit code.
+int report_damage(const vestige::TraceReader& trace, const std::filesystem::path& path) {
+  if (trace.complete()) return kDone;
+  for (const std::string& warning : trace.warnings()) fmt::print(stderr, "vestige: warning: {}\n", warning);
+  if (trace.warnings().empty()) fmt::print(stderr, "vestige: warning: {}: is not complete\n", path.string());
+  return kIncomplete;
+}
+
+int draw_scene(Options options) {
+  const std::filesystem::path& input = options.inputs.front();
+  if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-scene";
+  options.moments.trail_s = options.trail_ms / 1000;
+  int damage = kDone;
+  const int drawn = write_figure(options, stem_of(options), [&] {
+    vestige::TraceReader trace(input);
+    plot::Scene scene;
+    scene.subject = plot::read_subject(trace, input, options.map);
+    scene.trail_s = options.moments.trail_s;
+    scene.has_contacts = !options.contacts.empty();
+    std::vector<vestige::RecordedContact> contacts;
+    vestige::ContactLimits limits;
+    limits.triangles = scene.subject.avatar.triangles.size();
+    if (scene.has_contacts) contacts = vestige::read_contacts_csv(options.contacts, limits);
+    scene.moments = plot::read_moments(trace, input.string(), options.moments, contacts);
+    damage = report_damage(trace, input);
+    return plot::scene_figure(scene);
+  });
+  return drawn == kDone ? damage : drawn;
+}
+
 CLI::App& add_command(CLI::App& app, const char* name, const char* what, const std::string& examples) {
   CLI::App& command = *app.add_subcommand(name, what);
   command.formatter(std::make_shared<help::HelpFormatter>(examples));
@@ -114,10 +204,10 @@ void add_common_options(CLI::App& command, Options& options, const char* output_
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("Draw figures of results, as SVG and as PNG (300 dots per inch)", "vestige plot");
+  CLI::App app("Draw results, traces and avatars as figures, SVG and PNG (300 dots per inch)", "vestige plot");
   app.formatter(
       std::make_shared<help::HelpFormatter>("  vestige plot sweep results/sweep\n"
-                                            "  vestige plot timeline timeline.csv -o figures/timeline\n"));
+                                            "  vestige plot body man.mcap --contacts contacts.csv\n"));
   app.set_version_flag("--version", fmt::format("vestige-plot {} ({}{})", vestige::kVersion, vestige::kCommit,
                                                 vestige::kDirty ? ", modified" : ""));
   app.require_subcommand(1);
@@ -151,6 +241,58 @@ int main(int argc, char** argv) {
       ->required();
   add_common_options(textures, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
 
+  CLI::App& body =
+      add_command(app, "body", "An avatar with the regions of its actuator map, contacts and their density",
+                  "  vestige plot body man.mcap --contacts contacts.csv\n"
+                  "  vestige plot body --avatar man.glb --map regions.png -o figures/regions\n");
+  body.add_option("INPUT", options.inputs, "A trace, whose avatar and map are drawn")->type_name("MCAP")->expected(1);
+  body.add_option("--avatar", options.avatar, "Instead of a trace: the built-in avatar, or a glTF file")
+      ->type_name("builtin|FILE");
+  body.add_option(
+          "--map", options.map,
+          "The actuator map, a greyscale PNG whose FILE.json names the actuators if it exists [default: the trace's]")
+      ->type_name("builtin|none|FILE.png");
+  body.add_option("--contacts", options.contacts, "What 'vestige replay --contacts FILE.csv' wrote")->type_name("CSV");
+  add_common_options(body, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -body]");
+
+  CLI::App& scene = add_command(app, "scene", "A film strip of a trace: the avatar, the colliders and their paths",
+                                "  vestige plot scene man.mcap\n"
+                                "  vestige plot scene man.mcap --contacts contacts.csv --frames 4 --from 0.5 --to 1\n");
+  scene.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
+  scene.add_option("--frames", options.moments.count, "How many frames are drawn")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 24));
+  scene.add_option("--from", options.moments.from_s, "Leave out what is before [default: the trace's beginning]")
+      ->type_name("SECONDS");
+  scene.add_option("--to", options.moments.to_s, "Leave out what is after [default: the trace's end]")
+      ->type_name("SECONDS");
+  scene.add_option("--trail", options.trail_ms, "How far back paths and contacts are shown")
+      ->capture_default_str()
+      ->type_name("MS")
+      ->check(CLI::Range(0.001, 1e6));
+  scene
+      .add_option("--contacts", options.contacts,
+                  "What 'vestige replay --contacts FILE.csv' wrote; the frames drawn are then ones with contacts")
+      ->type_name("CSV");
+  scene.add_option("--map", options.map, "Actuator map instead of the trace's")->type_name("builtin|none|FILE.png");
+  add_common_options(scene, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -scene]");
+
+  CLI::App& avatar = add_command(app, "avatar", "An avatar from four sides, in poses over its animations",
+                                 "  vestige plot avatar builtin\n"
+                                 "  vestige plot avatar man.glb --animation walk -o figures/walk\n");
+  avatar.add_option("INPUT", options.inputs, "The built-in avatar, or a glTF file (.glb, .gltf, .vrm)")
+      ->type_name("builtin|FILE")
+      ->expected(1)
+      ->required();
+  avatar
+      .add_option("--animation", options.animation,
+                  "One animation: a name, an index, or none for the rest pose [default: all]")
+      ->type_name("NAME|INDEX|none");
+  avatar.add_option("--poses", options.poses, "Poses of each animation")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 12));
+  add_common_options(avatar, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -avatar]");
+
   app.set_help_flag("-h,--help", "Print this help");
   // What `vestige` asks of its helper, to answer for `vestige plot`.
   const std::string question = argc > 1 ? argv[1] : "";
@@ -173,6 +315,9 @@ int main(int argc, char** argv) {
   }
   try {
     if (sweep.parsed()) return draw_sweep(options);
+    if (body.parsed()) return draw_body(options);
+    if (scene.parsed()) return draw_scene(options);
+    if (avatar.parsed()) return draw_avatar(options);
     if (timeline.parsed()) return draw_timeline(options);
     return draw_textures(options);
   } catch (const vestige::UsageError& error) {

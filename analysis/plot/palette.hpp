@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -19,12 +20,22 @@ inline constexpr Colour kPurple = {204, 121, 167};
 
 /// Lines on white: without yellow, which is too pale, and black (the published points).
 inline constexpr std::array<Colour, 6> kLineColours = {kBlue, kVermillion, kGreen, kPurple, kOrange, kSkyBlue};
+/// Actuators, told apart on white; grey is for unmapped skin.
+inline constexpr std::array<Colour, 7> kActuatorColours = {kBlue,    kOrange, kGreen, kVermillion,
+                                                           kSkyBlue, kPurple, kBlack};
 inline constexpr Colour kUnmapped = {150, 150, 150};
 
 inline constexpr Colour kInk = {40, 40, 40};
 inline constexpr Colour kSmallPrint = {105, 105, 105};
 inline constexpr Colour kGrid = {225, 225, 225};
 inline constexpr Colour kWhite = {255, 255, 255};
+
+/// The sRGB channel that shows so much light, 0..1 (IEC 61966-2-1).
+inline std::uint8_t srgb_channel(double light) {
+  const double value = std::clamp(light, 0.0, 1.0);
+  const double shown = value <= 0.0031308 ? value * 12.92 : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::lround(shown * 255));
+}
 
 /// `part` 0 gives `from`, 1 gives `to`.
 inline Colour blend(Colour from, Colour to, double part) {

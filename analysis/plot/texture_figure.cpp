@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -28,8 +27,6 @@ constexpr double kLegendLinePt = 11;
 /// The least width and height of a contact: about 0.4 mm in print.
 constexpr std::size_t kLeastMarkDots = 5;
 
-/// Told apart on white; grey is for unmapped skin. Past these numbers stand for themselves, on a ramp.
-constexpr std::array<Colour, 7> kCategories = {kBlue, kOrange, kGreen, kVermillion, kSkyBlue, kPurple, kBlack};
 constexpr Colour kBackground = kWhite;
 
 /// Dots [begin, end) of item `index` of `count` along `dots`.
@@ -83,11 +80,12 @@ class TextureFigure : public Figure {
   }
 
   std::size_t highest_actuator() const { return contacts_of_.empty() ? 0 : contacts_of_.rbegin()->first; }
-  bool has_categories() const { return highest_actuator() <= kCategories.size(); }
+  /// Else numbers stand for themselves, on a ramp.
+  bool has_categories() const { return highest_actuator() <= kActuatorColours.size(); }
 
   Colour colour(std::size_t actuator) const {
     if (actuator == 0) return kUnmapped;
-    if (has_categories()) return kCategories[actuator - 1];
+    if (has_categories()) return kActuatorColours[actuator - 1];
     return number_ramp(static_cast<double>(actuator - 1) / static_cast<double>(highest_actuator() - 1));
   }
 

@@ -2,9 +2,13 @@
 find_package(EXPAT REQUIRED)
 
 vestige_test(plot_layout_test
-  SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_layout_test.cpp
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_layout_test.cpp ${CMAKE_CURRENT_LIST_DIR}/contact_density_test.cpp
   LIBRARIES vestige_plotting)
 vestige_test(plot_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_test.cpp
   LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG OpenEXR::OpenEXR)
 add_dependencies(plot_test vestige-plot)
+vestige_test(plot_body_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_body_test.cpp ${CMAKE_CURRENT_LIST_DIR}/plot_scene_test.cpp
+  LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG)
+add_dependencies(plot_body_test vestige vestige-plot)

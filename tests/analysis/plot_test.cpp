@@ -4,25 +4,27 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfOutputFile.h>
-#include <expat.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <png.h>
-#include <sys/wait.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <limits>
-#include <sstream>
 #include <vector>
 
-#include "tests/support/test_data.hpp"
+#include "tests/analysis/plot_fixture.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige {
 namespace {
 
+using test::kWhite;
+using test::Outcome;
+using test::Picture;
+using test::Pixel;
+using test::PlotTest;
+using test::read_png;
+using test::words_of;
+using test::write_text;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -38,66 +40,8 @@ constexpr const char* kSweep = R"({
     {"detector": "cpu", "context": null, "skip": "on", "method": "static", "points": [
       {"colliders": 1, "hz": 290000}, {"colliders": 100, "hz": 16000}]}]})";
 
-struct Outcome {
-  int exit_code = -1;
-  std::string standard_error;
-};
-
-void write_text(const std::filesystem::path& path, std::string_view text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-/// The words of an SVG document; fails the test when it is not well-formed XML.
-std::string words_of(const std::filesystem::path& svg) {
-  const std::string document = read_text_file(svg);
-  std::string words;
-  const XML_Parser parser = XML_ParserCreate(nullptr);
-  XML_SetUserData(parser, &words);
-  XML_SetCharacterDataHandler(parser, [](void* out, const XML_Char* text, int length) {
-    static_cast<std::string*>(out)->append(text, static_cast<std::size_t>(length));
-  });
-  const bool is_xml = XML_Parse(parser, document.data(), static_cast<int>(document.size()), XML_TRUE) == XML_STATUS_OK;
-  EXPECT_TRUE(is_xml) << svg << ": " << XML_ErrorString(XML_GetErrorCode(parser)) << " in line "
-                      << XML_GetCurrentLineNumber(parser);
-  XML_ParserFree(parser);
-  return words;
-}
-
-struct Pixel {
-  std::uint8_t red = 0;
-  std::uint8_t green = 0;
-  std::uint8_t blue = 0;
-  bool operator==(const Pixel&) const = default;
-};
-constexpr Pixel kWhite = {255, 255, 255};
 constexpr Pixel kFirstActuator = {0, 114, 178};
 constexpr Pixel kFullDuty = {8, 29, 66};
-
-struct Picture {
-  std::size_t width = 0;
-  std::size_t height = 0;
-  std::vector<Pixel> pixels;
-
-  /// The number of pixels of that colour in columns [begin, end).
-  std::size_t count(Pixel colour, std::size_t begin, std::size_t end) const {
-    std::size_t result = 0;
-    for (std::size_t i = 0; i < pixels.size(); ++i)
-      if (i % width >= begin && i % width < end && pixels[i] == colour) ++result;
-    return result;
-  }
-};
-
-Picture read_png(const std::filesystem::path& path) {
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  if (png_image_begin_read_from_file(&image, path.c_str()) == 0) throw std::runtime_error(image.message);
-  image.format = PNG_FORMAT_RGB;
-  Picture picture = {image.width, image.height, std::vector<Pixel>(std::size_t{image.width} * image.height)};
-  static_assert(sizeof(Pixel) == 3);
-  if (png_image_finish_read(&image, nullptr, picture.pixels.data(), 0, nullptr) == 0)
-    throw std::runtime_error(image.message);
-  return picture;
-}
 
 /// One contact of `actuator` in the middle of `frames` x `colliders` texels.
 void write_textures(const std::filesystem::path& path, int colliders, int frames, float actuator) {
@@ -113,27 +57,6 @@ void write_textures(const std::filesystem::path& path, int colliders, int frames
   file.setFrameBuffer(buffer);
   file.writePixels(frames);
 }
-
-class PlotTest : public ::testing::Test {
- protected:
-  Outcome run(const std::string& arguments, const std::string& environment = "") const {
-    const auto errors = folder_ / "stderr.txt";
-    const std::string command =
-        fmt::format("cd '{}' && env -u DISPLAY {} '{}/vestige-plot' {} 2>'{}' >/dev/null", folder_.path().string(),
-                    environment, VESTIGE_BIN_DIR, arguments, errors.string());
-    const int status = std::system(command.c_str());  // NOLINT: the test's own words
-    Outcome outcome = {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text_file(errors)};
-    std::filesystem::remove(errors);
-    return outcome;
-  }
-
-  std::size_t file_count() const {
-    const std::filesystem::directory_iterator files(folder_.path());
-    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
-  }
-
-  test::TemporaryFolder folder_;
-};
 
 TEST_F(PlotTest, ASweepNamesItsSeriesThePublishedPointsAndWhereItComesFrom) {
   write_text(folder_ / "sweep.json", kSweep);

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <numbers>
+
+namespace vestige::plot {
+
+/// Looks at a world whose y is up and where an avatar faces +z, from infinitely far: what is equally long is drawn
+/// equally long.
+struct Camera {
+  glm::dvec3 right = {1, 0, 0};
+  glm::dvec3 up = {0, 1, 0};
+  glm::dvec3 toward = {0, 0, 1};  ///< the viewer
+
+  /// Azimuth 0 sees an avatar's front, 90 its left side, 180 its back. Elevation 90 looks down.
+  static Camera from(double azimuth_degrees, double elevation_degrees) {
+    const double azimuth = azimuth_degrees * std::numbers::pi / 180;
+    const double elevation = elevation_degrees * std::numbers::pi / 180;
+    Camera camera;
+    camera.right = {std::cos(azimuth), 0, -std::sin(azimuth)};
+    camera.toward = {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                     std::cos(azimuth) * std::cos(elevation)};
+    camera.up = glm::cross(camera.toward, camera.right);
+    return camera;
+  }
+
+  /// x to the right, y up, z towards the viewer, in the world's unit.
+  glm::dvec3 seen(const glm::dvec3& point) const {
+    return {glm::dot(point, right), glm::dot(point, up), glm::dot(point, toward)};
+  }
+};
+
+/// The rectangle of what a camera sees that becomes a picture.
+struct View {
+  Camera camera;
+  double left = 0;  ///< as `Camera::seen`
+  double bottom = 0;
+  double unit_per_dot = 1;
+  std::size_t width = 1;  ///< dots
+  std::size_t height = 1;
+};
+
+}  // namespace vestige::plot

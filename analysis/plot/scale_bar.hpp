@@ -1,0 +1,11 @@
+#pragma once
+
+#include "analysis/plot/canvas.hpp"
+
+namespace vestige::plot {
+
+/// A bar of a round length, at most `most_pt` long, beginning at `left`, with its length written on its right.
+/// `metre_per_pt` is the drawing's scale.
+void draw_scale_bar(Canvas& canvas, Place left, double metre_per_pt, double most_pt);
+
+}  // namespace vestige::plot

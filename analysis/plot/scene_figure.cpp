@@ -1,0 +1,256 @@
+#include "analysis/plot/scene_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "analysis/plot/axis.hpp"
+#include "analysis/plot/palette.hpp"
+#include "analysis/plot/region_colours.hpp"
+#include "analysis/plot/scale_bar.hpp"
+#include "analysis/plot/studio.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr double kWidthPt = 510;
+constexpr double kLeftPt = 3;
+constexpr double kTitleRoomPt = 22;
+constexpr double kCaptionPt = 16;
+constexpr double kFootPt = 20;
+constexpr std::size_t kMostColumns = 4;
+constexpr double kMostCellHeightPt = 300;
+constexpr double kAzimuthDegrees = 35;
+constexpr double kElevationDegrees = 14;
+/// Room for colliders around the body, in heights of it.
+constexpr double kRoom = 0.13;
+constexpr std::size_t kManyColliders = 200;
+
+constexpr Colour kSkin = {206, 203, 199};
+constexpr Colour kPathColour = kBlue;
+constexpr Colour kContactColour = kVermillion;
+constexpr double kHidden = 0.18;
+constexpr double kContactPt = 3.2;
+
+/// Where the avatar stands in the world.
+glm::dvec3 standing_at(const Avatar& avatar, const Pose& pose) {
+  std::vector<glm::dmat4> world;
+  world_matrices(avatar, pose, world);
+  const glm::dvec3 root(world[static_cast<std::size_t>(avatar.root_node)][3]);
+  const glm::dvec3 at = pose.origin_m + root;
+  return std::isfinite(at.x + at.y + at.z) ? at : pose.origin_m;
+}
+
+std::string in_words(std::size_t count, std::string_view what) {
+  return fmt::format("{} {}{}", grouped(static_cast<double>(count)), what, count == 1 ? "" : "s");
+}
+
+struct Panel {
+  Raster raster;
+  double time_s = 0;
+  std::size_t contacts = 0;
+};
+
+class SceneFigure : public Figure {
+ public:
+  explicit SceneFigure(const Scene& scene)
+      : title_(fmt::format("{}: {}", scene.subject.title, in_words(most_colliders(scene), "collider"))),
+        trail_s_(scene.trail_s),
+        has_contacts_(scene.has_contacts) {
+    // Far from the world's origin floats are coarse: everything is drawn relative to where the avatar first stands.
+    const glm::dvec3 origin_m = standing_at(scene.subject.avatar, scene.moments.front().pose);
+    const SurfacePoser poser(scene.subject.avatar);
+    std::vector<Surface> surfaces;
+    for (const Moment& moment : scene.moments) surfaces.push_back(poser.pose(moment.pose, origin_m));
+    lay_out(surfaces);
+    for (std::size_t i = 0; i < surfaces.size(); ++i)
+      panels_.push_back(make_panel(scene, scene.moments[i], surfaces[i], origin_m));
+  }
+
+  double width_pt() const override { return kWidthPt; }
+  double height_pt() const override {
+    return kTitleRoomPt + static_cast<double>(rows_) * (cell_height_pt_ + kCaptionPt) + kFootPt;
+  }
+  std::string description() const override {
+    return fmt::format("{} at {} moments from {:.3f} s to {:.3f} s.", title_, panels_.size(), panels_.front().time_s,
+                       panels_.back().time_s);
+  }
+
+  void draw(Canvas& canvas) const override {
+    canvas.text({kLeftPt, height_pt() - 9}, title_, {9, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold});
+    for (std::size_t i = 0; i < panels_.size(); ++i) {
+      const std::size_t row = i / columns_;
+      const double left_pt = kLeftPt + static_cast<double>(i % columns_) * cell_width_pt_;
+      const double top_pt = height_pt() - kTitleRoomPt - static_cast<double>(row) * (cell_height_pt_ + kCaptionPt);
+      const Box cell = {left_pt, top_pt - cell_height_pt_, left_pt + cell_width_pt_, top_pt};
+      canvas.image(cell, panels_[i].raster);
+      canvas.frame(cell, {{190, 190, 190}, 0.4, Dash::kSolid});
+      const double caption_pt = cell.bottom_pt - 7;
+      canvas.text({cell.left_pt + 3, caption_pt}, fmt::format("{:.3f} s", panels_[i].time_s), {7, kInk});
+      if (has_contacts_)
+        canvas.text({cell.right_pt - 3, caption_pt}, in_words(panels_[i].contacts, "contact"),
+                    {7, kInk, Anchor::kRight});
+    }
+    draw_key(canvas);
+  }
+
+ private:
+  static std::size_t most_colliders(const Scene& scene) {
+    std::size_t most = 0;
+    for (const Moment& moment : scene.moments)
+      most = std::max(most, static_cast<std::size_t>(std::ranges::count(moment.paths, true, &Path::is_current)));
+    return most;
+  }
+
+  void lay_out(const std::vector<Surface>& surfaces) {
+    camera_ = Camera::from(kAzimuthDegrees, kElevationDegrees);
+    glm::dvec3 low = surfaces.front().low;
+    glm::dvec3 high = surfaces.front().high;
+    glm::dvec3 largest(0);
+    for (const Surface& surface : surfaces) {
+      low = glm::min(low, surface.low);
+      high = glm::max(high, surface.high);
+      largest = glm::max(largest, surface.high - surface.low);
+    }
+    ground_y_ = low.y;
+    extent_ = std::max({largest.x, largest.y, largest.z});
+    if (!(extent_ > 0)) extent_ = 1;
+    // An avatar that covers much ground is followed; one that stays is seen to move.
+    const glm::dvec3 all = high - low;
+    follows_ = std::max(all.x, all.z) > 1.5 * std::max(largest.x, largest.z) + 0.5 * extent_;
+    middle_ = (low + high) / 2.0;
+    seen_low_ = glm::dvec3(std::numeric_limits<double>::max());
+    glm::dvec3 seen_high = -seen_low_;
+    for (const Surface& surface : surfaces) {
+      for (const glm::uvec3& triangle : surface.triangles) {
+        for (int corner = 0; corner < 3; ++corner) {
+          const glm::dvec3 point(surface.position[triangle[corner]]);
+          const glm::dvec3 seen = camera_.seen(point - middle_of(surface));
+          if (!std::isfinite(seen.x + seen.y)) continue;
+          seen_low_ = glm::min(seen_low_, seen);
+          seen_high = glm::max(seen_high, seen);
+        }
+      }
+    }
+    seen_low_ -= glm::dvec3(kRoom * extent_);
+    seen_high += glm::dvec3(kRoom * extent_);
+    const double width = std::max(seen_high.x - seen_low_.x, 2 * kRoom * extent_);
+    seen_width_ = width;
+    const double height = std::max(seen_high.y - seen_low_.y, 2 * kRoom * extent_);
+    const std::size_t count = surfaces.size();
+    rows_ = (count + kMostColumns - 1) / kMostColumns;
+    columns_ = (count + rows_ - 1) / rows_;
+    cell_width_pt_ = whole_dots_pt((kWidthPt - 2 * kLeftPt) / static_cast<double>(std::max<std::size_t>(columns_, 3)));
+    unit_per_pt_ = std::max(width / cell_width_pt_, height / kMostCellHeightPt);
+    cell_height_pt_ = whole_dots_pt(height / unit_per_pt_ + 5.9);
+  }
+
+  /// What stays in place in the picture.
+  glm::dvec3 middle_of(const Surface& surface) const {
+    if (!follows_) return middle_;
+    const glm::dvec3 own = (surface.low + surface.high) / 2.0;
+    return {own.x, middle_.y, own.z};
+  }
+
+  Panel make_panel(const Scene& scene, const Moment& moment, const Surface& surface, const glm::dvec3& origin_m) const {
+    View view = view_of_cell(camera_, cell_width_pt_, cell_height_pt_, unit_per_pt_);
+    const glm::dvec3 seen = camera_.seen(middle_of(surface)) + seen_low_;
+    view.left = seen.x - (static_cast<double>(view.width) * view.unit_per_dot - seen_width_) / 2;
+    view.bottom = seen.y;
+    const StudioShot shot(surface, view, ground_y_);
+
+    StudioShot::Overlay paths(shot, kPathColour);
+    StudioShot::Overlay segments(shot, kInk);
+    StudioShot::Overlay rings(shot, kWhite);
+    StudioShot::Overlay contacts(shot, kContactColour);
+    const bool many = moment.paths.size() > kManyColliders;
+    for (const Path& path : moment.paths) draw_path(path, origin_m, many, paths, segments);
+    const double dot = dots_of(kContactPt);
+    for (const RecordedContact& contact : moment.contacts) {
+      const glm::dvec3 at = surface.point(contact.triangle, contact.barycentric.x, contact.barycentric.y);
+      rings.dot(at, 1.5 * dot, 1, 0, 0.01 * extent_);
+      contacts.dot(at, dot, 1, 0.35, 0.01 * extent_);
+    }
+    const std::size_t count = scene.subject.map.actuator_count;
+    const Paint paint = [&](std::uint32_t triangle, double u, double v) {
+      const std::uint16_t actuator = scene.subject.actuator_at(triangle, u, v);
+      return actuator == 0 ? kSkin : blend(region_colour(actuator, count), kSkin, 0.6);
+    };
+    return {shot.picture(paint, {paths, segments, rings, contacts}), moment.time_s, moment.contacts.size()};
+  }
+
+  static double dots_of(double length_pt) { return length_pt * kPrintDotsPerInch / 72; }
+
+  void draw_path(const Path& path, const glm::dvec3& origin_m, bool many, StudioShot::Overlay& paths,
+                 StudioShot::Overlay& segments) const {
+    const double width = dots_of(many ? 0.5 : 0.9);
+    const double tolerance = 0.002 * extent_;
+    const auto opacity = [&](double age_s) { return 0.75 * std::clamp(1 - age_s / trail_s_, 0.06, 1.0); };
+    for (std::size_t i = 1; i < path.stops.size(); ++i) {
+      const Path::Stop& from = path.stops[i - 1];
+      const Path::Stop& to = path.stops[i];
+      paths.line(from.position_m - origin_m, to.position_m - origin_m, width, opacity(from.age_s), opacity(to.age_s),
+                 kHidden, tolerance);
+    }
+    if (!path.is_current) return;
+    const glm::dvec3 head = path.stops.back().position_m - origin_m;
+    segments.dot(head, dots_of(many ? 1.2 : 2.2), 1, kHidden, tolerance);
+    if (path.stops.size() < 2) return;
+    const glm::dvec3 tail = path.stops[path.stops.size() - 2].position_m - origin_m;
+    segments.line(tail, head, dots_of(many ? 0.8 : 1.4), 1, 1, kHidden, tolerance);
+  }
+
+  void draw_key(Canvas& canvas) const {
+    const double y_pt = 7;
+    draw_scale_bar(canvas, {kLeftPt + 2, y_pt}, unit_per_pt_, 60);
+    double left_pt = kLeftPt + 96;
+    const auto say = [&](const std::string& words) {
+      canvas.text({left_pt, y_pt}, words, {7, kInk});
+      left_pt += text_width_pt(words, {7, kInk}) + 12;
+    };
+    for (int i = 0; i < 8; ++i)
+      canvas.line({left_pt + i * 2.5, y_pt}, {left_pt + (i + 1) * 2.5, y_pt},
+                  {blend(kWhite, kPathColour, 0.75 * (i + 1) / 8.0), 0.9, Dash::kSolid});
+    left_pt += 24;
+    say(fmt::format("path of {:g} ms", trail_s_ * 1000));
+    canvas.line({left_pt, y_pt}, {left_pt + 5, y_pt}, {kInk, 1.4, Dash::kSolid});
+    canvas.mark({left_pt + 5, y_pt}, Mark::kCircle, 2.2, kInk, kInk);
+    left_pt += 10;
+    say("collider, segment of this frame");
+    if (has_contacts_) {
+      canvas.mark({left_pt + 2, y_pt}, Mark::kCircle, kContactPt, kContactColour, kContactColour);
+      left_pt += 8;
+      say(fmt::format("contact in these {:g} ms", trail_s_ * 1000));
+    }
+    say("pale: behind skin");
+    if (follows_) say("the view follows");
+  }
+
+  std::string title_;
+  double trail_s_;
+  bool has_contacts_;
+  Camera camera_;
+  double ground_y_ = 0;
+  double extent_ = 1;
+  bool follows_ = false;
+  glm::dvec3 middle_ = glm::dvec3(0);
+  glm::dvec3 seen_low_ = glm::dvec3(0);  ///< the picture's lower left corner, from what stays in place
+  double seen_width_ = 0;
+  std::size_t rows_ = 1;
+  std::size_t columns_ = 1;
+  double cell_width_pt_ = 0;
+  double cell_height_pt_ = 0;
+  double unit_per_pt_ = 1;
+  std::vector<Panel> panels_;
+};
+
+}  // namespace
+
+std::unique_ptr<Figure> scene_figure(const Scene& scene) {
+  return std::make_unique<SceneFigure>(scene);
+}
+
+}  // namespace vestige::plot

@@ -1,0 +1,60 @@
+#include "analysis/plot/subject.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <glm/vec2.hpp>
+#include <span>
+#include <string_view>
+
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+ActuatorMap read_map(const std::string& map) {
+  if (map == "none") return {};
+  if (map == "builtin") return parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), map);
+  const auto sidecar = std::filesystem::path(map).replace_extension(".json");
+  const std::string json = std::filesystem::exists(sidecar) ? read_text_file(sidecar) : std::string();
+  return parse_actuator_map(read_file(map), json, map);
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+}  // namespace
+
+std::uint16_t Subject::actuator_at(std::uint32_t triangle, double u, double v) const {
+  const glm::uvec3& corner = avatar.triangles[triangle];
+  const auto& coordinates = avatar.texture_coordinate;
+  return map.at((1 - u - v) * glm::dvec2(coordinates[corner.x]) + u * glm::dvec2(coordinates[corner.y]) +
+                v * glm::dvec2(coordinates[corner.z]));
+}
+
+Subject read_subject(const std::string& avatar, const std::string& map) {
+  const bool is_builtin = avatar == "builtin";
+  Subject subject;
+  subject.title = is_builtin ? "built-in avatar" : std::filesystem::path(avatar).filename().string();
+  subject.avatar = parse_avatar_glb(is_builtin ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar);
+  subject.map = read_map(!map.empty() ? map : is_builtin ? "builtin" : "none");
+  return subject;
+}
+
+Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map) {
+  Subject subject;
+  subject.title = path.filename().string();
+  subject.avatar = parse_avatar_glb(trace.avatar_glb(), path.string() + ", avatar.glb");
+  if (!map.empty())
+    subject.map = read_map(map);
+  else if (!trace.actuator_map_png().empty())
+    subject.map = parse_actuator_map(trace.actuator_map_png(), text_of(trace.actuator_map_json()),
+                                     path.string() + ", actuator_map.png");
+  return subject;
+}
+
+}  // namespace vestige::plot

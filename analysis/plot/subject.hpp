@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "detector/actuator_map.hpp"
+#include "traces/avatar.hpp"
+#include "traces/trace_reader.hpp"
+
+namespace vestige::plot {
+
+/// Who is drawn.
+struct Subject {
+  std::string title;
+  Avatar avatar;
+  ActuatorMap map;  ///< without actuators where there is none
+
+  /// The actuator of the skin where the triangle's second and third vertex weigh u and v, by the very look-up that
+  /// detectors use.
+  std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const;
+};
+
+/// `avatar`: "builtin" or a glTF file. `map`: "builtin", "none" or a PNG file, whose sidecar is the .json of the same
+/// name, if there is one; empty: "builtin" for the built-in avatar, else "none". Throws `Error`.
+Subject read_subject(const std::string& avatar, const std::string& map);
+
+/// The avatar of a trace, with the trace's map or, unless it is empty, with `map`. Throws `Error`.
+Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map);
+
+}  // namespace vestige::plot
