@@ -27,7 +27,7 @@ constexpr double kLongest_s = 1.1;
 constexpr double kLowest = 0.5;  // of the height at rest: hips to head
 constexpr double kHighest = 0.97;
 constexpr double kHalfWidth_m = 0.2;
-constexpr double kFacing = 0.85;  // the cosine between the skin struck and the front
+constexpr double kFacing = 0.6;  // the cosine between the skin struck and the front
 constexpr double kSpread = 0.2;  // how far a strike may stray from the normal: its tangent, at most
 
 /// Where and which way a fist strikes, and when it reaches the skin.
