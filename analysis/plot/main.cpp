@@ -257,7 +257,7 @@ int main(int argc, char** argv) {
 
   CLI::App& scene = add_command(app, "scene", "A film strip of a trace: the avatar, the colliders and their paths",
                                 "  vestige plot scene man.mcap\n"
-                                "  vestige plot scene man.mcap --contacts contacts.csv --frames 4 --from 0.5 --to 1\n");
+                                "  vestige plot scene man.mcap --contacts contacts.csv --frames 4 --from 0.1 --to 0.2\n");
   scene.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
   scene.add_option("--frames", options.moments.count, "How many frames are drawn")
       ->capture_default_str()
