@@ -48,19 +48,18 @@ class Painter {
     if (area < 0) std::swap(corners[1], corners[2]);
     const glm::dvec2 low = glm::floor(glm::min(corners[0], glm::min(corners[1], corners[2])));
     const glm::dvec2 high = glm::ceil(glm::max(corners[0], glm::max(corners[1], corners[2])));
-    if (std::max(high.x - low.x, high.y - low.y) > kMostTextures * coverage_.side) return paint_box(low, high);
-    for (double y = low.y; y < high.y; ++y)
-      for (double x = low.x; x < high.x; ++x)
-        if (covers(corners, {x + 0.5, y + 0.5})) add(x, y);
+    const double side = coverage_.side;
+    const bool is_huge = std::max(high.x - low.x, high.y - low.y) > kMostTextures * side;
+    const auto columns = static_cast<int>(std::min(high.x - low.x, is_huge ? side : kMostTextures * side));
+    const auto rows = static_cast<int>(std::min(high.y - low.y, is_huge ? side : kMostTextures * side));
+    for (int row = 0; row < rows; ++row)
+      for (int column = 0; column < columns; ++column) {
+        const glm::dvec2 texel = low + glm::dvec2(column, row);
+        if (is_huge || covers(corners, texel + 0.5)) add(texel.x, texel.y);
+      }
   }
 
  private:
-  void paint_box(const glm::dvec2& low, const glm::dvec2& high) {
-    const double side = coverage_.side;
-    for (double y = low.y; y < std::min(high.y, low.y + side); ++y)
-      for (double x = low.x; x < std::min(high.x, low.x + side); ++x) add(x, y);
-  }
-
   void add(double x, double y) {
     const double side = coverage_.side;
     const auto wrap = [&](double texel) {

@@ -21,6 +21,7 @@
 #include "traces/glb_container.hpp"
 #include "traces/mannequin/animations.hpp"
 #include "traces/mannequin/charts.hpp"
+#include "traces/mannequin/shape.hpp"
 #include "traces/mannequin/skeleton.hpp"
 #include "traces/mannequin/surface.hpp"
 
@@ -202,12 +203,12 @@ void add_motion(const Motion& motion, Document& document) {
 std::uint8_t actuator_at(const glm::dvec3& p) {
   constexpr double kTop_m = 1.45;
   constexpr double kBottom_m = 0.94;
-  if (p.y < kBottom_m || p.y >= kTop_m) return 0;
+  if (p.y < kBottom_m || p.y >= kTop_m || on_arm({std::abs(p.x), p.y, p.z})) return 0;
   const int band = static_cast<int>(3 * (kTop_m - p.y) / (kTop_m - kBottom_m));
   return static_cast<std::uint8_t>(40 * (2 * band + (p.x < 0 ? 0 : 1) + 1));
 }
 
-/// Each texel under the torso's panels gets the region of the point that it shows; two rings of texels around them get
+/// Each texel gets the region of the point of the skin that it shows; two rings of texels around the panels get
 /// their neighbours', so that no rounding at a seam falls into the void.
 std::vector<std::uint8_t> draw_map(const Surface& surface, const std::vector<Chart>& charts) {
   constexpr auto kSide = static_cast<int>(kMapSide);
@@ -217,7 +218,6 @@ std::vector<std::uint8_t> draw_map(const Surface& surface, const std::vector<Cha
   for (const Chart& chart : charts) {
     std::map<std::uint32_t, std::size_t> local;
     for (std::size_t i = 0; i < chart.vertices.size(); ++i) local[chart.vertices[i]] = i;
-    const bool is_torso = chart.panel == Panel::kTorsoFront || chart.panel == Panel::kTorsoBack;
     for (const std::uint32_t t : chart.triangles) {
       std::array<glm::dvec2, 3> uv;
       std::array<glm::dvec3, 3> p;
@@ -238,7 +238,7 @@ std::vector<std::uint8_t> draw_map(const Surface& surface, const std::vector<Cha
           const double c = (e1.x * d.y - e1.y * d.x) / determinant;
           if (b < 0 || c < 0 || b + c > 1) continue;
           covered[index(x, y)] = true;
-          if (is_torso) map[index(x, y)] = actuator_at((1 - b - c) * p[0] + b * p[1] + c * p[2]);
+          map[index(x, y)] = actuator_at((1 - b - c) * p[0] + b * p[1] + c * p[2]);
         }
     }
   }
