@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include "analysis/comparison.hpp"
@@ -218,21 +219,24 @@ void swarm_over(const Avatar& avatar, std::uint32_t colliders, int frames, doubl
 }
 
 TEST_P(DetectorTest, SkinsWithinAMillionthOfTheAvatarsHeight) {
-  std::vector<Avatar> avatars = {builtin_avatar()};
-  for (const char* name : {"CesiumMan.glb", "MakeHumanBase_cc0_8inf.glb", "KayKit_Knight.glb"}) {
-    const auto path = test::data("avatars/avatars") / name;
-    VESTIGE_REQUIRE_DATA(path);
-    avatars.push_back(parse_avatar_glb(read_avatar_glb(path), name));
+  std::vector<std::pair<std::string, Avatar>> avatars = {{"builtin", builtin_avatar()}};
+  for (const char* folder : {"avatars/avatars", "avatars/skin"}) {
+    VESTIGE_REQUIRE_DATA(test::data(folder));
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(test::data(folder)))
+      if (entry.path().extension() == ".glb" || entry.path().extension() == ".gltf")
+        avatars.emplace_back(entry.path().string(),
+                             parse_avatar_glb(read_avatar_glb(entry.path()), entry.path().string()));
   }
-  for (const Avatar& avatar : avatars) {
+  EXPECT_GT(avatars.size(), 15U);
+  for (const auto& [name, avatar] : avatars) {
     const auto detector = GetParam().make(avatar, builtin_map(), options());
     SkinningError error;
     swarm_over(avatar, 1, 5, 3, [&](const TraceFrame& trace_frame, const Frame& frame) {
       error.add(avatar, trace_frame, frame, *detector);
     });
     EXPECT_EQ(error.vertices, 5 * avatar.position_bind.size());
-    EXPECT_LT(error.largest_m, 1e-6 * error.height_m);
-    EXPECT_GT(error.height_m, 0);
+    EXPECT_LT(error.largest_m, 1e-6 * error.height_m) << name;
+    EXPECT_GT(error.height_m, 0) << name;
   }
 }
 

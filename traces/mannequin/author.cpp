@@ -86,6 +86,7 @@ std::vector<glm::vec3> smooth_normals(const Surface& surface) {
     for (int i = 0; i < 3; ++i) sums[t[i]] += doubled_area;
   }
   std::vector<glm::vec3> normals;
+  normals.reserve(sums.size());
   for (const glm::dvec3& sum : sums) normals.emplace_back(glm::normalize(sum));
   return normals;
 }

@@ -226,6 +226,7 @@ std::vector<glm::dvec2> flatten(const Surface& surface, const Chart& chart) {
     flat = global.solve(right);
   }
   std::vector<glm::dvec2> result;
+  result.reserve(chart.vertices.size());
   for (int i = 0; i < count; ++i) result.emplace_back(flat(i, 0), flat(i, 1));
   return result;
 }

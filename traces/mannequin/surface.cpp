@@ -28,8 +28,8 @@ namespace simplification = CGAL::Surface_mesh_simplification;
 using Kernel = CGAL::Simple_cartesian<double>;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-const glm::dvec3 kLow_m(0, -0.02, -0.20);
-const glm::dvec3 kHigh_m(0.86, 1.78, 0.24);
+constexpr glm::dvec3 kLow_m(0, -0.02, -0.20);
+constexpr glm::dvec3 kHigh_m(0.86, 1.78, 0.24);
 
 /// The distance at each grid point; blocks that the surface cannot reach get one value.
 vtkNew<vtkImageData> sample(double spacing_m) {
