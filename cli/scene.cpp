@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
-#include <iterator>
 #include <string_view>
 
 #include "cli/options.hpp"
@@ -39,15 +37,6 @@ void load_map(const std::string& map, Scene& scene) {
   scene.map = parse_actuator_map(scene.map_png, scene.map_json, map);
 }
 
-std::string list_animations(const Avatar& avatar) {
-  if (avatar.animations.empty()) return "the avatar has none; leave --animation out";
-  std::string list = "the avatar has";
-  for (std::size_t i = 0; i < avatar.animations.size(); ++i)
-    fmt::format_to(std::back_inserter(list), "{} {} ({})", i == 0 ? "" : ",", i,
-                   avatar.animations[i].name.empty() ? "unnamed" : avatar.animations[i].name);
-  return list;
-}
-
 }  // namespace
 
 Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity) {
@@ -63,19 +52,6 @@ Scene load_scene(const std::string& avatar, const std::string& map, Verbosity ve
     warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", avatar), verbosity);
   if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
   return scene;
-}
-
-const Animation* find_animation(const Avatar& avatar, const std::string& name_or_index) {
-  if (name_or_index == "none" || (name_or_index.empty() && avatar.animations.empty())) return nullptr;
-  if (name_or_index.empty()) return &avatar.animations.front();
-  const auto named = std::ranges::find(avatar.animations, name_or_index, &Animation::name);
-  if (named != avatar.animations.end()) return &*named;
-  std::size_t index = 0;
-  const char* end = name_or_index.data() + name_or_index.size();
-  const auto parsed = std::from_chars(name_or_index.data(), end, index);
-  if (parsed.ec == std::errc() && parsed.ptr == end && index < avatar.animations.size())
-    return &avatar.animations[index];
-  throw UsageError("--animation", fmt::format("there is no animation '{}'", name_or_index), list_animations(avatar));
 }
 
 OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)

@@ -6,6 +6,7 @@
 
 #include "cli/terminal.hpp"
 #include "detector/actuator_map.hpp"
+#include "traces/animation_choice.hpp"
 #include "traces/avatar.hpp"
 #include "traces/trace_reader.hpp"
 #include "traces/trace_writer.hpp"
@@ -26,10 +27,6 @@ struct Scene {
 /// `avatar`: "builtin" or a file. `map`: "builtin", "none" or a PNG file, whose sidecar is the .json of the same name,
 /// if there is one; empty: "builtin" for the built-in avatar, else "none". Warnings go to standard error.
 Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity);
-
-/// An animation by its name or, if none has it, by its index; "none" is null. Empty: the first, if there is one. Throws
-/// `UsageError` listing what there is.
-const Animation* find_animation(const Avatar& avatar, const std::string& name_or_index);
 
 /// A trace, with the avatar and map that it carries.
 struct OpenTrace {

@@ -4,15 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <iterator>
 
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/palette.hpp"
 #include "analysis/plot/scale_bar.hpp"
 #include "analysis/plot/studio.hpp"
-#include "traces/error.hpp"
+#include "traces/animation_choice.hpp"
 
 namespace vestige::plot {
 
@@ -184,29 +182,14 @@ class AvatarFigure : public Figure {
   double unit_per_pt_ = 1;
 };
 
-std::string list_animations(const Avatar& avatar) {
-  if (avatar.animations.empty()) return "the avatar has none; leave --animation out";
-  std::string list = "the avatar has";
-  for (std::size_t i = 0; i < avatar.animations.size(); ++i)
-    fmt::format_to(std::back_inserter(list), "{} {} ({})", i == 0 ? "" : ",", i,
-                   avatar.animations[i].name.empty() ? "unnamed" : avatar.animations[i].name);
-  return list;
-}
-
 }  // namespace
 
 std::vector<const Animation*> ContactSheet::choose(const Avatar& avatar, const std::string& animation) {
-  std::vector<const Animation*> chosen;
-  if (animation == "none" || (animation.empty() && avatar.animations.empty())) return {nullptr};
-  for (std::size_t i = 0; i < avatar.animations.size(); ++i)
-    if (animation.empty() || avatar.animations[i].name == animation) chosen.push_back(&avatar.animations[i]);
-  if (!chosen.empty()) return chosen;
-  std::size_t index = 0;
-  const char* end = animation.data() + animation.size();
-  const auto parsed = std::from_chars(animation.data(), end, index);
-  if (parsed.ec == std::errc() && parsed.ptr == end && index < avatar.animations.size())
-    return {&avatar.animations[index]};
-  throw UsageError("--animation", fmt::format("there is no animation '{}'", animation), list_animations(avatar));
+  if (!animation.empty() || avatar.animations.empty()) return {find_animation(avatar, animation)};
+  std::vector<const Animation*> all;
+  all.reserve(avatar.animations.size());
+  for (const Animation& each : avatar.animations) all.push_back(&each);
+  return all;
 }
 
 std::unique_ptr<Figure> avatar_figure(const ContactSheet& sheet) {

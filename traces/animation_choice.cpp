@@ -1,0 +1,39 @@
+#include "traces/animation_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <iterator>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+std::string list_animations(const Avatar& avatar) {
+  if (avatar.animations.empty()) return "the avatar has none; leave --animation out";
+  std::string list = "the avatar has";
+  for (std::size_t i = 0; i < avatar.animations.size(); ++i)
+    fmt::format_to(std::back_inserter(list), "{} {} ({})", i == 0 ? "" : ",", i,
+                   avatar.animations[i].name.empty() ? "unnamed" : avatar.animations[i].name);
+  return list;
+}
+
+}  // namespace
+
+const Animation* find_animation(const Avatar& avatar, const std::string& name_or_index) {
+  if (name_or_index == "none" || (name_or_index.empty() && avatar.animations.empty())) return nullptr;
+  if (name_or_index.empty()) return &avatar.animations.front();
+  const auto named = std::ranges::find(avatar.animations, name_or_index, &Animation::name);
+  if (named != avatar.animations.end()) return &*named;
+  std::size_t index = 0;
+  const char* end = name_or_index.data() + name_or_index.size();
+  const auto parsed = std::from_chars(name_or_index.data(), end, index);
+  if (parsed.ec == std::errc() && parsed.ptr == end && index < avatar.animations.size())
+    return &avatar.animations[index];
+  throw UsageError("--animation", fmt::format("there is no animation '{}'", name_or_index), list_animations(avatar));
+}
+
+}  // namespace vestige
