@@ -19,9 +19,9 @@ struct UvCoverage {
 };
 
 /// Counts over a texture of `side` x `side` texels, coordinates outside [0, 1] wrapped as an actuator map wraps them
-/// (detector/CONTRACT.md, 8). A texel belongs to the triangles that its centre lies in; on a common edge, to one of
-/// them (top-left rule). Triangles without area in UV space cover nothing. One that is wider or higher than 4 textures
-/// covers each texel that its bounding box covers.
+/// (detector/CONTRACT.md, 8). A texel belongs to the triangles that its centre lies in, each counted once; on a common
+/// edge, to one of the two. Triangles without area in UV space cover nothing. Of a triangle that is wider or higher
+/// than the texture, one turn around it is counted: the time is bounded by triangles x texels covered.
 UvCoverage uv_coverage(const Avatar& avatar, std::uint32_t side);
 
 }  // namespace vestige

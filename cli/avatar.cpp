@@ -5,7 +5,6 @@
 #include <array>
 #include <memory>
 #include <set>
-#include <stdexcept>
 #include <tuple>
 
 #include "analysis/provenance.hpp"
@@ -68,7 +67,7 @@ nlohmann::ordered_json describe(const Avatar& avatar, const UvCoverage& coverage
 }
 
 std::string overlap_text(const UvCoverage& coverage) {
-  if (coverage.covered_texels == 0) return "no texture coordinates: an actuator map cannot tell regions apart";
+  if (coverage.covered_texels == 0) return "no triangle covers a texel: an actuator map cannot tell regions apart";
   const double share =
       100.0 * static_cast<double>(coverage.overlap_texels) / static_cast<double>(coverage.covered_texels);
   return fmt::format("{} of {} covered texels have several triangles ({:.1f} %, at {} x {})", coverage.overlap_texels,
@@ -79,9 +78,9 @@ std::string summary(const std::string& name, const nlohmann::ordered_json& json,
                     const UvCoverage& coverage) {
   const auto number = [&](const char* corner, std::size_t axis) { return json["bounds"][corner][axis].get<double>(); };
   std::string text =
-      fmt::format("{}: {} triangles, {} vertices ({} places), {} joints, {} influence{} a vertex\n", name,
+      fmt::format("{}: {} triangles, {} vertices in {} places, {} joints, up to {} influences a vertex\n", name,
                   avatar.triangles.size(), avatar.position_bind.size(), json["welded_vertices"].get<std::size_t>(),
-                  avatar.joint_count, avatar.influence_count, avatar.influence_count == 1 ? "" : "s");
+                  avatar.joint_count, avatar.influence_count);
   text += fmt::format(
       "  bounding box   x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} (rest pose; glTF: metres)\n",
       number("min", 0), number("max", 0), number("min", 1), number("max", 1), number("min", 2), number("max", 2));
@@ -117,7 +116,7 @@ std::vector<std::byte> overlap_picture(const UvCoverage& coverage) {
     png.resize(bytes);
     if (png_image_write_to_memory(&image, png.data(), &bytes, 0, pixels.data(), 0, nullptr) != 0) return png;
   }
-  throw std::runtime_error(image.message);
+  throw Error("--uv", image.message, "leave it out");
 }
 
 void write_file(const std::string& path, std::span<const std::byte> bytes, const CommonOptions& options) {

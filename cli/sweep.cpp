@@ -77,8 +77,8 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
 void record_default_trace(const std::string& path, const SweepOptions& options, const Invocation& invocation) {
   const Scene scene = load_scene("builtin", "builtin", Verbosity::kQuiet);
   const Animation* animation = find_animation(scene.avatar, "");
-  const auto swarm =
-      make_swarm(scene.avatar, animation, {std::ranges::max(options.settings.counts), options.common.seed});
+  const auto swarm = find_scenario("swarm")->make(scene.avatar, animation,
+                                                  {std::ranges::max(options.settings.counts), options.common.seed});
   TraceWriterOptions writing;
   writing.overwrite = options.common.overwrite();
   TraceWriter writer(path, {{"argv", nlohmann::json(invocation.argv).dump()}}, scene.avatar, scene.attachments(),

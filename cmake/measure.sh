@@ -28,7 +28,10 @@ done
 renderer=$(vestige devices --json - 2>/dev/null | sed -n 's/^ *"renderer": "\(.*\)",$/\1/p' | sed 1q)
 name=$(printf %s "${renderer:-no OpenGL}" | tr '[:upper:]' '[:lower:]' | tr -cs 'a-z0-9' '-' | sed 's/^-*//; s/-*$//' | cut -c1-60)
 out=${out:-results-$(date -u +%Y-%m-%d)-$name}
-[ ! -e "$out" ] || { echo "measure: error: $out exists already: move it, or name another folder" >&2; exit 1; }
+out=${out%/}
+for existing in "$out" "$out.tar.gz"; do
+  [ ! -e "$existing" ] || { echo "measure: error: $existing exists already: move it, or name another folder" >&2; exit 1; }
+done
 mkdir -p "$out/log" || exit 1
 
 failed=

@@ -6,7 +6,7 @@
 
 namespace vestige {
 
-/// The avatar that comes with Vestige, the mannequin: one closed surface of a person 1.75 m tall, 5000 triangles, on 21
+/// The avatar that comes with Vestige, the mannequin: one closed surface of a person 1.75 m tall, 4998 triangles, on 21
 /// joints, with the animations `idle`, `walk`, `reach` and `spin`; metres, y up, facing +z. Binary glTF 2.0; the same
 /// bytes in every build (traces/mannequin/README.md says how they were made).
 std::vector<std::byte> builtin_avatar_glb();

@@ -43,16 +43,10 @@ class ColliderSource {
   std::vector<std::uint32_t> teleported_;
 };
 
-/// `animation` may be null: then the avatar rests.
 struct ScenarioSettings {
   std::uint32_t count = 100;
   std::uint64_t seed = 1;
 };
-
-/// `swarm`: points that fly straight through the body from all sides while it moves, each aimed at a random vertex
-/// where that vertex will be; a new aim follows every passage. Positions lie on a grid of 2^-20 m.
-std::unique_ptr<ColliderSource> make_swarm(const Avatar& avatar, const Animation* animation,
-                                           const ScenarioSettings& settings);
 
 /// A built-in scenario. The same avatar, animation, count and seed give the same positions at the same times, at any
 /// rate of sampling.
@@ -60,6 +54,7 @@ struct Scenario {
   std::string_view name;
   std::string_view summary;  ///< one line
   std::uint32_t default_count;
+  /// `animation` may be null: then the avatar rests.
   std::unique_ptr<ColliderSource> (*make)(const Avatar& avatar, const Animation* animation,
                                           const ScenarioSettings& settings);
 };

@@ -47,6 +47,18 @@ TEST(UvCoverage, NoCoordinatesAndHugeOnesComeToAnEnd) {
   EXPECT_LE(uv_coverage(flat({{-most, 0}, {most, 0}, {0, most}}), 64).covered_texels, 64U * 64U);
 }
 
+TEST(UvCoverage, ATriangleThatWrapsAroundTheTextureDoesNotOverlapItself) {
+  EXPECT_EQ(uv_coverage(flat({{0, 0}, {2, 0}, {0, 2}}), 64).overlap_texels, 0U);
+}
+
+TEST(UvCoverage, ManyLargeTrianglesAreCountedToTheEnd) {
+  std::vector<glm::vec2> coordinates;
+  for (int i = 0; i < 300000; ++i) coordinates.insert(coordinates.end(), {{0, 0}, {3.9F, 0}, {0, 3.9F}});
+  const UvCoverage coverage = uv_coverage(flat(std::move(coordinates)), 256);
+  EXPECT_EQ(coverage.overlap_texels, 256U * 256U);
+  EXPECT_EQ(std::ranges::min(coverage.layers), 255);
+}
+
 TEST(UvCoverage, TheMannequinIsCutWithoutAnyOverlap) {
   const Avatar mannequin = parse_avatar_glb(builtin_avatar_glb(), "builtin");
   for (const std::uint32_t side : {512U, 1024U, 4096U})

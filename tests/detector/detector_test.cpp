@@ -204,7 +204,7 @@ TEST_P(DetectorTest, AnswersAFrameWithoutSegments) {
 template <typename Visit>
 void swarm_over(const Avatar& avatar, std::uint32_t colliders, int frames, double rate_hz, Visit visit) {
   const Animation* animation = avatar.animations.empty() ? nullptr : &avatar.animations.front();
-  const auto swarm = make_swarm(avatar, animation, {colliders, 1});
+  const auto swarm = find_scenario("swarm")->make(avatar, animation, {colliders, 1});
   std::vector<std::uint32_t> ids;
   for (std::uint32_t i = 0; i < colliders; ++i) ids.push_back(i);
   FrameBuilder builder(avatar, ids);

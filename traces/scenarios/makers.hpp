@@ -8,6 +8,8 @@ namespace vestige {
 
 /// What the table of scenarios names; each file says what it does. Lengths and speeds are those beside a human being
 /// (`Body::metre`), positions lie on a grid of 2^-20 m. A source refers to the avatar and the animation.
+std::unique_ptr<ColliderSource> make_swarm(const Avatar& avatar, const Animation* animation,
+                                           const ScenarioSettings& settings);
 std::unique_ptr<ColliderSource> make_rain(const Avatar& avatar, const Animation* animation,
                                           const ScenarioSettings& settings);
 std::unique_ptr<ColliderSource> make_orbit(const Avatar& avatar, const Animation* animation,

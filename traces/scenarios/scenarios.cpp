@@ -9,7 +9,7 @@ std::span<const Scenario> scenarios() {
   static constexpr std::array<Scenario, 7> kScenarios = {{
       {"swarm", "points that pierce the body from all sides while it moves", 100, make_swarm},
       {"rain", "drops that fall through the body from above", 100, make_rain},
-      {"orbit", "points that circle upright around the body, through its skin", 100, make_orbit},
+      {"orbit", "points on level circles around the body, through its skin", 100, make_orbit},
       {"punch", "fists that strike torso and head from the front, 4 cm deep", 100, make_punch},
       {"slide", "one object that slides over the chest, dipping 4 mm into it", 1, make_slide},
       {"hug", "points that wander in and out, always within 2 cm of the skin", 100, make_hug},
