@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 
 #include "traces/gltf_animation.hpp"
 #include "traces/gltf_document.hpp"
 #include "traces/gltf_mesh.hpp"
 #include "traces/gltf_nodes.hpp"
+#include "traces/reference_skinning.hpp"
 
 namespace vestige {
 
@@ -54,6 +57,36 @@ void warn_of_joints_outside(const gltf::Document& document, const std::vector<bo
   }
 }
 
+bool fits_into_float(double number) {
+  return std::abs(number) <= double{std::numeric_limits<float>::max()};  // false for NaN
+}
+
+bool fits_into_float(const glm::dmat4& matrix) {
+  for (int i = 0; i < 16; ++i)
+    if (!fits_into_float(matrix[i / 4][i % 4])) return false;
+  return true;
+}
+
+/// Numbers that are finite each may still be too large for a float once they are multiplied.
+void refuse_rest_pose_beyond_float(const Avatar& avatar, const Report& report) {
+  const auto fail = [&](int node, std::string_view cause) {
+    report.fail(fmt::format("nodes[{}]", node), fmt::format("in the rest pose {} beyond what a float can hold", cause),
+                "scale the avatar down to metres");
+  };
+  std::vector<glm::dmat4> matrices;
+  world_matrices(avatar, rest_pose(avatar), matrices);
+  for (const int node : avatar.node_order)
+    if (!fits_into_float(matrices[static_cast<std::size_t>(node)])) fail(node, "its global matrix is");
+  palette_matrices(avatar, rest_pose(avatar), matrices);
+  for (std::size_t i = 0; i < matrices.size(); ++i)
+    if (!fits_into_float(matrices[i])) fail(avatar.palette[i].node, "its matrix times its inverse bind matrix is");
+  for (std::size_t vertex = 0; vertex < avatar.position_bind.size(); ++vertex) {
+    const glm::dvec3 position = skin_vertex(avatar, matrices, vertex);
+    if (!fits_into_float(position.x) || !fits_into_float(position.y) || !fits_into_float(position.z))
+      fail(avatar.palette[avatar.influences[vertex].palette[0]].node, fmt::format("it moves vertex {}", vertex));
+  }
+}
+
 [[noreturn]] void fail_without_triangles(const Report& report) {
   std::string cause = "there are no triangles that the default scene shows";
   for (const std::string& warning : report.warnings()) cause += "\n  also: " + warning;
@@ -70,6 +103,7 @@ Avatar parse_avatar_glb(std::span<const std::byte> glb, std::string_view name) {
   const std::vector<gltf::Skin> skins = gltf::read_skins(document, avatar, report);
   const std::vector<bool> drawn = gltf::nodes_drawn(document, avatar, report);
   gltf::read_meshes(document, skins, drawn, avatar, report);
+  refuse_rest_pose_beyond_float(avatar, report);
   gltf::read_animations(document, avatar, report);
   if (avatar.triangles.empty()) fail_without_triangles(report);
 

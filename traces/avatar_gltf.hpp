@@ -22,11 +22,11 @@ std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std
 /// Parses and validates a binary glTF 2.0 file. `name` stands in errors and warnings. Images are never looked at.
 ///
 /// Throws `Error`, naming the JSON field or byte offset, for whatever would make geometry, skin or motion wrong:
-/// out-of-range indices, accessors beyond their buffer, non-finite values, node cycles, negative weights, animation
-/// times that do not increase, required extensions that are not supported, no triangle at all. What does no harm
-/// becomes one of `Avatar::warnings`: unknown properties, wrong min and max, weights whose sum is not 1 (normalised),
-/// vertices without any weight (they follow their first joint), joints outside the scene, morph targets and other
-/// motion that moves no node.
+/// out-of-range indices, accessors beyond their buffer, non-finite values (those of the rest pose too), node cycles,
+/// negative weights, animation times that do not increase, required extensions that are not supported, no triangle at
+/// all. What does no harm becomes one of `Avatar::warnings`: unknown properties, wrong min and max, weights whose sum
+/// is not 1 (normalised), vertices without any weight (they follow their first joint), joints outside the scene, morph
+/// targets and other motion that moves no node.
 ///
 /// `root_node` is the lowest joint without a joint above it of the lowest skin that is drawn; without a skin, the first
 /// node that draws. `joint_count` counts all skins. Primitives that share their attributes and skin (or node) share

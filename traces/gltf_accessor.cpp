@@ -87,11 +87,8 @@ void check_range(const Document& document, int view_index, std::uint64_t offset,
                  std::uint64_t stride, std::uint64_t size, const std::string& path, const Report& report) {
   const auto index = static_cast<std::size_t>(view_index);
   const BufferView& view = document.views[index];
-  const std::uint64_t buffer_bytes = document.buffers[view.buffer].size();
-  if (view.offset + view.length > buffer_bytes)
-    report.fail(fmt::format("bufferViews[{}]", index),
-                fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", view.length,
-                            view.offset, view.buffer, buffer_bytes));
+  check_inside_buffer(view.offset, view.length, view.buffer, document.buffers[view.buffer].size(),
+                      fmt::format("bufferViews[{}]", index), report);
   if (offset + (count - 1) * stride + size > view.length)
     report.fail(path, fmt::format("{} elements of {} bytes from byte {} on, {} bytes apart, do not lie inside "
                                   "bufferViews[{}] of {} bytes",

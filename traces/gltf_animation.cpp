@@ -51,7 +51,10 @@ class AnimationReader {
       const std::string path = fmt::format("animations[{}].channels[{}]", index, c);
       const std::optional<AnimatedProperty> property = animated_property(channel.target_path);
       if (!property) {
-        report_.warn(path + ".target", fmt::format("ignored the animation of '{}'", channel.target_path));
+        if (channel.target_path == kNoNode)
+          report_.warn(path + ".target", "names no node, and was ignored");
+        else
+          report_.warn(fmt::format("{}.target.path '{}'", path, channel.target_path), "moves no node, and was ignored");
         continue;
       }
       if (!targets.emplace(channel.target_node, *property).second)
@@ -71,8 +74,8 @@ class AnimationReader {
                                 const tinygltf::AnimationChannel& channel, const std::string& path,
                                 AnimatedProperty property) {
     if (static_cast<std::size_t>(channel.sampler) >= source.samplers.size())
-      report_.fail(path + ".sampler",
-                   fmt::format("{} does not exist: there are {} samplers", channel.sampler, source.samplers.size()));
+      report_.fail(path + ".sampler", fmt::format("{} does not exist: the number of samplers is {}", channel.sampler,
+                                                  source.samplers.size()));
     const tinygltf::AnimationSampler& sampler = source.samplers[static_cast<std::size_t>(channel.sampler)];
     const std::string sampler_path = fmt::format("animations[{}].samplers[{}]", animation, channel.sampler);
     AnimationChannel result;

@@ -102,7 +102,8 @@ void read_accessors(Document& document, Report& report) {
         const auto components = component_count(accessor["type"].get_ref<const std::string&>());
         for (const char* bound : {"min", "max"})
           if (accessor.contains(bound) && accessor[bound].size() != components) {
-            report.warn(fmt::format("accessors[{}].{}", i, bound), "has not as many numbers as an element");
+            report.warn(fmt::format("accessors[{}].{}", i, bound),
+                        "has not as many numbers as an element, or one beyond double");
             accessor.erase(bound);
           }
         accessor.erase("name");
@@ -178,9 +179,7 @@ void resolve_buffers(Document& document, std::span<const std::byte> bin, Report&
     if (!document.is_view_read[view]) continue;
     const std::string path = fmt::format("bufferViews[{}].extensions.{}", view, kMeshopt);
     const std::span<const std::byte> buffer = document.buffers[packed.buffer];
-    if (packed.offset + packed.length > buffer.size())
-      report.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", packed.length,
-                                    packed.offset, packed.buffer, buffer.size()));
+    check_inside_buffer(packed.offset, packed.length, packed.buffer, buffer.size(), path, report);
     const std::uint64_t size = packed.count * packed.stride;
     if (size > left_bytes) report.fail(path, fmt::format("{} bytes cannot be packed in this file", size));
     left_bytes -= size;
@@ -252,16 +251,22 @@ void check_strides(const Document& document, const Report& report) {
 
 tinygltf::Animation load_animation(const Document& document, std::size_t index, Report& report) {
   json animation = document.json.element("animations", index, report);
-  // tinygltf drops a channel without a node, which would renumber the others: give it one, and a path that is ignored.
+  // tinygltf drops a channel without a node, which would renumber the others: give it one, and a path that says so.
   for (json& channel : animation["channels"]) {
-    if (!channel["target"].contains("node")) channel["target"] = {{"node", 0}, {"path", "pointer"}};
-    channel.erase("extensions");
+    json& target = channel["target"];
+    if (!target.contains("node")) target = {{"node", 0}, {"path", target["path"] == "pointer" ? "pointer" : kNoNode}};
   }
-  for (json& sampler : animation["samplers"]) sampler.erase("extensions");
   std::string text = animation.dump();
   animation = nullptr;
   text = fmt::format("{{\"animations\":[{}]}}", text);
   return std::move(to_model(text, report).animations.front());
+}
+
+void check_inside_buffer(std::uint64_t offset, std::uint64_t length, std::size_t buffer, std::uint64_t buffer_bytes,
+                         std::string_view path, const Report& report) {
+  if (offset + length > buffer_bytes)
+    report.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", length, offset,
+                                  buffer, buffer_bytes));
 }
 
 void refuse_stride(const Document& document, int accessor, std::string_view use, const Report& report) {

@@ -73,8 +73,15 @@ Document parse_document(Json json, Report& report);
 /// on whatever `split_glb`, `Json`, `parse_document` and `check_accessors` refuse.
 Document load_document(std::span<const std::byte> glb, Report& report);
 
+/// Stands as the path of an animation channel that names no node, unless it animates a "pointer".
+inline constexpr const char* kNoNode = "(no node)";
+
 /// Animations are most of the JSON of some avatars, and are parsed one at a time.
 tinygltf::Animation load_animation(const Document& document, std::size_t index, Report& report);
+
+/// Fails at `path` where `length` bytes from `offset` on, both below 2³², do not lie inside a buffer of `buffer_bytes`.
+void check_inside_buffer(std::uint64_t offset, std::uint64_t length, std::size_t buffer, std::uint64_t buffer_bytes,
+                         std::string_view path, const Report& report);
 
 /// Only vertex attributes may be interleaved (glTF 2.0 §3.6.2.1): fails, naming `use`, where a byteStride stands behind
 /// an accessor.

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <set>
 #include <string_view>
+#include <vector>
 
 #include "traces/gltf_meshopt.hpp"
 
@@ -19,47 +22,55 @@ constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
 /// Extensions that change neither geometry nor skin nor motion, and those that are supported.
 bool is_harmless(std::string_view extension) {
-  constexpr std::array<std::string_view, 3> kNames = {kQuantization, kMeshopt, "VRM"};
-  constexpr std::array<std::string_view, 14> kPrefixes = {
-      "KHR_materials_", "KHR_texture_",
-      "KHR_lights_",    "KHR_xmp",
-      "EXT_texture_",   "EXT_lights_",
-      "MSFT_texture_",  "VRMC_",
-      "EXT_materials",  "MSFT_packing_",
-      "FB_material",    "GODOT_single",
-      "KHR_audio",      "KHR_node_selectability",
+  constexpr std::array<std::string_view, 8> kNames = {kQuantization,
+                                                      kMeshopt,
+                                                      "VRM",
+                                                      "MOZ_hubs_components",
+                                                      "KHR_environment_map",
+                                                      "EXT_structural_metadata",
+                                                      "EXT_mesh_features",
+                                                      "CESIUM_primitive_outline"};
+  constexpr std::array<std::string_view, 13> kPrefixes = {
+      "KHR_texture_",  "KHR_lights_", "KHR_xmp",       "EXT_texture_", "EXT_lights_", "MSFT_texture_",          "VRMC_",
+      "EXT_materials", "FB_material", "MSFT_packing_", "GODOT_single", "KHR_audio",   "KHR_node_selectability",
   };
-  return std::find(kNames.begin(), kNames.end(), extension) != kNames.end() ||
+  return extension.find("_materials_") != std::string_view::npos ||
+         std::find(kNames.begin(), kNames.end(), extension) != kNames.end() ||
          std::any_of(kPrefixes.begin(), kPrefixes.end(), [&](auto prefix) { return extension.starts_with(prefix); });
 }
 
-std::string harmful_extensions(const json& names) {
-  std::string harmful;
-  for (const json& name : names)
-    if (!is_harmless(name.get_ref<const std::string&>()))
-      harmful.append(harmful.empty() ? "" : ", ").append(name.get_ref<const std::string&>());
-  return harmful;
+/// What ignoring an extension does to what is drawn, where there is something to say.
+std::string_view effect_of_ignoring(std::string_view extension) {
+  if (extension == "EXT_mesh_gpu_instancing") return " (what has instances is drawn once)";
+  if (extension == "KHR_node_visibility") return " (hidden nodes are drawn)";
+  return "";
 }
 
-bool holds(const json& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+std::vector<std::string> harmful_extensions(const std::vector<std::string>& names) {
+  std::vector<std::string> harmful;
+  std::copy_if(names.begin(), names.end(), std::back_inserter(harmful),
+               [](const std::string& name) { return !is_harmless(name); });
+  return harmful;
 }
 
 }  // namespace
 
 bool check_extensions(const json& head, Report& report) {
-  const json required = head.value("extensionsRequired", json::array());
-  const json used = head.value("extensionsUsed", json::array());
-  if (const std::string names = harmful_extensions(required); !names.empty())
-    report.fail("extensionsRequired", fmt::format("cannot be read without {}, which is not supported", names),
+  const auto required = head.value("extensionsRequired", std::vector<std::string>());
+  const auto used = head.value("extensionsUsed", std::vector<std::string>());
+  if (const auto names = harmful_extensions(required); !names.empty())
+    report.fail("extensionsRequired",
+                fmt::format("cannot be read without {}, which is not supported", fmt::join(names, ", ")),
                 "export the file without it");
-  if (const std::string names = harmful_extensions(used); !names.empty())
-    report.warn("extensionsUsed", fmt::format("ignored {}", names));
-  for (const json& name : required)
-    if (!holds(used, name.get_ref<const std::string&>()))
-      report.warn("extensionsRequired",
-                  fmt::format("names {}, which extensionsUsed does not", name.get_ref<const std::string&>()));
-  return holds(used, kQuantization) || holds(required, kQuantization);
+  if (auto names = harmful_extensions(used); !names.empty()) {
+    for (std::string& name : names) name += effect_of_ignoring(name);
+    report.warn("extensionsUsed", fmt::format("ignored {}", fmt::join(names, ", ")));
+  }
+  std::set<std::string_view> known(used.begin(), used.end());
+  for (const std::string& name : required)
+    if (!known.contains(name)) report.warn(fmt::format("extensionsRequired '{}'", name), "is not among extensionsUsed");
+  known.insert(required.begin(), required.end());
+  return known.contains(kQuantization);
 }
 
 void refuse_draco(const json& primitive, const std::string& path, const Report& report) {

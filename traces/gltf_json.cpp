@@ -24,12 +24,14 @@ std::string_view trim(std::string_view text, Report& report) {
   return text;
 }
 
-/// Its grammar is known to be sound; what may still fail is a number beyond double or half of a surrogate pair.
+/// Its grammar is known to be sound.
 json parse(std::string_view text, std::string_view path, const Report& report) {
   try {
     return json::parse(text);
-  } catch (const json::exception& error) {
-    report.fail(path, fmt::format("the JSON cannot be read: {}", error.what()));
+  } catch (const json::out_of_range&) {
+    report.fail(path, "the JSON cannot be read: it holds a number beyond double");
+  } catch (const json::parse_error&) {
+    report.fail(path, "the JSON cannot be read: it holds half of a surrogate pair");
   }
 }
 
@@ -37,7 +39,8 @@ json parse(std::string_view text, std::string_view path, const Report& report) {
 
 Json::Json(std::string_view text, Report& report)
     : outline_(outline_json(trim(text, report), report)), head_(json::object()) {
-  for (const auto& [name, value] : outline_.properties) head_[name] = parse(value, name, report);
+  for (const auto& [name, value] : outline_.properties)
+    head_[name] = parse(reduce_element(value, name, name, report), name, report);
   check_head(head_, outline_, report);
 }
 

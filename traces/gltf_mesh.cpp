@@ -193,8 +193,6 @@ class MeshReader {
     const std::string path = attribute_path(part, name);
     if (found == primitive(part).attributes.end()) report_.fail(path, "is missing");
     AccessorReader reader(document_, found->second, {type, components}, path, report_);
-    if (reader.count() != part.vertex_count)
-      report_.fail(path, fmt::format("has {} elements for {} vertices", reader.count(), part.vertex_count));
     reader.check_vertex_alignment(report_);
     return reader;
   }
@@ -247,9 +245,12 @@ class MeshReader {
                       attribute(part, weights, TINYGLTF_TYPE_VEC4, kFloat | kNormalizedUint8 | kNormalizedUint16),
                       attribute_path(part, joints), attribute_path(part, weights)});
     }
-    const auto is_joints = [](const auto& attribute) { return attribute.first.starts_with("JOINTS_"); };
-    if (static_cast<std::size_t>(std::count_if(attributes.begin(), attributes.end(), is_joints)) != sets.size())
-      report_.fail(part_path(part, ".attributes"), "has JOINTS_n that do not count up from 0");
+    for (const std::string_view prefix : {"JOINTS_", "WEIGHTS_"}) {
+      const auto count = std::count_if(attributes.begin(), attributes.end(),
+                                       [&](const auto& attribute) { return attribute.first.starts_with(prefix); });
+      if (static_cast<std::size_t>(count) != sets.size())
+        report_.fail(part_path(part, ".attributes"), fmt::format("has {}n that do not count up from 0", prefix));
+    }
     return sets;
   }
 

@@ -74,7 +74,7 @@ std::optional<PackedView> read_packed_view(const json& view, const std::string& 
   PackedView packed;
   packed.buffer = reader.number("buffer", kMost);
   if (packed.buffer >= buffer_count)
-    reader.fail("buffer", fmt::format("{} does not exist: there are {} buffers", packed.buffer, buffer_count));
+    reader.fail("buffer", fmt::format("{} does not exist: the number of buffers is {}", packed.buffer, buffer_count));
   packed.offset = reader.number_or_zero("byteOffset", kMost);
   packed.length = reader.number("byteLength", kMost);
   packed.count = reader.number("count", kMost);

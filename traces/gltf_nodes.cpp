@@ -38,8 +38,11 @@ void order_nodes(const Document& document, Avatar& avatar, const Report& report)
     avatar.node_order.insert(avatar.node_order.end(), children.begin(), children.end());
   }
   const auto lost = std::find(reached.begin(), reached.end(), false);
-  if (lost != reached.end())
-    report.fail(node_path(static_cast<Index>(lost - reached.begin()), ".children"), "leads back to the node itself");
+  if (lost == reached.end()) return;
+  // It may only hang from the cycle; so many steps up lead into it.
+  auto node = static_cast<Index>(lost - reached.begin());
+  for (Index step = 0; step < avatar.nodes.size(); ++step) node = static_cast<Index>(avatar.nodes[node].parent);
+  report.fail(node_path(node, ".children"), "leads back to the node itself");
 }
 
 /// Translation, rotation and scale whose product, after rounding to float, is `matrix` to 1e-6; nothing where shear or

@@ -72,7 +72,7 @@ class BufferPacker {
 
   Place append(std::span<const std::byte> content) {
     const std::size_t start = (bytes_.size() + 3) / 4 * 4;
-    if (content.size() > kMostBytes - start)
+    if (content.size() + start > kMostBytes)
       report_.fail("buffers", "take the file beyond the 4 GiB that a GLB can hold",
                    "leave out what the avatar does not need");
     if (content.size() > bytes_.size()) bytes_.reserve(start + content.size());
@@ -95,6 +95,7 @@ class Packer {
       : source_(source), packer_(path.parent_path(), bin, report), report_(report) {}
 
   std::vector<std::byte> pack() {
+    find_what_is_read();
     pack_buffers();
     std::string text = "{";
     for (const auto& [name, value] : source_.head().items())
@@ -111,8 +112,13 @@ class Packer {
   }
 
  private:
+  void find_what_is_read() {
+    gltf::Document document = gltf::parse_document(source_, report_);
+    is_read_ = std::move(document.is_buffer_read);
+    is_view_read_ = std::move(document.is_view_read);
+  }
+
   void pack_buffers() {
-    is_read_ = gltf::parse_document(source_, report_).is_buffer_read;
     start_.resize(is_read_.size());
     byte_length_.resize(is_read_.size());
     for (std::size_t i = 0; i < is_read_.size(); ++i) {
@@ -135,12 +141,15 @@ class Packer {
     text += "],";
   }
 
-  /// Makes a view refer to the one buffer of a GLB. Views of buffers that are not read held images, or what is packed
-  /// elsewhere; they keep their place so that the others keep their number.
+  /// Makes a view refer to the one buffer of a GLB. Views that are not read held images, or are wrong without harm;
+  /// they keep their place so that the others keep their number.
   void redirect(json& view, std::size_t index) const {
+    if (!is_view_read_[index]) {
+      view = {{"buffer", 0}, {"byteLength", 1}};
+      return;
+    }
     const std::string path = fmt::format("bufferViews[{}]", index);
-    if (const auto packed = gltf::read_packed_view(view, path, is_read_.size(), report_);
-        packed && is_read_[packed->buffer]) {
+    if (const auto packed = gltf::read_packed_view(view, path, is_read_.size(), report_)) {
       check_inside(packed->buffer, packed->offset, packed->length, path);
       json& extension = view["extensions"][gltf::kMeshopt];
       extension["buffer"] = 0;
@@ -150,10 +159,6 @@ class Packer {
       return;
     }
     const auto buffer = view["buffer"].get<std::size_t>();
-    if (!is_read_[buffer]) {
-      view = {{"buffer", 0}, {"byteLength", 1}};
-      return;
-    }
     const auto offset = view.value("byteOffset", std::size_t{0});
     check_inside(buffer, offset, view["byteLength"].get<std::size_t>(), path);
     view["buffer"] = 0;
@@ -161,15 +166,14 @@ class Packer {
   }
 
   void check_inside(std::size_t buffer, std::size_t offset, std::size_t length, const std::string& path) const {
-    if (offset + length > byte_length_[buffer])
-      report_.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", length,
-                                     offset, buffer, byte_length_[buffer]));
+    gltf::check_inside_buffer(offset, length, buffer, byte_length_[buffer], path, report_);
   }
 
   const Json& source_;
   BufferPacker packer_;
   Report& report_;
-  std::vector<bool> is_read_;
+  std::vector<bool> is_read_;       ///< for each buffer
+  std::vector<bool> is_view_read_;  ///< for each view
   std::vector<std::size_t> start_;
   std::vector<std::size_t> byte_length_;
 };
@@ -191,6 +195,8 @@ std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path) {
 std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std::filesystem::path& path) {
   const std::string_view text(reinterpret_cast<const char*>(content.data()), content.size());
   Report report(path.string());
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    report.fail("", "is UTF-16 text, but glTF is UTF-8", "save the file as UTF-8");
   if (is_text(text)) {
     const Json source(text, report);
     return Packer(source, {}, path, report).pack();

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "traces/gltf_uri.hpp"
+
 namespace vestige::gltf {
 
 namespace {
@@ -16,10 +18,6 @@ constexpr int kDeepestNesting = 128;
 
 bool is_digit(char character) {
   return character >= '0' && character <= '9';
-}
-
-bool is_hex_digit(char character) {
-  return is_digit(character) || (character >= 'a' && character <= 'f') || (character >= 'A' && character <= 'F');
 }
 
 /// ASCII that stands for itself inside a text.
@@ -46,7 +44,8 @@ std::size_t utf8_length(std::string_view text) {
 bool is_read(std::string_view key, int depth, std::string_view list) {
   constexpr std::array<std::string_view, 5> kUnreadLists = {"materials", "textures", "images", "samplers", "cameras"};
   if (key == "extras") return false;
-  if (key == "extensions") return depth == 5 || (depth == 3 && (list == "bufferViews" || list == "buffers"));
+  if (key == "extensions")
+    return (depth == 5 && list == "meshes") || (depth == 3 && (list == "bufferViews" || list == "buffers"));
   if (key == "camera") return depth != 3;
   if (key == "material") return depth != 5;
   return depth != 1 || std::find(kUnreadLists.begin(), kUnreadLists.end(), key) == kUnreadLists.end();
@@ -105,7 +104,9 @@ class Scanner {
         if (!keys.empty()) out += ',';
         out.append(quoted) += ':';
         const bool may_hold_data = depth == 3 && list == "buffers" && key == "uri";
+        const bool is_bound = depth == 3 && list == "accessors" && (key == "min" || key == "max");
         keys.push_back(std::move(key));
+        if (is_bound) return reduce_bound(out);
         if (!may_hold_data || peek() != '"') return reduce(depth + 1, list, path, out);
         const std::size_t first = at_;
         skip_string();
@@ -134,6 +135,14 @@ class Scanner {
  private:
   static constexpr std::string_view kShortened = "\"data:\"";
 
+  /// Nothing relies on an accessor's bounds, so numbers beyond double there do no harm: they become null.
+  void reduce_bound(std::string& out) {
+    const std::size_t start = at_;
+    skip_value(4);
+    const std::string_view bound = text_.substr(start, at_ - start);
+    out += nlohmann::json::accept(bound) ? bound : "null";
+  }
+
   /// Without escapes, the text as it stands is the URI.
   static bool is_plain_data_uri(std::string_view value) {
     return value.starts_with("\"data:") && value.find('\\') == std::string_view::npos;
@@ -155,7 +164,7 @@ class Scanner {
   void enter(int depth) {
     if (depth > kDeepestNesting)
       report_.fail("", fmt::format("the JSON is nested more than {} deep", kDeepestNesting),
-                   "is it really a glTF file?");
+                   "remove the deep extras or extensions");
     ++at_;
     skip_space();
   }
@@ -216,7 +225,8 @@ class Scanner {
         if (at_ >= text_.size() || kEscapes.find(peek()) == std::string_view::npos) fail("has a broken escape");
         if (take('u')) {
           const std::string_view digits = text_.substr(at_, 4);
-          if (digits.size() != 4 || !std::all_of(digits.begin(), digits.end(), is_hex_digit))
+          if (digits.size() != 4 ||
+              std::any_of(digits.begin(), digits.end(), [](char digit) { return hex_value(digit) < 0; }))
             fail("has a broken escape");
           at_ += 3;
         }

@@ -22,9 +22,10 @@ struct Outline {
 /// on nesting deeper than any glTF's.
 Outline outline_json(std::string_view text, const Report& report);
 
-/// An element of the document's list `list` as text, without what is never read in it: extras, references to what
-/// `outline_json` leaves out, and extensions, except where one may say that geometry is compressed. Fails, at `path`,
-/// where an object that is read has a property twice. Precondition: `outline_json` returned this element.
+/// An element of the document's list `list`, or a property of that name that is no list, as text, without what is never
+/// read in it: extras, references to what `outline_json` leaves out, and extensions, except where one may say that
+/// geometry is compressed. Fails, at `path`, where an object that is read has a property twice. Precondition:
+/// `outline_json` returned this element.
 ///
 /// The `uri` of a buffer that holds its data becomes "data:", and `find_data_uri` returns it: it may be most of the
 /// file, and is no text that needs to be parsed.

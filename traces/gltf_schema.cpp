@@ -26,7 +26,7 @@ enum class Type {
   kLabel,  ///< a text that only people read
   kStrings,
   kNumbers,  ///< each fits into a float
-  kBounds,   ///< numbers on which nothing relies
+  kBounds,   ///< numbers on which nothing relies; null where they could not be read
   kUnsigned,
   kIndex,
   kIndices,
@@ -104,7 +104,7 @@ constexpr std::array kBufferView = {
     Property{.name = "byteOffset", .type = Type::kUnsigned},
     Property{.name = "byteLength", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
     Property{.name = "byteStride", .type = Type::kUnsigned, .at_least = 4, .at_most = 252},
-    Property{.name = "target", .type = Type::kUnsigned},
+    Property{.name = "target"},
     Property{.name = "extensions"},
     Property{.name = "name", .type = Type::kLabel},
 };
@@ -115,14 +115,12 @@ constexpr std::array kChannelTarget = {
 constexpr std::array kChannel = {
     Property{.name = "sampler", .type = Type::kUnsigned, .need = Need::kRequired, .at_most = kInt32Max},
     Property{.name = "target", .type = Type::kObject, .need = Need::kRequired, .object = kChannelTarget},
-    Property{.name = "extensions"},
 };
 constexpr std::array<std::string_view, 3> kInterpolations = {"LINEAR", "STEP", "CUBICSPLINE"};
 constexpr std::array kSampler = {
     Property{.name = "input", .type = Type::kIndex, .need = Need::kRequired, .into = "accessors"},
     Property{.name = "interpolation", .type = Type::kString, .words = kInterpolations},
     Property{.name = "output", .type = Type::kIndex, .need = Need::kRequired, .into = "accessors"},
-    Property{.name = "extensions"},
 };
 constexpr std::array kAnimation = {
     Property{.name = "channels", .type = Type::kObjects, .need = Need::kRequired, .object = kChannel},
@@ -252,6 +250,7 @@ class Checker {
       case Type::kStrings:
         return check_each(value, property, [&](json& element) { check_string(element, property); });
       case Type::kBounds:
+        if (value.is_null()) return;
         return check_each(value, property, [&](const json& element) {
           if (!element.is_number()) fail("is not a number");
         });
@@ -330,7 +329,7 @@ class Checker {
     const auto list = outline_.lists.find(property.into);
     const std::size_t size = list == outline_.lists.end() ? 0 : list->second.size();
     if (value.get<std::uint64_t>() >= size)
-      fail(fmt::format("{} does not exist: there are {} {}", value.get<std::uint64_t>(), size, property.into));
+      fail(fmt::format("{} does not exist: the number of {} is {}", value.get<std::uint64_t>(), property.into, size));
   }
 
   void check_index_map(json& value, const Property& property) {

@@ -30,7 +30,6 @@ std::vector<glm::dmat4> read_inverse_bind(const Document& document, const tinygl
   if (source.inverseBindMatrices < 0) return matrices;
   const std::string path = skin_path(skin, "inverseBindMatrices");
   const AccessorReader reader(document, source.inverseBindMatrices, {TINYGLTF_TYPE_MAT4, kFloat}, path, report);
-  if (reader.count() < count) report.fail(path, fmt::format("has {} matrices for {} joints", reader.count(), count));
   for (std::size_t joint = 0; joint < count; ++joint) {
     std::array<double, 16> numbers = {};
     for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = double{reader.finite(joint, i)};

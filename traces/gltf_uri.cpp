@@ -24,13 +24,6 @@ int base64_value(char digit) {
   return -1;
 }
 
-int hex_value(char digit) {
-  if (digit >= '0' && digit <= '9') return digit - '0';
-  if (digit >= 'a' && digit <= 'f') return digit - 'a' + 10;
-  if (digit >= 'A' && digit <= 'F') return digit - 'A' + 10;
-  return -1;
-}
-
 /// `word` is in lower case.
 bool starts_with_any_case(std::string_view text, std::string_view word) {
   return text.size() >= word.size() && std::equal(word.begin(), word.end(), text.begin(), [](char a, char b) {
@@ -67,7 +60,7 @@ std::string unescape(std::string_view text, std::string_view uri, std::string_vi
   return result;
 }
 
-/// Strict RFC 4648, padding optional.
+/// RFC 4648, padding optional; bits left over after the last byte are not looked at.
 std::vector<std::byte> decode_base64(std::string_view digits, std::string_view path, const Report& report) {
   const std::size_t written = digits.size();
   for (int padding = 0; padding < 2 && digits.ends_with('='); ++padding) digits.remove_suffix(1);
@@ -96,6 +89,13 @@ bool has_scheme(std::string_view uri) {
 }
 
 }  // namespace
+
+int hex_value(char digit) {
+  if (digit >= '0' && digit <= '9') return digit - '0';
+  if (digit >= 'a' && digit <= 'f') return digit - 'a' + 10;
+  if (digit >= 'A' && digit <= 'F') return digit - 'A' + 10;
+  return -1;
+}
 
 bool is_data_uri(std::string_view uri) {
   return starts_with_any_case(uri, kDataScheme);

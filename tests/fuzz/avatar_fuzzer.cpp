@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <limits>
 #include <string_view>
 
 #include "traces/avatar_gltf.hpp"
@@ -44,6 +45,10 @@ void check(const Avatar& avatar) {
   }
   std::vector<glm::dvec3> positions;
   skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), positions);
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  for (const glm::dvec3& position : positions)
+    require(std::abs(position.x) <= kLargest && std::abs(position.y) <= kLargest && std::abs(position.z) <= kLargest,
+            "the rest pose is finite");
   for (const Animation& animation : avatar.animations)
     for (const double part : {-1.0, 0.0, 0.3, 1.0, 2.0})
       sample_animation(avatar, animation, part * animation.duration_s);

@@ -344,6 +344,7 @@ TEST(ParseAvatar, IgnoresMorphTargetsAndChannelsThatMoveNoNode) {
   const Avatar avatar = parse(builder);
   EXPECT_THAT(avatar.animations[0].channels, SizeIs(1));
   EXPECT_THAT(avatar.warnings, Contains(HasSubstr("morph targets")));
+  EXPECT_THAT(avatar.warnings, Contains(HasSubstr("animations[0].channels[0].target: names no node")));
   EXPECT_THAT(avatar.warnings, Contains(AllOf(HasSubstr("channels[2]"), HasSubstr("'weights'"))));
 }
 
@@ -358,7 +359,63 @@ TEST(ParseAvatar, NeverLooksAtImagesMaterialsAndExtras) {
   builder.document["nodes"][0]["camera"] = 3;
   builder.document["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_transform", "VRM"};
   builder.document["extensionsUsed"] = builder.document["extensionsRequired"];
+  builder.document["asset"]["extras"] = {{"author", "x"}};
+  builder.document["asset"]["extensions"] = {{"KHR_xmp_json_ld", {{"packet", 0}}}};
   EXPECT_THAT(parse(builder).warnings, IsEmpty());
+}
+
+TEST(ParseAvatar, SaysNothingOfExtrasAndExtensionsInsideASparseAccessor) {
+  GltfBuilder builder = one_triangle();
+  builder.add("SCALAR", std::vector<std::uint8_t>{1});
+  builder.add("VEC3", std::vector<float>{1, 0, 0});
+  const nlohmann::json extra = {{"X_y", 1}};
+  builder.document["accessors"][0]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", 1}, {"componentType", 5121}, {"extensions", extra}, {"extras", extra}}},
+      {"values", {{"bufferView", 2}, {"extensions", extra}, {"extras", extra}}}};
+  EXPECT_THAT(parse(builder).warnings, IsEmpty());
+}
+
+TEST(ParseAvatar, TakesRequiredExtensionsThatCannotTouchGeometry) {
+  GltfBuilder builder = one_triangle();
+  for (const char* name :
+       {"KHR_materials_variants", "ADOBE_materials_thin_transparency", "NV_materials_mdl", "MOZ_hubs_components",
+        "KHR_environment_map", "EXT_structural_metadata", "EXT_mesh_features", "CESIUM_primitive_outline"})
+    builder.document["extensionsRequired"].push_back(name);
+  builder.document["extensionsUsed"] = builder.document["extensionsRequired"];
+  EXPECT_THAT(parse(builder).warnings, IsEmpty());
+}
+
+TEST(ParseAvatar, SaysWhatIsDrawnWhereAnExtensionIsIgnored) {
+  GltfBuilder builder = one_triangle();
+  builder.document["extensionsUsed"] = {"EXT_mesh_gpu_instancing", "KHR_node_visibility", "X_other"};
+  EXPECT_THAT(parse(builder).warnings,
+              ElementsAre(HasSubstr("ignored EXT_mesh_gpu_instancing (what has instances is drawn once), "
+                                    "KHR_node_visibility (hidden nodes are drawn), X_other")));
+}
+
+TEST(ParseAvatar, MergesWarningsThatDifferOnlyInANameTheFileGives) {
+  GltfBuilder builder = one_triangle();
+  test::animate(builder, 0, "translation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0});
+  for (int i = 0; i < 3000; ++i) {
+    builder.document["animations"][0]["channels"].push_back(
+        {{"sampler", 0}, {"target", {{"node", 0}, {"path", "path " + std::to_string(i)}}}});
+    builder.document["extensionsRequired"].push_back("VRMC_" + std::to_string(i));
+  }
+  EXPECT_THAT(parse(builder).warnings, ElementsAre(HasSubstr("extensionsRequired 'VRMC_0' (and 2999 more)"),
+                                                   HasSubstr("channels[1].target.path 'path 0' (and 2999 more)")));
+}
+
+TEST(ParseAvatar, IgnoresBoundsBeyondDouble) {
+  const GltfBuilder builder = one_triangle();
+  nlohmann::json document = builder.document;
+  document["buffers"] = {{{"byteLength", builder.bin.size()}}};
+  document["accessors"][0].erase("max");
+  std::string text = document.dump();
+  text.insert(text.find("\"count\""), "\"max\":[1e400,1,0],");
+  const Avatar avatar = parse_avatar_glb(test::make_glb(text, builder.bin), "test.glb");
+  EXPECT_THAT(avatar.triangles, SizeIs(1));
+  EXPECT_THAT(avatar.warnings, Contains(AllOf(HasSubstr("accessors[0].max"), HasSubstr("beyond double"))));
 }
 
 TEST(ParseAvatar, WarnsOnceOfWhatDoesNoHarmAndNamesIt) {
@@ -402,7 +459,8 @@ TEST(ParseAvatar, WarnsOfWhatTheFormatForbidsButCannotBeMistaken) {
               }),
               ElementsAre(HasSubstr("scenes[0].nodes: names a node twice")));
   EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["extensionsRequired"] = {"VRM"}; }),
-              ElementsAre(HasSubstr("extensionsRequired: names VRM, which extensionsUsed does not")));
+              ElementsAre(HasSubstr("extensionsRequired 'VRM': is not among extensionsUsed")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["bufferViews"][0]["target"] = "vertices"; }), IsEmpty());
   EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["nodes"][0]["mesh"] = 0.0; }),
               ElementsAre(HasSubstr("nodes[0].mesh: is a whole number written as a decimal")));
 }
@@ -462,6 +520,17 @@ TEST(ReadAvatar, PacksDataUrisAndJoinsSeveralBuffers) {
   const Avatar avatar = parse_avatar_glb(read_avatar_glb(folder / "a.gltf"), "a.gltf");
   EXPECT_THAT(avatar.position_bind, ElementsAre(glm::vec3(0), glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)));
   EXPECT_THAT(avatar.triangles, ElementsAre(glm::uvec3(0, 1, 2)));
+}
+
+TEST(ReadAvatar, TakesATextFileWhoseImageLeavesItsBufferAsItTakesABinaryOne) {
+  GltfBuilder builder = one_triangle();
+  builder.document["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 30}, {"byteLength", 99}});
+  builder.document["images"] = {{{"bufferView", 1}, {"mimeType", "image/png"}}};
+  EXPECT_THAT(parse(builder).triangles, SizeIs(1));
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "a.gltf") << as_text(
+      builder, "data:application/gltf-buffer;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA");
+  EXPECT_EQ(parse_avatar_glb(read_avatar_glb(folder / "a.gltf"), "a").position_bind, parse(builder).position_bind);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <span>
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/gltf_builder.hpp"
@@ -16,6 +17,7 @@ namespace {
 using test::GltfBuilder;
 using test::one_triangle;
 using test::skinned_triangle;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// What the error says, or "loaded".
@@ -132,6 +134,26 @@ TEST(RefuseAvatar, NamesNumbersThatAreNotFinite) {
                           }}});
 }
 
+TEST(RefuseAvatar, NamesWhatTheRestPosePutsBeyondAFloat) {
+  GltfBuilder chain = one_triangle();
+  chain.document["nodes"] = {{{"mesh", 0}}};
+  for (int i = 1; i < 9; ++i) chain.document["nodes"].push_back({{"children", {i - 1}}});
+  const auto scale_all = [](GltfBuilder& b) {
+    for (nlohmann::json& node : b.document["nodes"]) node["scale"] = {1e38, 1e38, 1e38};
+  };
+  expect_refused(chain, {{"nodes[7]: in the rest pose its global matrix is beyond", scale_all}});
+  expect_refused(one_triangle(), {{"nodes[0]: in the rest pose it moves vertex 1 beyond", [](GltfBuilder& b) {
+                                     put_float(b, 12, 1e30F);
+                                     b.document["nodes"][0]["scale"] = {1e30, 1, 1};
+                                   }}});
+  GltfBuilder skinned = skinned_triangle();
+  const auto inverse_bind = skinned.document["bufferViews"][3]["byteOffset"].get<std::size_t>();
+  expect_refused(skinned, {{"nodes[2]: in the rest pose its matrix times its inverse bind matrix", [=](GltfBuilder& b) {
+                              put_float(b, inverse_bind + 64 + 52, 1e30F);
+                              b.document["nodes"][2]["scale"] = {1, 1e30, 1};
+                            }}});
+}
+
 TEST(RefuseAvatar, NamesIndicesThatReferToNothing) {
   GltfBuilder sound = skinned_triangle();
   sound.document["meshes"][0]["primitives"][0]["indices"] = sound.add("SCALAR", std::vector<std::uint8_t>{0, 1, 2});
@@ -143,7 +165,7 @@ TEST(RefuseAvatar, NamesIndicesThatReferToNothing) {
   expect_refused(sound,
                  {{"primitives[0].indices: index 2 is 3", [=](GltfBuilder& b) { b.bin[indices + 2] = std::byte{3}; }},
                   {"JOINTS_0: vertex 1 names joint 2", [=](GltfBuilder& b) { b.bin[joints + 4] = std::byte{2}; }},
-                  {"nodes[0].mesh: 1 does not exist", set("nodes", "mesh", 1)},
+                  {"nodes[0].mesh: 1 does not exist: the number of meshes is 1", set("nodes", "mesh", 1)},
                   {"nodes[0].skin: 1 does not exist", set("nodes", "skin", 1)},
                   {"nodes[0].skin: -1 is no whole number", set("nodes", "skin", -1)},
                   {"skins[0].inverseBindMatrices: 9", set("skins", "inverseBindMatrices", 9)},
@@ -165,8 +187,14 @@ TEST(RefuseAvatar, NamesNodesThatAreNoTree) {
   const auto children = [](std::size_t node, const std::vector<int>& list) {
     return [=](GltfBuilder& b) { b.document["nodes"][node]["children"] = list; };
   };
-  expect_refused(skinned_triangle(), {{"nodes[1].children: leads back", children(2, {1})},
+  expect_refused(skinned_triangle(), {{"nodes[2].children: leads back", children(2, {1})},
                                       {"nodes[0].children: leads back", children(0, {0})},
+                                      {"nodes[1].children: leads back",
+                                       [](GltfBuilder& b) {
+                                         // Node 0 only hangs from the cycle of 1 and 2.
+                                         b.document["nodes"][1]["children"] = {2, 0};
+                                         b.document["nodes"][2]["children"] = {1};
+                                       }},
                                       {"nodes[2]: is a child of nodes[0] and again of nodes[1]", children(0, {2})},
                                       {"nodes[2]: is a child of nodes[1] and again of nodes[1]", children(1, {2, 2})},
                                       {"nodes[0].rotation: is zero",
@@ -265,7 +293,11 @@ TEST(RefuseAvatar, NamesJsonThatSaysTwoThings) {
   EXPECT_THAT(with("\"nodes\"", "\"n\\u006fdes\":[{}],"), HasSubstr("nodes: is there more than once"));
   EXPECT_THAT(with("\"mesh\":0", "\"mesh\":1,"), HasSubstr("nodes[0]: has 'mesh' more than once"));
   EXPECT_THAT(with("\"POSITION\"", "\"POSITION\":1,"), HasSubstr("meshes[0]: has 'POSITION' more than once"));
-  EXPECT_THAT(with("\"mesh\":0", "\"scale\":[1e400,1,1],"), HasSubstr("nodes[0]: the JSON cannot be read"));
+  EXPECT_THAT(with("\"mesh\":0", "\"scale\":[1e400,1,1],"),
+              HasSubstr("nodes[0]: the JSON cannot be read: it holds a number beyond double"));
+  EXPECT_THAT(with("\"mesh\":0", "\"name\":\"\\ud800\","),
+              HasSubstr("nodes[0]: the JSON cannot be read: it holds half of a surrogate pair"));
+  EXPECT_THAT(with("\"version\"", "\"version\":\"2.0\","), HasSubstr("asset: has 'version' more than once"));
   for (const char* broken : {"\"a\":01,", "\"a\":1.,", "\"a\":.5,", "\"a\":+1,", "\"a\":nul,", "\"a\":\"\\x\",",
                              "\"a\":\"\x01\",", "\"a\":\"\xC3\",", "\"a\":\"\xED\xA0\x80\",", "\"a\":[1,],", ",",
                              "a:1,", "\"a\" 1,", "\"a\":NaN,", "\"a\":{\"b\"},", "/**/"})
@@ -289,6 +321,7 @@ TEST(RefuseAvatar, NamesMeshesThatBreakTheRulesOfTheirFormat) {
           primitive(b)["targets"] = {{{"POSITION", 99}}};
         }},
        {"JOINTS_n that do not count up", [](GltfBuilder& b) { attributes(b)["JOINTS_2"] = 1; }},
+       {"WEIGHTS_n that do not count up", [](GltfBuilder& b) { attributes(b)["WEIGHTS_2"] = 2; }},
        {"accessors[2]: starts at byte", [](GltfBuilder& b) { b.document["bufferViews"][2]["byteOffset"] = 50; }},
        {"byteStride: 14 is no multiple of 4", [](GltfBuilder& b) { b.document["bufferViews"][0]["byteStride"] = 14; }},
        {"nodes[2].matrix: stands beside",
@@ -332,7 +365,8 @@ TEST(RefuseAvatar, DoesNotLetASmallFileAskForMuchMemory) {
 TEST(RefuseAvatar, SurvivesDeepNesting) {
   const std::string brackets(1000000, '[');
   for (const std::string& start : {"{\"extras\":" + brackets, "{\"nodes\":" + brackets, "{\"nodes\":[" + brackets})
-    EXPECT_THAT(refusal(test::make_glb(start)), HasSubstr("nested more than"));
+    EXPECT_THAT(refusal(test::make_glb(start)),
+                AllOf(HasSubstr("nested more than"), HasSubstr("remove the deep extras or extensions")));
   std::string objects;
   for (int i = 0; i < 100000; ++i) objects += "{\"extras\":";
   EXPECT_THAT(refusal(test::make_glb(objects)), HasSubstr("nested more than"));
@@ -399,6 +433,18 @@ TEST(RefuseAvatar, NamesWhatIsWrongWithATextFilesBuffers) {
   EXPECT_THAT(refusal_of("data:a/b;base64,AA?A"), HasSubstr("base64 does not know"));
   EXPECT_THAT(refusal_of("data:a/b;base64,AAAAA"), HasSubstr("no whole number of bytes"));
   EXPECT_THAT(refusal_of("data:a/b;base64,AAAA"), HasSubstr("says 36 bytes, but there are only 3"));
+}
+
+TEST(RefuseAvatar, SaysThatATextFileIsUtf16) {
+  for (const char* mark : {"\xFF\xFE{", "\xFE\xFF"}) {
+    const auto bytes = std::as_bytes(std::span(mark, 3));
+    try {
+      pack_avatar_glb({bytes.begin(), bytes.end()}, "a.gltf");
+      ADD_FAILURE() << "loaded";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("a.gltf: is UTF-16"), HasSubstr("save the file as UTF-8")));
+    }
+  }
 }
 
 TEST(RefuseAvatar, SaysThatABinaryFileRefersToAnother) {
