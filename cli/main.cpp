@@ -11,6 +11,7 @@
 
 #include "cli/help/help_text.hpp"
 #include "cli/help/manual.hpp"
+#include "cli/help/suggest.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
 #include "version.hpp"
@@ -21,6 +22,7 @@ CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string
                    const std::string& examples) {
   CLI::App* verb = program.add_subcommand(name, summary);
   verb->formatter(std::make_shared<help::HelpFormatter>(examples));
+  verb->set_help_flag("-h,--help", "Print this help");
   verb->group("Verbs");
   return verb;
 }
@@ -32,10 +34,6 @@ std::string footer() {
   for (const auto& [code, meaning] : help::kExitCodes) text += fmt::format(" {} {};", code, meaning);
   text.back() = '.';
   return text;
-}
-
-bool is_verb(const CLI::App& program, const std::string& word) {
-  return !program.get_subcommands([&](const CLI::App* verb) { return verb->check_name(word); }).empty();
 }
 
 int run(int argc, char** argv) {
@@ -71,8 +69,9 @@ int run(int argc, char** argv) {
     if (*argv[i] == '\0')
       throw UsageError(fmt::format("argument {}", i), "is empty",
                        "an unset variable? Leave the flag out, or give it a value");
-  if (argc > 1 && *argv[1] != '-' && !is_verb(program, argv[1]))
-    throw UsageError(argv[1], "there is no such verb", "'vestige --help' lists the verbs");
+  if (argc > 1 && *argv[1] != '-')
+    if (const auto remedy = help::unknown_verb_remedy(program, argv[1]))
+      throw UsageError(argv[1], "there is no such verb", *remedy);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {

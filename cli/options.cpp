@@ -23,13 +23,6 @@ bool parse_number(std::string_view text, Number& value) {
   return failure == std::errc() && end == text.data() + text.size();
 }
 
-std::string check_number(const std::string& text, bool zero_allowed) {
-  double value = 0;
-  if (!parse_number(text, value) || !std::isfinite(value) || value < 0 || (value == 0 && !zero_allowed))
-    return fmt::format("'{}' is not a finite number {} 0", text, zero_allowed ? "of at least" : "above");
-  return "";
-}
-
 /// CLI11 itself would wrap -1 around.
 const CLI::Validator kSeed(
     [](std::string& text) {
@@ -43,9 +36,6 @@ bool is_standard_output(const std::string& path) {
 }
 
 }  // namespace
-
-const CLI::Validator kPositive([](std::string& text) { return check_number(text, false); }, "above 0");
-const CLI::Validator kNotNegative([](std::string& text) { return check_number(text, true); }, "at least 0");
 
 void add_common_options(CLI::App& verb, CommonOptions& options) {
   const auto common = [](CLI::Option* option) { return option->group(help::kCommonGroup); };

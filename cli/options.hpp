@@ -58,10 +58,6 @@ void write_json(const std::string& path, const nlohmann::ordered_json& json, con
 /// standard output for itself. With -q, nothing.
 void print_summary(std::string_view text, const std::vector<std::string>& output_paths, const CommonOptions& options);
 
-/// CLI11 validators. Numbers must be finite, and positive or not negative.
-extern const CLI::Validator kPositive;
-extern const CLI::Validator kNotNegative;
-
 /// "X,Y,Z" in metres. Throws `UsageError` naming `flag`.
 glm::dvec3 parse_vector(const std::string& text, const std::string& flag);
 

@@ -52,11 +52,7 @@ void add_plot(CLI::App& program, Invocation& invocation) {
   // Everything behind the verb, --help included, is vestige-plot's business.
   verb->set_help_flag();
   verb->prefix_command();
-  verb->callback([verb, &invocation] {
-    std::vector<std::string> arguments = verb->remaining();
-    if (arguments.empty()) arguments.emplace_back("--help");
-    invocation.exit_code = run_plot(arguments);
-  });
+  verb->callback([verb, &invocation] { invocation.exit_code = run_plot(verb->remaining()); });
 }
 
 }  // namespace vestige::cli

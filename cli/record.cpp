@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "analysis/provenance.hpp"
+#include "cli/help/suggest.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/scene.hpp"
-#include "cli/suggest.hpp"
 #include "cli/verbs.hpp"
 #include "traces/colliders.hpp"
 #include "traces/error.hpp"
@@ -40,10 +41,9 @@ struct RecordOptions {
 UsageError no_scenario(const std::string& name) {
   std::vector<std::string_view> names;
   for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
-  const std::string_view nearest = nearest_name(name, names);
   return {"--colliders", fmt::format("there is no scenario '{}'", name),
-          fmt::format("{}the scenarios are: {}; or name a .csv file",
-                      nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest), fmt::join(names, ", "))};
+          fmt::format("{}the scenarios are: {}; or name a .csv file", help::did_you_mean(name, names),
+                      fmt::join(names, ", "))};
 }
 
 bool is_file(const std::string& colliders) {
@@ -165,11 +165,11 @@ void add_record(CLI::App& program, Invocation& invocation) {
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")
       ->type_name("HZ")
       ->capture_default_str()
-      ->check(kPositive);
+      ->check(help::kPositive);
   verb->add_option("--duration", options->recording.duration_s, "How long, in seconds")
       ->type_name("S")
       ->capture_default_str()
-      ->check(kPositive);
+      ->check(help::kPositive);
   verb->add_option("--origin", options->origin, "Where in the world the scene stands, in metres")
       ->capture_default_str()
       ->type_name("X,Y,Z");

@@ -9,6 +9,7 @@
 
 #include "analysis/provenance.hpp"
 #include "cli/detectors.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
@@ -277,7 +278,7 @@ void add_replay(CLI::App& program, Invocation& invocation) {
              "How long a contact keeps its actuator on, in ms: a coin motor cannot answer a single frame; 0 gives the "
              "raw frames")
       ->capture_default_str()
-      ->check(kNotNegative)
+      ->check(help::kNotNegative)
       ->type_name("MS");
   add_result("--verify", options->verify,
              "Compare with another detector (cpu, paper), or with the --contacts or --json of an earlier replay; exit "

@@ -3,8 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <string_view>
+#include <utility>
 
 #include "cli/options.hpp"
 #include "traces/avatar_gltf.hpp"
@@ -16,25 +15,8 @@ namespace vestige::cli {
 
 namespace {
 
-std::string_view text_of(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 void warn_all(const std::vector<std::string>& warnings, Verbosity verbosity) {
   for (const std::string& warning : warnings) warn(warning, verbosity);
-}
-
-void load_map(const std::string& map, Scene& scene) {
-  if (map == "none") return;
-  if (map == "builtin") {
-    scene.map_png = builtin_actuator_map_png();
-    scene.map_json = builtin_actuator_map_json();
-  } else {
-    scene.map_png = read_file(map);
-    const auto sidecar = std::filesystem::path(map).replace_extension(".json");
-    if (std::filesystem::exists(sidecar)) scene.map_json = read_text_file(sidecar);
-  }
-  scene.map = parse_actuator_map(scene.map_png, scene.map_json, map);
 }
 
 }  // namespace
@@ -45,7 +27,11 @@ Scene load_scene(const std::string& avatar, const std::string& map, Verbosity ve
   scene.avatar = parse_avatar_glb(scene.avatar_glb, avatar);
   warn_all(scene.avatar.warnings, verbosity);
   const std::string default_map = avatar == "builtin" ? "builtin" : "none";
-  load_map(map.empty() ? default_map : map, scene);
+  const std::string& chosen_map = map.empty() ? default_map : map;
+  ActuatorMapFiles files = read_actuator_map_files(chosen_map);
+  if (!files.png.empty()) scene.map = parse_actuator_map(files.png, files.json, chosen_map);
+  scene.map_png = std::move(files.png);
+  scene.map_json = std::move(files.json);
   warn_all(scene.map.warnings, verbosity);
   const auto& coordinates = scene.avatar.texture_coordinate;
   if (!scene.map_png.empty() && std::ranges::count(coordinates, coordinates.front()) == std::ssize(coordinates))
@@ -64,8 +50,7 @@ OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
 
 int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity) {
   if (trace.complete()) return kDone;
-  warn_all(trace.warnings(), verbosity);
-  if (trace.warnings().empty()) warn(fmt::format("{}: is not complete", path), verbosity);
+  warn_all(damage_of(trace, path), verbosity);
   return kDataLost;
 }
 

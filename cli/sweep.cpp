@@ -10,6 +10,7 @@
 #include "analysis/provenance.hpp"
 #include "analysis/sweep_report.hpp"
 #include "cli/detectors.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
@@ -189,7 +190,7 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
       ->check(CLI::Range(1, 100000));
   verb->add_option("--min-time", options->settings.min_time_s, "Seconds spent on every point, at least")
       ->capture_default_str()
-      ->check(kPositive)
+      ->check(help::kPositive)
       ->type_name("S");
   verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
   verb->add_option("-o,--output", options->output, "Folder for sweep.json, every frame's duration, and the figure")

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "traces/builtin_avatar.hpp"
 #include "traces/error.hpp"
+#include "traces/input_file.hpp"
 
 namespace vestige {
 
@@ -207,6 +210,13 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
   map.actuator_count = listed.grey.size();
   map.names = std::move(listed.names);
   return map;
+}
+
+ActuatorMapFiles read_actuator_map_files(const std::string& map) {
+  if (map == "none") return {};
+  if (map == "builtin") return {builtin_actuator_map_png(), builtin_actuator_map_json()};
+  const auto sidecar = std::filesystem::path(map).replace_extension(".json");
+  return {read_file(map), std::filesystem::exists(sidecar) ? read_text_file(sidecar) : ""};
 }
 
 }  // namespace vestige

@@ -31,4 +31,14 @@ struct ActuatorMap {
 /// no PNG, truncated, colour or palette image, alpha channel, more than 65534 actuators, unusable sidecar.
 ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view sidecar_json, std::string_view name);
 
+/// A map's two files.
+struct ActuatorMapFiles {
+  std::vector<std::byte> png;
+  std::string json;  ///< may be empty
+};
+
+/// `map`: "none" (both are empty), "builtin", or a PNG file, whose sidecar is the .json of the same name, if there is
+/// one. Throws `Error` where a file cannot be read.
+ActuatorMapFiles read_actuator_map_files(const std::string& map);
+
 }  // namespace vestige

@@ -46,12 +46,18 @@ std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path
   };
   while (lines.next()) {
     RecordedContact contact;
+    glm::dvec2& weights = contact.barycentric;
     double ignored = 0;
-    if (!lines.take(contact.frame) || !lines.take(ignored) || !lines.take(contact.collider) ||
-        !lines.take(contact.triangle) || !lines.take(contact.t) || !lines.take(contact.barycentric.x) ||
-        !lines.take(contact.barycentric.y) || !lines.take(ignored) || !lines.take(ignored) ||
-        !lines.take(contact.actuator))
+    const auto skip = [&](int columns) {
+      while (columns > 0 && lines.take(ignored)) --columns;
+      return columns == 0;
+    };
+    if (!lines.take(contact.frame) || !skip(1) || !lines.take(contact.collider) || !lines.take(contact.triangle) ||
+        !lines.take(contact.t) || !lines.take(weights.x) || !lines.take(weights.y) || !skip(2) ||
+        !lines.take(contact.actuator) || !skip(4) || !lines.at_end())
       throw lines.error("is no row of contacts");
+    if (!(weights.x >= 0 && weights.x <= 1 && weights.y >= 0 && weights.y <= 1))
+      throw lines.error("u and v must be weights from 0 to 1");
     check("frame", contact.frame, limits.frames);
     check("triangle", contact.triangle, limits.triangles);
     if (contact.actuator > limits.actuators) check("actuator", contact.actuator, limits.actuators);

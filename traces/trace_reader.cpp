@@ -292,4 +292,10 @@ const std::vector<std::string>& TraceReader::warnings() const {
   return implementation_->warnings();
 }
 
+std::vector<std::string> damage_of(const TraceReader& trace, std::string_view name) {
+  if (trace.complete()) return {};
+  if (!trace.warnings().empty()) return trace.warnings();
+  return {fmt::format("{}: is not complete", name)};
+}
+
 }  // namespace vestige

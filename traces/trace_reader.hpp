@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "traces/trace.hpp"
@@ -57,5 +58,9 @@ class TraceReader {
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// What is wrong with a trace that is not `complete()`: its warnings, or else that; `name` stands in it. Empty for one
+/// that is.
+std::vector<std::string> damage_of(const TraceReader& trace, std::string_view name);
 
 }  // namespace vestige

@@ -85,6 +85,12 @@ std::string shortened(std::string text, double room_pt) {
   return text + "…";
 }
 
+/// Two significant digits, without an exponent.
+std::string two_digits(double value) {
+  const double decimals = std::clamp(1 - std::floor(std::log10(value)), 0.0, 9.0);
+  return fmt::format("{:.{}f}", value, static_cast<int>(decimals));
+}
+
 class BodyFigure : public Figure {
  public:
   explicit BodyFigure(Body body)
@@ -97,8 +103,9 @@ class BodyFigure : public Figure {
                                    : std::array<Side, 2>{{{"front", 0}, {"back", 180}}};
     lay_out(std::max(size.x, size.z > 1.2 * size.x ? size.z : 0), size.y);
     contacts_of_.assign(body_.subject.map.actuator_count + 1, 0);
+    // By the map that is drawn, which need not be the one that the contacts were recorded with.
     for (const RecordedContact& contact : body_.contacts)
-      if (contact.actuator < contacts_of_.size()) ++contacts_of_[contact.actuator];
+      ++contacts_of_[body_.subject.actuator_at(contact.triangle, contact.barycentric.x, contact.barycentric.y)];
     if (body_.has_contacts) {
       density_.emplace(surface_, body_.contacts, kSigma * extent_);
       unit_ = unit_for(extent_);
@@ -231,7 +238,7 @@ class BodyFigure : public Figure {
     const double sigma_m = kSigma * extent_;
     canvas.text({left_pt, bar.bottom_pt - 11}, "spread by", {7, kSmallPrint, Anchor::kLeft, Level::kFoot});
     canvas.text({left_pt, bar.bottom_pt - 20},
-                sigma_m < 1 ? fmt::format("{:.2g} mm (σ)", sigma_m * 1000) : fmt::format("{:.2g} m (σ)", sigma_m),
+                sigma_m < 0.1 ? two_digits(sigma_m * 1000) + " mm (σ)" : two_digits(sigma_m) + " m (σ)",
                 {7, kSmallPrint, Anchor::kLeft, Level::kFoot});
   }
 

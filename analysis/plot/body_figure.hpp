@@ -12,7 +12,7 @@ namespace vestige::plot {
 struct Body {
   Subject subject;
   bool has_contacts = false;
-  std::vector<RecordedContact> contacts;  ///< of the avatar's triangles and the map's actuators
+  std::vector<RecordedContact> contacts;  ///< of the avatar's triangles
 };
 
 /// The avatar at rest, from the front and from behind (of one that is longer than wide, both sides): the regions of its

@@ -1,10 +1,16 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <iostream>
 #include <memory>
+#include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/plot/avatar_figure.hpp"
@@ -19,6 +25,8 @@
 #include "cli/help/completion.hpp"
 #include "cli/help/help_text.hpp"
 #include "cli/help/manual.hpp"
+#include "cli/help/suggest.hpp"
+#include "cli/help/validators.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "traces/trace_reader.hpp"
@@ -50,6 +58,14 @@ struct Options {
   bool quiet = false;
 };
 
+void warn(const Options& options, std::string_view text) {
+  if (!options.quiet) fmt::print(stderr, "vestige: warning: {}\n", text);
+}
+
+void warn(const Options& options, const std::vector<std::string>& texts) {
+  for (const std::string& text : texts) warn(options, text);
+}
+
 void write_file(const Options& options, const std::filesystem::path& path, std::string_view bytes) {
   vestige::OutputFile file(path, options.force ? Overwrite::kAllow : Overwrite::kRefuse);
   file.write(bytes);
@@ -70,10 +86,9 @@ int write_figure(const Options& options, const std::filesystem::path& stem,
   try {
     write_file(options, png, plot::png_of(*figure));
   } catch (const plot::GlUnavailable& error) {
-    fmt::print(stderr,
-               "vestige: warning: {}: left out: {}\n  install libegl1 and libgl1-mesa-dri, or convert the SVG: "
-               "rsvg-convert -d 300 -p 300\n",
-               png.string(), error.what());
+    warn(options, fmt::format("{}: left out: {}\n  install libegl1 and libgl1-mesa-dri, or convert the SVG: "
+                              "rsvg-convert -d 300 -p 300",
+                              png.string(), error.what()));
     return kIncomplete;
   }
   return kDone;
@@ -107,6 +122,26 @@ int draw_textures(const Options& options) {
                       [&] { return plot::texture_figure(plot::read_texture_contacts(options.inputs.front())); });
 }
 
+void warn_of(const Options& options, const plot::Subject& subject) {
+  warn(options, subject.avatar.warnings);
+  warn(options, subject.map.warnings);
+}
+
+/// What is wrong with a trace that was read to its end; its part of the exit code.
+int report_damage(const Options& options, const vestige::TraceReader& trace) {
+  if (trace.complete()) return kDone;
+  warn(options, vestige::damage_of(trace, options.inputs.front().string()));
+  return kIncomplete;
+}
+
+/// Contacts of another avatar or map are not drawn. With --map, contacts name actuators of a map that is not there.
+vestige::ContactLimits limits_of(const Options& options, const plot::Subject& subject) {
+  vestige::ContactLimits limits;
+  limits.triangles = subject.avatar.triangles.size();
+  if (options.map.empty() && subject.map.actuator_count > 0) limits.actuators = subject.map.actuator_count;
+  return limits;
+}
+
 /// Larger than that, a figure fits neither on a page nor into OpenGL's windows.
 constexpr std::size_t kMostAnimations = 4;
 
@@ -117,23 +152,26 @@ int draw_avatar(Options options) {
     const std::string input = options.inputs.front();
     plot::ContactSheet sheet;
     sheet.subject = plot::read_subject(input, "none");
+    warn_of(options, sheet.subject);
     sheet.animations = plot::ContactSheet::choose(sheet.subject.avatar, options.animation);
     sheet.poses = options.poses;
     if (sheet.animations.size() > kMostAnimations) {
-      fmt::print(
-          stderr,
-          "vestige: warning: {}: has {} animations, of which the first {} are drawn; name others with --animation\n",
-          input, sheet.animations.size(), kMostAnimations);
+      warn(options, fmt::format("{}: has {} animations, of which the first {} are drawn; name others with --animation",
+                                input, sheet.animations.size(), kMostAnimations));
       sheet.animations.resize(kMostAnimations);
     }
     return plot::avatar_figure(sheet);
   });
 }
 
-plot::Subject subject_of(const Options& options) {
+/// `damage` becomes the trace's part of the exit code.
+plot::Subject body_subject(const Options& options, int& damage) {
   if (options.inputs.empty()) return plot::read_subject(options.avatar, options.map);
-  const vestige::TraceReader trace(options.inputs.front());
-  return plot::read_subject(trace, options.inputs.front(), options.map);
+  vestige::TraceReader trace(options.inputs.front());
+  plot::Subject subject = plot::read_subject(trace, options.inputs.front(), options.map);
+  trace.frame_count();  // reads all of it
+  damage = report_damage(options, trace);
+  return subject;
 }
 
 int draw_body(Options options) {
@@ -141,27 +179,19 @@ int draw_body(Options options) {
     throw vestige::UsageError("plot body", "needs either a trace or --avatar", "name one of them");
   const std::string input = options.inputs.empty() ? options.avatar : options.inputs.front().string();
   if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-body";
-  return write_figure(options, stem_of(options), [&] {
+  int damage = kDone;
+  const int drawn = write_figure(options, stem_of(options), [&] {
     plot::Body body;
-    body.subject = subject_of(options);
+    body.subject = body_subject(options, damage);
+    warn_of(options, body.subject);
     body.has_contacts = !options.contacts.empty();
-    const std::size_t actuators = body.subject.map.actuator_count;
-    if (actuators == 0 && !body.has_contacts)
+    if (body.subject.map.actuator_count == 0 && !body.has_contacts)
       throw vestige::Error(input, "there is no actuator map, and no contact", "name a --map, or --contacts, or both");
-    vestige::ContactLimits limits;
-    limits.triangles = body.subject.avatar.triangles.size();
-    if (actuators > 0) limits.actuators = actuators;
-    if (body.has_contacts) body.contacts = vestige::read_contacts_csv(options.contacts, limits);
+    if (body.has_contacts)
+      body.contacts = vestige::read_contacts_csv(options.contacts, limits_of(options, body.subject));
     return plot::body_figure(std::move(body));
   });
-}
-
-/// What is wrong with a trace, to standard error; its part of the exit code.
-int report_damage(const vestige::TraceReader& trace, const std::filesystem::path& path) {
-  if (trace.complete()) return kDone;
-  for (const std::string& warning : trace.warnings()) fmt::print(stderr, "vestige: warning: {}\n", warning);
-  if (trace.warnings().empty()) fmt::print(stderr, "vestige: warning: {}: is not complete\n", path.string());
-  return kIncomplete;
+  return drawn == kDone ? damage : drawn;
 }
 
 int draw_scene(Options options) {
@@ -173,14 +203,16 @@ int draw_scene(Options options) {
     vestige::TraceReader trace(input);
     plot::Scene scene;
     scene.subject = plot::read_subject(trace, input, options.map);
+    warn_of(options, scene.subject);
     scene.trail_s = options.moments.trail_s;
     scene.has_contacts = !options.contacts.empty();
+    const std::vector<plot::FrameTime> times = plot::frame_times(trace, input.string());
+    damage = report_damage(options, trace);
+    vestige::ContactLimits limits = limits_of(options, scene.subject);
+    limits.frames = times.back().index + 1;
     std::vector<vestige::RecordedContact> contacts;
-    vestige::ContactLimits limits;
-    limits.triangles = scene.subject.avatar.triangles.size();
     if (scene.has_contacts) contacts = vestige::read_contacts_csv(options.contacts, limits);
-    scene.moments = plot::read_moments(trace, input.string(), options.moments, contacts);
-    damage = report_damage(trace, input);
+    scene.moments = plot::read_moments(trace, input.string(), times, options.moments, contacts);
     return plot::scene_figure(scene);
   });
   return drawn == kDone ? damage : drawn;
@@ -200,9 +232,7 @@ void add_common_options(CLI::App& command, Options& options, const char* output_
   command.set_help_flag("-h,--help", "Print this help");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   Options options;
   CLI::App app("Draw results, traces and avatars as figures, SVG and PNG (300 dots per inch)", "vestige plot");
   app.formatter(
@@ -210,6 +240,7 @@ int main(int argc, char** argv) {
                                             "  vestige plot body man.mcap --contacts contacts.csv\n"));
   app.set_version_flag("--version", fmt::format("vestige-plot {} ({}{})", vestige::kVersion, vestige::kCommit,
                                                 vestige::kDirty ? ", modified" : ""));
+  app.get_option("--version")->description("Print version and commit");
   app.require_subcommand(1);
 
   CLI::App& sweep = add_command(app, "sweep", "Detection frequency over the number of colliders (frequency.svg, .png)",
@@ -255,21 +286,24 @@ int main(int argc, char** argv) {
   body.add_option("--contacts", options.contacts, "What 'vestige replay --contacts FILE.csv' wrote")->type_name("CSV");
   add_common_options(body, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -body]");
 
-  CLI::App& scene = add_command(app, "scene", "A film strip of a trace: the avatar, the colliders and their paths",
-                                "  vestige plot scene man.mcap\n"
-                                "  vestige plot scene man.mcap --contacts contacts.csv --frames 4 --from 0.1 --to 0.2\n");
+  CLI::App& scene =
+      add_command(app, "scene", "A film strip of a trace: the avatar, the colliders and their paths",
+                  "  vestige plot scene man.mcap\n"
+                  "  vestige plot scene man.mcap --contacts contacts.csv --frames 4 --from 0.1 --to 0.2\n");
   scene.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
   scene.add_option("--frames", options.moments.count, "How many frames are drawn")
       ->capture_default_str()
       ->check(CLI::Range(1, 24));
   scene.add_option("--from", options.moments.from_s, "Leave out what is before [default: the trace's beginning]")
-      ->type_name("SECONDS");
+      ->type_name("SECONDS")
+      ->check(help::kFinite);
   scene.add_option("--to", options.moments.to_s, "Leave out what is after [default: the trace's end]")
-      ->type_name("SECONDS");
+      ->type_name("SECONDS")
+      ->check(help::kFinite);
   scene.add_option("--trail", options.trail_ms, "How far back paths and contacts are shown")
       ->capture_default_str()
       ->type_name("MS")
-      ->check(CLI::Range(0.001, 1e6));
+      ->check(help::between(0.001, 10000));
   scene
       .add_option("--contacts", options.contacts,
                   "What 'vestige replay --contacts FILE.csv' wrote; the frames drawn are then ones with contacts")
@@ -295,34 +329,52 @@ int main(int argc, char** argv) {
 
   app.set_help_flag("-h,--help", "Print this help");
   // What `vestige` asks of its helper, to answer for `vestige plot`.
-  const std::string question = argc > 1 ? argv[1] : "";
-  if (question == "complete") {
-    fmt::print("{}", help::completions(help::command_table(app), {argv + 2, argv + argc}));
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word == "complete" || word == "man") {
+    const help::CommandTable table = help::command_table(app);
+    fmt::print("{}", word == "complete"
+                         ? help::completions(table, {argv + 2, argv + argc})
+                         : help::manual_page(table, help::VerbPages::kNone, vestige::kVersion, vestige::kCommitDate));
+    if (std::fflush(stdout) != 0) throw vestige::system_error("standard output", "could not write", errno);
     return kDone;
   }
-  if (question == "man") {
-    fmt::print("{}", help::manual_page(help::command_table(app), help::VerbPages::kNone, vestige::kVersion,
-                                       vestige::kCommitDate));
-    return kDone;
-  }
+  if (!word.empty() && word.front() != '-')
+    if (const auto remedy = help::unknown_verb_remedy(app, word))
+      throw vestige::UsageError(word, "there is no such figure", *remedy);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_asked_for) {
-    return app.exit(help_asked_for);
+    const int shown = app.exit(help_asked_for);
+    std::cout.flush();
+    if (!std::cout) throw vestige::system_error("standard output", "could not write", errno);
+    return shown;
   } catch (const CLI::ParseError& error) {
     fmt::print(stderr, "vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n", error.what());
     return kWrongUsage;
   }
+  if (options.output == "-")
+    throw vestige::UsageError("-o -", "a plot is two files, and standard output is one", "name OUT");
+  if (sweep.parsed()) return draw_sweep(options);
+  if (body.parsed()) return draw_body(options);
+  if (scene.parsed()) return draw_scene(options);
+  if (avatar.parsed()) return draw_avatar(options);
+  if (timeline.parsed()) return draw_timeline(options);
+  return draw_textures(options);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // A closed pipe is an error of write(), not a silent death that leaves temporary files behind.
+  std::signal(SIGPIPE, SIG_IGN);
   try {
-    if (sweep.parsed()) return draw_sweep(options);
-    if (body.parsed()) return draw_body(options);
-    if (scene.parsed()) return draw_scene(options);
-    if (avatar.parsed()) return draw_avatar(options);
-    if (timeline.parsed()) return draw_timeline(options);
-    return draw_textures(options);
+    return run(argc, argv);
   } catch (const vestige::UsageError& error) {
     fmt::print(stderr, "vestige: error: {}\n", error.what());
     return kWrongUsage;
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "vestige: error: out of memory\n");
+    return kFailed;
   } catch (const std::exception& error) {
     fmt::print(stderr, "vestige: error: {}\n", error.what());
     return kFailed;

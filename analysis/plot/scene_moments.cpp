@@ -13,21 +13,8 @@ namespace vestige::plot {
 
 namespace {
 
-struct FrameTime {
-  std::uint64_t index = 0;
-  double time_s = 0;
-};
-
 double seconds(std::int64_t time_ns) {
   return static_cast<double>(time_ns) / 1e9;
-}
-
-std::vector<FrameTime> frame_times(TraceReader& trace) {
-  std::vector<FrameTime> times;
-  TraceFrame frame;
-  while (trace.next(frame)) times.push_back({frame.index, seconds(frame.time_ns)});
-  trace.rewind();
-  return times;
 }
 
 std::vector<FrameTime> evenly(const std::vector<FrameTime>& times, std::size_t count) {
@@ -44,6 +31,9 @@ std::vector<FrameTime> evenly(const std::vector<FrameTime>& times, std::size_t c
   return chosen;
 }
 
+/// Of a path, whatever the frame rate: about as many as a page can show.
+constexpr double kMostStops = 400;
+
 /// Colliders' recent places, by id.
 class Trails {
  public:
@@ -58,6 +48,7 @@ class Trails {
       if (!std::isfinite(at.x) || !std::isfinite(at.y) || !std::isfinite(at.z)) continue;
       Path& trail = trails_[collider.id];
       trail.is_current = true;
+      thin(trail);
       trail.stops.push_back({time_s, at});
     }
     std::vector<std::uint32_t> gone;
@@ -86,6 +77,14 @@ class Trails {
     trails_.erase(found);
   }
 
+  /// Before the next stop: the last one begins the segment that is tested then, the one before it may be one too many.
+  void thin(Path& trail) const {
+    const std::size_t count = trail.stops.size();
+    if (count < 3) return;
+    if (trail.stops[count - 1].age_s - trail.stops[count - 3].age_s < length_s_ / kMostStops)
+      trail.stops.erase(trail.stops.end() - 2);
+  }
+
   /// The segment to the newest place stays, however long ago it began.
   void forget(Path& trail, double time_s) const {
     const auto is_young = [&](const Path::Stop& stop) { return time_s - stop.age_s <= length_s_ + 1e-9; };
@@ -101,17 +100,28 @@ class Trails {
 
 }  // namespace
 
-std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, const MomentChoice& choice,
-                                 std::span<const RecordedContact> contacts) {
-  std::vector<FrameTime> times = frame_times(trace);
+std::vector<FrameTime> frame_times(TraceReader& trace, std::string_view name) {
+  std::vector<FrameTime> times;
+  TraceFrame frame;
+  while (trace.next(frame)) times.push_back({frame.index, seconds(frame.time_ns)});
   if (times.empty()) {
     std::string cause = "holds no frame";
     for (const std::string& warning : trace.warnings()) cause += "\n  " + warning;
     throw Error(name, cause, "record again");
   }
-  const std::string span = fmt::format("it lasts from {} s to {} s", times.front().time_s, times.back().time_s);
+  trace.rewind();
+  return times;
+}
+
+std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, std::vector<FrameTime> times,
+                                 const MomentChoice& choice, std::span<const RecordedContact> contacts) {
+  if (choice.from_s > choice.to_s)
+    throw UsageError("--from, --to", fmt::format("{} s is after {} s", choice.from_s, choice.to_s), "exchange the two");
+  const std::string span = fmt::format("from {} s to {} s", times.front().time_s, times.back().time_s);
   std::erase_if(times, [&](const FrameTime& at) { return at.time_s < choice.from_s || at.time_s > choice.to_s; });
-  if (times.empty()) throw UsageError("--from, --to", fmt::format("{} has no frame in that time", name), span);
+  if (times.empty())
+    throw UsageError("--from, --to", fmt::format("{}, which lasts {}, has no frame in that time", name, span),
+                     "choose a time within");
 
   std::map<std::uint64_t, double> time_of;
   for (const FrameTime& at : times) time_of[at.index] = at.time_s;
@@ -122,7 +132,9 @@ std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, cons
     std::set<std::uint64_t> touched;
     for (const RecordedContact& contact : contacts)
       if (time_of.contains(contact.frame)) touched.insert(contact.frame);
-    if (touched.empty()) throw UsageError("--contacts", "there is no contact in the frames that are drawn", span);
+    if (touched.empty())
+      throw UsageError("--contacts", fmt::format("there is no contact in the frames of {} that are drawn", name),
+                       "widen --from and --to, or leave --contacts out");
     const std::vector<std::uint64_t> frames(touched.begin(), touched.end());
     for (std::size_t i = 0; i < std::min(choice.count, frames.size()); ++i) {
       const std::size_t picks = std::min(choice.count, frames.size());

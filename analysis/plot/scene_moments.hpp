@@ -5,6 +5,7 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "detector/contacts_csv.hpp"
@@ -28,7 +29,7 @@ struct Path {
     glm::dvec3 position_m = glm::dvec3(0);
   };
   bool is_current = false;  ///< the collider is there at the moment
-  std::vector<Stop> stops;  ///< oldest first
+  std::vector<Stop> stops;  ///< oldest first; thinned out where they are many
 };
 
 /// One frame of a trace and the paths that led to it.
@@ -40,10 +41,18 @@ struct Moment {
   std::vector<RecordedContact> contacts;  ///< of the time that the paths cover
 };
 
-/// Reads the moments: evenly over the chosen time or, where contacts are given, frames with contacts, evenly over
-/// these. Fewer than asked where there are fewer frames. `contacts` may be in any order. Throws `Error` or `UsageError`
-/// naming `name`: no frame in that time, no contact in it.
-std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, const MomentChoice& choice,
-                                 std::span<const RecordedContact> contacts);
+struct FrameTime {
+  std::uint64_t index = 0;
+  double time_s = 0;
+};
+
+/// All frames of a trace, which is then at its beginning again. Throws `Error` naming `name` where there is none.
+std::vector<FrameTime> frame_times(TraceReader& trace, std::string_view name);
+
+/// Reads the moments among `times`, the trace's frames: evenly over the chosen time or, where contacts are given,
+/// frames with contacts, evenly over these. Fewer than asked where there are fewer frames. `contacts` may be in any
+/// order. Throws `Error` or `UsageError` naming `name`: no frame in that time, no contact in it.
+std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, std::vector<FrameTime> times,
+                                 const MomentChoice& choice, std::span<const RecordedContact> contacts);
 
 }  // namespace vestige::plot

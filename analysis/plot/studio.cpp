@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <limits>
 
 #include "analysis/plot/palette.hpp"
 
@@ -230,6 +231,20 @@ void StudioShot::Overlay::line(const glm::dvec3& from, const glm::dvec3& to, dou
       opacity_[i] = std::max(opacity_[i], static_cast<float>(opacity));
     }
   }
+}
+
+void StudioShot::Overlay::dot(const glm::dvec3& centre, double width_dots, double opacity, double hidden,
+                              double tolerance) {
+  const View& view = shot_.view_;
+  const glm::dvec2 at = shot_.dot_of(centre);
+  if (at.x >= 0 && at.y >= 0 && at.x < static_cast<double>(view.width) && at.y < static_cast<double>(view.height)) {
+    if (nearest_.empty()) nearest_.assign(view.width * view.height, -std::numeric_limits<float>::infinity());
+    float& nearest = nearest_[static_cast<std::size_t>(at.y) * view.width + static_cast<std::size_t>(at.x)];
+    const auto depth = static_cast<float>(view.camera.seen(centre).z);
+    if (nearest >= depth) return;
+    nearest = depth;
+  }
+  line(centre, centre, width_dots, opacity, opacity, hidden, tolerance);
 }
 
 Raster StudioShot::picture(const Paint& paint, const std::vector<Overlay>& overlays) const {

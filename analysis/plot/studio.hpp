@@ -40,15 +40,15 @@ class StudioShot {
     Overlay(const StudioShot& shot, Colour colour);
     void line(const glm::dvec3& from, const glm::dvec3& to, double width_dots, double from_opacity, double to_opacity,
               double hidden, double tolerance);
-    void dot(const glm::dvec3& centre, double width_dots, double opacity, double hidden, double tolerance) {
-      line(centre, centre, width_dots, opacity, opacity, hidden, tolerance);
-    }
+    /// All dots of an overlay are alike. Of many whose middles fall into one dot of the picture the nearest is drawn.
+    void dot(const glm::dvec3& centre, double width_dots, double opacity, double hidden, double tolerance);
 
    private:
     friend class StudioShot;
     const StudioShot& shot_;
     Colour colour_;
     std::vector<float> opacity_;  ///< one for each sample; empty: nothing was drawn
+    std::vector<float> nearest_;  ///< depth of the nearest dot in each dot of the picture; empty: there is none
   };
 
   Raster picture(const Paint& paint, const std::vector<Overlay>& overlays = {}) const;

@@ -1,11 +1,6 @@
 #include "analysis/plot/subject.hpp"
 
-#include <fmt/format.h>
-
-#include <cstddef>
 #include <glm/vec2.hpp>
-#include <span>
-#include <string_view>
 
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
@@ -16,15 +11,8 @@ namespace vestige::plot {
 namespace {
 
 ActuatorMap read_map(const std::string& map) {
-  if (map == "none") return {};
-  if (map == "builtin") return parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), map);
-  const auto sidecar = std::filesystem::path(map).replace_extension(".json");
-  const std::string json = std::filesystem::exists(sidecar) ? read_text_file(sidecar) : std::string();
-  return parse_actuator_map(read_file(map), json, map);
-}
-
-std::string_view text_of(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  const ActuatorMapFiles files = read_actuator_map_files(map);
+  return files.png.empty() ? ActuatorMap() : parse_actuator_map(files.png, files.json, map);
 }
 
 }  // namespace

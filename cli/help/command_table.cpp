@@ -100,8 +100,8 @@ std::vector<FixedValue> fixed_values(const FlagTable& flag) {
 bool takes_path(const FlagTable& flag) {
   const std::string& words = flag.positional && flag.value == "TEXT" ? flag.names.front() : flag.value;
   return std::ranges::any_of(split(words, '|'), [](const std::string& word) {
-    return word.starts_with("FILE") || word.starts_with("OUT") || word == "DIR" || word == "TRACE" || word == "JSON" ||
-           word == "CSV" || word == "EXR";
+    return word.starts_with("FILE") || word.starts_with("OUT") || word == "DIR" || word == "TRACE" || word == "MCAP" ||
+           word == "JSON" || word == "CSV" || word == "EXR";
   });
 }
 

@@ -1,10 +1,12 @@
-#include "cli/suggest.hpp"
+#include "cli/help/suggest.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <numeric>
 #include <vector>
 
-namespace vestige::cli {
+namespace vestige::help {
 
 namespace {
 
@@ -38,4 +40,18 @@ std::string_view nearest_name(std::string_view word, std::span<const std::string
   return nearest;
 }
 
-}  // namespace vestige::cli
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> names) {
+  const std::string_view nearest = nearest_name(word, names);
+  return nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest);
+}
+
+std::optional<std::string> unknown_verb_remedy(const CLI::App& program, const std::string& word) {
+  const auto verbs = program.get_subcommands([](const CLI::App*) { return true; });
+  std::vector<std::string> names;
+  for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
+  if (std::ranges::find(names, word) != names.end()) return std::nullopt;
+  return fmt::format("{}'{} --help' lists the verbs",
+                     did_you_mean(word, std::vector<std::string_view>(names.begin(), names.end())), program.get_name());
+}
+
+}  // namespace vestige::help

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace vestige::help {
+
+/// Which of `names` was probably meant by `word`: the first that is fewest changes of a letter away, two at most and
+/// fewer than half of its letters. Empty where there is none.
+std::string_view nearest_name(std::string_view word, std::span<const std::string_view> names);
+
+/// The same as "did you mean 'NAME'? ", or nothing, for the beginning of a remedy.
+std::string did_you_mean(std::string_view word, std::span<const std::string_view> names);
+
+/// What to do about a `word` that is none of the program's verbs; nothing where it is one.
+std::optional<std::string> unknown_verb_remedy(const CLI::App& program, const std::string& word);
+
+}  // namespace vestige::help
