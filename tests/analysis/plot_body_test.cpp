@@ -174,13 +174,42 @@ TEST_F(PlotBodyTest, ContactsOfAnotherTraceAreRefusedNamingTheirLine) {
   };
   for (const Case& wrong : {Case{"1,0.1,0,12,0,0,0,0,0,1,1,0,0,0", "line 3: refers to triangle 12"},
                             Case{"1,0.1,0,11,0,0,0,0,0,4,1,0,0,0", "line 3: refers to actuator 4"},
-                            Case{"1,0.1,0,x,0,0,0,0,0,1,1,0,0,0", "line 3: is no row of contacts"}}) {
+                            Case{"1,0.1,0,x,0,0,0,0,0,1,1,0,0,0", "line 3: is no row of contacts"},
+                            Case{"1,0.1,0,11,0,0,0,0,0,1,0,x,junk", "line 3: is no row of contacts"},
+                            Case{"1,0.1,0,11,0,0,0,0,0,1,1,0,0,0,0", "line 3: is no row of contacts"},
+                            Case{"1,0.1,0,11,0,nan,0,0,0,1,1,0,0,0", "line 3: u and v must be weights"},
+                            Case{"1,0.1,0,11,0,0,1e300,0,0,1,1,0,0,0", "line 3: u and v must be weights"}}) {
     write_text(folder_ / "other.csv", header + "1,0.1,0,11,0,0,0,0,0,3,1,0,0,0\n" + wrong.row + "\n");
     const test::Outcome outcome = run("body box.mcap --contacts other.csv");
     EXPECT_EQ(outcome.exit_code, 1);
     EXPECT_THAT(outcome.standard_error, HasSubstr(fmt::format("other.csv, {}", wrong.cause)));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "box-body.svg"));
   }
+}
+
+TEST_F(PlotBodyTest, WithAnotherMapContactsAreCountedInTheRegionsThatAreDrawn) {
+  record("--animation none --map box.png");
+  // The greys the other way round: the chest, actuator 1 in the trace, is this map's third.
+  ASSERT_EQ(test::run("cp box.png other.png", folder_.path()).exit_code, 0);
+  write_text(folder_ / "other.json", R"({"actuators": [{"grey": 30, "name": "spine"}, {"grey": 20, "name": "belly"},
+    {"grey": 10, "name": "chest"}]})");
+  ASSERT_EQ(run("body box.mcap --map other.png --contacts contacts.csv").exit_code, 0);
+  const std::string words = words_of(folder_ / "box-body.svg");
+  for (const char* expected : {"chest: 1 contact", "belly: 0 contacts", "spine: 0 contacts"})
+    EXPECT_THAT(words, HasSubstr(expected));
+}
+
+TEST_F(PlotBodyTest, ATraceThatWasCutOffIsDrawnAndExitsWith3) {
+  record("--animation none --map box.png");
+  const std::string whole = read_text_file(folder_ / "box.mcap");
+  write_text(folder_ / "cut.mcap", std::string_view(whole).substr(0, whole.size() - 300));
+  const test::Outcome outcome = run("body cut.mcap");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("warning: cut.mcap"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "cut-body.png"));
+  const test::Outcome quiet = run("body cut.mcap -q --force");
+  EXPECT_EQ(quiet.exit_code, 3);
+  EXPECT_EQ(quiet.standard_error, "");
 }
 
 TEST_F(PlotBodyTest, FortyRegionsAreAllNumberedAndNamed) {

@@ -81,6 +81,18 @@ TEST_F(PlotSceneTest, WithContactsShowsTheFramesThatHaveThem) {
   EXPECT_THAT(elsewhere.standard_error, HasSubstr("no contact in the frames"));
 }
 
+TEST_F(PlotSceneTest, ContactsOfAnotherTraceAreRefusedNamingTheirLine) {
+  record("--count 1 --rate 10 --duration 1");
+  for (const auto& [row, cause] : {std::pair("10,1,0,11,0,0,0,0,0,3,1,0,0,0", "line 2: refers to frame 10"),
+                                   std::pair("9,0.9,0,11,0,0,0,0,0,4,1,0,0,0", "line 2: refers to actuator 4")}) {
+    write_text(folder_ / "other.csv",
+               fmt::format("frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z\n{}\n", row));
+    const test::Outcome outcome = run("scene box.mcap --contacts other.csv");
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.standard_error, HasSubstr(fmt::format("other.csv, {}", cause)));
+  }
+}
+
 TEST_F(PlotSceneTest, AColliderBehindTheBodyIsPaleAndOneInFrontIsNot) {
   constexpr Pixel kInk = {40, 40, 40};
   constexpr std::size_t kPanelDots = 600;
@@ -121,6 +133,15 @@ TEST_F(PlotSceneTest, ATimeWithoutFramesIsRefusedNamingTheTraces) {
   const test::Outcome outcome = run("scene box.mcap --from 2");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.standard_error, HasSubstr("from 0 s to 0.99 s"));
+  const test::Outcome backwards = run("scene box.mcap --from 0.5 --to 0.2");
+  EXPECT_EQ(backwards.exit_code, 2);
+  EXPECT_THAT(backwards.standard_error, HasSubstr("0.5 s is after 0.2 s"));
+  for (const char* flag : {"--from", "--to", "--trail"})
+    for (const char* value : {"nan", "inf"}) {
+      const test::Outcome refused = run(fmt::format("scene box.mcap {} {}", flag, value));
+      EXPECT_EQ(refused.exit_code, 2) << flag << value;
+      EXPECT_THAT(refused.standard_error, HasSubstr("is not a finite number")) << flag << value;
+    }
   EXPECT_EQ(run("scene box.mcap --frames 0").exit_code, 2);
   EXPECT_EQ(run("scene box.gltf").exit_code, 1);
 }

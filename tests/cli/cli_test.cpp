@@ -49,6 +49,11 @@ class CommandLine : public ::testing::Test {
     EXPECT_FALSE(std::filesystem::exists(folder_ / absent)) << command;
   }
 
+  /// Waits for the first bytes in the temporary file behind an output, which begins with its name.
+  static std::string until_written(const std::string& name) {
+    return "until [ -n \"$(find . -name '*" + name + "?*' -size +0)\" ] || ! kill -0 $P; do sleep 0.01; done; ";
+  }
+
   const test::TemporaryFolder folder_;
 };
 
@@ -217,8 +222,8 @@ TEST_F(CommandLine, ReadsATraceThatWasCutOffAndSaysSo) {
 }
 
 TEST_F(CommandLine, InterruptedRecordingLeavesAValidTrace) {
-  const test::Outcome outcome =
-      run("vestige record --duration 100000 --rate 1000 --count 5 -o long.mcap & P=$!; sleep 1; kill -INT $P; wait $P");
+  const test::Outcome outcome = run("vestige record --duration 100000 --rate 1000 --count 5 -o long.mcap & P=$!; " +
+                                    until_written("long.mcap") + "kill -INT $P; wait $P");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_error, HasSubstr("stopped after"));
   const auto inspect = json_of("vestige inspect long.mcap --json -");
@@ -253,8 +258,9 @@ TEST_F(CommandLine, InspectSeesDamageInsideAChunk) {
 }
 
 TEST_F(CommandLine, AnInterruptedReplayIsNotDone) {
-  ASSERT_EQ(run("vestige record --count 100 --rate 1000 --duration 10 -o long.mcap").exit_code, 0);
-  const test::Outcome outcome = run("vestige replay long.mcap --contacts c.csv & P=$!; sleep 1; kill -HUP $P; wait $P");
+  ASSERT_EQ(run("vestige record --count 100 --rate 1000 --duration 30 -o long.mcap").exit_code, 0);
+  const test::Outcome outcome =
+      run("vestige replay long.mcap --contacts c.csv & P=$!; " + until_written("c.csv") + "kill -HUP $P; wait $P");
   EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;
   EXPECT_THAT(read_text_file(folder_ / "c.csv"), StartsWith("frame,"));
 }
@@ -269,6 +275,7 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   record_small();
   expect_failure("vestige", 2, {});
   expect_failure("vestige frobnicate", 2, {"frobnicate"});
+  expect_failure("vestige recrod", 2, {"did you mean 'record'?"});
   expect_failure("vestige replay small.mcap --verify ''", 2, {"is empty"});
   expect_failure("vestige replay small.mcap --planes t", 2, {"--textures"});
   expect_failure("vestige record -o x.mcap --seed -1", 2, {"--seed"}, "x.mcap");
