@@ -100,9 +100,13 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
       const test::Outcome outcome =
           run("cd here && { " + std::string(is_long ? "timeout -s INT 2 " : "") + example + "\n}");
       if (is_long) {
-        // A short measurement is a measurement: what there was time for is written.
         EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(0, 124)) << example << "\n" << outcome.standard_error;
-        EXPECT_THAT(read_text_file(folder_ / "here/sweep/sweep.json"), HasSubstr("\"colliders\": 1,")) << example;
+        // What there was time for is written; on a slow machine that is nothing, which is said.
+        const auto written = folder_ / "here/sweep/sweep.json";
+        if (std::filesystem::exists(written))
+          EXPECT_THAT(read_text_file(written), HasSubstr("\"colliders\": 1,")) << example;
+        else
+          EXPECT_THAT(outcome.standard_error, HasSubstr("before anything had been measured")) << example;
       } else {
         EXPECT_EQ(outcome.exit_code, 0) << example << "\n" << outcome.standard_error;
       }
