@@ -221,7 +221,7 @@ TEST_F(PlotTest, AFullDiskBehindStandardOutputIsAnError) {
   for (const char* command : {"--help", "man", "complete ''"}) {
     const Outcome outcome = run(std::string(command) + " >/dev/full");
     EXPECT_EQ(outcome.exit_code, 1) << command;
-    EXPECT_THAT(outcome.standard_error, HasSubstr("standard output")) << command;
+    EXPECT_THAT(outcome.standard_error, HasSubstr("No space left")) << command;
   }
 }
 
