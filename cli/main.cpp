@@ -80,8 +80,8 @@ int run(int argc, char** argv) {
     if (!std::cout) throw system_error("standard output", "could not write", errno);
     return shown;
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "vestige: error: {}\n  'vestige --help' lists the verbs, 'vestige VERB --help' their flags.\n",
-               error.what());
+    print_message(fmt::format(
+        "vestige: error: {}\n  'vestige --help' lists the verbs, 'vestige VERB --help' their flags.\n", error.what()));
     return kWrongUsage;
   }
   if (std::fflush(stdout) != 0) throw system_error("standard output", "could not write", errno);
@@ -97,13 +97,13 @@ int main(int argc, char** argv) {
   try {
     return vestige::cli::run(argc, argv);
   } catch (const vestige::UsageError& error) {
-    fmt::print(stderr, "vestige: error: {}\n", error.what());
+    vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
     return vestige::cli::kWrongUsage;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "vestige: error: out of memory\n");
+    vestige::print_message("vestige: error: out of memory\n");
     return vestige::cli::kFailed;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "vestige: error: {}\n", error.what());
+    vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
     return vestige::cli::kFailed;
   }
 }

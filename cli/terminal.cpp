@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "traces/error.hpp"
+
 namespace vestige::cli {
 
 namespace {
@@ -26,7 +28,7 @@ void on_interrupt(int signal_number) {
 }  // namespace
 
 void warn(std::string_view text, Verbosity verbosity) {
-  if (verbosity != Verbosity::kQuiet) fmt::print(stderr, "vestige: warning: {}\n", text);
+  if (verbosity != Verbosity::kQuiet) print_message(fmt::format("vestige: warning: {}\n", text));
 }
 
 Progress::Progress(std::string label, Verbosity verbosity)
@@ -50,7 +52,7 @@ bool Progress::update(double share) {
     const std::string bar = std::string(static_cast<std::size_t>(full), '#');
     const std::string rest = std::string(static_cast<std::size_t>(kBarCells - full), '.');
     const std::string drawn = colour_ ? fmt::format(fmt::fg(fmt::terminal_color::green), "{}", bar) : bar;
-    fmt::print(stderr, "\r\033[K{} [{}{}] {:3.0f} %, {:.0f} s left", label_, drawn, rest, 100 * share, left_s);
+    print_message(fmt::format("\r\033[K{} [{}{}] {:3.0f} %, {:.0f} s left", label_, drawn, rest, 100 * share, left_s));
     std::fflush(stderr);
   }
   return !interrupted();

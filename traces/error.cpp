@@ -1,5 +1,7 @@
 #include "traces/error.hpp"
 
+#include <cstdio>
+
 namespace vestige {
 
 namespace {
@@ -13,5 +15,9 @@ std::string compose(std::string_view where, std::string_view cause, std::string_
 
 Error::Error(std::string_view where, std::string_view cause, std::string_view remedy)
     : std::runtime_error(compose(where, cause, remedy)) {}
+
+void print_message(const std::string& text) {
+  static_cast<void>(std::fputs(text.c_str(), stderr));
+}
 
 }  // namespace vestige

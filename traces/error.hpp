@@ -19,4 +19,7 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+/// Writes to standard error. Where that is closed, nobody is told, and nothing fails for it.
+void print_message(const std::string& text);
+
 }  // namespace vestige

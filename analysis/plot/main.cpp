@@ -59,7 +59,7 @@ struct Options {
 };
 
 void warn(const Options& options, std::string_view text) {
-  if (!options.quiet) fmt::print(stderr, "vestige: warning: {}\n", text);
+  if (!options.quiet) vestige::print_message(fmt::format("vestige: warning: {}\n", text));
 }
 
 void warn(const Options& options, const std::vector<std::string>& texts) {
@@ -70,7 +70,7 @@ void write_file(const Options& options, const std::filesystem::path& path, std::
   vestige::OutputFile file(path, options.force ? Overwrite::kAllow : Overwrite::kRefuse);
   file.write(bytes);
   file.commit();
-  if (!options.quiet) fmt::print(stderr, "wrote {}\n", path.string());
+  if (!options.quiet) vestige::print_message(fmt::format("wrote {}\n", path.string()));
 }
 
 /// Writes STEM.svg and STEM.png.
@@ -349,7 +349,8 @@ int run(int argc, char** argv) {
     if (!std::cout) throw vestige::system_error("standard output", "could not write", errno);
     return shown;
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n", error.what());
+    vestige::print_message(
+        fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n", error.what()));
     return kWrongUsage;
   }
   if (options.output == "-")
@@ -370,13 +371,13 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const vestige::UsageError& error) {
-    fmt::print(stderr, "vestige: error: {}\n", error.what());
+    vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
     return kWrongUsage;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "vestige: error: out of memory\n");
+    vestige::print_message("vestige: error: out of memory\n");
     return kFailed;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "vestige: error: {}\n", error.what());
+    vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
     return kFailed;
   }
 }

@@ -51,7 +51,7 @@ class CommandLine : public ::testing::Test {
 
   /// Waits for the first bytes in the temporary file behind an output, which begins with its name.
   static std::string until_written(const std::string& name) {
-    return "until [ -n \"$(find . -name '*" + name + "?*' -size +0)\" ] || ! kill -0 $P; do sleep 0.01; done; ";
+    return "until [ -n \"$(find . -name '*" + name + "*' -size +0)\" ] || ! kill -0 $P; do sleep 0.01; done; ";
   }
 
   const test::TemporaryFolder folder_;
@@ -229,6 +229,11 @@ TEST_F(CommandLine, InterruptedRecordingLeavesAValidTrace) {
   const auto inspect = json_of("vestige inspect long.mcap --json -");
   EXPECT_EQ(inspect["complete"], true);
   EXPECT_GT(inspect["messages"], 100);
+}
+
+TEST_F(CommandLine, AClosedPipeEndsItWithoutACrash) {
+  EXPECT_NE(run("{ vestige avatar; echo $? >code; } 2>&1 | true; sleep 0.2; exit $(cat code)").exit_code, 134);
+  EXPECT_EQ(run("vestige avatar nowhere.glb 2>&-").exit_code, 1);
 }
 
 TEST_F(CommandLine, NeverOverwritesWithoutForce) {
