@@ -48,6 +48,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
 std::optional<std::string> unknown_verb_remedy(const CLI::App& program, const std::string& word) {
   const auto verbs = program.get_subcommands([](const CLI::App*) { return true; });
   std::vector<std::string> names;
+  names.reserve(verbs.size());
   for (const CLI::App* verb : verbs) names.push_back(verb->get_name());
   if (std::ranges::find(names, word) != names.end()) return std::nullopt;
   return fmt::format("{}'{} --help' lists the verbs",
