@@ -228,7 +228,9 @@ TEST_P(DetectorTest, SkinsWithinAMillionthOfTheAvatarsHeight) {
                              parse_avatar_glb(read_avatar_glb(entry.path()), entry.path().string()));
   }
   EXPECT_GT(avatars.size(), 15U);
-  for (const auto& [name, avatar] : avatars) {
+  for (const auto& named : avatars) {
+    const std::string& name = named.first;
+    const Avatar& avatar = named.second;
     const auto detector = GetParam().make(avatar, builtin_map(), options());
     SkinningError error;
     swarm_over(avatar, 1, 5, 3, [&](const TraceFrame& trace_frame, const Frame& frame) {

@@ -25,7 +25,7 @@ struct Counts {
   std::size_t builtin;
 };
 
-void PrintTo(const Counts& counts, std::ostream* out) {
+void PrintTo(const Counts& counts, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest's hook
   *out << counts.scenario;
 }
 

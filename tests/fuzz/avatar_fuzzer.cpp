@@ -66,6 +66,7 @@ std::vector<std::byte> joined(std::span<const std::byte> input) {
 }  // namespace
 }  // namespace vestige
 
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's hook
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::span<const std::byte> input(reinterpret_cast<const std::byte*>(data), size);
   try {

@@ -35,8 +35,11 @@ struct Sheet {
 
   Sheet() {
     for (std::size_t i = 0; i < kVertices; ++i) {
-      positions.insert(positions.end(), {static_cast<float>(i % kSide), static_cast<float>(i / kSide), 1});
-      texture_coordinates.insert(texture_coordinates.end(), {static_cast<float>(i % 2), static_cast<float>(i / 2 % 2)});
+      const std::size_t row = i / kSide;
+      const std::size_t second_bit = i / 2 % 2;
+      positions.insert(positions.end(), {static_cast<float>(i % kSide), static_cast<float>(row), 1});
+      texture_coordinates.insert(texture_coordinates.end(),
+                                 {static_cast<float>(i % 2), static_cast<float>(second_bit)});
       const bool is_upper = i / kSide >= kSide / 2;
       joints.insert(joints.end(), {0, 1, 0, 0});
       weights.insert(weights.end(), {is_upper ? 0.F : 1.F, is_upper ? 1.F : 0.F, 0, 0});
@@ -123,6 +126,7 @@ void replace(GltfBuilder& builder, Slot slot) {
 template <typename Target, typename Source>
 std::vector<Target> converted(const std::vector<Source>& numbers, double factor = 1) {
   std::vector<Target> result;
+  result.reserve(numbers.size());
   for (const Source number : numbers) result.push_back(static_cast<Target>(factor * static_cast<double>(number)));
   return result;
 }
