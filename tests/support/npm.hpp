@@ -13,15 +13,14 @@ namespace vestige::test {
 /// Where a package of tests/npm is, or should be: fetched when it is not there yet, it stays missing without network.
 inline std::filesystem::path npm_package(const std::string& name) {
   const auto folder = std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/npm";
-  auto module = folder / "node_modules" / name;
-  if (!std::filesystem::exists(module)) {
-    // Test programs run beside each other: one of them fetches.
-    const std::string command =
-        fmt::format("cd '{}' && flock package.json sh -c 'test -e node_modules/{} || npm ci --no-audit --no-fund >&2'",
-                    folder.string(), name);
-    if (std::system(command.c_str()) != 0) std::fputs("npm ci failed\n", stderr);
-  }
-  return module;
+  // Test programs run beside each other: one of them fetches, the others wait until it is done. npm writes
+  // .package-lock.json last, when every package is complete.
+  const std::string command = fmt::format(
+      "cd '{}' && flock package.json sh -c "
+      "'test node_modules/.package-lock.json -nt package-lock.json || npm ci --no-audit --no-fund >&2'",
+      folder.string());
+  if (std::system(command.c_str()) != 0) std::fputs("npm ci failed\n", stderr);
+  return folder / "node_modules" / name;
 }
 
 /// What a script of tests/npm prints about `file`.
