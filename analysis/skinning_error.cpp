@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "traces/box.hpp"
 #include "traces/reference_skinning.hpp"
 
 namespace vestige {
@@ -16,19 +17,14 @@ void SkinningError::add(const Avatar& avatar, const TraceFrame& trace_frame, con
   skin_reference(avatar, trace_frame.pose, frame.origin_m, reference);
   detector.skinned_vertices(frame, own);
   skin_vertices(avatar, frame.palette, contract);
-  glm::dvec3 low = reference.front();
-  glm::dvec3 high = low;
   for (std::size_t i = 0; i < reference.size(); ++i) {
-    low = glm::min(low, reference[i]);
-    high = glm::max(high, reference[i]);
     largest_m = std::max(largest_m, glm::distance(glm::dvec3(own[i]), reference[i]));
     largest_cpu_m = std::max(largest_cpu_m, glm::distance(glm::dvec3(contract[i]), reference[i]));
     if (own[i] == contract[i]) ++identical;
   }
   vertices += reference.size();
   ++frames;
-  const glm::dvec3 size = high - low;
-  height_m = std::max({height_m, size.x, size.y, size.z});
+  height_m = std::max(height_m, box_around(reference).longest_side());
 }
 
 }  // namespace vestige

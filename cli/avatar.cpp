@@ -11,6 +11,7 @@
 #include "analysis/uv_overlap.hpp"
 #include "cli/verbs.hpp"
 #include "traces/avatar_gltf.hpp"
+#include "traces/box.hpp"
 #include "traces/builtin_avatar.hpp"
 #include "traces/error.hpp"
 #include "traces/reference_skinning.hpp"
@@ -29,17 +30,11 @@ struct AvatarOptions {
   std::string uv_output;
 };
 
-struct Bounds {
-  glm::dvec3 low, high;
-};
-
 /// Of the rest pose, in the file's own units.
-Bounds rest_bounds(const Avatar& avatar) {
+Box rest_bounds(const Avatar& avatar) {
   std::vector<glm::dvec3> positions;
   skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), positions);
-  Bounds bounds = {positions.front(), positions.front()};
-  for (const glm::dvec3& p : positions) bounds = {glm::min(bounds.low, p), glm::max(bounds.high, p)};
-  return bounds;
+  return box_around(positions);
 }
 
 /// Vertices that differ in place: those that only texture seams split count once.
@@ -56,7 +51,7 @@ nlohmann::ordered_json describe(const Avatar& avatar, const UvCoverage& coverage
   for (const Animation& animation : avatar.animations)
     json["animations"].push_back({{"name", animation.name}, {"duration_s", animation.duration_s}});
   json["influences"] = avatar.influence_count;
-  const Bounds bounds = rest_bounds(avatar);
+  const Box bounds = rest_bounds(avatar);
   json["bounds"] = {{"min", {bounds.low.x, bounds.low.y, bounds.low.z}},
                     {"max", {bounds.high.x, bounds.high.y, bounds.high.z}}};
   json["uv_overlap_texels"] = coverage.overlap_texels;

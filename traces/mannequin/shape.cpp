@@ -42,11 +42,6 @@ struct Section {
   double at_m, side_m, front_m, back_m, forward_m;
 };
 
-Section mix(const Section& a, const Section& b, double s) {
-  return {a.at_m + s * (b.at_m - a.at_m), a.side_m + s * (b.side_m - a.side_m), a.front_m + s * (b.front_m - a.front_m),
-          a.back_m + s * (b.back_m - a.back_m), a.forward_m + s * (b.forward_m - a.forward_m)};
-}
-
 /// A tube through sections, closed by half ellipsoids `cap_m` long.
 struct Sweep {
   dvec3 from;
@@ -74,10 +69,8 @@ struct Sweep {
       return (2 * s3 - 3 * s2 + 1) * (b.*field) + (s3 - 2 * s2 + s) * slope_b + (3 * s2 - 2 * s3) * (c.*field) +
              (s3 - s2) * slope_c;
     };
-    Section result = mix(b, c, s);
-    for (double Section::*field : {&Section::side_m, &Section::front_m, &Section::back_m, &Section::forward_m})
-      result.*field = spline(field);
-    return result;
+    return {at_m, spline(&Section::side_m), spline(&Section::front_m), spline(&Section::back_m),
+            spline(&Section::forward_m)};
   }
 
   double distance(const dvec3& p) const {

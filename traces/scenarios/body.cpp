@@ -5,6 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
+#include <utility>
 
 #include "traces/pose.hpp"
 #include "traces/reference_skinning.hpp"
@@ -46,14 +47,8 @@ double smooth(double share) {
 Body::Body(const Avatar& avatar, const Animation* animation) : avatar_(avatar), animation_(animation) {
   std::vector<glm::dvec3> posed;
   skin_reference(avatar, looped_pose(avatar, animation, 0), glm::dvec3(0), posed);
-  low_m_ = posed.front();
-  high_m_ = low_m_;
-  for (const glm::dvec3& position : posed) {
-    low_m_ = glm::min(low_m_, position);
-    high_m_ = glm::max(high_m_, position);
-  }
-  const glm::dvec3 extent = high_m_ - low_m_;
-  size_m_ = std::max({extent.x, extent.y, extent.z});
+  box_m_ = box_around(posed);
+  size_m_ = box_m_.longest_side();
   if (size_m_ > 0 && (size_m_ < kShortestHuman_m || size_m_ > kTallestHuman_m)) metre_ = size_m_ / kHuman_m;
 
   if (animation == nullptr || !(animation->duration_s > 0)) return;
@@ -65,8 +60,9 @@ Body::Body(const Avatar& avatar, const Animation* animation) : avatar_(avatar), 
   ends_elsewhere_ = farthest_m > kJump * size_m_;
 }
 
-bool Body::jumped(double from_s, double to_s) const {
-  return ends_elsewhere_ && std::floor(from_s / loop_s_) != std::floor(to_s / loop_s_);
+bool Body::jumps(double time_s) {
+  const double from_s = std::exchange(last_s_, time_s);
+  return ends_elsewhere_ && std::floor(from_s / loop_s_) != std::floor(time_s / loop_s_);
 }
 
 const std::vector<glm::dmat4>& Body::palette(double time_s) {

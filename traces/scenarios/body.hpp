@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "traces/avatar.hpp"
+#include "traces/box.hpp"
 
 namespace vestige {
 
@@ -36,8 +37,7 @@ class Body {
   const Animation* animation() const { return animation_; }
 
   /// The box around the avatar when the trace begins.
-  const glm::dvec3& low_m() const { return low_m_; }
-  const glm::dvec3& high_m() const { return high_m_; }
+  const Box& box_m() const { return box_m_; }
   /// The longest side of that box, 0 for an avatar without extent.
   double size_m() const { return size_m_; }
 
@@ -47,9 +47,9 @@ class Body {
 
   /// After so long the animation begins anew; 0 where nothing moves.
   double loop_s() const { return loop_s_; }
-  /// Whether between these times the animation began anew somewhere else than it had ended, so that whatever goes with
-  /// the body is suddenly elsewhere too.
-  bool jumped(double from_s, double to_s) const;
+  /// Whether since the last call (since 0) the animation began anew somewhere else than it had ended, so that whatever
+  /// goes with the body is suddenly elsewhere too.
+  bool jumps(double time_s);
 
   /// What every palette entry does at `time_s` (before 0: at 0). Good until the next call.
   const std::vector<glm::dmat4>& palette(double time_s);
@@ -57,12 +57,12 @@ class Body {
  private:
   const Avatar& avatar_;
   const Animation* animation_;
-  glm::dvec3 low_m_;
-  glm::dvec3 high_m_;
+  Box box_m_;
   double size_m_ = 0;
   double metre_ = 1;
   double loop_s_ = 0;
   bool ends_elsewhere_ = false;
+  double last_s_ = 0;
   double palette_s_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<glm::dmat4> palette_;
 };

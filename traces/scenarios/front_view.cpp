@@ -19,12 +19,8 @@ double area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 }  // namespace
 
-FrontView::FrontView(const Skin& skin) : low_m_(skin.rest_m().front()), high_m_(low_m_) {
-  for (const glm::dvec3& position : skin.rest_m()) {
-    low_m_ = glm::min(low_m_, position);
-    high_m_ = glm::max(high_m_, position);
-  }
-  const glm::dvec3 extent = high_m_ - low_m_;
+FrontView::FrontView(const Skin& skin) : box_m_(box_around(skin.rest_m())) {
+  const glm::dvec3 extent = box_m_.extent();
   const double longest = std::max(extent.x, extent.y);
   if (!(longest > 0) || !std::isfinite(longest)) return;
   cell_m_ = longest / kCells;
@@ -35,11 +31,11 @@ FrontView::FrontView(const Skin& skin) : low_m_(skin.rest_m().front()), high_m_(
 }
 
 int FrontView::column_of(double x_m) const {
-  return static_cast<int>(std::floor((x_m - low_m_.x) / cell_m_));
+  return static_cast<int>(std::floor((x_m - box_m_.low.x) / cell_m_));
 }
 
 int FrontView::row_of(double y_m) const {
-  return static_cast<int>(std::floor((y_m - low_m_.y) / cell_m_));
+  return static_cast<int>(std::floor((y_m - box_m_.low.y) / cell_m_));
 }
 
 const FrontView::Cell* FrontView::at(int column, int row) const {
@@ -60,7 +56,7 @@ void FrontView::draw(const Skin& skin, std::uint32_t triangle) {
   const glm::dvec3 high = glm::max(a, glm::max(b, c));
   for (int row = row_of(low.y); row <= row_of(high.y); ++row) {
     for (int column = column_of(low.x); column <= column_of(high.x); ++column) {
-      const glm::dvec3 centre(low_m_.x + (column + 0.5) * cell_m_, low_m_.y + (row + 0.5) * cell_m_, 0);
+      const glm::dvec3 centre(box_m_.low.x + (column + 0.5) * cell_m_, box_m_.low.y + (row + 0.5) * cell_m_, 0);
       const glm::dvec3 weight(area(centre, b, c) / whole, area(centre, c, a) / whole, area(centre, a, b) / whole);
       if (weight.x < 0 || weight.y < 0 || weight.z < 0) continue;
       const double z_m = weight.x * a.z + weight.y * b.z + weight.z * c.z;

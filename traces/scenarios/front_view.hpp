@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "traces/box.hpp"
 #include "traces/scenarios/skin.hpp"
 
 namespace vestige {
@@ -21,8 +22,7 @@ class FrontView {
   int column_of(double x_m) const;
   int row_of(double y_m) const;
   /// The box around the avatar at rest.
-  const glm::dvec3& low_m() const { return low_m_; }
-  const glm::dvec3& high_m() const { return high_m_; }
+  const Box& box_m() const { return box_m_; }
 
   struct Cell {
     SkinPoint point;
@@ -34,8 +34,7 @@ class FrontView {
  private:
   void draw(const Skin& skin, std::uint32_t triangle);
 
-  glm::dvec3 low_m_;
-  glm::dvec3 high_m_;
+  Box box_m_;
   double cell_m_ = 0;
   int columns_ = 0;
   int rows_ = 0;

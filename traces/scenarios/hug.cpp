@@ -39,8 +39,7 @@ class Hug final : public ColliderSource {
   void sample(double time_s, std::vector<ColliderSample>& out) override {
     out.clear();
     teleported_.clear();
-    const bool jumped = body_.jumped(last_s_, time_s);
-    last_s_ = time_s;
+    const bool jumped = body_.jumps(time_s);
     const std::vector<glm::dmat4>& palette = body_.palette(time_s);
     for (std::uint32_t id = 0; id < walkers_.size(); ++id) {
       Walker& walker = walkers_[id];
@@ -65,7 +64,6 @@ class Hug final : public ColliderSource {
   Skin skin_;
   SkinWalk walk_;
   std::vector<Walker> walkers_;
-  double last_s_ = 0;
 };
 
 }  // namespace

@@ -40,8 +40,7 @@ class Orbit final : public ColliderSource {
     out.clear();
     teleported_.clear();
     const glm::dvec3 centre_m = room_.centre_m(time_s);
-    const bool jumped = body_.jumped(last_s_, time_s);
-    last_s_ = time_s;
+    const bool jumped = body_.jumps(time_s);
     for (std::uint32_t id = 0; id < circles_.size(); ++id) {
       const Circle& circle = circles_[id];
       const double angle = 2 * std::numbers::pi * (circle.phase + time_s * circle.turns_hz);
@@ -63,7 +62,6 @@ class Orbit final : public ColliderSource {
   Body body_;
   Room room_;
   std::vector<Circle> circles_;
-  double last_s_ = 0;
 };
 
 }  // namespace

@@ -80,11 +80,11 @@ class Punch final : public ColliderSource {
     if (!(view.cell_m() > 0)) return;
     std::vector<glm::dmat4> rest;
     palette_matrices(skin_.avatar(), rest_pose(skin_.avatar()), rest);
-    const double middle_m = 0.5 * (view.low_m().x + view.high_m().x);
+    const double middle_m = 0.5 * (view.box_m().low.x + view.box_m().high.x);
     const double half_m = kHalfWidth_m * body_.metre();
-    const int last_row = view.row_of(glm::mix(view.low_m().y, view.high_m().y, kHighest));
+    const int last_row = view.row_of(glm::mix(view.box_m().low.y, view.box_m().high.y, kHighest));
     const int last_column = view.column_of(middle_m + half_m);
-    for (int row = view.row_of(glm::mix(view.low_m().y, view.high_m().y, kLowest)); row <= last_row; ++row) {
+    for (int row = view.row_of(glm::mix(view.box_m().low.y, view.box_m().high.y, kLowest)); row <= last_row; ++row) {
       for (int column = view.column_of(middle_m - half_m); column <= last_column; ++column) {
         const FrontView::Cell* cell = view.at(column, row);
         if (cell != nullptr && skin_.place(cell->point, rest).normal.z > kFacing) targets_.push_back(cell->point);

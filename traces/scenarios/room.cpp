@@ -37,8 +37,8 @@ Room::Room(Body& body) : loop_s_(body.loop_s()) {
     }
     const glm::dvec3 centre = sum / static_cast<double>(places.size());
     if (centres_m_.empty()) {
-      low_m_ = body.low_m() - centre;
-      high_m_ = body.high_m() - centre;
+      low_m_ = body.box_m().low - centre;
+      high_m_ = body.box_m().high - centre;
     }
     centres_m_.push_back(centre);
     for (const glm::dvec3& place : places) {

@@ -49,8 +49,7 @@ class Slide final : public ColliderSource {
   void sample(double time_s, std::vector<ColliderSample>& out) override {
     out.clear();
     teleported_.clear();
-    const bool jumped = body_.jumped(last_s_, time_s);
-    last_s_ = time_s;
+    const bool jumped = body_.jumps(time_s);
     const std::vector<glm::dmat4>& palette = body_.palette(time_s);
     const double turns = time_s / kThereAndBack_s;
     // 1 at the avatar's left, -1 at its right.
@@ -80,12 +79,12 @@ class Slide final : public ColliderSource {
     const Track* track;
   };
 
-  double middle_x_m() const { return 0.5 * (view_.low_m().x + view_.high_m().x); }
+  double middle_x_m() const { return 0.5 * (view_.box_m().low.x + view_.box_m().high.x); }
 
   /// The chest's height, or the nearest at which there is skin in the middle.
   void find_chest() {
     if (!(view_.cell_m() > 0)) return;
-    const int chest = view_.row_of(glm::mix(view_.low_m().y, view_.high_m().y, kChest));
+    const int chest = view_.row_of(glm::mix(view_.box_m().low.y, view_.box_m().high.y, kChest));
     for (int away = 0; away < view_.rows(); ++away) {
       for (const int row : {chest - away, chest + away}) {
         const Track track = track_at(row);
@@ -115,7 +114,7 @@ class Slide final : public ColliderSource {
       return column;
     };
     const int first = end(-1);
-    Track track{{}, view_.low_m().x + (first + 0.5) * view_.cell_m()};
+    Track track{{}, view_.box_m().low.x + (first + 0.5) * view_.cell_m()};
     for (int column = first; column <= end(1); ++column) track.cells.push_back(view_.at(column, row)->point);
     return track;
   }
@@ -143,7 +142,6 @@ class Slide final : public ColliderSource {
   double from_x_m_ = 0;          // the middle's way, at rest
   double to_x_m_ = 0;
   std::vector<Point> points_;
-  double last_s_ = 0;
 };
 
 }  // namespace

@@ -2,9 +2,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "traces/colliders.hpp"
 #include "traces/reference_skinning.hpp"
 #include "traces/scenarios/body.hpp"
+#include "traces/scenarios/makers.hpp"
 #include "traces/scenarios/random.hpp"
 
 namespace vestige {
@@ -26,7 +26,7 @@ struct Passage {
 class Swarm final : public ColliderSource {
  public:
   Swarm(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings) : body_(avatar, animation) {
-    const glm::dvec3 centre = 0.5 * (body_.low_m() + body_.high_m());
+    const glm::dvec3 centre = 0.5 * (body_.box_m().low + body_.box_m().high);
     flyers_.reserve(settings.count);
     for (std::uint32_t id = 0; id < settings.count; ++id) {
       // A generator of its own: a collider's way does not depend on how many others there are.
