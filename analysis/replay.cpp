@@ -71,7 +71,7 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
   if (expectation.detector != nullptr || expectation.contacts != nullptr) result.comparison.emplace();
   RecordedRows recorded(
       expectation.contacts != nullptr ? std::span(*expectation.contacts) : std::span<const RecordedContact>(), ids);
-  FrameBuilder builder(avatar, ids);
+  FrameBuilder builder(avatar, ids, detector.method());
   BinaryLaw law(actuator_count, hold_s);
   TextureHash hash;
   TraceFrame trace_frame;
@@ -91,6 +91,8 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
     result.detection_s += seconds_since(start);
 
     result.pairs_tested += work.pairs_tested;
+    result.pairs_captured += work.pairs_captured;
+    result.unsure += work.unsure;
     for (const Contact& contact : row) {
       if (!contact.hit()) continue;
       ++result.contacts;
@@ -121,6 +123,7 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
   result.origin_changes = builder.origin_changes();
   result.non_finite_frames = builder.non_finite_frames();
   result.non_finite_segments = builder.non_finite_segments();
+  result.first_non_finite = builder.first_non_finite();
   return result;
 }
 

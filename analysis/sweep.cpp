@@ -121,7 +121,7 @@ class Sweep {
     const std::uint32_t most = std::ranges::max(settings_.counts);
     Reference reference;
     for (const Place& place : places_) {
-      FrameBuilder builder(avatar_, first_ids(most));
+      FrameBuilder builder(avatar_, first_ids(most), detector->method());
       builder.next(place.front());
       auto& rows = reference.rows.emplace_back(place.size() - 1);
       for (std::size_t i = 1; i < place.size(); ++i) detector->detect(builder.next(place[i]), rows[i - 1]);
@@ -144,7 +144,7 @@ class Sweep {
   void warm_up(std::size_t series, const SweepPoint& point) {
     ContactRow row;
     for (const Place& place : places_) {
-      FrameBuilder builder(avatar_, first_ids(point.colliders));
+      FrameBuilder builder(avatar_, first_ids(point.colliders), detectors_[series]->method());
       for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i)
         detectors_[series]->detect(builder.next(place[i]), row);
     }
@@ -152,7 +152,7 @@ class Sweep {
 
   void measure(std::size_t series, std::size_t place_number, SweepPoint& point) {
     const Place& place = places_[place_number];
-    FrameBuilder builder(avatar_, first_ids(point.colliders));
+    FrameBuilder builder(avatar_, first_ids(point.colliders), detectors_[series]->method());
     builder.next(place.front());
     ContactRow row;
     Repetition repetition;

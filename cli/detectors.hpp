@@ -18,6 +18,7 @@ struct DetectorChoice {
   std::string method = "static";
   std::string skip = "off";
 
+  Method method_kind() const;
   Surface surface_kind() const { return surface == "mapped" ? Surface::kMapped : Surface::kAll; }
 };
 
@@ -30,7 +31,10 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice);
 /// "auto", "egl" or "osmesa".
 ContextKind context_kind(const std::string& context);
 
-/// Makes a detector: "auto" (now: cpu), "cpu" or "paper". `context`: "auto", "egl" or "osmesa".
+/// Whether `name` is one that `make_detector` knows, "auto" apart.
+bool is_detector(const std::string& name);
+
+/// Makes a detector: "auto" (now: cpu), "cpu", "exact" or "paper". `context`: "auto", "egl" or "osmesa".
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes);

@@ -74,7 +74,7 @@ struct Verification {
 Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector) {
   Verification verification;
   if (options.verify.empty()) return verification;
-  if (options.verify == "cpu" || options.verify == "paper") {
+  if (is_detector(options.verify)) {
     if (options.verify == detector.name())
       throw UsageError("--verify", fmt::format("'{}' would be compared with itself", options.verify),
                        "name the other detector, or a file");
@@ -87,7 +87,7 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
     const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
     if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
       throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
-                  "name cpu or paper, or what 'vestige replay --contacts FILE.csv' or '--json FILE' wrote");
+                  "name cpu, exact or paper, or what 'vestige replay --contacts FILE.csv' or '--json FILE' wrote");
     verification.texture_hash = json["texture_hash"].get<std::string>();
   }
   return verification;
@@ -136,6 +136,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& 
   json["origin_changes"] = result.origin_changes;
   json["non_finite_frames"] = result.non_finite_frames;
   json["non_finite_segments"] = result.non_finite_segments;
+  if (result.first_non_finite) json["first_non_finite_frame"] = *result.first_non_finite;
   json["reading_s"] = result.reading_s;
   json["detection_s"] = result.detection_s;
   json["hz"] = static_cast<double>(result.frames) / result.detection_s;
@@ -229,8 +230,9 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (timeline) timeline->commit();
   if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
   if (result.non_finite_frames + result.non_finite_segments != 0)
-    warn(fmt::format("{}: {} poses and the ends of {} segments are not finite; they fired nothing", options.trace,
-                     result.non_finite_frames, result.non_finite_segments),
+    warn(fmt::format(
+             "{}: {} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
+             options.trace, result.non_finite_frames, result.non_finite_segments, *result.first_non_finite),
          verbosity);
 
   print_summary(summary(result, trace, collider_ids.size(), *detector), outputs, options.common);
@@ -251,11 +253,11 @@ void add_replay(CLI::App& program, Invocation& invocation) {
                             "  vestige replay man.mcap --detector paper --textures textures.exr --json replay.json\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   verb->add_option("--detector", options->choice.detector,
-                   "paper: HAVE 2010's geometry shader, as published; cpu: the same contacts in double precision; "
-                   "auto: cpu")
+                   "paper: HAVE 2010's geometry shader, as published; cpu: exact contacts, without OpenGL; exact: the "
+                   "same by slow rational arithmetic, to check with; auto: cpu")
       ->group(kDetectorGroup)
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "paper", "cpu"}));
+      ->check(CLI::IsMember({"auto", "paper", "cpu", "exact"}));
   verb->add_option("--context", options->choice.context, "OpenGL context that paper runs in")
       ->group(kDetectorGroup)
       ->capture_default_str()
@@ -280,10 +282,11 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->check(help::kNotNegative)
       ->type_name("MS");
-  add_result("--verify", options->verify,
-             "Compare with another detector (cpu, paper), or with the --contacts or --json of an earlier replay; exit "
-             "4 if contacts differ")
-      ->type_name("cpu|paper|FILE");
+  add_result(
+      "--verify", options->verify,
+      "Compare with another detector (cpu, exact, paper), or with the --contacts or --json of an earlier replay; exit "
+      "4 if contacts differ")
+      ->type_name("DETECTOR|FILE");
   add_common_options(*verb, options->common);
   // Flags that would do nothing are refused.
   verb->get_option("--planes")->needs(verb->get_option("--textures"));

@@ -9,6 +9,7 @@
 #include "detector/actuator_map.hpp"
 #include "detector/contact.hpp"
 #include "detector/frame.hpp"
+#include "detector/method.hpp"
 #include "traces/avatar.hpp"
 
 namespace vestige {
@@ -20,12 +21,15 @@ enum class Surface { kAll, kMapped };
 struct DetectorOptions {
   Surface surface = Surface::kAll;
   PlaneSet planes;  ///< what the rows must carry
+  Method method = Method::kStatic;
 };
 
 /// Work done by one call of `detect`, for reports.
 struct DetectorWork {
   std::uint64_t pairs_tested = 0;      ///< (segment, triangle) pairs
   std::uint64_t triangles_tested = 0;  ///< triangles that met at least one test
+  std::uint64_t pairs_captured = 0;    ///< pairs that the geometry shader could not reject
+  std::uint64_t unsure = 0;            ///< pairs that no filter could tell: exact arithmetic decided
 };
 
 /// Where a detector runs, as the driver says it. Empty for a detector without GL.
@@ -39,7 +43,7 @@ struct GlInfo {
 
 /// Finds, for every collider, where its segment first meets the avatar's skin.
 ///
-/// `paper` reproduces HAVE 2010, `cpu` keeps detector/CONTRACT.md.
+/// `paper` reproduces HAVE 2010; `cpu` and `exact` keep detector/CONTRACT.md to the last bit.
 /// A detector holds references to the avatar and map that it was made with, and belongs to the thread that made it.
 class Detector {
  public:
@@ -49,6 +53,8 @@ class Detector {
   Detector& operator=(const Detector&) = delete;
 
   virtual const char* name() const = 0;
+  /// Frames for `detect` must come from a FrameBuilder with this method.
+  virtual Method method() const { return Method::kStatic; }
   virtual GlInfo gl_info() const { return {}; }
 
   /// Fills `row` (resized to frame.columns). The whole round trip is in here: skinning or upload, test, read-back.
@@ -58,9 +64,13 @@ class Detector {
   virtual void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) = 0;
 };
 
-/// Brute force on the CPU: fp32 skinning by the contract, contacts in double.
+/// On the CPU: fp32 skinning by the contract, boxes reject, exact decisions.
 std::unique_ptr<Detector> make_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
                                             const DetectorOptions& options);
+
+/// The slow truth: every pair in exact arithmetic.
+std::unique_ptr<Detector> make_exact_detector(const Avatar& avatar, const ActuatorMap& map,
+                                              const DetectorOptions& options);
 
 class GlContext;
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+#include <utility>
 
 namespace vestige {
 
@@ -14,17 +17,15 @@ bool finite(const glm::vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-bool finite(std::span<const SkinMatrix> palette) {
-  return std::ranges::all_of(palette, [](const SkinMatrix& matrix) {
-    return std::ranges::all_of(matrix.column, [](const glm::vec4& column) { return finite(glm::vec3(column)); });
-  });
-}
-
 }  // namespace
 
-FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids)
-    : avatar_(avatar), collider_ids_(collider_ids.begin(), collider_ids.end()), columns_(collider_ids.size()) {
+FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method)
+    : avatar_(avatar),
+      collider_ids_(collider_ids.begin(), collider_ids.end()),
+      columns_(collider_ids.size()),
+      method_(method) {
   frame_.columns = columns_.size();
+  for (const glm::vec3& position : avatar.position_bind) bind_extent_m_ = glm::max(bind_extent_m_, glm::abs(position));
 }
 
 const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
@@ -33,16 +34,44 @@ const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
   frame_.time_s = time_s;
   frame_.index = trace_frame.index;
 
+  const bool has_before = started_;
+  std::swap(world_, world_before_);
   world_matrices(avatar_, trace_frame.pose, world_);
   follow_origin(trace_frame.pose);
   started_ = true;
   build_palette(avatar_, world_, trace_frame.pose.origin_m - frame_.origin_m, frame_.palette);
+  if (method_ != Method::kStatic) {
+    if (has_before) {
+      build_palette(avatar_, world_before_, pose_origin_before_m_ - frame_.origin_m, frame_.palette_before);
+    } else {
+      frame_.palette_before = frame_.palette;
+    }
+    pose_origin_before_m_ = trace_frame.pose.origin_m;
+  }
   build_segments(trace_frame);
-  if (!finite(frame_.palette)) {
+  if (!skins_to_finite(frame_.palette)) {
     ++non_finite_frames_;
+    note_non_finite();
+    frame_.segments.clear();
+  } else if (method_ != Method::kStatic && !skins_to_finite(frame_.palette_before)) {
     frame_.segments.clear();
   }
   return frame_;
+}
+
+/// Whether no sum of a skinned vertex, over any influences, can leave fp32.
+bool FrameBuilder::skins_to_finite(std::span<const SkinMatrix> palette) const {
+  constexpr double kLargest_m = std::numeric_limits<float>::max() / 8;  // weights sum to 1, rounding adds a little
+  return std::ranges::all_of(palette, [this](const SkinMatrix& matrix) {
+    const auto magnitude = [&matrix](std::size_t column) { return glm::abs(glm::dvec3(matrix.column[column])); };
+    const glm::dvec3 extent(bind_extent_m_);
+    const glm::dvec3 reach = magnitude(0) * extent.x + magnitude(1) * extent.y + magnitude(2) * extent.z + magnitude(3);
+    return reach.x < kLargest_m && reach.y < kLargest_m && reach.z < kLargest_m;
+  });
+}
+
+void FrameBuilder::note_non_finite() {
+  if (!first_non_finite_) first_non_finite_ = frame_.index;
 }
 
 void FrameBuilder::follow_origin(const Pose& pose) {
@@ -75,6 +104,7 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
         frame_.segments.push_back(segment);
       } else {
         ++non_finite_segments_;
+        note_non_finite();
       }
     }
     before = {sample.position_m, trace_frame.index + 1};

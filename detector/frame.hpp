@@ -2,10 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "detector/method.hpp"
 #include "detector/skinning.hpp"
 #include "traces/avatar.hpp"
 #include "traces/trace.hpp"
@@ -27,7 +30,8 @@ struct Frame {
   glm::dvec3 origin_m = glm::dvec3(0);
   std::size_t columns = 0;  ///< of the collision texture
   std::vector<SkinMatrix> palette;
-  std::vector<Segment> segments;  ///< ascending columns; at most one each
+  std::vector<SkinMatrix> palette_before;  ///< of the frame before, relative to this frame's origin
+  std::vector<Segment> segments;           ///< ascending columns; at most one each
 };
 
 /// Turns the frames of a trace into what detectors are given: segments between consecutive frames, and a palette, both
@@ -35,7 +39,8 @@ struct Frame {
 class FrameBuilder {
  public:
   /// `collider_ids`: ascending; a collider's rank in it is its column. Colliders that are not in it are ignored.
-  FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids);
+  /// With a method that looks at the frame before, a pose that is not finite empties the next frame too.
+  FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method = Method::kStatic);
 
   /// The frame after the one given before; where their indices leave a gap (a damaged trace), nothing is tested. The
   /// reference stays good until the next call.
@@ -44,6 +49,8 @@ class FrameBuilder {
   /// Frames whose pose, and segments of which an end, was not finite: they test nothing.
   std::uint64_t non_finite_frames() const { return non_finite_frames_; }
   std::uint64_t non_finite_segments() const { return non_finite_segments_; }
+  /// Index of the first frame with any of either.
+  std::optional<std::uint64_t> first_non_finite() const { return first_non_finite_; }
   std::uint64_t origin_changes() const { return origin_changes_; }
 
  private:
@@ -54,16 +61,23 @@ class FrameBuilder {
 
   void follow_origin(const Pose& pose);
   void build_segments(const TraceFrame& trace_frame);
+  bool skins_to_finite(std::span<const SkinMatrix> palette) const;
+  void note_non_finite();
 
   const Avatar& avatar_;
   std::vector<std::uint32_t> collider_ids_;
   std::vector<Column> columns_;
+  Method method_;
   std::vector<glm::dmat4> world_;
+  std::vector<glm::dmat4> world_before_;
+  glm::dvec3 pose_origin_before_m_ = glm::dvec3(0);
+  glm::vec3 bind_extent_m_ = glm::vec3(0);  ///< largest absolute bind coordinates
   Frame frame_;
   bool started_ = false;
   std::uint64_t non_finite_frames_ = 0;
   std::uint64_t non_finite_segments_ = 0;
   std::uint64_t origin_changes_ = 0;
+  std::optional<std::uint64_t> first_non_finite_;
 };
 
 }  // namespace vestige

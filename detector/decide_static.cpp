@@ -1,12 +1,17 @@
-#include "detector/segment_triangle.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "detector/decision.hpp"
+
 namespace vestige {
 
 namespace {
+
+struct SegmentHit {
+  double t = 0;
+  int side = 0;
+};
 
 bool is_zero(const glm::dvec3& v) {
   return v.x == 0 && v.y == 0 && v.z == 0;
@@ -77,7 +82,6 @@ std::optional<SegmentHit> coplanar_hit(const glm::dvec3& p, const glm::dvec3& d,
   return flat_hit(p, d, a, b, c, normal);
 }
 
-}  // namespace
 std::optional<SegmentHit> segment_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a,
                                            const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 normal = glm::cross(b - a, c - a);
@@ -101,34 +105,12 @@ std::optional<SegmentHit> segment_triangle(const glm::dvec3& p, const glm::dvec3
   return SegmentHit{above_p / (above_p - above_q), above_p - above_q > 0 ? 1 : -1};
 }
 
-glm::dvec2 barycentric_of(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const glm::dvec3 ab = b - a;
-  const glm::dvec3 ac = c - a;
-  const glm::dvec3 ax = x - a;
-  const glm::dvec3 normal = glm::cross(ab, ac);
-  const double area = glm::dot(normal, normal);
-  if (area > 0) {
-    double u = std::clamp(glm::dot(glm::cross(ax, ac), normal) / area, 0.0, 1.0);
-    double v = std::clamp(glm::dot(glm::cross(ab, ax), normal) / area, 0.0, 1.0);
-    const double sum = u + v;
-    if (sum > 1) {
-      u /= sum;
-      v = 1 - u;
-    }
-    return {u, v};
-  }
-  const auto along = [](const glm::dvec3& from, const glm::dvec3& edge) {
-    const double length = glm::dot(edge, edge);
-    return length > 0 ? std::clamp(glm::dot(from, edge) / length, 0.0, 1.0) : 0.0;
-  };
-  const glm::dvec3 bc = c - b;
-  const double ab_length = glm::dot(ab, ab);
-  const double ac_length = glm::dot(ac, ac);
-  const double bc_length = glm::dot(bc, bc);
-  if (ab_length >= ac_length && ab_length >= bc_length) return {along(ax, ab), 0};
-  if (ac_length >= bc_length) return {0, along(ax, ac)};
-  const double s = along(x - b, bc);
-  return {1 - s, s};
+}  // namespace
+
+Decision decide_static(const Way& way, const Corners& triangle) {
+  const auto hit = segment_triangle(way.start, way.end, triangle.a, triangle.b, triangle.c);
+  if (!hit) return {};
+  return {FirstContact{static_cast<float>(hit->t) + 0.0F, static_cast<std::int8_t>(hit->side)}, false};
 }
 
 }  // namespace vestige

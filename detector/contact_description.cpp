@@ -1,0 +1,61 @@
+#include "detector/contact_description.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace vestige {
+
+glm::dvec2 barycentric_of(const glm::dvec3& x, const Corners& triangle) {
+  const auto& [a, b, c] = triangle;
+  const glm::dvec3 ab = b - a;
+  const glm::dvec3 ac = c - a;
+  const glm::dvec3 ax = x - a;
+  const glm::dvec3 normal = glm::cross(ab, ac);
+  const double area = glm::dot(normal, normal);
+  if (area > 0) {
+    double u = std::clamp(glm::dot(glm::cross(ax, ac), normal) / area, 0.0, 1.0);
+    double v = std::clamp(glm::dot(glm::cross(ab, ax), normal) / area, 0.0, 1.0);
+    const double sum = u + v;
+    if (sum > 1) {
+      u /= sum;
+      v = 1 - u;
+    }
+    return {u, v};
+  }
+  const auto along = [](const glm::dvec3& from, const glm::dvec3& edge) {
+    const double length = glm::dot(edge, edge);
+    return length > 0 ? std::clamp(glm::dot(from, edge) / length, 0.0, 1.0) : 0.0;
+  };
+  const glm::dvec3 bc = c - b;
+  const double ab_length = glm::dot(ab, ab);
+  const double ac_length = glm::dot(ac, ac);
+  const double bc_length = glm::dot(bc, bc);
+  if (ab_length >= ac_length && ab_length >= bc_length) return {along(ax, ab), 0};
+  if (ac_length >= bc_length) return {0, along(ax, ac)};
+  const double s = along(x - b, bc);
+  return {1 - s, s};
+}
+
+Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, std::uint32_t triangle, const Way& way,
+                         const Corners& at_contact, const FirstContact& first, double duration_s) {
+  Contact contact;
+  contact.triangle = triangle;
+  contact.t = first.t;
+  contact.side = first.side;
+  const glm::dvec3 moved = way.end - way.start;
+  contact.position = way.start + static_cast<double>(first.t) * moved;
+  contact.barycentric = barycentric_of(contact.position, at_contact);
+  const glm::uvec3& corner = avatar.triangles[triangle];
+  const glm::dvec2 uv_a(avatar.texture_coordinate[corner.x]);
+  const glm::dvec2 uv_b(avatar.texture_coordinate[corner.y]);
+  const glm::dvec2 uv_c(avatar.texture_coordinate[corner.z]);
+  contact.texture_coordinate = uv_a + contact.barycentric.x * (uv_b - uv_a) + contact.barycentric.y * (uv_c - uv_a);
+  contact.actuator = map.at(contact.texture_coordinate);
+  const glm::dvec3 normal = glm::cross(at_contact.b - at_contact.a, at_contact.c - at_contact.a);
+  const double length = glm::length(normal);
+  if (duration_s > 0 && length > 0) contact.speed_m_per_s = std::abs(glm::dot(moved, normal)) / length / duration_s;
+  return contact;
+}
+
+}  // namespace vestige

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "detector/actuator_map.hpp"
+#include "detector/contact.hpp"
+#include "detector/decision.hpp"
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// u, v: the weights of b and c in the point of triangle a b c nearest to `x` in its plane, clamped to the triangle. A
+/// triangle without area gives the nearest point of its longest edge.
+glm::dvec2 barycentric_of(const glm::dvec3& x, const Corners& triangle);
+
+/// Everything about a contact that follows from the pair and t, in one fp64 function for every detector
+/// (detector/CONTRACT.md, 7 and 8). `at_contact`: the triangle as it is at time t; `duration_s`: of the frame.
+Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, std::uint32_t triangle, const Way& way,
+                         const Corners& at_contact, const FirstContact& first, double duration_s);
+
+}  // namespace vestige

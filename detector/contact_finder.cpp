@@ -1,0 +1,34 @@
+#include "detector/contact_finder.hpp"
+
+#include <utility>
+
+#include "detector/contact_description.hpp"
+#include "detector/decision.hpp"
+
+namespace vestige {
+
+void ContactFinder::offer(const Frame& frame, const SkinMotion& skin, const Segment& segment, std::uint32_t triangle,
+                          Contact& winner) {
+  const Corners now = corners_of(avatar_, skin.now, triangle);
+  Corners before = now;
+  Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
+  if (method_ != Method::kStatic) before = corners_of(avatar_, skin.before, triangle);
+  if (method_ == Method::kCarried) way.start = glm::dvec3(carried_start(segment.start, before, now));
+
+  const Decision decision = method_ == Method::kCcd ? decide_ccd(way, before, now) : decide_static(way, now);
+  if (decision.exact_arithmetic) ++unsure_;
+  if (!decision.contact) return;
+  const float t = decision.contact->t;
+  if (t > winner.t || (t == winner.t && triangle > winner.triangle)) return;
+  const Corners at_contact = method_ == Method::kCcd ? corners_at(before, now, t) : now;
+  const Contact contact =
+      describe_contact(avatar_, map_, triangle, way, at_contact, *decision.contact, frame.duration_s);
+  if (surface_ == Surface::kMapped && contact.actuator == 0) return;
+  winner = contact;
+}
+
+std::uint64_t ContactFinder::take_unsure() {
+  return std::exchange(unsure_, 0);
+}
+
+}  // namespace vestige

@@ -1,0 +1,75 @@
+#include "detector/contact_description.hpp"
+#include "detector/detector.hpp"
+#include "detector/exact/truth.hpp"
+#include "detector/skin_motion.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// Every segment against every triangle by `exact::`. Skinning, carrying and the description of a contact are what the
+/// contract defines, and so are shared; every decision, the winner included, is this detector's own.
+class ExactDetector final : public Detector {
+ public:
+  ExactDetector(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
+      : avatar_(avatar), map_(map), options_(options) {}
+
+  const char* name() const override { return "exact"; }
+  Method method() const override { return options_.method; }
+
+  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+    row.assign(frame.columns, Contact());
+    if (frame.segments.empty()) return {};
+    skin_.skin(avatar_, frame, options_.method);
+    for (const Segment& segment : frame.segments) row[segment.column] = first_contact(frame, segment);
+    const std::uint64_t pairs = frame.segments.size() * avatar_.triangles.size();
+    return {.pairs_tested = pairs, .triangles_tested = avatar_.triangles.size()};
+  }
+
+  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+    skin_vertices(avatar_, frame.palette, out);
+  }
+
+ private:
+  Contact first_contact(const Frame& frame, const Segment& segment) const {
+    Contact first;
+    for (std::uint32_t triangle = 0; triangle < avatar_.triangles.size(); ++triangle) {
+      const Contact contact = contact_with(frame, segment, triangle);
+      const bool counts = contact.hit() && (options_.surface == Surface::kAll || contact.actuator != 0);
+      if (counts && contact.t < first.t) first = contact;  // ascending triangles: a tie goes to the smallest number
+    }
+    return first;
+  }
+
+  Contact contact_with(const Frame& frame, const Segment& segment, std::uint32_t triangle) const {
+    const Corners now = corners_of(avatar_, skin_.now, triangle);
+    Corners at_contact = now;
+    Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
+    std::optional<FirstContact> found;
+    if (options_.method == Method::kCcd) {
+      const Corners before = corners_of(avatar_, skin_.before, triangle);
+      found = exact::ccd_contact(way, before, now);
+      if (found) at_contact = corners_at(before, now, found->t);
+    } else {
+      if (options_.method == Method::kCarried)
+        way.start = glm::dvec3(carried_start(segment.start, corners_of(avatar_, skin_.before, triangle), now));
+      found = exact::static_contact(way, now);
+    }
+    if (!found) return {};
+    return describe_contact(avatar_, map_, triangle, way, at_contact, *found, frame.duration_s);
+  }
+
+  const Avatar& avatar_;
+  const ActuatorMap& map_;
+  DetectorOptions options_;
+  SkinMotion skin_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_exact_detector(const Avatar& avatar, const ActuatorMap& map,
+                                              const DetectorOptions& options) {
+  return std::make_unique<ExactDetector>(avatar, map, options);
+}
+
+}  // namespace vestige

@@ -1,0 +1,32 @@
+#include "detector/skin_motion.hpp"
+
+#include "detector/skinning.hpp"
+
+namespace vestige {
+
+void SkinMotion::skin(const Avatar& avatar, const Frame& frame, Method method) {
+  skin_vertices(avatar, frame.palette, now);
+  if (method != Method::kStatic) skin_vertices(avatar, frame.palette_before, before);
+}
+
+Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices, std::uint32_t triangle) {
+  const glm::uvec3& corner = avatar.triangles[triangle];
+  return {glm::dvec3(vertices[corner.x]), glm::dvec3(vertices[corner.y]), glm::dvec3(vertices[corner.z])};
+}
+
+Corners corners_at(const Corners& before, const Corners& now, float t) {
+  const auto at = [t](const glm::dvec3& from, const glm::dvec3& to) {
+    return from + static_cast<double>(t) * (to - from);
+  };
+  return {at(before.a, now.a), at(before.b, now.b), at(before.c, now.c)};
+}
+
+glm::dvec3 carried_displacement(const Corners& before, const Corners& now) {
+  return (((now.a - before.a) + (now.b - before.b)) + (now.c - before.c)) / 3.0;
+}
+
+glm::vec3 carried_start(const glm::vec3& start, const Corners& before, const Corners& now) {
+  return {glm::dvec3(start) + carried_displacement(before, now)};
+}
+
+}  // namespace vestige

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "detector/frame.hpp"
+#include "detector/method.hpp"
+#include "detector/skin_motion.hpp"
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// Boxes around what each triangle covers within a frame, so that most pairs cost a comparison. A box never proves a
+/// contact; a segment that meets no box is proven to miss, exactly: nothing is rounded but outwards.
+class TriangleBoxes {
+ public:
+  /// For `kCarried` a box is grown by the way that it may carry a segment's start.
+  void build(const Avatar& avatar, const SkinMotion& skin, Method method);
+
+  /// Calls `found(triangle)` for every triangle whose box meets the segment's, in ascending order.
+  template <typename Found>
+  void meet(const Segment& segment, Found&& found) const {
+    std::array<float, 3> low = {};
+    std::array<float, 3> high = {};
+    for (int axis = 0; axis < 3; ++axis) {
+      low[static_cast<std::size_t>(axis)] = std::min(segment.start[axis], segment.end[axis]);
+      high[static_cast<std::size_t>(axis)] = std::max(segment.start[axis], segment.end[axis]);
+    }
+    for (std::size_t first = 0; first < count_; first += kBlock) {
+      std::array<std::uint32_t, kBlock> meets;
+      if (!block_meets(first, low, high, meets)) continue;
+      for (std::size_t i = 0; i < kBlock; ++i)
+        if (meets[i] != 0) found(static_cast<std::uint32_t>(first + i));
+    }
+  }
+
+ private:
+  static constexpr std::size_t kBlock = 64;
+
+  bool block_meets(std::size_t first, const std::array<float, 3>& low, const std::array<float, 3>& high,
+                   std::array<std::uint32_t, kBlock>& meets) const;
+
+  std::size_t count_ = 0;
+  std::array<std::vector<float>, 3> low_;  ///< by axis; padded to whole blocks with boxes that nothing meets
+  std::array<std::vector<float>, 3> high_;
+};
+
+}  // namespace vestige
