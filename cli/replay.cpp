@@ -254,10 +254,12 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   verb->add_option("--detector", options->choice.detector,
                    "paper: HAVE 2010's geometry shader, as published; cpu: exact contacts, without OpenGL; exact: the "
-                   "same by slow rational arithmetic, to check with; auto: cpu")
+                   "same by slow rational arithmetic, to check with; embree: Embree 3, robust and refitted each frame, "
+                   "its fastest "
+                   "configuration; embree_default: the same without its robust flag; auto: cpu")
       ->group(kDetectorGroup)
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "paper", "cpu", "exact"}));
+      ->check(CLI::IsMember({"auto", "paper", "cpu", "exact", "embree", "embree_default"}));
   verb->add_option("--context", options->choice.context, "OpenGL context that paper runs in")
       ->group(kDetectorGroup)
       ->capture_default_str()

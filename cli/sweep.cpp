@@ -54,7 +54,7 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
                            }});
   };
   for (const std::string& detector : parse_list(options.detectors)) {
-    if (detector == "cpu") {
+    if (detector != "paper") {
       add(detector, "");
       continue;
     }
@@ -110,7 +110,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   options.settings.counts = parse_counts(options.counts, "--counts");
   options.settings.seed = options.common.seed;
-  check_names(options.detectors, {"paper", "cpu"}, "--detector");
+  check_names(options.detectors, {"paper", "cpu", "embree", "embree_default"}, "--detector");
   check_names(options.contexts, {"egl", "osmesa", "auto"}, "--context");
   const std::string json_path = options.output + "/sweep.json";
   const std::string times_path = options.output + "/frame_times.csv.zst";
@@ -173,7 +173,7 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
   verb->add_option("--counts", options->counts, "Numbers of colliders, as 1,10,40,100 or 1:100 or 5:100:5")
       ->capture_default_str()
       ->type_name("LIST");
-  verb->add_option("--detector", options->detectors, "Detectors to measure: paper, cpu")
+  verb->add_option("--detector", options->detectors, "Detectors to measure: paper, cpu, embree, embree_default")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
