@@ -39,7 +39,7 @@ struct ReplayResult {
   std::uint64_t origin_changes = 0;
   std::uint64_t non_finite_frames = 0;
   std::uint64_t non_finite_segments = 0;
-  std::optional<std::uint64_t> first_non_finite;  ///< index of the first frame with any of either
+  std::optional<std::uint64_t> first_non_finite;    ///< index of the first frame with any of either
   std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: on skin that no actuator covers
   std::string texture_hash;
   double reading_s = 0;    ///< decoding the trace
