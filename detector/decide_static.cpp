@@ -1,116 +1,103 @@
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "detector/bounded.hpp"
+#include "detector/decide_static_exactly.hpp"
 #include "detector/decision.hpp"
 
 namespace vestige {
 
 namespace {
 
-struct SegmentHit {
-  double t = 0;
-  int side = 0;
+/// kTripleError holds where nothing underflows or overflows. With differences up to 2^100 and a permanent from
+/// 2^-800 up, what underflow adds (at most 2^-1075 * 2^101 a term) lies far below kUnit times the permanent.
+constexpr double kLargestDifference = 0x1p100;
+constexpr double kSmallestPermanent = 0x1p-800;
+
+Bounded operator-(const Bounded& a, const Bounded& b) {
+  const double value = a.value - b.value;
+  return {value, (a.error + b.error + std::abs(value) * kUnit) * (1 + 8 * kUnit)};
+}
+
+struct Cross {
+  glm::dvec3 value;
+  glm::dvec3 permanent;
 };
 
-bool is_zero(const glm::dvec3& v) {
-  return v.x == 0 && v.y == 0 && v.z == 0;
+Cross cross_of(const glm::dvec3& v, const glm::dvec3& w) {
+  const glm::dvec3 size_v = glm::abs(v);
+  const glm::dvec3 size_w = glm::abs(w);
+  return {cross_product(v, w),
+          {size_v.y * size_w.z + size_v.z * size_w.y, size_v.z * size_w.x + size_v.x * size_w.z,
+           size_v.x * size_w.y + size_v.y * size_w.x}};
 }
 
-/// The first t at which p + t d meets the closed edge a + s e, when the two are coplanar lines.
-std::optional<double> first_on_edge(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec3& a,
-                                    const glm::dvec3& e) {
-  const glm::dvec3 to_edge = a - p;
-  if (glm::dot(glm::cross(to_edge, e), d) != 0) return std::nullopt;
-  const glm::dvec3 normal = glm::cross(d, e);
-  if (!is_zero(normal)) {
-    const double scale = glm::dot(normal, normal);
-    const double t = glm::dot(glm::cross(to_edge, e), normal) / scale;
-    const double s = glm::dot(glm::cross(to_edge, d), normal) / scale;
-    if (t < 0 || t > 1 || s < 0 || s > 1) return std::nullopt;
-    return t;
-  }
-  if (is_zero(d)) {  // a resting collider: is it on the edge?
-    const double along = -glm::dot(to_edge, e);
-    const bool on_edge = is_zero(glm::cross(to_edge, e)) && along >= 0 && along <= glm::dot(e, e);
-    const bool on_point = !is_zero(e) || is_zero(to_edge);
-    return on_edge && on_point ? std::optional(0.0) : std::nullopt;
-  }
-  if (!is_zero(glm::cross(to_edge, d))) return std::nullopt;  // parallel, apart
-  const double length = glm::dot(d, d);
-  const double first = glm::dot(to_edge, d) / length;
-  const double second = glm::dot(to_edge + e, d) / length;
-  if (std::max(first, second) < 0 || std::min(first, second) > 1) return std::nullopt;
-  return std::max(std::min(first, second), 0.0);
+Bounded triple(const glm::dvec3& u, const Cross& cross) {
+  const double value = dot_product(u, cross.value);
+  const double permanent = dot_product(glm::dvec3(glm::abs(u)), cross.permanent);
+  const bool without_underflow = permanent >= kSmallestPermanent;
+  return {value, without_underflow ? kTripleError * permanent : HUGE_VAL};
 }
 
-/// Is x, a point of the triangle's plane, inside the closed triangle? `normal` is not zero.
-bool contains(const glm::dvec3& x, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
-              const glm::dvec3& normal) {
-  const double ab = glm::dot(glm::cross(b - a, x - a), normal);
-  const double bc = glm::dot(glm::cross(c - b, x - b), normal);
-  const double ca = glm::dot(glm::cross(a - c, x - c), normal);
-  return ab >= 0 && bc >= 0 && ca >= 0;
-}
-
-/// The first overlap, given that all lie in one plane. `normal` is zero for a triangle without area.
-std::optional<SegmentHit> flat_hit(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec3& a, const glm::dvec3& b,
-                                   const glm::dvec3& c, const glm::dvec3& normal) {
-  if (!is_zero(normal) && contains(p, a, b, c, normal)) return SegmentHit{0, 0};
-  std::optional<double> first;
-  for (const auto& t : {first_on_edge(p, d, a, b - a), first_on_edge(p, d, b, c - b), first_on_edge(p, d, c, a - c)})
-    if (t && (!first || *t < *first)) first = t;
-  if (!first) return std::nullopt;
-  return SegmentHit{*first, 0};
-}
-
-/// Segment and triangle in one plane, or a triangle without area.
-std::optional<SegmentHit> coplanar_hit(const glm::dvec3& p, const glm::dvec3& d, const glm::dvec3& a,
-                                       const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& normal) {
-  if (!is_zero(normal)) {
-    // In the plane's own two dimensions: without the coordinate in which the normal is longest. There the edges'
-    // lines are coplanar with the segment exactly, not only up to rounding.
-    const glm::dvec3 size = glm::abs(normal);
-    const int dropped = size.x >= size.y && size.x >= size.z ? 0 : (size.y >= size.z ? 1 : 2);
-    const auto flat = [dropped](glm::dvec3 v) {
-      v[dropped] = 0;
-      return v;
-    };
-    const glm::dvec3 flat_normal = glm::cross(flat(b) - flat(a), flat(c) - flat(a));
-    return flat_hit(flat(p), flat(d), flat(a), flat(b), flat(c), flat_normal);
-  }
-  return flat_hit(p, d, a, b, c, normal);
-}
-
-std::optional<SegmentHit> segment_triangle(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a,
-                                           const glm::dvec3& b, const glm::dvec3& c) {
-  const glm::dvec3 normal = glm::cross(b - a, c - a);
-  const double above_p = glm::dot(normal, p - a);
-  const double above_q = glm::dot(normal, q - a);
-  if ((above_p > 0 && above_q > 0) || (above_p < 0 && above_q < 0)) return std::nullopt;
-  const glm::dvec3 d = q - p;
-  if (above_p == 0 && above_q == 0) return coplanar_hit(p, d, a, b, c, normal);
-
-  // Signed volumes of d with each edge. cross(x, y) is exactly -cross(y, x), so the triangle on the other side of an
-  // edge sees exactly the opposite value.
-  const glm::dvec3 to_a = a - p;
-  const glm::dvec3 to_b = b - p;
-  const glm::dvec3 to_c = c - p;
-  const double ab = glm::dot(d, glm::cross(to_a, to_b));
-  const double bc = glm::dot(d, glm::cross(to_b, to_c));
-  const double ca = glm::dot(d, glm::cross(to_c, to_a));
-  const bool all_left = ab >= 0 && bc >= 0 && ca >= 0;
-  const bool all_right = ab <= 0 && bc <= 0 && ca <= 0;
-  if (!all_left && !all_right) return std::nullopt;
-  return SegmentHit{above_p / (above_p - above_q), above_p - above_q > 0 ? 1 : -1};
+/// numerator / denominator as fp32, when every number within the errors rounds to the same one.
+std::optional<float> sure_quotient(const Bounded& numerator, const Bounded& denominator) {
+  const double quotient = numerator.value / denominator.value;
+  const double error =
+      ((numerator.error + std::abs(quotient) * denominator.error) / (std::abs(denominator.value) - denominator.error) +
+       std::abs(quotient) * (4 * kUnit)) *
+      (1 + 16 * kUnit);
+  const auto low = static_cast<float>(quotient - error);
+  const auto high = static_cast<float>(quotient + error);
+  if (low != high) return std::nullopt;
+  return std::abs(high);  // 0 < t: where both round to 0, never -0
 }
 
 }  // namespace
 
 Decision decide_static(const Way& way, const Corners& triangle) {
-  const auto hit = segment_triangle(way.start, way.end, triangle.a, triangle.b, triangle.c);
-  if (!hit) return {};
-  return {FirstContact{static_cast<float>(hit->t) + 0.0F, static_cast<std::int8_t>(hit->side)}, false};
+  // Seen from the way's start p: corners A, B, C, and the way d. With n the normal (b-a) x (c-a), n.(p-a) = -A.(B x C)
+  // and n.d is the sum of the volumes of d with the edges, d.(A x B) + d.(B x C) + d.(C x A).
+  const glm::dvec3 to_a = difference(triangle.a, way.start);
+  const glm::dvec3 to_b = difference(triangle.b, way.start);
+  const glm::dvec3 to_c = difference(triangle.c, way.start);
+  const glm::dvec3 moved = difference(way.end, way.start);
+  const glm::dvec3 largest =
+      glm::max(glm::max(glm::abs(to_a), glm::abs(to_b)), glm::max(glm::abs(to_c), glm::abs(moved)));
+  if (!(largest.x <= kLargestDifference && largest.y <= kLargestDifference && largest.z <= kLargestDifference))
+    return decide_static_exactly(way, triangle);
+
+  const Cross ab = cross_of(to_a, to_b);
+  const Cross bc = cross_of(to_b, to_c);
+  const Cross ca = cross_of(to_c, to_a);
+  const Bounded height_start = triple(to_a, bc);  // of p below the plane, times |n|
+  const std::array<Bounded, 3> edges = {triple(moved, ab), triple(moved, bc), triple(moved, ca)};
+  bool left = false;
+  bool right = false;
+  bool sure = true;
+  for (const Bounded& edge : edges) {
+    left = left || edge.surely_positive();
+    right = right || edge.surely_negative();
+    sure = sure && edge.sure();
+  }
+  // In a plane with the triangle, or with a triangle without area, no volume has a sign. So two signs prove a miss.
+  if (left && right) return {};
+  const double sum = (edges[0].value + edges[1].value) + edges[2].value;
+  const double sum_error =
+      (edges[0].error + edges[1].error + edges[2].error +
+       (std::abs(edges[0].value) + std::abs(edges[1].value) + std::abs(edges[2].value)) * 2 * kUnit) *
+      (1 + 8 * kUnit);
+  const Bounded closing = {sum, sum_error};  // what d takes from the height
+  const Bounded height_end = height_start - closing;
+  if (height_start.surely_positive() && height_end.surely_positive()) return {};
+  if (height_start.surely_negative() && height_end.surely_negative()) return {};
+  if (!sure || !height_start.sure() || !height_end.sure()) return decide_static_exactly(way, triangle);
+
+  const auto t = sure_quotient(height_start, closing);
+  if (!t) return decide_static_exactly(way, triangle);
+  const std::int8_t side = closing.value < 0 ? 1 : -1;
+  return {FirstContact{*t, side}, false};
 }
 
 }  // namespace vestige

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cmath>
+
+namespace vestige {
+
+/// Half the distance from 1 to the next double: what one rounded operation errs at most, relative.
+inline constexpr double kUnit = 0x1p-53;
+
+/// A computed number, and how far from the exact one it is at most.
+struct Bounded {
+  double value = 0;
+  double error = 0;
+
+  bool sure() const { return std::abs(value) > error; }
+  bool surely_positive() const { return value > error; }
+  bool surely_negative() const { return value < -error; }
+};
+
+// The formulas whose errors are bounded, each once, for any kind of number: the tests count their roundings.
+
+template <typename Vector>
+Vector difference(const Vector& a, const Vector& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+template <typename Vector>
+Vector cross_product(const Vector& v, const Vector& w) {
+  return {v.y * w.z - v.z * w.y, v.z * w.x - v.x * w.z, v.x * w.y - v.y * w.x};
+}
+
+template <typename Vector>
+auto dot_product(const Vector& u, const Vector& v) {
+  return (u.x * v.x + u.y * v.y) + u.z * v.z;
+}
+
+/// The error of dot_product(u, cross_product(v, w)) of differences u, v, w, in units of its permanent (the same sum of
+/// the absolute values of its terms). In each term meet the rounding of three differences, of two products, of the
+/// subtraction within the cross product and of two additions: at most 8 factors (1 + e), |e| <= kUnit. So the sum errs
+/// by at most 8 kUnit / (1 - 8 kUnit) of the permanent (Higham 2002, Accuracy and Stability of Numerical Algorithms,
+/// Lemma 3.1). The permanent is itself computed with at most 8 such factors; 1 + 32 kUnit covers both.
+inline constexpr double kTripleError = 8 * kUnit * (1 + 32 * kUnit);
+
+}  // namespace vestige

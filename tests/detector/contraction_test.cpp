@@ -1,0 +1,45 @@
+// Contraction to fma would change the bits of skinned vertices, and with them every contact: the compiler's flags must
+// forbid it, and this is where it would be noticed if they did not.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "detector/skinning.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/pose.hpp"
+#include "traces/sha256.hpp"
+
+namespace vestige {
+
+/// detector/skinning.cpp, compiled with contraction allowed (tests/detector/CMakeLists.txt).
+void skin_vertices_contracted(const Avatar& avatar, std::span<const SkinMatrix> palette, std::vector<glm::vec3>& out);
+
+namespace {
+
+TEST(Contraction, IsForbiddenWhereVerticesAreSkinned) {
+  const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  std::vector<glm::dmat4> world;
+  std::vector<SkinMatrix> palette;
+  const Pose pose = sample_animation(avatar, avatar.animations.front(), 0.7);
+  world_matrices(avatar, pose, world);
+  build_palette(avatar, world, glm::dvec3(0), palette);
+  std::vector<glm::vec3> ours;
+  std::vector<glm::vec3> contracted;
+  skin_vertices(avatar, palette, ours);
+  EXPECT_EQ(sha256_hex(std::as_bytes(std::span(ours))),
+            "d8a772b7a79c933667b60ef3f25ff95b93b36bb88cbdd91e9f67972c7115da88");
+#if defined(__x86_64__)
+  if (!__builtin_cpu_supports("fma")) GTEST_SKIP() << "this processor has no fma to compare with";
+  skin_vertices_contracted(avatar, palette, contracted);
+  EXPECT_FALSE(std::ranges::equal(ours, contracted)) << "the hash above would not notice contraction";
+#endif
+}
+
+}  // namespace
+}  // namespace vestige
