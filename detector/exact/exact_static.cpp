@@ -1,11 +1,157 @@
-#include <stdexcept>
+#include <algorithm>
+#include <array>
+#include <glm/common.hpp>
+#include <utility>
 
 #include "detector/exact/truth.hpp"
+#include "detector/exact/whole_number.hpp"
 
 namespace vestige::exact {
 
-std::optional<FirstContact> static_contact(const Way&, const Corners&) {
-  throw std::logic_error("not built yet");
+namespace {
+
+using Vector = std::array<Whole, 3>;
+
+Vector minus(const Vector& a, const Vector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Whole dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vector cross(const Vector& a, const Vector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+bool is_zero(const Vector& v) {
+  return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+/// A time as numerator / denominator; the denominator is positive.
+struct Fraction {
+  Whole numerator;
+  Whole denominator;
+
+  friend bool operator<(const Fraction& a, const Fraction& b) {
+    return a.numerator * b.denominator < b.numerator * a.denominator;
+  }
+};
+
+/// The times within [0, 1] that meet every demand made so far. A demand is about a quantity that changes linearly,
+/// given by its values at 0 and at 1.
+class Times {
+ public:
+  bool none() const { return none_; }
+  const Fraction& first() const { return low_; }
+
+  void keep_non_negative(const Whole& at_0, const Whole& at_1) {
+    const int sign_0 = sign_of(at_0);
+    const int sign_1 = sign_of(at_1);
+    if (none_ || (sign_0 >= 0 && sign_1 >= 0)) return;
+    if (sign_0 < 0 && sign_1 < 0) {
+      none_ = true;
+      return;
+    }
+    Fraction zero = {at_0, at_0 - at_1};
+    if (sign_0 < 0) {
+      zero = {-at_0, at_1 - at_0};
+      if (low_ < zero) low_ = std::move(zero);
+    } else if (zero < high_) {
+      high_ = std::move(zero);
+    }
+    none_ = high_ < low_;
+  }
+
+  void keep_zero(const Whole& at_0, const Whole& at_1) {
+    keep_non_negative(at_0, at_1);
+    keep_non_negative(-at_0, -at_1);
+  }
+
+ private:
+  Fraction low_ = {0, 1};
+  Fraction high_ = {1, 1};
+  bool none_ = false;
+};
+
+/// What is asked about, as whole multiples of one length.
+struct Question {
+  Vector start;
+  Vector end;
+  std::array<Vector, 3> corner;
+};
+
+Question question_of(const Way& way, const Corners& triangle) {
+  std::array<double, 15> values = {};
+  std::size_t next = 0;
+  for (const glm::dvec3* point : {&way.start, &way.end, &triangle.a, &triangle.b, &triangle.c})
+    for (int axis = 0; axis < 3; ++axis) values[next++] = (*point)[axis];
+  std::array<Whole, 15> whole = whole_multiples(values);
+  const auto point = [&whole](std::size_t i) {
+    return Vector{std::move(whole[3 * i]), std::move(whole[3 * i + 1]), std::move(whole[3 * i + 2])};
+  };
+  Question question;
+  question.start = point(0);
+  question.end = point(1);
+  for (std::size_t i = 0; i < 3; ++i) question.corner[i] = point(2 + i);
+  return question;
+}
+
+/// Within the triangle's prism: the triangle is where the plane cuts the three half-spaces that stand on its edges.
+void stay_within(const Question& q, const Vector& normal, Times& times) {
+  for (std::size_t i = 0; i < 3 && !times.none(); ++i) {
+    const Vector inward = cross(normal, minus(q.corner[(i + 1) % 3], q.corner[i]));
+    times.keep_non_negative(dot(inward, minus(q.start, q.corner[i])), dot(inward, minus(q.end, q.corner[i])));
+  }
+}
+
+/// A triangle without area is the line between its corners that are first and last in lexicographic order, which is
+/// their order along the line; or one point.
+void stay_on_line(const Question& q, Times& times) {
+  const auto [first, last] = std::minmax_element(q.corner.begin(), q.corner.end());
+  const Vector line = minus(*last, *first);
+  const Vector from_first_0 = minus(q.start, *first);
+  const Vector from_first_1 = minus(q.end, *first);
+  if (is_zero(line)) {
+    for (std::size_t axis = 0; axis < 3; ++axis) times.keep_zero(from_first_0[axis], from_first_1[axis]);
+    return;
+  }
+  const Vector away_0 = cross(line, from_first_0);
+  const Vector away_1 = cross(line, from_first_1);
+  for (std::size_t axis = 0; axis < 3; ++axis) times.keep_zero(away_0[axis], away_1[axis]);
+  times.keep_non_negative(dot(line, from_first_0), dot(line, from_first_1));
+  times.keep_non_negative(dot(line, minus(*last, q.start)), dot(line, minus(*last, q.end)));
+}
+
+/// Whether all of the way lies beyond all of the triangle along an axis.
+bool apart(const Way& way, const Corners& triangle) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [way_low, way_high] = std::minmax(way.start[axis], way.end[axis]);
+    const auto [low, high] = std::minmax({triangle.a[axis], triangle.b[axis], triangle.c[axis]});
+    if (way_high < low || way_low > high) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+// Every condition for the way's point to be on the triangle is linear in time, so the times of contact are what is left
+// of [0, 1] after cutting it down by each: no intersection is ever computed.
+std::optional<FirstContact> static_contact(const Way& way, const Corners& triangle) {
+  if (apart(way, triangle)) return std::nullopt;
+  const Question q = question_of(way, triangle);
+  const Vector normal = cross(minus(q.corner[1], q.corner[0]), minus(q.corner[2], q.corner[0]));
+  Times times;
+  int side = 0;
+  if (is_zero(normal)) {
+    stay_on_line(q, times);
+  } else {
+    const Whole height_0 = dot(normal, minus(q.start, q.corner[0]));
+    const Whole height_1 = dot(normal, minus(q.end, q.corner[0]));
+    times.keep_zero(height_0, height_1);
+    stay_within(q, normal, times);
+    side = height_0.compare(height_1);  // downwards through the plane: from the front
+  }
+  if (times.none()) return std::nullopt;
+  return FirstContact{rounded_quotient(times.first().numerator, times.first().denominator),
+                      static_cast<std::int8_t>((side > 0) - (side < 0))};
 }
 
 }  // namespace vestige::exact
