@@ -121,10 +121,20 @@ void write_file(const std::string& path, std::span<const std::byte> bytes, const
   file.commit();
 }
 
+/// A file named otherwise would be opened as what it is not.
+void check_extension(const char* flag, const std::string& path, std::string_view extension, std::string_view what) {
+  if (path.empty() || path == "-" || std::filesystem::path(path).extension() == extension) return;
+  throw UsageError(flag, fmt::format("'{}' does not end in {}", path, extension),
+                   fmt::format("what is written is {}", what));
+}
+
 void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
   const bool is_builtin = options.avatar == "builtin";
   if (!options.map_output.empty() && !is_builtin)
-    throw UsageError("--map-output", "only the built-in avatar comes with a map", "leave FILE out");
+    throw UsageError("--map-output", "only the built-in avatar comes with a map", "leave the flag out, or AVATAR");
+  check_extension("-o", options.output, ".glb", "binary glTF");
+  check_extension("--map-output", options.map_output, ".png", "a PNG");
+  check_extension("--uv", options.uv_output, ".png", "a PNG");
   std::string sidecar;
   if (!options.map_output.empty() && options.map_output != "-")
     sidecar = std::filesystem::path(options.map_output).replace_extension(".json").string();
@@ -173,7 +183,7 @@ void add_avatar(CLI::App& program, Invocation& invocation) {
   verb->add_option(
           "--uv", options->uv_output,
           "Draw the texture: grey where one triangle lies, red where several do, which a map cannot tell apart")
-      ->type_name("OUT.png");
+      ->type_name("OUT.png|-");
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_avatar(*options, invocation); });
 }

@@ -81,8 +81,10 @@ int run(int argc, char** argv) {
     if (!std::cout) throw system_error("standard output", "could not write", errno);
     return shown;
   } catch (const CLI::ParseError& error) {
-    print_message(fmt::format(
-        "vestige: error: {}\n  'vestige --help' lists the verbs, 'vestige VERB --help' their flags.\n", error.what()));
+    const auto verbs = program.get_subcommands();
+    print_message(fmt::format("vestige: error: {}\n  {}\n", error.what(),
+                              verbs.empty() ? "'vestige --help' lists the verbs"
+                                            : fmt::format("'vestige {} --help' explains it", verbs[0]->get_name())));
     return kWrongUsage;
   }
   if (std::fflush(stdout) != 0) throw system_error("standard output", "could not write", errno);

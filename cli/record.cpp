@@ -136,8 +136,9 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   json["bytes"] = writer.bytes_written();
   json["avatar"] = to_json(scene.avatar);
   write_json(options.common.json, json, options.common);
-  print_summary(fmt::format("{}: {} frames at {} Hz, {:.1f} MB\n", options.output, writer.frame_count(),
-                            settings.rate_hz, static_cast<double>(writer.bytes_written()) / 1e6),
+  print_summary(fmt::format("{}: {} frame{} at {} Hz, {:.1f} MB\n", options.output, writer.frame_count(),
+                            writer.frame_count() == 1 ? "" : "s", settings.rate_hz,
+                            static_cast<double>(writer.bytes_written()) / 1e6),
                 {options.output, options.common.json}, options.common);
 }
 
@@ -161,7 +162,7 @@ void add_record(CLI::App& program, Invocation& invocation) {
   verb->add_option("--colliders", options->colliders, describe_colliders())
       ->capture_default_str()
       ->type_name("SCENARIO|FILE.csv");
-  verb->add_option("--count", options->count, describe_count())->check(CLI::Range(1, 1000000));
+  verb->add_option("--count", options->count, describe_count())->check(help::whole_number(1, 1000000));
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")
       ->type_name("HZ")
       ->capture_default_str()

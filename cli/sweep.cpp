@@ -187,10 +187,10 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
   add_detector_options(*verb, options->choice);
   verb->add_option("--runs", options->settings.runs, "Places of the trace, evenly spread, that are measured")
       ->capture_default_str()
-      ->check(CLI::Range(1, 10000));
+      ->check(help::whole_number(1, 10000));
   verb->add_option("--run-frames", options->settings.run_frames, "Consecutive frames at each place")
       ->capture_default_str()
-      ->check(CLI::Range(1, 100000));
+      ->check(help::whole_number(1, 100000));
   verb->add_option("--min-time", options->settings.min_time_s, "Seconds spent on every point, at least")
       ->capture_default_str()
       ->check(help::kPositive)

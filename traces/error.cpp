@@ -5,11 +5,27 @@
 namespace vestige {
 
 namespace {
+/// File names may hold what moves a terminal's cursor.
+std::string printable(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n') || byte == 0x7F) {
+      constexpr std::string_view kDigits = "0123456789abcdef";
+      safe.append("\\x").append(1, kDigits[byte / 16U]).append(1, kDigits[byte % 16U]);
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
 std::string compose(std::string_view where, std::string_view cause, std::string_view remedy) {
   std::string text;
   text.append(where).append(": ").append(cause);
   if (!remedy.empty()) text.append("\n  ").append(remedy);
-  return text;
+  return printable(text);
 }
 }  // namespace
 

@@ -66,6 +66,9 @@ class BufferPacker {
     if (gltf::is_data_uri(uri)) return append(gltf::decode_data_uri(uri, path + ".uri", report_));
     const std::filesystem::path file = gltf::decode_relative_uri(uri, path + ".uri", report_);
     const auto known = packed_.find(file);
+    if (known == packed_.end() && !std::filesystem::exists(folder_ / file))
+      report_.fail(path + ".uri", fmt::format("names '{}', which is not there", (folder_ / file).string()),
+                   "put that file beside the glTF, or export a .glb, which holds everything");
     return known != packed_.end() ? known->second
                                   : packed_.emplace(file, append(read_file(folder_ / file))).first->second;
   }

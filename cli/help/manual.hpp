@@ -13,7 +13,7 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {{
     {0, "done"},
     {1, "failed"},
     {2, "wrong usage"},
-    {3, "done, but not with all of the data (a damaged trace, or interrupted)"},
+    {3, "done, but not with all of the data (a damaged trace, interrupted, or a figure without its PNG)"},
     {4, "a check failed"},
 }};
 

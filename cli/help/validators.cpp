@@ -37,4 +37,16 @@ CLI::Validator between(double low, double high) {
   return number_check([=](double value) { return value >= low && value <= high; }, " from " + range, range);
 }
 
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        std::uint64_t value = 0;
+        const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (failure == std::errc() && end == text.data() + text.size() && value >= low && value <= high)
+          return std::string();
+        return fmt::format("'{}' is not a whole number from {} to {}", text, low, high);
+      },
+      fmt::format("{} to {}", low, high));
+}
+
 }  // namespace vestige::help

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 
 namespace vestige::help {
 
@@ -9,5 +10,6 @@ extern const CLI::Validator kFinite;
 extern const CLI::Validator kPositive;
 extern const CLI::Validator kNotNegative;
 CLI::Validator between(double low, double high);
+CLI::Validator whole_number(std::uint64_t low, std::uint64_t high);
 
 }  // namespace vestige::help

@@ -9,8 +9,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/support/process.hpp"
-#include "tests/support/test_data.hpp"
+#include "tests/support/command_line.hpp"
 
 namespace vestige {
 namespace {
@@ -25,18 +24,7 @@ constexpr const char* kGlibc =
     "/lib64/ld-linux-x86-64.so.2 /lib/x86_64-linux-gnu/libc.so.6 /lib/x86_64-linux-gnu/libm.so.6 "
     "/lib/x86_64-linux-gnu/libdl.so.2 /lib/x86_64-linux-gnu/libpthread.so.0";
 
-class Bundle : public ::testing::Test {
- protected:
-  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
-
-  nlohmann::json json_of(const std::string& command) const {
-    const test::Outcome outcome = run(command);
-    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
-    return nlohmann::json::parse(outcome.standard_output, nullptr, false);
-  }
-
-  const test::TemporaryFolder folder_;
-};
+class Bundle : public test::CommandLineTest {};
 
 class BundleAlone : public Bundle {
  protected:

@@ -13,8 +13,7 @@
 #include <set>
 #include <sstream>
 
-#include "tests/support/process.hpp"
-#include "tests/support/test_data.hpp"
+#include "tests/support/command_line.hpp"
 #include "traces/builtin_avatar.hpp"
 
 namespace vestige {
@@ -24,16 +23,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-class CommandLine : public ::testing::Test {
+class CommandLine : public test::CommandLineTest {
  protected:
-  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
-
-  nlohmann::json json_of(const std::string& command) const {
-    const test::Outcome outcome = run(command);
-    EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
-    return nlohmann::json::parse(outcome.standard_output, nullptr, false);
-  }
-
   void record_small(const std::string& name = "small.mcap") const {
     ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 -o " + name).exit_code, 0);
   }
@@ -53,8 +44,6 @@ class CommandLine : public ::testing::Test {
   static std::string until_written(const std::string& name) {
     return "until [ -n \"$(find . -name '*" + name + "*' -size +0)\" ] || ! kill -0 $P; do sleep 0.01; done; ";
   }
-
-  const test::TemporaryFolder folder_;
 };
 
 TEST_F(CommandLine, HelpOfEveryVerbOpensWithTwoExamples) {

@@ -7,8 +7,7 @@
 #include <sstream>
 
 #include "detector/gl/gl_context.hpp"
-#include "tests/support/process.hpp"
-#include "tests/support/test_data.hpp"
+#include "tests/support/command_line.hpp"
 
 namespace vestige {
 namespace {
@@ -16,20 +15,16 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-class Devices : public ::testing::Test {
+class Devices : public test::CommandLineTest {
  protected:
-  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
   nlohmann::json contexts(const std::string& environment = "") const {
-    const test::Outcome outcome = run(environment + " vestige devices --json -");
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
-    return nlohmann::json::parse(outcome.standard_output, nullptr, false);
+    return json_of(environment + " vestige devices --json -");
   }
   static nlohmann::json find(const nlohmann::json& json, const std::string& name) {
     for (const auto& context : json["contexts"])
       if (context["context"] == name) return context;
     return nullptr;
   }
-  const test::TemporaryFolder folder_;
 };
 
 TEST_F(Devices, AreListedWithLimitsInAHundredColumns) {

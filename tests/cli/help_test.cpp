@@ -6,8 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/support/process.hpp"
-#include "tests/support/test_data.hpp"
+#include "tests/support/command_line.hpp"
 #include "traces/builtin_avatar.hpp"
 
 namespace vestige {
@@ -28,9 +27,8 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-class Help : public ::testing::Test {
+class Help : public test::CommandLineTest {
  protected:
-  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
   bool has_plot() const { return run("vestige plot --help").exit_code == 0; }
 
   /// "vestige record", …, "vestige plot sweep", …: every command that does something.
@@ -44,8 +42,6 @@ class Help : public ::testing::Test {
       commands.push_back("vestige plot " + line.substr(0, line.find('\t')));
     return commands;
   }
-
-  const test::TemporaryFolder folder_;
 };
 
 TEST_F(Help, OfEveryCommandFitsATerminalAndShowsItsDefaults) {

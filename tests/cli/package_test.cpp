@@ -5,8 +5,7 @@
 
 #include <string>
 
-#include "tests/support/process.hpp"
-#include "tests/support/test_data.hpp"
+#include "tests/support/command_line.hpp"
 
 namespace vestige {
 namespace {
@@ -17,19 +16,16 @@ using ::testing::Not;
 
 const std::string kPackages = VESTIGE_PACKAGE_DIR;
 
-class Packages : public ::testing::Test {
+class Packages : public test::CommandLineTest {
  protected:
   void SetUp() override {
     if (run("ls " + package("vestige-plot")).exit_code != 0)
       GTEST_SKIP() << "BUILT WITHOUT VTK: THE PACKAGES WERE NOT TESTED";
   }
-  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
   static std::string package(const std::string& name) { return "'" + kPackages + "'/" + name + "_*_amd64.deb"; }
   std::string field(const std::string& name, const std::string& what) const {
     return run("dpkg-deb -f " + package(name) + " " + what).standard_output;
   }
-
-  const test::TemporaryFolder folder_;
 };
 
 TEST_F(Packages, RunWhereTheyAreUnpackedAndFindEachOther) {

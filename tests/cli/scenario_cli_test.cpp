@@ -5,8 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "tests/support/process.hpp"
-#include "tests/support/test_data.hpp"
+#include "tests/support/command_line.hpp"
 #include "traces/colliders.hpp"
 
 namespace vestige {
@@ -15,18 +14,11 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-class ScenarioCommandLine : public ::testing::Test {
+class ScenarioCommandLine : public test::CommandLineTest {
  protected:
-  test::Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
-
   nlohmann::json replayed(const std::string& record_flags) const {
-    const test::Outcome outcome =
-        run("vestige record --rate 60 -q -o - " + record_flags + " | vestige replay - --json -");
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
-    return nlohmann::json::parse(outcome.standard_output, nullptr, false);
+    return json_of("vestige record --rate 60 -q -o - " + record_flags + " | vestige replay - --json -");
   }
-
-  const test::TemporaryFolder folder_;
 };
 
 TEST_F(ScenarioCommandLine, HelpSaysWhatEachScenarioIsInOneLine) {

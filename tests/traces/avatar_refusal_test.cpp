@@ -14,6 +14,7 @@
 namespace vestige {
 namespace {
 
+using test::attributes;
 using test::GltfBuilder;
 using test::one_triangle;
 using test::skinned_triangle;
@@ -34,10 +35,6 @@ struct Fault {
   std::string expected;  ///< part of the message
   std::function<void(GltfBuilder&)> commit;
 };
-
-nlohmann::json& attributes(GltfBuilder& builder) {
-  return builder.document["meshes"][0]["primitives"][0]["attributes"];
-}
 
 /// Replaces one float of the data that was added first (the positions) or later.
 void put_float(GltfBuilder& builder, std::size_t byte, float value) {

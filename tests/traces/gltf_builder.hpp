@@ -10,6 +10,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "traces/avatar_gltf.hpp"
+
 namespace vestige::test {
 
 /// A GLB with this JSON chunk and, unless it is empty, this BIN chunk; both padded as they should be.
@@ -119,6 +121,18 @@ inline GltfBuilder skinned_triangle() {
   document["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"children", {2}}}, {{"translation", {0, 1, 0}}}};
   document["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", 3}}};
   return builder;
+}
+
+inline nlohmann::json& primitive(GltfBuilder& builder) {
+  return builder.document["meshes"][0]["primitives"][0];
+}
+
+inline nlohmann::json& attributes(GltfBuilder& builder) {
+  return primitive(builder)["attributes"];
+}
+
+inline Avatar parse(const GltfBuilder& builder) {
+  return parse_avatar_glb(builder.glb(), "test.glb");
 }
 
 /// Adds an animation with one channel and returns the builder, for chaining.
