@@ -92,6 +92,7 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
 
     result.pairs_tested += work.pairs_tested;
     result.pairs_captured += work.pairs_captured;
+    result.pairs_meeting += work.pairs_meeting;
     result.unsure += work.unsure;
     for (const Contact& contact : row) {
       if (!contact.hit()) continue;

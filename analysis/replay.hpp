@@ -36,10 +36,11 @@ struct ReplayResult {
   std::uint64_t unsure = 0;  ///< pairs that the float filter passed on to exact arithmetic
   std::uint64_t pairs_tested = 0;
   std::uint64_t pairs_captured = 0;  ///< that `geometry` could not reject on the GPU
+  std::uint64_t pairs_meeting = 0;   ///< those of them that truly meet
   std::uint64_t origin_changes = 0;
   std::uint64_t non_finite_frames = 0;
   std::uint64_t non_finite_segments = 0;
-  std::optional<std::uint64_t> first_non_finite;  ///< index of the first frame with any of either
+  std::optional<std::uint64_t> first_non_finite;    ///< index of the first frame with any of either
   std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: on skin that no actuator covers
   std::string texture_hash;
   double reading_s = 0;    ///< decoding the trace

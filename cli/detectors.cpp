@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "detector/embree_detector.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::cli {
@@ -33,7 +34,8 @@ Method DetectorChoice::method_kind() const {
 }
 
 bool is_detector(const std::string& name) {
-  return name == "paper" || name == "cpu" || name == "exact";
+  return name == "paper" || name == "geometry" || name == "cpu" || name == "exact" || name == "embree" ||
+         name == "embree_default";
 }
 
 ContextKind context_kind(const std::string& context) {
@@ -47,10 +49,14 @@ std::unique_ptr<Detector> make_detector(const std::string& name, const std::stri
                                         PlaneSet planes) {
   const DetectorOptions options = {choice.surface_kind(), planes, choice.method_kind()};
   if (name == "exact") return make_exact_detector(avatar, map, options);
+  if (name == "embree") return make_embree_detector(EmbreeMode::kRobust, avatar, map, options);
+  if (name == "embree_default") return make_embree_detector(EmbreeMode::kDefault, avatar, map, options);
+  if (name == "geometry")
+    return make_geometry_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
   if (name != "paper") return make_cpu_detector(avatar, map, options);
   if (options.method != Method::kStatic)
     throw UsageError("--method", fmt::format("the published method knows no '{}'", choice.method),
-                     "choose --detector cpu, or --method static");
+                     "choose --detector geometry or cpu, or --method static");
   return make_paper_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
 }
 

@@ -34,7 +34,8 @@ ContextKind context_kind(const std::string& context);
 /// Whether `name` is one that `make_detector` knows, "auto" apart.
 bool is_detector(const std::string& name);
 
-/// Makes a detector: "auto" (now: cpu), "cpu", "exact" or "paper". `context`: "auto", "egl" or "osmesa".
+/// Makes a detector: "auto" (now: cpu), "cpu", "exact", "geometry", "embree", "embree_default" or "paper". `context`:
+/// "auto", "egl" or "osmesa".
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes);

@@ -54,6 +54,7 @@ int run(int argc, char** argv) {
   add_replay(program, invocation);
   add_sweep(program, invocation);
   add_query(program, invocation);
+  add_stress(program, invocation);
   add_inspect(program, invocation);
   add_avatar(program, invocation);
   add_devices(program, invocation);

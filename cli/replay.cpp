@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "analysis/provenance.hpp"
@@ -86,8 +87,9 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
   } else {
     const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
     if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
-      throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
-                  "name cpu, exact or paper, or what 'vestige replay --contacts FILE.csv' or '--json FILE' wrote");
+      throw Error(
+          options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
+          "name cpu, exact, geometry or paper, or what 'vestige replay --contacts FILE.csv' or '--json FILE' wrote");
     verification.texture_hash = json["texture_hash"].get<std::string>();
   }
   return verification;
@@ -115,6 +117,11 @@ nlohmann::ordered_json to_json(const SkinningError& skinning) {
           {"largest_error_of_height", skinning.largest_m / skinning.height_m}};
 }
 
+/// Whether the GPU passes pairs on to the CPU, which is worth a line.
+bool captures(const Detector& detector) {
+  return std::string_view(detector.name()) == "geometry";
+}
+
 nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& options, const OpenTrace& trace,
                                std::size_t colliders, const Detector& detector, const Invocation& invocation) {
   nlohmann::ordered_json json = provenance(invocation.argv);
@@ -133,6 +140,10 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& 
   json["unsure"] = result.unsure;
   json["texture_hash"] = result.texture_hash;
   json["pairs_tested"] = result.pairs_tested;
+  if (captures(detector)) {
+    json["pairs_captured"] = result.pairs_captured;
+    json["pairs_meeting"] = result.pairs_meeting;
+  }
   json["origin_changes"] = result.origin_changes;
   json["non_finite_frames"] = result.non_finite_frames;
   json["non_finite_segments"] = result.non_finite_segments;
@@ -164,6 +175,9 @@ std::string summary(const ReplayResult& result, const OpenTrace& trace, std::siz
       "skinning: at most {:.2g} of the avatar's height from the double reference; {} of {} vertices "
       "have the bits of the CPU's\n",
       result.skinning.largest_m / result.skinning.height_m, result.skinning.identical, result.skinning.vertices);
+  if (captures(detector))
+    text += fmt::format("captured {} pairs of {}, {} of them contact\n", result.pairs_captured, result.pairs_tested,
+                        result.pairs_meeting);
   return text + fmt::format("texture_hash {}\n", result.texture_hash);
 }
 
@@ -253,12 +267,14 @@ void add_replay(CLI::App& program, Invocation& invocation) {
                             "  vestige replay man.mcap --detector paper --textures textures.exr --json replay.json\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   verb->add_option("--detector", options->choice.detector,
-                   "paper: HAVE 2010's geometry shader, as published; cpu: exact contacts, without OpenGL; exact: the "
-                   "same by slow rational arithmetic, to check with; auto: cpu")
+                   "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts, a geometry shader "
+                   "proves misses and the processor decides the rest; cpu: exact contacts, without OpenGL; exact: the "
+                   "same by slow rational arithmetic, to check with; embree: Embree 3, robust and refitted each frame, "
+                   "its fastest configuration; embree_default: the same without its robust flag; auto: cpu")
       ->group(kDetectorGroup)
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "paper", "cpu", "exact"}));
-  verb->add_option("--context", options->choice.context, "OpenGL context that paper runs in")
+      ->check(CLI::IsMember({"auto", "paper", "geometry", "cpu", "exact", "embree", "embree_default"}));
+  verb->add_option("--context", options->choice.context, "OpenGL context that paper and geometry run in")
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
@@ -282,10 +298,10 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->check(help::kNotNegative)
       ->type_name("MS");
-  add_result(
-      "--verify", options->verify,
-      "Compare with another detector (cpu, exact, paper), or with the --contacts or --json of an earlier replay; exit "
-      "4 if contacts differ")
+  add_result("--verify", options->verify,
+             "Compare with another detector (cpu, exact, geometry, paper), or with the --contacts or --json of an "
+             "earlier replay; exit "
+             "4 if contacts differ")
       ->type_name("DETECTOR|FILE");
   add_common_options(*verb, options->common);
   // Flags that would do nothing are refused.

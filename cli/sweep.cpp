@@ -45,7 +45,8 @@ void check_names(const std::string& list, const std::vector<std::string>& known,
   }
 }
 
-/// Every detector asked for, `paper` once in every context that this machine has; a context that it lacks is said.
+/// Every detector asked for, those of OpenGL once in every context that this machine has; a context that it lacks is
+/// said.
 std::vector<Contestant> make_contestants(const SweepOptions& options, const OpenTrace& trace, Verbosity verbosity) {
   std::vector<Contestant> contestants;
   const auto add = [&](const std::string& detector, const std::string& context) {
@@ -54,7 +55,7 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
                            }});
   };
   for (const std::string& detector : parse_list(options.detectors)) {
-    if (detector == "cpu") {
+    if (detector != "paper") {
       add(detector, "");
       continue;
     }
@@ -62,7 +63,7 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
       try {
         make_gl_context(context_kind(context), options.choice.device);
       } catch (const Error& error) {
-        warn(fmt::format("no series 'paper' on {}: {}", context, error.what()), verbosity);
+        warn(fmt::format("no series '{}' on {}: {}", detector, context, error.what()), verbosity);
         continue;
       }
       add(detector, context);
@@ -110,7 +111,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   options.settings.counts = parse_counts(options.counts, "--counts");
   options.settings.seed = options.common.seed;
-  check_names(options.detectors, {"paper", "cpu"}, "--detector");
+  check_names(options.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
   check_names(options.contexts, {"egl", "osmesa", "auto"}, "--context");
   const std::string json_path = options.output + "/sweep.json";
   const std::string times_path = options.output + "/frame_times.csv.zst";
@@ -173,11 +174,13 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
   verb->add_option("--counts", options->counts, "Numbers of colliders, as 1,10,40,100 or 1:100 or 5:100:5")
       ->capture_default_str()
       ->type_name("LIST");
-  verb->add_option("--detector", options->detectors, "Detectors to measure: paper, cpu")
+  verb->add_option("--detector", options->detectors,
+                   "Detectors to measure: paper, geometry, cpu, embree, embree_default")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
-  verb->add_option("--context", options->contexts, "OpenGL contexts to measure paper in: egl, osmesa, auto")
+  verb->add_option("--context", options->contexts,
+                   "OpenGL contexts to measure paper and geometry in: egl, osmesa, auto")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");

@@ -18,6 +18,7 @@ void ContactFinder::offer(const Frame& frame, const SkinMotion& skin, const Segm
   const Decision decision = method_ == Method::kCcd ? decide_ccd(way, before, now) : decide_static(way, now);
   if (decision.exact_arithmetic) ++unsure_;
   if (!decision.contact) return;
+  ++meeting_;
   const float t = decision.contact->t;
   if (t > winner.t || (t == winner.t && triangle > winner.triangle)) return;
   const Corners at_contact = method_ == Method::kCcd ? corners_at(before, now, t) : now;
@@ -25,6 +26,10 @@ void ContactFinder::offer(const Frame& frame, const SkinMotion& skin, const Segm
       describe_contact(avatar_, map_, triangle, way, at_contact, *decision.contact, frame.duration_s);
   if (surface_ == Surface::kMapped && contact.actuator == 0) return;
   winner = contact;
+}
+
+std::uint64_t ContactFinder::take_meeting() {
+  return std::exchange(meeting_, 0);
 }
 
 std::uint64_t ContactFinder::take_unsure() {

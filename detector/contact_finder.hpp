@@ -22,6 +22,9 @@ class ContactFinder {
   void offer(const Frame& frame, const SkinMotion& skin, const Segment& segment, std::uint32_t triangle,
              Contact& winner);
 
+  /// Pairs offered since the last call that truly meet.
+  std::uint64_t take_meeting();
+
   /// Pairs that took exact arithmetic since the last call.
   std::uint64_t take_unsure();
 
@@ -30,6 +33,7 @@ class ContactFinder {
   const ActuatorMap& map_;
   Surface surface_;
   Method method_;
+  std::uint64_t meeting_ = 0;
   std::uint64_t unsure_ = 0;
 };
 

@@ -29,6 +29,7 @@ struct DetectorWork {
   std::uint64_t pairs_tested = 0;      ///< (segment, triangle) pairs
   std::uint64_t triangles_tested = 0;  ///< triangles that met at least one test
   std::uint64_t pairs_captured = 0;    ///< pairs that the geometry shader could not reject
+  std::uint64_t pairs_meeting = 0;     ///< those of them that truly meet
   std::uint64_t unsure = 0;            ///< pairs that no filter could tell: exact arithmetic decided
 };
 
@@ -43,7 +44,7 @@ struct GlInfo {
 
 /// Finds, for every collider, where its segment first meets the avatar's skin.
 ///
-/// `paper` reproduces HAVE 2010; `cpu` and `exact` keep detector/CONTRACT.md to the last bit.
+/// `paper` reproduces HAVE 2010; `geometry`, `cpu` and `exact` keep detector/CONTRACT.md to the last bit.
 /// A detector holds references to the avatar and map that it was made with, and belongs to the thread that made it.
 class Detector {
  public:
@@ -77,5 +78,10 @@ class GlContext;
 /// The published method: HAVE 2010 §III. Needs OpenGL 4.5; throws `Error` with the driver's own words otherwise.
 std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
                                               const ActuatorMap& map, const DetectorOptions& options);
+
+/// A geometry shader proves misses and captures what it cannot prove; the CPU decides that, exactly. Needs OpenGL 4.5;
+/// throws `Error` with the driver's own words otherwise.
+std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+                                                 const ActuatorMap& map, const DetectorOptions& options);
 
 }  // namespace vestige

@@ -9,6 +9,16 @@ void SkinMotion::skin(const Avatar& avatar, const Frame& frame, Method method) {
   if (method != Method::kStatic) skin_vertices(avatar, frame.palette_before, before);
 }
 
+void SkinMotion::skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle) {
+  const glm::uvec3& corner = avatar.triangles[triangle];
+  now.resize(avatar.position_bind.size());
+  if (method != Method::kStatic) before.resize(now.size());
+  for (const std::uint32_t vertex : {corner.x, corner.y, corner.z}) {
+    now[vertex] = skin_vertex(avatar, frame.palette, vertex);
+    if (method != Method::kStatic) before[vertex] = skin_vertex(avatar, frame.palette_before, vertex);
+  }
+}
+
 Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices, std::uint32_t triangle) {
   const glm::uvec3& corner = avatar.triangles[triangle];
   return {glm::dvec3(vertices[corner.x]), glm::dvec3(vertices[corner.y]), glm::dvec3(vertices[corner.z])};

@@ -18,6 +18,9 @@ struct SkinMotion {
   std::vector<glm::vec3> now;
 
   void skin(const Avatar& avatar, const Frame& frame, Method method);
+
+  /// Only the corners of one triangle, the same bits; all other vertices keep what they were, or are 0.
+  void skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle);
 };
 
 Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices, std::uint32_t triangle);

@@ -16,20 +16,22 @@ void build_palette(const Avatar& avatar, std::span<const glm::dmat4> world, cons
   }
 }
 
+glm::vec3 skin_vertex(const Avatar& avatar, std::span<const SkinMatrix> palette, std::size_t vertex) {
+  const Influences& influences = avatar.influences[vertex];
+  std::array<glm::vec4, 4> blend = {glm::vec4(0), glm::vec4(0), glm::vec4(0), glm::vec4(0)};
+  for (std::size_t k = 0; k < avatar.influence_count; ++k) {
+    const SkinMatrix& matrix = palette[influences.palette[k]];
+    const float weight = influences.weight[k];
+    for (std::size_t column = 0; column < 4; ++column) blend[column] += weight * matrix.column[column];
+  }
+  const glm::vec3 bind = avatar.position_bind[vertex];
+  const glm::vec4 world = ((blend[0] * bind.x + blend[1] * bind.y) + blend[2] * bind.z) + blend[3];
+  return {world};
+}
+
 void skin_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::vector<glm::vec3>& out) {
   out.resize(avatar.position_bind.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const Influences& influences = avatar.influences[i];
-    std::array<glm::vec4, 4> blend = {glm::vec4(0), glm::vec4(0), glm::vec4(0), glm::vec4(0)};
-    for (std::size_t k = 0; k < avatar.influence_count; ++k) {
-      const SkinMatrix& matrix = palette[influences.palette[k]];
-      const float weight = influences.weight[k];
-      for (std::size_t column = 0; column < 4; ++column) blend[column] += weight * matrix.column[column];
-    }
-    const glm::vec3 bind = avatar.position_bind[i];
-    const glm::vec4 world = ((blend[0] * bind.x + blend[1] * bind.y) + blend[2] * bind.z) + blend[3];
-    out[i] = glm::vec3(world);
-  }
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = skin_vertex(avatar, palette, i);
 }
 
 }  // namespace vestige

@@ -21,9 +21,12 @@ struct SkinMatrix {
 void build_palette(const Avatar& avatar, std::span<const glm::dmat4> world, const glm::dvec3& offset_m,
                    std::vector<SkinMatrix>& out);
 
-/// Linear blend skinning in fp32, in the one order that every detector keeps: columns are blended over the influences
-/// from zero upwards, then ((c0 x + c1 y) + c2 z) + c3, never contracted to fma. Padding influences of weight 0 change
-/// no bit, since a sum that starts at +0 never is -0.
+/// Linear blend skinning of one vertex in fp32, in the one order that every detector keeps: columns are blended over
+/// the influences from zero upwards, then ((c0 x + c1 y) + c2 z) + c3, never contracted to fma. Padding influences of
+/// weight 0 change no bit, since a sum that starts at +0 never is -0.
+glm::vec3 skin_vertex(const Avatar& avatar, std::span<const SkinMatrix> palette, std::size_t vertex);
+
+/// All vertices, by `skin_vertex`.
 void skin_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::vector<glm::vec3>& out);
 
 }  // namespace vestige

@@ -3,6 +3,8 @@
 #define VESTIGE_BINDING_PALETTE 0   // mat4 columns, one SkinMatrix for each palette entry
 #define VESTIGE_BINDING_SEGMENTS 1  // one GpuSegment for each collider that has a segment
 
+#define VESTIGE_BINDING_CAPTURED 2  // a count, and the (segment, triangle) pairs that `geometry` could not reject
+
 #define VESTIGE_ATTRIBUTE_POSITION 0            // vec3, bind pose
 #define VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE 1  // vec2
 #define VESTIGE_ATTRIBUTE_PALETTE_0 2           // uvec4, influences 0 to 3
@@ -16,6 +18,15 @@
 #define VESTIGE_UNIFORM_TEXTURE_COLUMNS 1  // int, of the collision texture
 #define VESTIGE_UNIFORM_TEXTURE_ROWS 2     // int
 #define VESTIGE_UNIFORM_FRAMES_PER_S 3     // float, 1 / the frame's duration; 0 in the first frame
+#define VESTIGE_UNIFORM_FIRST_SEGMENT 4    // int, number of the first segment of the bound block
+#define VESTIGE_UNIFORM_CAPACITY 5         // uint, pairs that the captured buffer has room for
+#define VESTIGE_UNIFORM_PALETTE_SIZE 6     // uint, entries; those of the frame before follow them
+#define VESTIGE_UNIFORM_LEAST_RADIUS 7     // float, metres: what flushed denormals may do to a skinned vertex
+
+// How a collider's way and the moving skin meet (detector/method.hpp).
+#define VESTIGE_METHOD_STATIC 0
+#define VESTIGE_METHOD_CARRIED 1
+#define VESTIGE_METHOD_CCD 2
 
 // The planes of the collision texture. Only those asked for are compiled in, attached and read back. Each is its own
 // colour attachment, in this order.

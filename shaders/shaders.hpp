@@ -9,5 +9,7 @@ extern const std::string_view kConstantsH;
 extern const std::string_view kPaperVert;
 extern const std::string_view kPaperGeom;
 extern const std::string_view kPaperFrag;
+extern const std::string_view kGeometryVert;
+extern const std::string_view kGeometryGeom;
 
 }  // namespace vestige::shaders

@@ -9,6 +9,7 @@ namespace vestige {
   X(PFNGLATTACHSHADERPROC, AttachShader)                                 \
   X(PFNGLBEGINTRANSFORMFEEDBACKPROC, BeginTransformFeedback)             \
   X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                             \
+  X(PFNGLBINDBUFFERRANGEPROC, BindBufferRange)                           \
   X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                           \
   X(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)                           \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                           \
@@ -48,6 +49,7 @@ namespace vestige {
   X(PFNGLGETSHADERIVPROC, GetShaderiv)                                   \
   X(PFNGLGETSTRINGPROC, GetString)                                       \
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                                   \
+  X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                               \
   X(PFNGLNAMEDBUFFERDATAPROC, NamedBufferData)                           \
   X(PFNGLNAMEDBUFFERSUBDATAPROC, NamedBufferSubData)                     \
   X(PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC, NamedFramebufferDrawBuffers)   \
@@ -58,6 +60,7 @@ namespace vestige {
   X(PFNGLPIXELSTOREIPROC, PixelStorei)                                   \
   X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                         \
   X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                         \
+  X(PFNGLPROGRAMUNIFORM1UIPROC, ProgramUniform1ui)                       \
   X(PFNGLREADPIXELSPROC, ReadPixels)                                     \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                                 \
   X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                       \

@@ -1,0 +1,212 @@
+#include "analysis/stress.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <glm/common.hpp>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "detector/contact_description.hpp"
+#include "detector/exact/truth.hpp"
+#include "detector/skin_motion.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// A box around what a pair's points pass. All its coordinates are theirs: nothing is rounded.
+struct Reach {
+  glm::dvec3 low;
+  glm::dvec3 high;
+
+  explicit Reach(const Corners& corners)
+      : low(glm::min(glm::min(corners.a, corners.b), corners.c)),
+        high(glm::max(glm::max(corners.a, corners.b), corners.c)) {}
+  explicit Reach(const Way& way) : low(glm::min(way.start, way.end)), high(glm::max(way.start, way.end)) {}
+
+  void include(const Reach& other) {
+    low = glm::min(low, other.low);
+    high = glm::max(high, other.high);
+  }
+  bool apart(const Reach& other) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (low[axis] > other.high[axis] || high[axis] < other.low[axis]) return true;
+    return false;
+  }
+};
+
+class Truth {
+ public:
+  Truth(const StressSubject& subject, const Frame& frame, Method method)
+      : subject_(subject), frame_(frame), method_(method) {
+    skin_.skin(subject.avatar, frame, method);
+    const auto count = static_cast<std::uint32_t>(subject.avatar.triangles.size());
+    reaches_.reserve(count);
+    for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
+      reaches_.emplace_back(corners_of(subject.avatar, skin_.now, triangle));
+      if (method == Method::kCcd) reaches_.back().include(Reach(corners_of(subject.avatar, skin_.before, triangle)));
+    }
+  }
+
+  Contact winner(const Segment& segment) const {
+    Contact first;
+    for (std::uint32_t triangle = 0; triangle < reaches_.size(); ++triangle) {
+      const Corners now = corners_of(subject_.avatar, skin_.now, triangle);
+      const Corners before = method_ == Method::kStatic ? now : corners_of(subject_.avatar, skin_.before, triangle);
+      Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
+      if (method_ == Method::kCarried) way.start = glm::dvec3(carried_start(segment.start, before, now));
+      if (reaches_[triangle].apart(Reach(way))) continue;
+      const auto found =
+          method_ == Method::kCcd ? exact::ccd_contact(way, before, now) : exact::static_contact(way, now);
+      if (!found || found->t >= first.t) continue;  // ascending triangles: a tie goes to the smallest number
+      const Corners at_contact = method_ == Method::kCcd ? corners_at(before, now, found->t) : now;
+      first = describe_contact(subject_.avatar, subject_.map, triangle, way, at_contact, *found, frame_.duration_s);
+    }
+    return first;
+  }
+
+ private:
+  const StressSubject& subject_;
+  const Frame& frame_;
+  Method method_;
+  SkinMotion skin_;
+  std::vector<Reach> reaches_;
+};
+
+void count_row(const ContactRow& row, const ContactRow& truth, StressCount& count) {
+  for (std::size_t column = 0; column < truth.size(); ++column) {
+    const Contact& given = row[column];
+    const Contact& expected = truth[column];
+    if (expected.hit()) ++count.contacts;
+    if (given.hit() != expected.hit()) {
+      ++(given.hit() ? count.false_positives : count.false_negatives);
+    } else if (given.triangle != expected.triangle) {
+      ++count.wrong_winner;
+      ++count.wrong_triangle;
+    } else if (std::bit_cast<std::uint32_t>(given.t) != std::bit_cast<std::uint32_t>(expected.t)) {
+      ++count.wrong_winner;
+      if (given.actuator != expected.actuator) ++count.wrong_actuator;
+    } else if (given.actuator != expected.actuator) {
+      ++count.wrong_actuator;
+    }
+  }
+}
+
+void count_misses(const Frame& frame, const ContactRow& row, StressCount& count) {
+  count.contacts += frame.columns;
+  for (const Contact& given : row)
+    if (!given.hit()) ++count.false_negatives;
+}
+
+/// The contestants, each with a detector for the body that it was last asked about.
+class Stress {
+ public:
+  Stress(const std::vector<StressContestant>& contestants, const StressSettings& settings)
+      : contestants_(contestants), settings_(settings) {}
+
+  /// Appends the counts of all contestants.
+  void run(const StressFamily& family, std::size_t magnitude_number, std::vector<StressCount>& counts) {
+    const StressSubject& subject = subject_of(family.body);
+    const double magnitude = family.magnitudes[magnitude_number];
+    for (const Method method : {Method::kStatic, Method::kCarried, Method::kCcd}) {
+      if (std::ranges::find(contestants_, method, &StressContestant::method) == contestants_.end()) continue;
+      const StressScene scene = family.make({&subject, magnitude, settings_.cases, method,
+                                             Random(settings_.seed, name_number(family), magnitude_number)});
+      if (scene.judge == StressJudge::kMustHit && method != Method::kStatic) continue;
+      const std::vector<ContactRow> truths = truths_of(subject, scene, method);
+      for (std::size_t i = 0; i < contestants_.size(); ++i) {
+        if (contestants_[i].method != method) continue;
+        StressCount& count = counts.emplace_back();
+        count.family = family;
+        count.magnitude = magnitude;
+        count.detector = contestants_[i].detector;
+        count.method = method;
+        judge(detector_of(i, family.body), scene, truths, count);
+      }
+    }
+  }
+
+ private:
+  /// A number that stays the same whichever families run: from the letters of the name.
+  static std::uint64_t name_number(const StressFamily& family) {
+    std::uint64_t number = 0;
+    for (const std::string_view text : {family.name, family.variant})
+      for (const char letter : text) number = number * 131 + static_cast<unsigned char>(letter);
+    return number;
+  }
+
+  static std::vector<ContactRow> truths_of(const StressSubject& subject, const StressScene& scene, Method method) {
+    if (scene.judge == StressJudge::kMustHit) return {};
+    std::vector<ContactRow> truths(scene.frames.size());
+    for (std::size_t i = 0; i < truths.size(); ++i) stress_truth(subject, scene.frames[i], method, truths[i]);
+    return truths;
+  }
+
+  static void judge(Detector& detector, const StressScene& scene, const std::vector<ContactRow>& truths,
+                    StressCount& count) {
+    ContactRow row;
+    for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+      const Frame& frame = scene.frames[i];
+      count.unsure += detector.detect(frame, row).unsure;
+      count.cases += frame.columns;
+      if (scene.judge == StressJudge::kMustHit) {
+        count_misses(frame, row, count);
+      } else {
+        count_row(row, truths[i], count);
+      }
+    }
+  }
+
+  const StressSubject& subject_of(StressBody body) {
+    std::optional<StressSubject>& subject = subjects_[static_cast<std::size_t>(body)];
+    if (!subject) subject = make_subject(body);
+    return *subject;
+  }
+
+  Detector& detector_of(std::size_t contestant, StressBody body) {
+    std::unique_ptr<Detector>& detector = detectors_[{contestant, body}];
+    if (!detector) detector = contestants_[contestant].make(subject_of(body));
+    return *detector;
+  }
+
+  const std::vector<StressContestant>& contestants_;
+  const StressSettings& settings_;
+  std::array<std::optional<StressSubject>, 2> subjects_;
+  std::map<std::pair<std::size_t, StressBody>, std::unique_ptr<Detector>> detectors_;
+};
+
+}  // namespace
+
+std::vector<StressFamily> stress_families() {
+  std::vector<StressFamily> all;
+  for (const auto& families : {triangle_families(), pose_families(), watertight_families()})
+    all.insert(all.end(), families.begin(), families.end());
+  return all;
+}
+
+void stress_truth(const StressSubject& subject, const Frame& frame, Method method, ContactRow& row) {
+  row.assign(frame.columns, Contact());
+  if (frame.segments.empty()) return;
+  const Truth truth(subject, frame, method);
+  for (const Segment& segment : frame.segments) row[segment.column] = truth.winner(segment);
+}
+
+std::vector<StressCount> run_stress(const std::vector<StressFamily>& families,
+                                    const std::vector<StressContestant>& contestants, const StressSettings& settings,
+                                    const std::function<bool(double)>& progress) {
+  std::size_t rungs = 0;
+  for (const StressFamily& family : families) rungs += family.magnitudes.size();
+  std::vector<StressCount> counts;
+  Stress stress(contestants, settings);
+  std::size_t done = 0;
+  for (const StressFamily& family : families)
+    for (std::size_t i = 0; i < family.magnitudes.size(); ++i) {
+      if (!progress(static_cast<double>(done++) / static_cast<double>(rungs))) return counts;
+      stress.run(family, i, counts);
+    }
+  return counts;
+}
+
+}  // namespace vestige

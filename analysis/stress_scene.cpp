@@ -1,0 +1,27 @@
+#include "analysis/stress_scene.hpp"
+
+#include <numeric>
+
+#include "analysis/loose_triangles.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+
+namespace vestige {
+
+StressSubject make_subject(StressBody body) {
+  StressSubject subject;
+  if (body == StressBody::kLoose) {
+    subject.avatar = loose_triangles(kFanTriangles);
+    subject.map.width = kTexels;
+    subject.map.height = kTexels;
+    subject.map.actuator_count = kTexels * kTexels;
+    subject.map.actuator.resize(kTexels * kTexels);
+    std::iota(subject.map.actuator.begin(), subject.map.actuator.end(), std::uint16_t{1});
+    return subject;
+  }
+  subject.avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  subject.map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
+  return subject;
+}
+
+}  // namespace vestige

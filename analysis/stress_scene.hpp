@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "detector/actuator_map.hpp"
+#include "detector/frame.hpp"
+#include "detector/method.hpp"
+#include "traces/avatar.hpp"
+#include "traces/scenarios/random.hpp"
+
+namespace vestige {
+
+/// What the cases of a family are made of. kLoose: `kFanTriangles` loose triangles a frame, under a map with a texel of
+/// its own in each of 16 x 16 places. kMannequin: the built-in avatar and map.
+enum class StressBody { kLoose, kMannequin };
+
+inline constexpr std::size_t kFanTriangles = 8;
+inline constexpr std::size_t kTexels = 16;
+
+struct StressSubject {
+  Avatar avatar;
+  ActuatorMap map;
+};
+StressSubject make_subject(StressBody body);
+
+/// How a family's answers are judged. kTruth: by `exact::` on every pair. kMustHit: every segment leaves a closed
+/// surface, so that it meets it.
+enum class StressJudge { kTruth, kMustHit };
+
+/// The cases of one family at one magnitude: a case is a column of a frame, with or without a segment.
+struct StressScene {
+  StressJudge judge = StressJudge::kTruth;
+  std::vector<Frame> frames;
+};
+
+/// What makes a scene of at least one case; columns of all its frames add up to `cases`.
+struct StressOrder {
+  const StressSubject* subject = nullptr;
+  double magnitude = 0;
+  std::size_t cases = 0;
+  Method method = Method::kStatic;  ///< kCcd aims at where things are halfway between the frames
+  Random random{0};
+};
+
+}  // namespace vestige

@@ -1,0 +1,209 @@
+#include "analysis/stress.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <set>
+
+#include "analysis/provenance.hpp"
+#include "analysis/stress_report.hpp"
+#include "cli/detectors.hpp"
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct StressOptions {
+  CommonOptions common;
+  std::string detectors;
+  std::string methods = "static,ccd";
+  std::string families = "all";
+  std::string context = "auto";
+  int device = -1;
+  StressSettings settings;
+  bool no_figure = false;
+  std::string output;
+};
+
+/// Of these, the ones that this build has.
+std::vector<std::string> detectors_known() {
+  std::vector<std::string> known = {"paper", "geometry", "cpu", "exact", "embree", "embree_default"};
+  std::erase_if(known, [](const std::string& name) { return !is_detector(name); });
+  return known;
+}
+
+std::vector<std::string> family_names() {
+  std::vector<std::string> names;
+  for (const StressFamily& family : stress_families())
+    if (names.empty() || names.back() != family.name) names.emplace_back(family.name);
+  return names;
+}
+
+std::vector<std::string> checked_list(const std::string& list, const std::vector<std::string>& known,
+                                      const std::string& flag) {
+  std::vector<std::string> names = parse_list(list);
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (std::ranges::find(known, name) == known.end())
+      throw UsageError(flag, fmt::format("there is no '{}'", name),
+                       fmt::format("choose of: {}", fmt::join(known, ", ")));
+    if (!seen.insert(name).second)
+      throw UsageError(flag, fmt::format("'{}' stands there twice", name), "name each once");
+  }
+  if (names.empty()) throw UsageError(flag, "names nothing", fmt::format("choose of: {}", fmt::join(known, ", ")));
+  return names;
+}
+
+std::vector<StressFamily> families_of(const StressOptions& options) {
+  std::vector<StressFamily> families = stress_families();
+  if (options.families == "all") return families;
+  const std::vector<std::string> names = checked_list(options.families, family_names(), "--families");
+  std::erase_if(families,
+                [&](const StressFamily& family) { return std::ranges::find(names, family.name) == names.end(); });
+  return families;
+}
+
+struct Contestants {
+  std::vector<StressContestant> list;
+  nlohmann::ordered_json gl = nullptr;  ///< of the first that has one
+};
+
+/// Every detector with every method that it knows. What this machine lacks is said, and left out.
+Contestants make_contestants(const StressOptions& options, Verbosity verbosity) {
+  Contestants contestants;
+  const StressSubject probe = make_subject(StressBody::kLoose);
+  for (const std::string& detector : checked_list(options.detectors, detectors_known(), "--detector"))
+    for (const std::string& method : checked_list(options.methods, {"static", "carried", "ccd"}, "--method")) {
+      DetectorChoice choice;
+      choice.method = method;
+      choice.device = options.device;
+      const auto make = [detector, choice, context = options.context](const StressSubject& subject) {
+        return make_detector(detector, context, choice, subject.avatar, subject.map, PlaneSet::all());
+      };
+      try {
+        const auto made = make(probe);
+        if (contestants.gl.is_null()) contestants.gl = to_json(made->gl_info());
+      } catch (const UsageError&) {
+        continue;  // not its method
+      } catch (const Error& error) {
+        warn(fmt::format("'{}' is left out: {}", detector, error.what()), verbosity);
+        break;
+      }
+      contestants.list.push_back({detector, choice.method_kind(), make});
+    }
+  if (contestants.list.empty())
+    throw Error("--detector", "none of the detectors asked for can run here with these methods",
+                "--detector cpu knows every method and needs nothing");
+  return contestants;
+}
+
+void draw_figure(const StressOptions& options) {
+  std::vector<std::string> arguments = {"stress", options.output};
+  if (options.common.force) arguments.emplace_back("--force");
+  if (options.common.quiet) arguments.emplace_back("-q");
+  try {
+    if (run_plot(arguments) != kDone) warn("the figure is not complete", options.common.verbosity());
+  } catch (const Error& error) {
+    warn(fmt::format("no figure was drawn: {}", error.what()), options.common.verbosity());
+  }
+}
+
+void run_stress_verb(const StressOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  const std::vector<StressFamily> families = families_of(options);
+  checked_list(options.methods, {"static", "carried", "ccd"}, "--method");
+  checked_list(options.detectors, detectors_known(), "--detector");
+  const std::string json_path = options.output + "/stress.json";
+  const std::string run_path = options.output + "/run.json";
+  std::error_code failure;
+  std::filesystem::create_directories(options.output, failure);
+  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  check_outputs({json_path, run_path, options.common.json}, {}, options.common);
+  const Contestants contestants = make_contestants(options, verbosity);
+  if (verbosity == Verbosity::kVerbose) print_message(family_definitions());
+
+  catch_interrupts();
+  const auto start = std::chrono::steady_clock::now();
+  std::vector<StressCount> counts;
+  {
+    Progress progress("Stressing", verbosity);
+    StressSettings settings = options.settings;
+    settings.seed = options.common.seed;
+    counts = run_stress(families, contestants.list, settings, [&](double share) { return progress.update(share); });
+  }
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  if (counts.empty()) throw Error("stress", "was stopped before anything was complete", "start it again, with --force");
+
+  nlohmann::ordered_json result;
+  result["schema_version"] = 1;
+  result["seed"] = options.common.seed;
+  result["complete"] = !interrupted();
+  result["families"] = to_json(counts);
+  nlohmann::ordered_json run = provenance(invocation.argv);
+  run["gl"] = contestants.gl;
+  run["seconds"] = elapsed.count();
+  write_json(json_path, result, options.common);
+  write_json(run_path, run, options.common);
+  run.update(result);
+  write_json(options.common.json, run, options.common);
+
+  if (interrupted()) warn("stopped early; what was complete so far was written", verbosity);
+  print_summary(stress_table(counts), {options.common.json}, options.common);
+  print_summary(fmt::format("written: {}, {}\n", json_path, run_path), {options.common.json}, options.common);
+  std::fflush(stdout);  // before the child that draws prints its own
+  if (!options.no_figure && !interrupted()) draw_figure(options);
+  if (interrupted()) invocation.exit_code = kDataLost;
+}
+
+}  // namespace
+
+void add_stress(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<StressOptions>();
+  std::vector<std::string> raced = detectors_known();
+  std::erase(raced, "exact");
+  options->detectors = fmt::format("{}", fmt::join(raced, ","));
+  CLI::App* verb = add_verb(program, "stress", "Attack the detectors with hostile cases, and count what they get wrong",
+                            "  vestige stress -o stress\n"
+                            "  vestige stress --families watertight --detector cpu --n 1000000 -o ladder\n");
+  verb->add_option("--families", options->families,
+                   fmt::format("Families of cases, of: {}; -v prints what each is", fmt::join(family_names(), ", ")))
+      ->capture_default_str()
+      ->type_name("all|LIST");
+  verb->add_option("--n", options->settings.cases, "Cases of each family and magnitude")
+      ->capture_default_str()
+      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
+  verb->add_option("--detector", options->detectors,
+                   fmt::format("Detectors to attack: {}; embree is its robust configuration, embree_default the other",
+                               fmt::join(detectors_known(), ", ")))
+      ->capture_default_str()
+      ->group(kDetectorGroup)
+      ->type_name("LIST");
+  verb->add_option("--method", options->methods,
+                   "Methods, of: static, carried, ccd; a detector is tried with those that it knows")
+      ->capture_default_str()
+      ->group(kDetectorGroup)
+      ->type_name("LIST");
+  verb->add_option("--context", options->context, "OpenGL context that shaders run in")
+      ->group(kDetectorGroup)
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
+  verb->add_option("--device", options->device,
+                   "EGL device, as 'vestige devices' counts them [default: the first GPU, else software]")
+      ->group(kDetectorGroup)
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("K");
+  verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
+  verb->add_option("-o,--output", options->output, "Folder for stress.json, run.json and the figure")
+      ->required()
+      ->type_name("DIR");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_stress_verb(*options, invocation); });
+}
+
+}  // namespace vestige::cli

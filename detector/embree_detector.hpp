@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "detector/detector.hpp"
+
+namespace vestige {
+
+/// How Embree builds its scene. kRobust (RTC_SCENE_FLAG_ROBUST): "avoids optimizations that reduce arithmetic
+/// accuracy". kDefault: no flags.
+enum class EmbreeMode { kRobust, kDefault };
+
+/// What a user would pick instead: Embree 3's BVH (https://www.embree.org), dynamic and refitted each frame, over the
+/// vertices as the CPU skins them; one ray a segment, in one thread. Contact, t and triangle are Embree's; what follows
+/// from them is `describe_contact`'s. Its name is "embree" for kRobust, "embree_default" for kDefault.
+///
+/// libembree3.so.3 is opened at run time. Throws `Error` naming the package where it is missing, and `UsageError` for
+/// another method than `kStatic`, which Embree does not know.
+std::unique_ptr<Detector> make_embree_detector(EmbreeMode mode, const Avatar& avatar, const ActuatorMap& map,
+                                               const DetectorOptions& options);
+
+}  // namespace vestige

@@ -1,0 +1,318 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <glm/common.hpp>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "detector/contact_finder.hpp"
+#include "detector/detector.hpp"
+#include "detector/gl/collision_texture.hpp"
+#include "detector/gl/gl_context.hpp"
+#include "detector/gl/gl_objects.hpp"
+#include "detector/skin_motion.hpp"
+#include "shaders/constants.h"
+#include "shaders/shaders.hpp"
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+static_assert(static_cast<int>(Method::kStatic) == VESTIGE_METHOD_STATIC);
+static_assert(static_cast<int>(Method::kCarried) == VESTIGE_METHOD_CARRIED);
+static_assert(static_cast<int>(Method::kCcd) == VESTIGE_METHOD_CCD);
+
+/// std140 layout of the shader's GpuSegment; the fourth components are padding.
+struct GpuSegment {
+  glm::vec4 low;
+  glm::vec4 high;
+  glm::vec4 start;
+  glm::vec4 end;
+};
+static_assert(sizeof(GpuSegment) == 64);
+
+struct GpuVertex {
+  glm::vec3 position_bind;
+  Influences influences;
+};
+
+/// std430 layout of the shader's Captured: this, then its pairs.
+struct CapturedHead {
+  std::uint32_t count = 0;
+  std::uint32_t unused = 0;
+};
+struct CapturedPair {
+  std::uint32_t segment;
+  std::uint32_t triangle;
+};
+
+/// What every driver grants a uniform block (GL_MAX_UNIFORM_BLOCK_SIZE).
+constexpr std::size_t kUniformBlockBytes = 16384;
+constexpr std::size_t kBlockSegments = kUniformBlockBytes / sizeof(GpuSegment);
+/// Pairs that there is room for at first, and that are read back at once.
+constexpr std::size_t kStartingCapacity = 1024;
+constexpr std::size_t kPairsReadAtOnce = 64;
+
+/// The shader's `least_radius`: what denormals, flushed to zero, may do to a coordinate of a skinned vertex. The vertex
+/// is a sum of 8 products w M x and intermediate results thereof; to flush an operand or a result below 2^-126 errs by
+/// less than 2^-126 times the other factors, each time less than 2^-126 (1 + H + X), H the largest |M_0 x| + ... +
+/// |M_3| with |x| taken as at least 1, X the largest such |x|; weights are at most about 1. There are fewer than 100
+/// such times; gradual underflow on the CPU errs by less. This is 1024 of them.
+float least_radius_m(std::span<const SkinMatrix> palette, const glm::dvec3& bind_extent_m) {
+  const glm::dvec3 extent = glm::max(bind_extent_m, glm::dvec3(1));
+  double largest = 0;
+  for (const SkinMatrix& matrix : palette) {
+    const auto magnitude = [&matrix](std::size_t column) { return glm::abs(glm::dvec3(matrix.column[column])); };
+    const glm::dvec3 reach = magnitude(0) * extent.x + magnitude(1) * extent.y + magnitude(2) * extent.z + magnitude(3);
+    largest = std::max(largest, reach.x + reach.y + reach.z);
+  }
+  return static_cast<float>(std::ldexp(1 + largest + extent.x + extent.y + extent.z, -116));
+}
+
+class GeometryDetector final : public Detector {
+ public:
+  GeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
+                   const DetectorOptions& options)
+      : context_(std::move(context)),
+        gl_(current(*context_)),
+        avatar_(avatar),
+        method_(options.method),
+        finder_(avatar, map, options),
+        palette_(gl_),
+        segments_(gl_),
+        vertices_(gl_),
+        indices_(gl_),
+        captured_(gl_),
+        skinned_(gl_),
+        nowhere_(gl_, PlaneSet()),
+        program_(gl_, head(),
+                 {{GL_VERTEX_SHADER, "geometry.vert", shaders::kGeometryVert},
+                  {GL_GEOMETRY_SHADER, "geometry.geom", shaders::kGeometryGeom}}) {
+    for (const glm::vec3& position : avatar_.position_bind)
+      bind_extent_m_ = glm::max(bind_extent_m_, glm::abs(glm::dvec3(position)));
+    upload_mesh();
+    grow_captured(kStartingCapacity);
+    nowhere_.begin(1);  // a draw without any framebuffer fails in a surfaceless context
+    gl_.Enable(GL_RASTERIZER_DISCARD);
+    check_gl(gl_, "uploading the avatar");
+  }
+
+  ~GeometryDetector() override {
+    try {
+      context_->make_current();
+      gl_.DeleteVertexArrays(1, &vertex_array_);
+    } catch (const Error&) {
+      // The context is lost, and with it all that was in it.
+    }
+  }
+
+  const char* name() const override { return "geometry"; }
+  Method method() const override { return method_; }
+  GlInfo gl_info() const override { return context_->info(); }
+
+  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+    row.assign(frame.columns, Contact());
+    if (frame.segments.empty()) return {};
+    context_->make_current();
+    gl_.UseProgram(program_.name());
+    upload_palette(frame, program_);
+    upload_segments(frame);
+    while (true) {
+      draw(frame.segments.size());
+      const std::size_t captured = read_captured();
+      if (captured <= capacity_) break;
+      grow_captured(captured);  // some pairs found no room: all over again
+    }
+    check_gl(gl_, "capturing pairs");
+
+    for (const CapturedPair& pair : pairs_) {
+      const Segment& segment = frame.segments[pair.segment];
+      skin_.skin_corners(avatar_, frame, method_, pair.triangle);
+      finder_.offer(frame, skin_, segment, pair.triangle, row[segment.column]);
+    }
+    return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
+            .triangles_tested = avatar_.triangles.size(),
+            .pairs_captured = pairs_.size(),
+            .pairs_meeting = finder_.take_meeting(),
+            .unsure = finder_.take_unsure()};
+  }
+
+  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+    context_->make_current();
+    if (!skinning_program_) {
+      skinning_program_.emplace(
+          gl_, head(),
+          std::initializer_list<GlProgram::Stage>{{GL_VERTEX_SHADER, "geometry.vert", shaders::kGeometryVert}},
+          "Skinned.position");
+    }
+    gl_.UseProgram(skinning_program_->name());
+    upload_palette(frame, *skinning_program_);
+    out.resize(avatar_.position_bind.size());
+    const std::size_t bytes = out.size() * sizeof(glm::vec3);
+    skinned_.upload(nullptr, bytes, GL_STREAM_READ);
+    gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, skinned_.name());
+    gl_.BeginTransformFeedback(GL_POINTS);
+    gl_.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(out.size()));
+    gl_.EndTransformFeedback();
+    gl_.GetNamedBufferSubData(skinned_.name(), 0, static_cast<GLsizeiptr>(bytes), out.data());
+    check_gl(gl_, "capturing skinned vertices");
+  }
+
+ private:
+  static const GlFunctions& current(GlContext& context) {
+    context.make_current();
+    return context.gl();
+  }
+
+  /// Entries that the shaders' palette has room for.
+  std::size_t palette_entries() const {
+    return avatar_.palette.size() * (method_ == Method::kStatic ? std::size_t{1} : std::size_t{2});
+  }
+  bool palette_in_uniform_block() const { return palette_entries() * sizeof(SkinMatrix) <= kUniformBlockBytes; }
+
+  std::string head() const {
+    return fmt::format(
+        "#version 450 core\n{}#define METHOD {}\n#define BLOCK_SEGMENTS {}\n#define INFLUENCES {}\n"
+        "#define PALETTE_ENTRIES {}\n",
+        shaders::kConstantsH, static_cast<int>(method_), kBlockSegments, avatar_.influence_count,
+        palette_in_uniform_block() ? palette_entries() : 0);
+  }
+
+  void upload_mesh() {
+    std::vector<GpuVertex> vertices(avatar_.position_bind.size());
+    for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = {avatar_.position_bind[i], avatar_.influences[i]};
+    vertices_.upload(vertices.data(), vertices.size() * sizeof(GpuVertex), GL_STATIC_DRAW);
+    indices_.upload(avatar_.triangles.data(), avatar_.triangles.size() * sizeof(glm::uvec3), GL_STATIC_DRAW);
+
+    gl_.CreateVertexArrays(1, &vertex_array_);
+    gl_.VertexArrayVertexBuffer(vertex_array_, 0, vertices_.name(), 0, sizeof(GpuVertex));
+    gl_.VertexArrayElementBuffer(vertex_array_, indices_.name());
+    const auto influences = static_cast<GLuint>(offsetof(GpuVertex, influences));
+    const auto palette = influences + static_cast<GLuint>(offsetof(Influences, palette));
+    const auto weight = influences + static_cast<GLuint>(offsetof(Influences, weight));
+    add_attribute(VESTIGE_ATTRIBUTE_POSITION, 3, GL_FLOAT, offsetof(GpuVertex, position_bind));
+    add_attribute(VESTIGE_ATTRIBUTE_PALETTE_0, 4, GL_UNSIGNED_SHORT, palette);
+    add_attribute(VESTIGE_ATTRIBUTE_WEIGHT_0, 4, GL_FLOAT, weight);
+    if (avatar_.influence_count > 4) {
+      add_attribute(VESTIGE_ATTRIBUTE_PALETTE_1, 4, GL_UNSIGNED_SHORT, palette + 4 * sizeof(std::uint16_t));
+      add_attribute(VESTIGE_ATTRIBUTE_WEIGHT_1, 4, GL_FLOAT, weight + 4 * sizeof(float));
+    }
+    gl_.BindVertexArray(vertex_array_);
+  }
+
+  void add_attribute(GLuint location, GLint components, GLenum type, std::size_t offset) {
+    gl_.EnableVertexArrayAttrib(vertex_array_, location);
+    gl_.VertexArrayAttribBinding(vertex_array_, location, 0);
+    if (type == GL_FLOAT) {
+      gl_.VertexArrayAttribFormat(vertex_array_, location, components, type, GL_FALSE, static_cast<GLuint>(offset));
+    } else {
+      gl_.VertexArrayAttribIFormat(vertex_array_, location, components, type, static_cast<GLuint>(offset));
+    }
+  }
+
+  /// This frame's palette, followed by that of the frame before where the method looks at it.
+  void upload_palette(const Frame& frame, const GlProgram& program) {
+    float least_radius = least_radius_m(frame.palette, bind_extent_m_);
+    gpu_palette_ = frame.palette;
+    if (method_ != Method::kStatic) {
+      gpu_palette_.insert(gpu_palette_.end(), frame.palette_before.begin(), frame.palette_before.end());
+      least_radius = std::max(least_radius, least_radius_m(frame.palette_before, bind_extent_m_));
+    }
+    palette_.upload(gpu_palette_.data(), gpu_palette_.size() * sizeof(SkinMatrix), GL_STREAM_DRAW);
+    gl_.BindBufferBase(palette_in_uniform_block() ? GL_UNIFORM_BUFFER : GL_SHADER_STORAGE_BUFFER,
+                       VESTIGE_BINDING_PALETTE, palette_.name());
+    gl_.ProgramUniform1ui(program.name(), VESTIGE_UNIFORM_PALETTE_SIZE, static_cast<GLuint>(frame.palette.size()));
+    gl_.ProgramUniform1f(program.name(), VESTIGE_UNIFORM_LEAST_RADIUS, least_radius);
+  }
+
+  void upload_segments(const Frame& frame) {
+    gpu_segments_.clear();
+    gpu_segments_.reserve(frame.segments.size());
+    for (const Segment& segment : frame.segments)
+      gpu_segments_.push_back({glm::vec4(glm::min(segment.start, segment.end), 0),
+                               glm::vec4(glm::max(segment.start, segment.end), 0), glm::vec4(segment.start, 0),
+                               glm::vec4(segment.end, 0)});
+    // Room for whole blocks: a uniform block must be backed to its end.
+    const std::size_t blocks = (gpu_segments_.size() + kBlockSegments - 1) / kBlockSegments;
+    segments_.upload(nullptr, blocks * kUniformBlockBytes, GL_STREAM_DRAW);
+    segments_.upload(gpu_segments_.data(), gpu_segments_.size() * sizeof(GpuSegment), GL_STREAM_DRAW);
+  }
+
+  void draw(std::size_t segments) {
+    constexpr CapturedHead kNone;
+    captured_.upload(&kNone, sizeof(kNone), GL_STREAM_READ);
+    for (std::size_t first = 0; first < segments; first += kBlockSegments) {
+      gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_SEGMENTS, segments_.name(),
+                          static_cast<GLintptr>(first * sizeof(GpuSegment)),
+                          static_cast<GLsizeiptr>(kUniformBlockBytes));
+      gl_.ProgramUniform1i(program_.name(), VESTIGE_UNIFORM_SEGMENT_COUNT,
+                           static_cast<GLint>(std::min(segments - first, kBlockSegments)));
+      gl_.ProgramUniform1i(program_.name(), VESTIGE_UNIFORM_FIRST_SEGMENT, static_cast<GLint>(first));
+      gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(avatar_.triangles.size() * 3), GL_UNSIGNED_INT,
+                                nullptr, 1);
+    }
+    gl_.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  }
+
+  /// Fills `pairs_`, as far as there was room, and returns how many pairs there were.
+  std::size_t read_captured() {
+    struct Beginning {
+      CapturedHead head;
+      std::array<CapturedPair, kPairsReadAtOnce> pairs;
+    } beginning;
+    gl_.GetNamedBufferSubData(captured_.name(), 0, sizeof(beginning), &beginning);
+    const std::size_t count = beginning.head.count;
+    pairs_.resize(std::min(count, capacity_));
+    const std::size_t read = std::min(pairs_.size(), kPairsReadAtOnce);
+    std::copy_n(beginning.pairs.begin(), read, pairs_.begin());
+    if (pairs_.size() > read)
+      gl_.GetNamedBufferSubData(captured_.name(), static_cast<GLintptr>(sizeof(beginning)),
+                                static_cast<GLsizeiptr>((pairs_.size() - read) * sizeof(CapturedPair)), &pairs_[read]);
+    return count;
+  }
+
+  void grow_captured(std::size_t pairs) {
+    capacity_ = std::bit_ceil(pairs);
+    captured_.upload(nullptr, sizeof(CapturedHead) + capacity_ * sizeof(CapturedPair), GL_STREAM_READ);
+    gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, captured_.name());
+    gl_.ProgramUniform1ui(program_.name(), VESTIGE_UNIFORM_CAPACITY, static_cast<GLuint>(capacity_));
+  }
+
+  std::unique_ptr<GlContext> context_;
+  const GlFunctions& gl_;
+  const Avatar& avatar_;
+  Method method_;
+  ContactFinder finder_;
+  glm::dvec3 bind_extent_m_ = glm::dvec3(0);  ///< largest absolute bind coordinates
+  GlBuffer palette_;
+  GlBuffer segments_;
+  GlBuffer vertices_;
+  GlBuffer indices_;
+  GlBuffer captured_;
+  GlBuffer skinned_;
+  GLuint vertex_array_ = 0;
+  CollisionTexture nowhere_;
+  GlProgram program_;
+  std::optional<GlProgram> skinning_program_;
+  std::size_t capacity_ = 0;  ///< pairs that `captured_` has room for
+  std::vector<SkinMatrix> gpu_palette_;
+  std::vector<GpuSegment> gpu_segments_;
+  std::vector<CapturedPair> pairs_;
+  SkinMotion skin_;
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+                                                 const ActuatorMap& map, const DetectorOptions& options) {
+  return std::make_unique<GeometryDetector>(std::move(context), avatar, map, options);
+}
+
+}  // namespace vestige
