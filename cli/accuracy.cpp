@@ -176,6 +176,9 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   check_scene_choice(options.scene);
   const std::string errors_path = options.output + "/accuracy.json";
   const std::string run_path = options.output + "/run.json";
+  std::error_code failure;
+  std::filesystem::create_directories(options.output, failure);
+  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
   check_outputs({errors_path, run_path, options.common.json},
                 {options.scene.avatar, options.scene.map, options.scene.colliders}, options.common);
 
@@ -189,10 +192,6 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   check_colliders(options.scene, *colliders, options.duration_s, verbosity);
   moving.collider_ids = collider_ids(options, *colliders);
   const std::vector<AccuracyContestant> contestants = make_contestants(options, scene);
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
-
   catch_interrupts();
   const Truth truth = find_truth(options, scene, moving);
   if (truth.full.events.empty()) warn("nothing touches the avatar, so there is nothing to miss", verbosity);

@@ -1,0 +1,134 @@
+#include "detector/ccd_exact.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+#include "detector/unit_roots.hpp"
+
+namespace vestige {
+
+namespace {
+
+using PolynomialVector = std::array<Polynomial, 3>;
+
+PolynomialVector cross(const PolynomialVector& a, const PolynomialVector& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Polynomial dot(const PolynomialVector& a, const PolynomialVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// An edge as seen from the point: the cross and the dot product of its two corners, quadratics in t.
+struct Edge {
+  PolynomialVector cross;
+  Polynomial dot;
+};
+
+struct Motion {
+  std::array<Edge, 3> edges;
+  Polynomial above;  ///< f: on the front side where it is positive
+};
+
+Motion make_motion(const Way& way, const Corners& before, const Corners& after) {
+  constexpr std::size_t kPoints = 4;
+  std::array<double, 6 * kPoints> values = {};
+  std::size_t next = 0;
+  for (const glm::dvec3* point : {&way.start, &before.a, &before.b, &before.c, &way.end, &after.a, &after.b, &after.c})
+    for (int axis = 0; axis < 3; ++axis) values[next++] = (*point)[axis];
+  const std::array<Integer, 6 * kPoints> whole = scaled_integers(values);
+
+  std::array<PolynomialVector, 3> corner;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t place = 3 * (i + 1) + axis;
+      const Integer at_0 = whole[place] - whole[axis];
+      const Integer at_1 = whole[place + 3 * kPoints] - whole[axis + 3 * kPoints];
+      corner[i][axis] = Polynomial({at_0, Integer(at_1 - at_0)});
+    }
+  }
+  Motion motion;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const PolynomialVector& from = corner[i];
+    const PolynomialVector& to = corner[(i + 1) % 3];
+    motion.edges[i] = {cross(from, to), dot(from, to)};
+  }
+  motion.above = Polynomial() - dot(corner[0], motion.edges[1].cross);
+  return motion;
+}
+
+/// Whether the point is in the closed triangle at a time at which it is in its plane. `sign_of` gives a quadratic's
+/// sign then.
+template <typename SignOf>
+bool is_inside(const Motion& motion, const SignOf& sign_of) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    bool left = false;
+    bool right = false;
+    for (const Edge& edge : motion.edges) {
+      const int sign = sign_of(edge.cross[axis]);
+      left |= sign > 0;
+      right |= sign < 0;
+    }
+    if (left || right) return left != right;
+  }
+  return std::ranges::any_of(motion.edges, [&](const Edge& edge) { return sign_of(edge.dot) <= 0; });
+}
+
+/// Whether the point is on the closed edge.
+template <typename SignOf>
+bool is_on_edge(const Edge& edge, const SignOf& sign_of) {
+  return std::ranges::all_of(edge.cross, [&](const Polynomial& part) { return sign_of(part) == 0; }) &&
+         sign_of(edge.dot) <= 0;
+}
+
+int sign_at_start(const Polynomial& polynomial) {
+  return polynomial.sign_at_0();
+}
+
+int sign_at_end(const Polynomial& polynomial) {
+  return polynomial.sign_at_1();
+}
+
+auto signs_at(const UnitRoots& roots, std::size_t root) {
+  return [&roots, root](const Polynomial& polynomial) { return roots.sign_at(root, polynomial); };
+}
+
+/// The point stays in the triangle's plane and starts outside. It enters over an edge, at a root of whatever vanishes
+/// where the point is on the edge.
+std::optional<FirstContact> coplanar_contact(const Motion& motion) {
+  std::optional<FirstContact> first;
+  const auto offer = [&first](float t) {
+    if (!first || t < first->t) first = FirstContact{t, 0};
+  };
+  for (const Edge& edge : motion.edges) {
+    const auto vanishing = std::ranges::find_if(edge.cross, [](const Polynomial& part) { return !part.is_zero(); });
+    const UnitRoots roots(vanishing != edge.cross.end() ? *vanishing : edge.dot);
+    for (std::size_t root = 0; root < roots.count(); ++root)
+      if (is_on_edge(edge, signs_at(roots, root))) offer(roots.rounded(root));
+    if (is_on_edge(edge, sign_at_end)) offer(1);
+  }
+  return first;
+}
+
+}  // namespace
+
+std::optional<FirstContact> ccd_in_integers(const Way& way, const Corners& before, const Corners& after) {
+  const Motion motion = make_motion(way, before, after);
+  const Polynomial& above = motion.above;
+  const auto contact = [](float t, int side) { return FirstContact{t, static_cast<std::int8_t>(side)}; };
+
+  int side = above.sign_after_0();
+  if (above.sign_at_0() == 0 && is_inside(motion, sign_at_start)) return contact(0, -side);
+  if (above.is_zero()) return coplanar_contact(motion);
+  const UnitRoots roots(above);
+  for (std::size_t root = 0; root < roots.count(); ++root) {
+    if (is_inside(motion, signs_at(roots, root))) return contact(roots.rounded(root), side);
+    if (!roots.is_even(root)) side = -side;
+  }
+  if (above.sign_at_1() == 0 && is_inside(motion, sign_at_end)) return contact(1, side);
+  return std::nullopt;
+}
+
+}  // namespace vestige
