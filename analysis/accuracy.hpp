@@ -34,6 +34,15 @@ struct AccuracyPoint {
   double total_s() const;
 };
 
+/// What was measured on one scene.
+struct AccuracyScene {
+  std::string colliders;  ///< as they were asked for
+  std::size_t collider_count = 0;
+  TrueContacts truth;
+  TrueContacts half;  ///< the same at half the rate
+  std::vector<AccuracyPoint> points;
+};
+
 /// Runs every contestant over the scene sampled at each rate, and scores the events that it finds against the true
 /// ones. Timed is the whole round trip from a pose and collider positions to a row of contacts, as in a sweep. The
 /// contestants take turns, a few frames each, in an order shuffled anew, so that whatever else the machine does hits

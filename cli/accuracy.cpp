@@ -29,10 +29,11 @@ struct AccuracyOptions {
   CommonOptions common;
   DetectorChoice choice;
   SceneChoice scene;
+  std::string colliders = "swarm,hug,still";
   std::string detectors = "paper,cpu";
   std::string methods = "static,carried,ccd";
   std::string rates = "60,90,250,1000,4000,10000";
-  double duration_s = 2;
+  double duration_s = 1;
   std::string truth = "cpu";
   double truth_rate_hz = 30720;
   bool no_figure = false;
@@ -102,9 +103,10 @@ std::vector<AccuracyContestant> make_contestants(const AccuracyOptions& options,
 }
 
 /// Those that have a column, ascending.
-std::vector<std::uint32_t> collider_ids(const AccuracyOptions& options, ColliderSource& colliders) {
-  if (!options.scene.from_file()) {
-    std::vector<std::uint32_t> ids(options.scene.collider_count());
+std::vector<std::uint32_t> collider_ids(const AccuracyOptions& options, const SceneChoice& choice,
+                                        ColliderSource& colliders) {
+  if (!choice.from_file()) {
+    std::vector<std::uint32_t> ids(choice.collider_count());
     std::iota(ids.begin(), ids.end(), 0U);
     return ids;
   }
@@ -129,43 +131,83 @@ void draw_figure(const AccuracyOptions& options) {
   }
 }
 
-struct Truth {
-  TrueContacts full;
-  TrueContacts half;
-};
-
-Truth find_truth(const AccuracyOptions& options, const Scene& scene, const MovingScene& moving) {
-  const auto make = [&] {
-    DetectorChoice choice;
-    choice.surface = options.choice.surface;
-    choice.method = "ccd";
-    return make_detector(options.truth, "", choice, scene.avatar, scene.map, Plane::kTime);
-  };
-  Progress progress("Finding the true contacts", options.common.verbosity());
-  const double rate_hz = options.truth_rate_hz;
-  Truth truth;
-  truth.full = find_true_contacts(moving, rate_hz, make, [&](double share) { return progress.update(share * 2 / 3); });
-  truth.half =
-      find_true_contacts(moving, rate_hz / 2, make, [&](double share) { return progress.update((share + 2) / 3); });
-  if (interrupted())
-    throw Error("accuracy", "was stopped before anything had been measured", "start it again, with --force");
-  return truth;
+/// The scenes asked for: alike but for the colliders.
+std::vector<SceneChoice> scene_choices(const AccuracyOptions& options) {
+  std::vector<SceneChoice> choices;
+  for (const std::string& colliders :
+       parse_names(options.colliders, "--colliders", "", [](const std::string&) { return true; })) {
+    choices.push_back(options.scene);
+    choices.back().colliders = colliders;
+    check_scene_choice(choices.back());
+    if (choices.back().avatar == "builtin" && choices.back().animation.empty()) choices.back().animation = "walk";
+  }
+  if (choices.empty()) throw UsageError("--colliders", "the list is empty", "name a scenario or a .csv file");
+  return choices;
 }
 
-nlohmann::ordered_json scene_json(const AccuracyOptions& options, const Scene& scene, const MovingScene& moving) {
-  return {{"avatar", options.scene.avatar},
-          {"triangles", scene.avatar.triangles.size()},
-          {"actuators", scene.map.actuator_count},
-          {"animation", moving.animation == nullptr ? "none" : moving.animation->name},
-          {"colliders", options.scene.colliders},
-          {"count", moving.collider_ids.size()},
+class Measurement {
+ public:
+  Measurement(const AccuracyOptions& options, const Scene& scene, const std::vector<double>& rates_hz)
+      : options_(options), scene_(scene), rates_hz_(rates_hz), contestants_(make_contestants(options, scene)) {}
+
+  const std::vector<AccuracyContestant>& contestants() const { return contestants_; }
+
+  AccuracyScene measure(const SceneChoice& choice) const {
+    MovingScene moving{
+        scene_.avatar, find_animation(scene_.avatar, choice.animation), nullptr, {}, options_.duration_s};
+    moving.make_colliders = [this, &choice, animation = moving.animation] {
+      return make_colliders(choice, scene_.avatar, animation, options_.common.seed);
+    };
+    const std::unique_ptr<ColliderSource> colliders = moving.make_colliders();
+    check_colliders(choice, *colliders, options_.duration_s, options_.common.verbosity());
+    moving.collider_ids = collider_ids(options_, choice, *colliders);
+    AccuracyScene result;
+    result.colliders = choice.colliders;
+    result.collider_count = moving.collider_ids.size();
+    find_truth(moving, result);
+    if (interrupted()) return result;
+    if (result.truth.events.empty())
+      warn(fmt::format("{}: nothing touches the avatar, so there is nothing to miss", choice.colliders),
+           options_.common.verbosity());
+    Progress progress(choice.colliders + ", measuring", options_.common.verbosity());
+    result.points = run_accuracy(moving, result.truth, contestants_, rates_hz_, options_.common.seed,
+                                 [&](double share) { return progress.update(share); });
+    return result;
+  }
+
+ private:
+  void find_truth(const MovingScene& moving, AccuracyScene& result) const {
+    const auto make = [&] {
+      DetectorChoice choice;
+      choice.surface = options_.choice.surface;
+      choice.method = "ccd";
+      return make_detector(options_.truth, "", choice, scene_.avatar, scene_.map, Plane::kTime);
+    };
+    Progress progress(result.colliders + ", true contacts", options_.common.verbosity());
+    const double rate_hz = options_.truth_rate_hz;
+    result.truth =
+        find_true_contacts(moving, rate_hz, make, [&](double share) { return progress.update(share * 2 / 3); });
+    result.half =
+        find_true_contacts(moving, rate_hz / 2, make, [&](double share) { return progress.update((share + 2) / 3); });
+  }
+
+  const AccuracyOptions& options_;
+  const Scene& scene_;
+  const std::vector<double>& rates_hz_;
+  std::vector<AccuracyContestant> contestants_;
+};
+
+nlohmann::ordered_json results_json(const AccuracyOptions& options, const SceneChoice& choice, const Scene& scene) {
+  return {{"schema_version", 1},
+          {"avatar", to_json(scene.avatar)},
+          {"animation", choice.animation},
           {"duration_s", options.duration_s},
           {"surface", options.choice.surface},
-          {"seed", options.common.seed}};
+          {"seed", options.common.seed},
+          {"complete", !interrupted()}};
 }
 
 void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
-  const Verbosity verbosity = options.common.verbosity();
   parse_names(options.detectors, "--detector", "'vestige replay --help' lists the detectors",
               [](const std::string& name) { return is_detector(name); });
   parse_names(options.methods, "--method", "choose of: static, carried, ccd",
@@ -173,52 +215,40 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   if (options.truth_rate_hz * options.duration_s > kMostFrames)
     throw UsageError("--duration", "the truth would have more than 4294967295 frames", "lower it, or --truth-rate");
   const std::vector<double> rates_hz = parse_rates(options);
-  check_scene_choice(options.scene);
+  const std::vector<SceneChoice> choices = scene_choices(options);
   const std::string errors_path = options.output + "/accuracy.json";
   const std::string run_path = options.output + "/run.json";
   std::error_code failure;
   std::filesystem::create_directories(options.output, failure);
   if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
-  check_outputs({errors_path, run_path, options.common.json},
-                {options.scene.avatar, options.scene.map, options.scene.colliders}, options.common);
+  check_outputs({errors_path, run_path, options.common.json}, {options.scene.avatar, options.scene.map},
+                options.common);
 
-  const Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);
-  MovingScene moving{
-      scene.avatar, find_animation(scene.avatar, options.scene.animation), nullptr, {}, options.duration_s};
-  moving.make_colliders = [&options, &scene, animation = moving.animation] {
-    return make_colliders(options.scene, scene.avatar, animation, options.common.seed);
-  };
-  const std::unique_ptr<ColliderSource> colliders = moving.make_colliders();
-  check_colliders(options.scene, *colliders, options.duration_s, verbosity);
-  moving.collider_ids = collider_ids(options, *colliders);
-  const std::vector<AccuracyContestant> contestants = make_contestants(options, scene);
   catch_interrupts();
-  const Truth truth = find_truth(options, scene, moving);
-  if (truth.full.events.empty()) warn("nothing touches the avatar, so there is nothing to miss", verbosity);
-  std::vector<AccuracyPoint> points;
-  {
-    Progress progress("Measuring", verbosity);
-    points = run_accuracy(moving, truth.full, contestants, rates_hz, options.common.seed,
-                          [&](double share) { return progress.update(share); });
+  const Scene scene = load_scene(options.scene.avatar, options.scene.map, options.common.verbosity());
+  const Measurement measurement(options, scene, rates_hz);
+  std::vector<AccuracyScene> scenes;
+  scenes.reserve(choices.size());
+  for (const SceneChoice& choice : choices) {
+    AccuracyScene measured = measurement.measure(choice);
+    if (!measured.points.empty()) scenes.push_back(std::move(measured));
+    if (interrupted()) break;
   }
-  if (points.empty())
+  if (scenes.empty())
     throw Error("accuracy", "was stopped before a rate had been measured", "start it again, with --force");
 
-  const nlohmann::ordered_json results = {{"schema_version", 1},
-                                          {"scene", scene_json(options, scene, moving)},
-                                          {"truth", to_json(truth.full, truth.half, options.truth)},
-                                          {"complete", !interrupted()},
-                                          {"series", errors_json(points, contestants)}};
+  const std::vector<AccuracyContestant>& contestants = measurement.contestants();
+  nlohmann::ordered_json results = results_json(options, choices.front(), scene);
+  results["scenes"] = errors_json(scenes, contestants, options.truth);
   nlohmann::ordered_json run = provenance(invocation.argv);
-  run["series"] = times_json(points, contestants);
+  run["scenes"] = times_json(scenes, contestants);
   write_json(errors_path, results, options.common);
   write_json(run_path, run, options.common);
-  nlohmann::ordered_json both = results;
-  both["run"] = run;
-  write_json(options.common.json, both, options.common);
+  results["run"] = run;
+  write_json(options.common.json, results, options.common);
 
-  if (interrupted()) warn("stopped early; the rates that were measured were written", verbosity);
-  print_summary(accuracy_table(points, contestants, truth.full, truth.half), {options.common.json}, options.common);
+  if (interrupted()) warn("stopped early; the rates that were measured were written", options.common.verbosity());
+  print_summary(accuracy_table(scenes, contestants), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", errors_path, run_path), {options.common.json}, options.common);
   std::fflush(stdout);  // before the child that draws prints its own
   if (!options.no_figure && !interrupted()) draw_figure(options);
@@ -252,6 +282,14 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
       ->group(kDetectorGroup)
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
   add_scene_options(*verb, options->scene);
+  verb->get_option("--animation")
+      ->description(
+          "Its animation, looping: a name, an index, or none [default: walk for the built-in avatar, else the first]");
+  verb->remove_option(verb->get_option("--colliders"));  // here it is a list, too
+  verb->add_option("--colliders", options->colliders,
+                   "Scenarios, each measured apart, or files: 'vestige record --help' explains them")
+      ->capture_default_str()
+      ->type_name("LIST");
   verb->add_option("--duration", options->duration_s, "How long the scene is, in seconds")
       ->type_name("S")
       ->capture_default_str()
