@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
   add_sweep(program, invocation);
   add_query(program, invocation);
   add_stress(program, invocation);
+  add_accuracy(program, invocation);
   add_inspect(program, invocation);
   add_avatar(program, invocation);
   add_devices(program, invocation);
