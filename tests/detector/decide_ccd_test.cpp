@@ -80,6 +80,35 @@ TEST(ContinuousContact, OnACornerOrAnEdgeIsContactAndOneUlpBesideIsNone) {
   EXPECT_EQ(decide({{beyond, 1, 1}, {beyond, 1, -1}}, kFloor, kFloor), std::nullopt);
 }
 
+/// One coordinate of a, b and a point x = a + (b - a) / 4 exactly between them, whose differences no double equals.
+struct OnEdge {
+  double a;
+  double b;
+  double x;
+
+  explicit OnEdge(std::mt19937_64& random) {
+    const auto a_units = static_cast<std::int64_t>((random() >> 12U) | (std::uint64_t{1} << 52U));  // of 2^-52
+    auto x_units = static_cast<std::int64_t>(random() >> 12U);                                      // of 2^-54
+    x_units -= (x_units - 3 * a_units) % 4;
+    a = 0x1p-52 * static_cast<double>(a_units);
+    b = 0x1p-52 * static_cast<double>(x_units - 3 * a_units);
+    x = 0x1p-54 * static_cast<double>(x_units);
+  }
+};
+
+TEST(ContinuousContact, OnAnEdgeIsContactEvenWhereItsDifferencesAreRounded) {
+  std::mt19937_64 random(4);
+  for (int i = 0; i < 200; ++i) {
+    const OnEdge along_x(random);
+    const OnEdge along_y(random);
+    const Corners triangle = {{along_x.a, along_y.a, 0}, {along_x.b, along_y.b, 0}, {5, -7, 0}};
+    const Way way = {{along_x.x, along_y.x, 1}, {along_x.x, along_y.x, -1}};
+    const Contact contact = decide(way, triangle, triangle);
+    ASSERT_TRUE(contact.has_value()) << i;
+    EXPECT_EQ(contact->t, 0.5F);
+  }
+}
+
 TEST(ContinuousContact, IsTheFirstOfThreePasses) {
   EXPECT_EQ(Passes(0.25, 0.5, 0.75, 0, 0).contact(), (FirstContact{0.25F, 1}));
   EXPECT_EQ(Passes(0.25, 0.5, 0.75, -1, 0).contact(), (FirstContact{0.5F, -1})) << "the first passes beside";
@@ -173,7 +202,7 @@ TEST(ContinuousContact, DoesNotDependOnTheUnit) {
     const Corners after = {point(), point(), point()};
     const Contact expected = decide(way, before, after);
     contacts += expected.has_value();
-    for (const double unit : {0x1p-950, 0x1p-300, 0x1p300, 0x1p1022})
+    for (const double unit : {0x1p-950, 0x1p-352, 0x1p-300, 0x1p300, 0x1p1022})
       EXPECT_EQ(decide(scaled(way, unit), scaled(before, unit), scaled(after, unit)), expected) << unit;
   }
   EXPECT_GT(contacts, 10);
