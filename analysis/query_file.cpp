@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <charconv>
@@ -48,7 +49,7 @@ double take_fraction(CsvLines& lines, Inexact inexact) {
   const cpp_int numerator = take_whole(lines);
   const cpp_int denominator = take_whole(lines);
   if (denominator.is_zero()) throw lines.error("a denominator is 0");
-  const cpp_rational exact(numerator, denominator);
+  const cpp_rational exact(denominator > 0 ? numerator : cpp_int(-numerator), abs(denominator));
   const auto value = exact.convert_to<double>();
   if (!std::isfinite(value)) throw lines.error("a coordinate is beyond the largest double");
   if (inexact == Inexact::kRefuse && cpp_rational(value) != exact)

@@ -34,7 +34,9 @@ constexpr double kVolumeError = 128 * kUnit;
 constexpr double kLeastReach = 0x1p-250;
 constexpr double kGreatestReach = 0x1p250;
 
-constexpr int kMostHalvings = 5;
+// Two roots, or a near touch, are told apart by halving. Few cases that 2^-12 does not tell are told by less.
+constexpr int kMostHalvings = 12;
+constexpr int kMostParts = 40;
 constexpr int kMostNewtonSteps = 40;
 
 using Verdict = CcdProof::Verdict;
@@ -98,8 +100,8 @@ double solve(const Cubic& b) {
     if (value == 0) break;
     ((value > 0) == (b[0] > 0) ? low : high) = s;
     double next = s - value / slope;
+    if (std::abs(next - s) <= 4 * kUnit * s) break;
     if (!(next > low && next < high)) next = 0.5 * (low + high);
-    if (std::abs(next - s) <= kUnit * s) break;
     s = next;
   }
   return s;
@@ -120,7 +122,8 @@ class Filter {
   bool in_range() const { return in_range_; }
 
   /// What happens first between these times. Both are multiples of 2^-kMostHalvings, so 1 - t is exact.
-  CcdProof search(double low, double high, int halvings) const {
+  CcdProof search(double low, double high, int halvings) {
+    if (--parts_left_ < 0) return kGivenUp;
     const Corners p = at(low);
     const Corners q = at(high);
     const QuadraticVector bc = cross(p.b, q.b, p.c, q.c);
@@ -203,6 +206,7 @@ class Filter {
   Corners last_;
   glm::dvec3 area_;  ///< for the cross product's coordinate k: Mi Mj
   double volume_error_;
+  int parts_left_ = kMostParts;
   bool in_range_ = true;
 };
 
@@ -223,7 +227,7 @@ CcdProof filter_ccd(const Way& way, const Corners& before, const Corners& after)
   const Corners first = as_seen_from(way.start, before);
   const Corners last = as_seen_from(way.end, after);
   if (passes_box(first, last)) return kNone;
-  const Filter filter(first, last);
+  Filter filter(first, last);
   return filter.in_range() ? filter.search(0, 1, 0) : kGivenUp;
 }
 

@@ -12,7 +12,7 @@ struct CcdProof {
 };
 
 /// Proves that point and triangle do not meet, or when they first do, or gives up. Never wrong, for all finite doubles;
-/// how often it gives up is a matter of speed alone. Bounded: at most 2^5 parts of the motion are looked at.
+/// how often it gives up is a matter of speed alone. Bounded: at most 40 parts of the motion are looked at.
 CcdProof filter_ccd(const Way& way, const Corners& before, const Corners& after);
 
 }  // namespace vestige

@@ -96,17 +96,6 @@ int Polynomial::sign_after_0() const {
   return 0;
 }
 
-int Polynomial::sign_before_1() const {
-  // p = (t - 1)^n q with q(1) != 0, where p, p', ..., vanish at 1 up to the n-th, whose sign is that of q(1).
-  int flip = 1;
-  for (Polynomial derived = *this; !derived.is_zero(); derived = derived.derivative()) {
-    const int sign = derived.sign_at_1();
-    if (sign != 0) return flip * sign;
-    flip = -flip;
-  }
-  return 0;
-}
-
 Polynomial Polynomial::derivative() const {
   std::vector<Integer> derived;
   derived.reserve(coefficients_.size());

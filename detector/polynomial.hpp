@@ -27,9 +27,8 @@ class Polynomial {
   /// Bernstein coefficients agree); else 0.
   int constant_sign_on(double low, double high) const;
 
-  /// Sign before the first root above 0, and after the last below 1. 0 for the zero polynomial only.
+  /// The sign between 0 and the first root above it. 0 for the zero polynomial only.
   int sign_after_0() const;
-  int sign_before_1() const;
 
   Polynomial derivative() const;
   /// Divided by the highest powers of t and of t - 1 that divide it: without roots at 0 and 1. Not zero.
