@@ -13,8 +13,13 @@ namespace {
 /// The avatar may stray this far from the origin before the origin follows (detector/CONTRACT.md, 2).
 constexpr double kOriginReach_m = 2.0;
 
-bool finite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+/// Neither a skinned vertex (`skins_to_finite`) nor a segment's end carried with the skin can leave fp32.
+constexpr double kLargestSkin_m = std::numeric_limits<float>::max() / 8;
+constexpr float kLargestCollider_m = std::numeric_limits<float>::max() / 2;
+
+bool within_reach(const glm::vec3& v) {
+  const glm::vec3 size = glm::abs(v);
+  return size.x < kLargestCollider_m && size.y < kLargestCollider_m && size.z < kLargestCollider_m;
 }
 
 }  // namespace
@@ -59,14 +64,13 @@ const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
   return frame_;
 }
 
-/// Whether no sum of a skinned vertex, over any influences, can leave fp32.
+/// Whether no sum of a skinned vertex, over any influences, can leave fp32: weights sum to 1, rounding adds a little.
 bool FrameBuilder::skins_to_finite(std::span<const SkinMatrix> palette) const {
-  constexpr double kLargest_m = std::numeric_limits<float>::max() / 8;  // weights sum to 1, rounding adds a little
   return std::ranges::all_of(palette, [this](const SkinMatrix& matrix) {
     const auto magnitude = [&matrix](std::size_t column) { return glm::abs(glm::dvec3(matrix.column[column])); };
     const glm::dvec3 extent(bind_extent_m_);
     const glm::dvec3 reach = magnitude(0) * extent.x + magnitude(1) * extent.y + magnitude(2) * extent.z + magnitude(3);
-    return reach.x < kLargest_m && reach.y < kLargest_m && reach.z < kLargest_m;
+    return reach.x < kLargestSkin_m && reach.y < kLargestSkin_m && reach.z < kLargestSkin_m;
   });
 }
 
@@ -100,7 +104,7 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
     if (has_start) {
       const Segment segment = {static_cast<std::uint32_t>(column), glm::vec3(before.position_m - frame_.origin_m),
                                glm::vec3(sample.position_m - frame_.origin_m)};
-      if (finite(segment.start) && finite(segment.end)) {
+      if (within_reach(segment.start) && within_reach(segment.end)) {
         frame_.segments.push_back(segment);
       } else {
         ++non_finite_segments_;

@@ -46,7 +46,7 @@ class FrameBuilder {
   /// reference stays good until the next call.
   const Frame& next(const TraceFrame& trace_frame);
 
-  /// Frames whose pose, and segments of which an end, was not finite: they test nothing.
+  /// Frames whose pose, and segments of which an end, was not finite or near fp32's end: they test nothing.
   std::uint64_t non_finite_frames() const { return non_finite_frames_; }
   std::uint64_t non_finite_segments() const { return non_finite_segments_; }
   /// Index of the first frame with any of either.

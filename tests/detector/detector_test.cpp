@@ -9,7 +9,6 @@
 #include "analysis/comparison.hpp"
 #include "analysis/skinning_error.hpp"
 #include "detector/gl/gl_context.hpp"
-#include "tests/support/exact_segment_triangle.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/avatar_gltf.hpp"
@@ -264,42 +263,6 @@ TEST_P(DetectorTest, FindsTheContactsThatTheCpuFinds) {
     EXPECT_EQ(comparison.differing(), 0U) << describe(comparison);
     EXPECT_LT(comparison.largest_t_difference, 1e-4);
   }
-}
-
-TEST(CpuDetector, AgreesWithRationalArithmeticOnAMovingAvatar) {
-  const Avatar& avatar = builtin_avatar();
-  const auto cpu = make_cpu_detector(avatar, builtin_map(), {Surface::kAll, PlaneSet::all()});
-  std::vector<glm::vec3> vertices;
-  ContactRow row;
-  int contacts = 0;
-  swarm_over(avatar, 10, 12, 15, [&](const TraceFrame&, const Frame& frame) {
-    cpu->detect(frame, row);
-    skin_vertices(avatar, frame.palette, vertices);
-    for (const Segment& segment : frame.segments) {
-      // Rational arithmetic for 5000 triangles is slow: those whose box is apart cannot touch.
-      const glm::vec3 low = glm::min(segment.start, segment.end);
-      const glm::vec3 high = glm::max(segment.start, segment.end);
-      std::uint32_t first = kNoTriangle;
-      float first_t = 2;
-      for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) {
-        const glm::vec3 a = vertices[avatar.triangles[i].x];
-        const glm::vec3 b = vertices[avatar.triangles[i].y];
-        const glm::vec3 c = vertices[avatar.triangles[i].z];
-        if (glm::any(glm::lessThan(glm::max(a, glm::max(b, c)), low)) ||
-            glm::any(glm::greaterThan(glm::min(a, glm::min(b, c)), high)))
-          continue;
-        const auto t = test::exact_first_contact(segment.start, segment.end, a, b, c);
-        if (!t || static_cast<float>(*t) >= first_t) continue;
-        first = i;
-        first_t = static_cast<float>(*t);
-      }
-      EXPECT_EQ(row[segment.column].triangle, first) << "frame at " << frame.time_s << ", column " << segment.column;
-      if (first == kNoTriangle) continue;
-      ++contacts;
-      EXPECT_NEAR(row[segment.column].t, first_t, 1e-7);
-    }
-  });
-  EXPECT_GT(contacts, 10);
 }
 
 TEST(GlContext, ListsDevicesAndNamesWhatIsMissing) {

@@ -341,6 +341,10 @@ void nudge(Random& random, ContactCase& c, bool fp32) {
   for_each_coordinate(c, [&](double& x) {
     if (!one_in(random, rarity)) return;
     const double towards = one_in(random, 2) ? HUGE_VAL : -HUGE_VAL;
+    if (x == 0 && !one_in(random, 64)) {  // the neighbours of 0 are as far away as any, in size
+      x = std::copysign(std::ldexp(1.0, fp32 ? -24 : -53), towards);
+      return;
+    }
     x = fp32 ? static_cast<double>(std::nextafter(static_cast<float>(x), static_cast<float>(towards)))
              : std::nextafter(x, towards);
   });

@@ -1,0 +1,235 @@
+// What poses and colliders that nobody would send bring about: numbers that are none fire nothing and are reported with
+// their frame; whatever is finite is decided as ever, exactly, and to the same bits by `cpu` and `exact`.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <ostream>
+#include <string>
+
+#include "detector/detector.hpp"
+#include "detector/texture_hash.hpp"
+#include "tests/support/scene_run.hpp"
+#include "tests/support/small_avatar.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+
+namespace vestige {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kColliders = 12;
+constexpr std::size_t kFrames = 8;
+constexpr std::size_t kHostileFrame = 4;
+
+const Avatar& builtin_avatar() {
+  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  return avatar;
+}
+
+const ActuatorMap& no_map() {
+  static const ActuatorMap map;
+  return map;
+}
+
+/// Colliders that go through the walking avatar in every frame.
+std::vector<TraceFrame> calm_scene() {
+  return test::scene("hug", builtin_avatar(), kColliders, static_cast<int>(kFrames), 5);
+}
+
+test::SceneRun run(const std::vector<TraceFrame>& scene, Method method, decltype(make_cpu_detector)* make) {
+  const auto detector = make(builtin_avatar(), no_map(), {Surface::kAll, kHashedPlanes, method});
+  return test::run_scene(scene, builtin_avatar(), kColliders, *detector);
+}
+
+std::string hash_of(const ContactRow& row) {
+  TextureHash hash;
+  hash.add(row);
+  return hash.hex();
+}
+
+struct Hostility {
+  const char* name;
+  std::function<void(TraceFrame&)> change;  ///< of frame kHostileFrame
+};
+
+void PrintTo(const Hostility& hostility, std::ostream* out) {  // NOLINT(readability-identifier-naming): GoogleTest's
+  *out << hostility.name;
+}
+
+NodeLocal& root_of(TraceFrame& frame) {
+  return frame.pose.nodes[static_cast<std::size_t>(builtin_avatar().root_node)];
+}
+NodeLocal& some_joint_of(TraceFrame& frame) {
+  return frame.pose.nodes[frame.pose.nodes.size() / 2];
+}
+
+using Case = std::tuple<Hostility, Method>;
+std::string name_of_case(const ::testing::TestParamInfo<Case>& test) {
+  return std::string(std::get<0>(test.param).name) + "_" + name_of(std::get<1>(test.param));
+}
+const auto kEveryMethod = ::testing::Values(Method::kStatic, Method::kCarried, Method::kCcd);
+
+/// Whether `method` looks at the frame before, which a hostile frame is to the next.
+bool looks_back(Method method) {
+  return method != Method::kStatic;
+}
+
+class PoseThatIsNotFinite : public ::testing::TestWithParam<Case> {};
+
+TEST_P(PoseThatIsNotFinite, FiresNothingIsReportedWithItsFrameAndLeavesTheOthersAlone) {
+  const auto& [hostility, method] = GetParam();
+  std::vector<TraceFrame> hostile = calm_scene();
+  const test::SceneRun calm = run(hostile, method, make_cpu_detector);
+  hostility.change(hostile[kHostileFrame]);
+  for (const auto make : {make_cpu_detector, make_exact_detector}) {
+    const test::SceneRun found = run(hostile, method, make);
+    EXPECT_EQ(found.non_finite_frames, 1U);
+    EXPECT_EQ(found.first_non_finite, kHostileFrame);
+    for (std::size_t frame = 0; frame < kFrames; ++frame) {
+      const bool silent = frame == kHostileFrame || (frame == kHostileFrame + 1 && looks_back(method));
+      const ContactRow expected = silent ? ContactRow(kColliders) : calm.rows[frame];
+      EXPECT_EQ(hash_of(found.rows[frame]), hash_of(expected)) << frame;
+    }
+  }
+  EXPECT_GT(calm.contacts_in(kHostileFrame), 0U);
+  EXPECT_GT(calm.contacts_in(kHostileFrame + 1), 0U);
+}
+
+const Hostility kNotFinitePoses[] = {
+    {"nan_translation", [](TraceFrame& frame) { root_of(frame).translation.y = kNan; }},
+    {"infinite_translation", [](TraceFrame& frame) { some_joint_of(frame).translation.x = kInfinity; }},
+    {"nan_rotation", [](TraceFrame& frame) { some_joint_of(frame).rotation.w = kNan; }},
+    {"infinite_rotation", [](TraceFrame& frame) { root_of(frame).rotation.x = -kInfinity; }},
+    {"infinite_scale", [](TraceFrame& frame) { root_of(frame).scale.z = kInfinity; }},
+    {"overflowing_scale", [](TraceFrame& frame) { root_of(frame).scale = glm::vec3(3e38F); }},
+    {"overflowing_product",
+     [](TraceFrame& frame) {
+       for (NodeLocal& node : frame.pose.nodes) node.scale = glm::vec3(1e20F);
+     }},
+    {"nan_origin", [](TraceFrame& frame) { frame.pose.origin_m.z = static_cast<double>(kNan); }},
+    {"infinite_origin", [](TraceFrame& frame) { frame.pose.origin_m.x = static_cast<double>(kInfinity); }},
+};
+INSTANTIATE_TEST_SUITE_P(Each, PoseThatIsNotFinite,
+                         ::testing::Combine(::testing::ValuesIn(kNotFinitePoses), kEveryMethod), name_of_case);
+
+class ColliderThatIsNotFinite : public ::testing::TestWithParam<Case> {};
+
+TEST_P(ColliderThatIsNotFinite, FiresNothingIsReportedWithItsFrameAndLeavesTheOthersAlone) {
+  const auto& [hostility, method] = GetParam();
+  std::vector<TraceFrame> hostile = calm_scene();
+  const test::SceneRun calm = run(hostile, method, make_cpu_detector);
+  hostility.change(hostile[kHostileFrame]);
+  for (const auto make : {make_cpu_detector, make_exact_detector}) {
+    const test::SceneRun found = run(hostile, method, make);
+    EXPECT_EQ(found.non_finite_frames, 0U);
+    EXPECT_EQ(found.non_finite_segments, 2U);  // there and away again
+    EXPECT_EQ(found.first_non_finite, kHostileFrame);
+    for (std::size_t frame = 0; frame < kFrames; ++frame) {
+      ContactRow expected = calm.rows[frame];
+      if (frame == kHostileFrame || frame == kHostileFrame + 1) expected[0] = Contact();
+      EXPECT_EQ(hash_of(found.rows[frame]), hash_of(expected)) << frame;
+    }
+  }
+}
+
+void put_first_collider(TraceFrame& frame, double x) {
+  for (ColliderSample& collider : frame.colliders)
+    if (collider.id == 0) collider.position_m.x = x;
+}
+
+const Hostility kNotFiniteColliders[] = {
+    {"nan", [](TraceFrame& frame) { put_first_collider(frame, static_cast<double>(kNan)); }},
+    {"infinite", [](TraceFrame& frame) { put_first_collider(frame, -static_cast<double>(kInfinity)); }},
+    {"beyond_fp32", [](TraceFrame& frame) { put_first_collider(frame, 1e39); }},
+    {"almost_beyond_fp32", [](TraceFrame& frame) { put_first_collider(frame, 3.4e38); }},
+};
+INSTANTIATE_TEST_SUITE_P(Each, ColliderThatIsNotFinite,
+                         ::testing::Combine(::testing::ValuesIn(kNotFiniteColliders), kEveryMethod), name_of_case);
+
+class FinitePose : public ::testing::TestWithParam<Case> {};
+
+TEST_P(FinitePose, HoweverStrangeIsDecidedToTheSameBitsAsTheTruth) {
+  const auto& [hostility, method] = GetParam();
+  std::vector<TraceFrame> hostile = calm_scene();
+  const test::SceneRun calm = run(hostile, method, make_cpu_detector);
+  hostility.change(hostile[kHostileFrame]);
+  const test::SceneRun found = run(hostile, method, make_cpu_detector);
+  const test::SceneRun truth = run(hostile, method, make_exact_detector);
+  EXPECT_FALSE(found.first_non_finite);
+  for (std::size_t frame = 0; frame < kFrames; ++frame) {
+    EXPECT_EQ(hash_of(found.rows[frame]), hash_of(truth.rows[frame])) << frame;
+    if (frame == kHostileFrame || frame == kHostileFrame + 1) continue;
+    EXPECT_EQ(hash_of(found.rows[frame]), hash_of(calm.rows[frame])) << frame;
+  }
+}
+
+const Hostility kFinitePoses[] = {
+    {"collapsed_avatar", [](TraceFrame& frame) { root_of(frame).scale = glm::vec3(0); }},
+    {"flattened_avatar", [](TraceFrame& frame) { root_of(frame).scale.z = 0; }},
+    {"collapsed_bone", [](TraceFrame& frame) { some_joint_of(frame).scale = glm::vec3(0); }},
+    {"mirrored_avatar", [](TraceFrame& frame) { root_of(frame).scale.x *= -1; }},
+    {"mirrored_bone", [](TraceFrame& frame) { some_joint_of(frame).scale *= -1.0F; }},
+    {"denormal_scale", [](TraceFrame& frame) { root_of(frame).scale *= 1e-41F; }},
+    {"tiny_scale", [](TraceFrame& frame) { root_of(frame).scale *= 1e-20F; }},
+    {"huge_scale", [](TraceFrame& frame) { root_of(frame).scale *= 1e15F; }},
+    {"denormal_translation", [](TraceFrame& frame) { some_joint_of(frame).translation *= 1e-43F; }},
+    {"no_rotation", [](TraceFrame& frame) { some_joint_of(frame).rotation = glm::quat(0, 0, 0, 0); }},
+    {"twisted_bone", [](TraceFrame& frame) { some_joint_of(frame).rotation = glm::quat(0, 0, 1, 0); }},
+    {"turned_head_over_heels", [](TraceFrame& frame) { root_of(frame).rotation = glm::quat(0, 1, 0, 0); }},
+    {"teleport_within_reach", [](TraceFrame& frame) { frame.pose.origin_m.x += 1.5; }},
+    {"teleport_of_a_kilometre", [](TraceFrame& frame) { frame.pose.origin_m.z += 1000.3; }},
+    {"teleport_around_the_earth", [](TraceFrame& frame) { frame.pose.origin_m.y -= 4e7; }},
+    {"denormal_collider", [](TraceFrame& frame) { put_first_collider(frame, 4e-310); }},
+    {"far_collider", [](TraceFrame& frame) { put_first_collider(frame, 1e25); }},
+    {"farthest_collider_and_hugest_scale",
+     [](TraceFrame& frame) {
+       put_first_collider(frame, 1.7e38);
+       root_of(frame).scale *= 1e37F;
+     }},
+};
+INSTANTIATE_TEST_SUITE_P(Each, FinitePose, ::testing::Combine(::testing::ValuesIn(kFinitePoses), kEveryMethod),
+                         name_of_case);
+
+/// One triangle in the plane z = 0, its node scaled in the second of two frames; a collider falls through it.
+class ScaledTriangle : public ::testing::TestWithParam<Method> {
+ protected:
+  Contact contact_at(const glm::vec3& scale, const glm::dvec3& from, const glm::dvec3& to) const {
+    const Avatar avatar = test::rigid_avatar({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}});
+    std::vector<TraceFrame> scene(2);
+    for (std::size_t k = 0; k < scene.size(); ++k) {
+      scene[k].index = k;
+      scene[k].time_ns = static_cast<std::int64_t>(k) * 10'000'000;
+      scene[k].pose = rest_pose(avatar);
+      scene[k].pose.nodes[0].scale = scale;
+      scene[k].colliders = {{0, k == 0 ? from : to}};
+    }
+    const auto cpu = make_cpu_detector(avatar, no_map(), {Surface::kAll, PlaneSet::all(), GetParam()});
+    return test::run_scene(scene, avatar, 1, *cpu).rows[1][0];
+  }
+};
+
+TEST_P(ScaledTriangle, WithoutHeightIsTheLineThatItsCornersSpan) {
+  const Contact on_line = contact_at({1, 0, 1}, {0.5, 0, 1}, {0.5, 0, -3});
+  EXPECT_TRUE(on_line.hit());
+  EXPECT_EQ(on_line.t, 0.25F);
+  EXPECT_EQ(on_line.side, 0);
+  EXPECT_FALSE(contact_at({1, 0, 1}, {0.5, 1e-6, 1}, {0.5, 1e-6, -3}).hit());
+}
+
+TEST_P(ScaledTriangle, WithoutAnySizeIsAPoint) {
+  EXPECT_EQ(contact_at({0, 0, 0}, {0, 0, 1}, {0, 0, -1}).t, 0.5F);
+  EXPECT_FALSE(contact_at({0, 0, 0}, {1e-30, 0, 1}, {1e-30, 0, -1}).hit());
+}
+
+TEST_P(ScaledTriangle, ThatIsMirroredShowsItsBack) {
+  EXPECT_EQ(contact_at({1, 1, 1}, {0.25, 0, 1}, {0.25, 0, -1}).side, 1);
+  EXPECT_EQ(contact_at({-1, 1, 1}, {0.25, 0, 1}, {0.25, 0, -1}).side, -1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, ScaledTriangle, kEveryMethod, [](const auto& test) { return name_of(test.param); });
+
+}  // namespace
+}  // namespace vestige

@@ -1,0 +1,79 @@
+// One texture hash for every detector that keeps the contract, wherever the scene stands.
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <string>
+
+#include "detector/detector.hpp"
+#include "detector/texture_hash.hpp"
+#include "tests/support/scene_run.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+
+namespace vestige {
+namespace {
+
+const Avatar& builtin_avatar() {
+  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  return avatar;
+}
+
+const ActuatorMap& builtin_map() {
+  static const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
+  return map;
+}
+
+std::string hash_of(const test::SceneRun& run) {
+  TextureHash hash;
+  for (const ContactRow& row : run.rows) hash.add(row);
+  return hash.hex();
+}
+
+using Question = std::tuple<std::string_view, Method>;
+
+class SameBits : public ::testing::TestWithParam<Question> {};
+
+TEST_P(SameBits, ComeFromTheCpuAndFromTheSlowTruthHereAndTenThousandKilometresAway) {
+  const auto [scenario, method] = GetParam();
+  constexpr int kFrames = 10;
+  constexpr double kRate_hz = 5;
+  const std::uint32_t colliders = find_scenario(scenario)->default_count;
+  const DetectorOptions options = {Surface::kAll, kHashedPlanes, method};
+  const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options);
+  const auto exact = make_exact_detector(builtin_avatar(), builtin_map(), options);
+
+  const auto here = test::scene(scenario, builtin_avatar(), colliders, kFrames, kRate_hz);
+  const auto there = test::scene(scenario, builtin_avatar(), colliders, kFrames, kRate_hz, {1e7, 0, 0});
+  const test::SceneRun truth = test::run_scene(here, builtin_avatar(), colliders, *exact);
+  EXPECT_EQ(truth.contacts() > 0, scenario != "still" || method != Method::kStatic);
+  EXPECT_EQ(hash_of(test::run_scene(here, builtin_avatar(), colliders, *cpu)), hash_of(truth));
+  EXPECT_EQ(hash_of(test::run_scene(there, builtin_avatar(), colliders, *cpu)), hash_of(truth));
+}
+
+std::vector<std::string_view> scenario_names() {
+  std::vector<std::string_view> names;
+  names.reserve(scenarios().size());
+  for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Each, SameBits,
+                         ::testing::Combine(::testing::ValuesIn(scenario_names()),
+                                            ::testing::Values(Method::kStatic, Method::kCarried, Method::kCcd)),
+                         [](const auto& test) {
+                           return std::string(std::get<0>(test.param)) + "_" + name_of(std::get<1>(test.param));
+                         });
+
+TEST(MappedSurface, GivesTheSameBitsFromTheCpuAndFromTheSlowTruth) {
+  const auto scene = test::scene("swarm", builtin_avatar(), 100, 8, 20);
+  const DetectorOptions options = {Surface::kMapped, kHashedPlanes, Method::kCcd};
+  const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options);
+  const auto exact = make_exact_detector(builtin_avatar(), builtin_map(), options);
+  const test::SceneRun truth = test::run_scene(scene, builtin_avatar(), 100, *exact);
+  EXPECT_GT(truth.contacts(), 10U);
+  EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *cpu)), hash_of(truth));
+}
+
+}  // namespace
+}  // namespace vestige

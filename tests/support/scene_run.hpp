@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "detector/detector.hpp"
+#include "detector/frame.hpp"
+#include "traces/avatar.hpp"
+#include "traces/colliders.hpp"
+#include "traces/trace.hpp"
+
+namespace vestige::test {
+
+/// `frames` frames of a built-in scenario around `avatar`, which plays its first animation, `origin_m` away.
+inline std::vector<TraceFrame> scene(std::string_view scenario, const Avatar& avatar, std::uint32_t colliders,
+                                     int frames, double rate_hz, const glm::dvec3& origin_m = glm::dvec3(0)) {
+  const Animation* animation = avatar.animations.empty() ? nullptr : &avatar.animations.front();
+  const auto source = find_scenario(scenario)->make(avatar, animation, {colliders, 1});
+  std::vector<TraceFrame> scene(static_cast<std::size_t>(frames));
+  for (std::size_t k = 0; k < scene.size(); ++k) {
+    const double time_s = static_cast<double>(k) / rate_hz;
+    TraceFrame& frame = scene[k];
+    frame.index = k;
+    frame.time_ns = std::llround(time_s * 1e9);
+    frame.pose = looped_pose(avatar, animation, time_s);
+    frame.pose.origin_m += origin_m;
+    source->sample(time_s, frame.colliders);
+    for (ColliderSample& collider : frame.colliders) collider.position_m += origin_m;
+    frame.teleported = source->teleported();
+  }
+  return scene;
+}
+
+/// What a run of frames through one detector gave.
+struct SceneRun {
+  std::vector<ContactRow> rows;  ///< one a frame
+  std::uint64_t non_finite_frames = 0;
+  std::uint64_t non_finite_segments = 0;
+  std::optional<std::uint64_t> first_non_finite;
+
+  std::size_t contacts_in(std::size_t frame) const {
+    return static_cast<std::size_t>(std::ranges::count_if(rows[frame], &Contact::hit));
+  }
+  std::size_t contacts() const {
+    std::size_t sum = 0;
+    for (std::size_t frame = 0; frame < rows.size(); ++frame) sum += contacts_in(frame);
+    return sum;
+  }
+};
+
+inline SceneRun run_scene(const std::vector<TraceFrame>& scene, const Avatar& avatar, std::uint32_t colliders,
+                          Detector& detector) {
+  std::vector<std::uint32_t> ids(colliders);
+  std::iota(ids.begin(), ids.end(), 0U);
+  FrameBuilder builder(avatar, ids, detector.method());
+  SceneRun run;
+  run.rows.resize(scene.size());
+  for (std::size_t k = 0; k < scene.size(); ++k) detector.detect(builder.next(scene[k]), run.rows[k]);
+  run.non_finite_frames = builder.non_finite_frames();
+  run.non_finite_segments = builder.non_finite_segments();
+  run.first_non_finite = builder.first_non_finite();
+  return run;
+}
+
+}  // namespace vestige::test
