@@ -26,7 +26,7 @@ class AdversarialSource {
 
   AdversarialPairs draw(std::size_t triangles, std::size_t segments) {
     const auto scale = std::ldexp(1.0F, pick<int>({-140, -60, -20, -7, -7, -7, -7, 0, 0, 20, 60}));
-    const float place = scale * pick<float>({0, 0, 1, 100, 10000});
+    const float place = scale * pick<float>({0, 0, 0, 1, 100, 10000});
     const glm::vec3 centre = place * any_vector();
     const LooseTriangle shape = any_triangle(centre, scale);
     const glm::vec3 motion = pick<float>({0, 0, 1, 0.01F}) * scale * any_vector();
@@ -120,7 +120,7 @@ class AdversarialSource {
         break;
     }
     const glm::vec3 aim = triangle[0] + u * ab + v * ac;
-    glm::vec3 way = scale * pick<float>({1, 1, 0.01F, 1e-5F}) * any_vector();
+    glm::vec3 way = scale * pick<float>({1, 1, 0.01F, 1e-5F, 1000, 1000}) * any_vector();
     if (random_() % 4 == 0) way = sign() * ab + sign() * ac;  // in the plane
     switch (random_() % 6) {
       case 0:
