@@ -25,6 +25,7 @@ class CpuDetector final : public Detector {
                   [&](std::uint32_t triangle) { finder_.offer(frame, skin_, segment, triangle, row[segment.column]); });
     return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
             .triangles_tested = avatar_.triangles.size(),
+            .pairs_meeting = finder_.take_meeting(),
             .unsure = finder_.take_unsure()};
   }
 

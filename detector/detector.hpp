@@ -29,7 +29,7 @@ struct DetectorWork {
   std::uint64_t pairs_tested = 0;      ///< (segment, triangle) pairs
   std::uint64_t triangles_tested = 0;  ///< triangles that met at least one test
   std::uint64_t pairs_captured = 0;    ///< pairs that the geometry shader could not reject
-  std::uint64_t pairs_meeting = 0;     ///< those of them that truly meet
+  std::uint64_t pairs_meeting = 0;     ///< pairs of collider and triangle that truly meet (`geometry`, `cpu`)
   std::uint64_t unsure = 0;            ///< pairs that no filter could tell: exact arithmetic decided
 };
 

@@ -13,9 +13,9 @@
 // difference of a vertex and an end of the segment, lies within radius + u |X_i| of the true one; m . X_i, in whatever
 // order and with fma or without, errs by at most gamma_3 |m| . |X_i|. So R_i = radius + 8 u |X_i| and m . X_i > 1.001
 // |m| . R_i + kTiny prove m . X_i > 0; the factor covers the rounding of the right side, kTiny what flushed denormals
-// do: with |X_i| <= kLargest, 2^26, every component of an axis is below 2^83, and a dozen operations that flush operands
-// or results below 2^-126 err by less than 2^-126 (12 + 3 |X_i|) < 2^-96 beside what `radius`, never less than 2^-116,
-// covers. Within kLargest nothing overflows; beyond it, and where something is NaN, the pair is captured.
+// do: to flush an operand or a result below 2^-126 errs by less than 2^-126 times the other factors. Where X_i is
+// flushed, `radius`, never less than 2^-116, covers it; elsewhere the other factors are at most kLargest, 2^26, and 64
+// such times err by less than 2^-94. Within kLargest nothing overflows; beyond it the pair is captured.
 
 layout(triangles) in;
 layout(points, max_vertices = 1) out;
@@ -50,13 +50,16 @@ layout(location = VESTIGE_UNIFORM_CAPACITY) uniform uint capacity;
 
 const float kLargest = 67108864.0;
 const float kSlack = 1.001;
-const float kTiny = 1.0 / 79228162514264337593543950336.0;  // 2^-96
+const float kTiny = 1.0 / 1237940039285380274899124224.0;  // 2^-90
 const float kFourUlps = 1.0 / 2097152.0;                      // 8 u
 
 const float kThird = 1.0 / 3.0;
 
 precise vec3 relative[6];
 vec3 relative_radius[6];
+#if METHOD == VESTIGE_METHOD_CCD
+float together;  // what moves of two or three corners may do to a determinant
+#endif
 
 #if METHOD == VESTIGE_METHOD_CARRIED
 vec3 carried;         // the mean displacement, which moves the segment's start
@@ -82,6 +85,55 @@ void set_relative(int i, vec3 vertex, vec3 vertex_radius, vec3 end, vec3 end_rad
   relative_radius[i] = vertex_radius + end_radius + kFourUlps * abs(relative[i]);
 }
 
+#if METHOD == VESTIGE_METHOD_CCD
+// The determinant of three of the X_i, and how far it may lie from that of the true ones. To move each X within R
+// changes it by no more than the R . |cross product| of the other two, plus what two or three moves do together, 18 e^2 m
+// + 6 e^3 with e the largest R and m the largest |X|; its own rounding is at most gamma_5 times the sum of the
+// magnitudes of its six products, and that of the cross products gamma_2 of theirs.
+void add_determinant(int x, int y, int z, inout float sum, inout float error) {
+  vec3 plus_yz = relative[y].yzx * relative[z].zxy;
+  vec3 minus_yz = relative[y].zxy * relative[z].yzx;
+  vec3 size_yz = abs(plus_yz) + abs(minus_yz);
+  precise vec3 cross_yz = plus_yz - minus_yz;
+  vec3 x_size = abs(relative[x]);
+  vec3 y_size = abs(relative[y]);
+  vec3 z_size = abs(relative[z]);
+  vec3 cross_zx = abs(cross(relative[z], relative[x])) + kFourUlps * (z_size.yzx * x_size.zxy + z_size.zxy * x_size.yzx);
+  vec3 cross_xy = abs(cross(relative[x], relative[y])) + kFourUlps * (x_size.yzx * y_size.zxy + x_size.zxy * y_size.yzx);
+  precise float determinant = dot(relative[x], cross_yz);
+  sum += determinant;
+  error += kSlack * (dot(relative_radius[x], abs(cross_yz) + kFourUlps * size_yz) +
+                     dot(relative_radius[y], cross_zx) + dot(relative_radius[z], cross_xy) +
+                     together + kFourUlps * dot(x_size, size_yz));
+}
+
+// Whether the three corners and the collider are proven never to lie in one plane: the cubic det(A(t), B(t), C(t)) has
+// no root in [0, 1] if its four Bernstein coefficients have one sign. Each is, times 1 or 3, a sum of determinants of
+// corners at t = 0 (numbers 0 to 2) and at t = 1 (3 to 5).
+bool never_in_one_plane() {
+  float e = 0.0;
+  float m = 0.0;
+  for (int i = 0; i < 6; ++i) {
+    e = max(e, max(relative_radius[i].x, max(relative_radius[i].y, relative_radius[i].z)));
+    m = max(m, max(abs(relative[i].x), max(abs(relative[i].y), abs(relative[i].z))));
+  }
+  together = 18.0 * e * e * m + 6.0 * e * e * e;
+  bool above = true;
+  bool below = true;
+  for (int coefficient = 0; coefficient < 4; ++coefficient) {
+    float sum = 0.0;
+    float error = kTiny;
+    for (int late = 0; late < 8; ++late) {  // bit i: corner i at t = 1
+      if (bitCount(late) != coefficient) continue;
+      add_determinant(3 * (late & 1), 1 + 3 * ((late >> 1) & 1), 2 + 3 * (late >> 2), sum, error);
+    }
+    above = above && sum > error;
+    below = below && -sum > error;
+  }
+  return above || below;
+}
+#endif
+
 bool proven_apart(vec3 start, vec3 end) {
   vec3 start_radius = vec3(0.0);
 #if METHOD == VESTIGE_METHOD_CARRIED
@@ -97,7 +149,7 @@ bool proven_apart(vec3 start, vec3 end) {
     set_relative(i + 3, skinned[i].position, skinned[i].radius, end, vec3(0.0));
   }
   vec3 largest = vec3(0.0);
-  for (int i = 0; i < 6; ++i) largest = max(largest, abs(relative[i]));
+  for (int i = 0; i < 6; ++i) largest = max(largest, max(abs(relative[i]), relative_radius[i]));
   if (!(largest.x <= kLargest && largest.y <= kLargest && largest.z <= kLargest)) return false;
 
   vec3 ab = relative[4] - relative[3];
@@ -107,7 +159,11 @@ bool proven_apart(vec3 start, vec3 end) {
   vec3 way = (relative[3] - relative[0]) + (relative[4] - relative[1]) + (relative[5] - relative[2]);
   return apart_along(normal) || apart_along(cross(way, ab)) || apart_along(cross(way, bc)) ||
          apart_along(cross(way, ca)) || apart_along(cross(normal, ab)) || apart_along(cross(normal, bc)) ||
-         apart_along(cross(normal, ca)) || apart_along(cross(normal, way));
+         apart_along(cross(normal, ca)) || apart_along(cross(normal, way))
+#if METHOD == VESTIGE_METHOD_CCD
+         || never_in_one_plane()
+#endif
+      ;
 }
 
 void capture(int segment) {

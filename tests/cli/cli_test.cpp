@@ -74,11 +74,30 @@ TEST_F(CommandLine, RecordsReplaysAndSaysTheSameEveryTime) {
 TEST_F(CommandLine, GivesTheSameBitsTenThousandKilometresAway) {
   record_small();
   ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 --origin 10000000,0,-3 -o far.mcap").exit_code, 0);
-  for (const char* detector : {"cpu", "paper"}) {
+  for (const char* detector : {"cpu", "paper", "geometry"}) {
     const std::string flags = std::string(" --json - --detector ") + detector;
     EXPECT_EQ(json_of("vestige replay far.mcap" + flags)["texture_hash"],
               json_of("vestige replay small.mcap" + flags)["texture_hash"]);
   }
+}
+
+TEST_F(CommandLine, GeometryGivesTheCpusTextureHashWithEveryMethodAndSaysWhatItCaptured) {
+  record_small();
+  for (const char* method : {"static", "carried", "ccd"}) {
+    const std::string flags = std::string("vestige replay small.mcap --json - --method ") + method;
+    const auto cpu = json_of(flags + " --detector cpu");
+    for (const char* context : {"egl", "osmesa"}) {
+      const auto geometry = json_of(flags + " --detector geometry --context " + context);
+      EXPECT_EQ(geometry["texture_hash"], cpu["texture_hash"]) << method << " on " << context;
+      EXPECT_GT(geometry["contacts"], 0);
+      EXPECT_GE(geometry["pairs_meeting"], geometry["contacts"]);
+      EXPECT_GE(geometry["pairs_captured"], geometry["pairs_meeting"]);
+    }
+  }
+  const test::Outcome verified = run("vestige replay small.mcap --detector cpu --verify geometry");
+  EXPECT_EQ(verified.exit_code, 0);
+  EXPECT_THAT(verified.standard_output, HasSubstr(" 0 contacts differ"));
+  EXPECT_THAT(run("vestige replay small.mcap --detector geometry").standard_output, HasSubstr("captured "));
 }
 
 TEST_F(CommandLine, PaperGivesOneTextureHashOnEglAndOsMesa) {

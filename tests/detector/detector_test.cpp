@@ -56,6 +56,15 @@ std::unique_ptr<Detector> paper_on_osmesa(const Avatar& avatar, const ActuatorMa
   return make_paper_detector(make_osmesa_context(), avatar, map, options);
 }
 
+std::unique_ptr<Detector> geometry_on_egl(const Avatar& avatar, const ActuatorMap& map,
+                                          const DetectorOptions& options) {
+  return make_geometry_detector(make_egl_surfaceless_context(), avatar, map, options);
+}
+std::unique_ptr<Detector> geometry_on_osmesa(const Avatar& avatar, const ActuatorMap& map,
+                                             const DetectorOptions& options) {
+  return make_geometry_detector(make_osmesa_context(), avatar, map, options);
+}
+
 class DetectorTest : public ::testing::TestWithParam<Kind> {
  protected:
   static DetectorOptions options(Surface surface = Surface::kAll) { return {surface, PlaneSet::all()}; }
@@ -64,7 +73,8 @@ class DetectorTest : public ::testing::TestWithParam<Kind> {
 INSTANTIATE_TEST_SUITE_P(Each, DetectorTest,
                          ::testing::Values(Kind{"cpu", make_cpu_detector}, Kind{"paper_egl", paper_on_egl},
                                            Kind{"paper_egl_device", paper_on_egl_device},
-                                           Kind{"paper_osmesa", paper_on_osmesa}),
+                                           Kind{"paper_osmesa", paper_on_osmesa}, Kind{"geometry_egl", geometry_on_egl},
+                                           Kind{"geometry_osmesa", geometry_on_osmesa}),
                          [](const auto& test) { return test.param.name; });
 
 const std::vector<glm::vec3> kUnitTriangle = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
