@@ -53,7 +53,9 @@ int run(int argc, char** argv) {
   add_record(program, invocation);
   add_replay(program, invocation);
   add_sweep(program, invocation);
+  add_query(program, invocation);
   add_stress(program, invocation);
+  add_accuracy(program, invocation);
   add_inspect(program, invocation);
   add_avatar(program, invocation);
   add_devices(program, invocation);

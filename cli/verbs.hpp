@@ -10,7 +10,9 @@ namespace vestige::cli {
 void add_record(CLI::App& program, Invocation& invocation);
 void add_replay(CLI::App& program, Invocation& invocation);
 void add_sweep(CLI::App& program, Invocation& invocation);
+void add_query(CLI::App& program, Invocation& invocation);
 void add_stress(CLI::App& program, Invocation& invocation);
+void add_accuracy(CLI::App& program, Invocation& invocation);
 void add_inspect(CLI::App& program, Invocation& invocation);
 void add_avatar(CLI::App& program, Invocation& invocation);
 void add_devices(CLI::App& program, Invocation& invocation);

@@ -68,8 +68,9 @@ machine() {
 
 if [ "$quick" ]; then
   duration=0.2 counts=1,10,100 sweep_flags="--min-time 0.02 --runs 2 --run-frames 5"
+  accuracy_flags="--duration 0.1 --rate 60,1000 --truth-rate 4000" stress_flags="--n 100"
 else
-  duration=2 counts=1,2,4,6,8,10:100:5 sweep_flags=
+  duration=2 counts=1,2,4,6,8,10:100:5 sweep_flags= accuracy_flags= stress_flags=
 fi
 
 step machine machine
@@ -82,10 +83,14 @@ for scenario in ${scenarios:-swarm}; do
   step "record-$scenario" vestige record --colliders "$scenario" --count 100 --rate 1000 --duration "$duration" \
     -o "$out/$scenario.mcap" --json "$out/record-$scenario.json" || continue
   step "replay-$scenario-cpu" vestige replay "$out/$scenario.mcap" --detector cpu --json "$out/replay-$scenario-cpu.json"
-  if [ -n "$renderer" ]; then
-    step "replay-$scenario-paper" vestige replay "$out/$scenario.mcap" --detector paper --verify cpu \
-      --json "$out/replay-$scenario-paper.json"
-  fi
+  for detector in ${renderer:+paper geometry}; do
+    step "replay-$scenario-$detector" vestige replay "$out/$scenario.mcap" --detector $detector --verify cpu \
+      --json "$out/replay-$scenario-$detector.json"
+  done
+  for method in ${renderer:+carried ccd}; do
+    step "replay-$scenario-geometry-$method" vestige replay "$out/$scenario.mcap" --detector geometry --method $method \
+      --verify cpu --json "$out/replay-$scenario-geometry-$method.json"
+  done
 done
 
 sweep_on=
@@ -100,9 +105,10 @@ else
   failed="$failed sweep(no trace)"
 fi
 
-if [ -n "$(vestige complete accuracy)" ]; then
-  step accuracy vestige accuracy -o "$out/accuracy"
-fi
+# shellcheck disable=SC2086  # lists of words
+step accuracy vestige accuracy $accuracy_flags --no-figure -o "$out/accuracy"
+# shellcheck disable=SC2086
+step stress vestige stress $stress_flags --no-figure -o "$out/stress"
 step claims vestige claims "$out" -o "$out/README.md"
 
 [ -z "$differs" ] || echo "Contacts differ in:$differs" >>"$out/README.md"

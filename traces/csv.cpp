@@ -7,13 +7,31 @@
 
 namespace vestige {
 
-CsvLines::CsvLines(std::string_view text, std::string name, std::string_view header, std::string_view remedy)
+CsvLines::CsvLines(std::string_view text, std::string name, std::string_view remedy)
     : text_(text), name_(std::move(name)), remedy_(remedy) {
   if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
+}
+
+CsvLines::CsvLines(std::string_view text, std::string name, std::string_view header, std::string_view remedy)
+    : CsvLines(text, std::move(name), remedy) {
   if (!next_line() || row_ != header) {
     line_ = 1;
     throw error(fmt::format("the header is not '{}'", header));
   }
+}
+
+bool CsvLines::has_header(std::string_view text, std::string_view header) {
+  CsvLines lines(text, "", "");
+  return lines.next_line() && lines.row_ == header;
+}
+
+bool CsvLines::take_text(std::string_view& field) {
+  if (at_end_) return false;
+  const std::size_t comma = row_.find(',');
+  field = row_.substr(0, comma);
+  at_end_ = comma == std::string_view::npos;
+  if (!at_end_) row_.remove_prefix(comma + 1);
+  return true;
 }
 
 bool CsvLines::next_line() {

@@ -9,31 +9,39 @@
 
 namespace vestige {
 
-/// Goes through the rows of a CSV file of numbers with a fixed header. Lines may end in LF or CRLF; empty lines are
+/// Goes through the rows of a CSV file, with a fixed header or none. Lines may end in LF or CRLF; empty lines are
 /// skipped, and a UTF-8 byte order mark in front of the header.
 class CsvLines {
  public:
   /// `text` must stay. Throws `Error` at "NAME, line 1" when the first line is not `header`; `remedy` ends every error.
   CsvLines(std::string_view text, std::string name, std::string_view header, std::string_view remedy);
 
+  /// Without a header.
+  CsvLines(std::string_view text, std::string name, std::string_view remedy);
+
+  /// Whether the first line of `text` is `header`.
+  static bool has_header(std::string_view text, std::string_view header);
+
   /// Goes to the next row; false at the end of the file.
   bool next();
+
+  /// Reads the next field of the row as it is; false when there is none left.
+  bool take_text(std::string_view& field);
 
   /// Reads the next field of the row as a number; false when there is none left or it is not wholly a number.
   template <typename Number>
   bool take(Number& value) {
-    if (at_end_) return false;
-    const std::size_t comma = row_.find(',');
-    const std::string_view field = row_.substr(0, comma);
+    std::string_view field;
+    if (!take_text(field)) return false;
     const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (failure != std::errc() || end != field.data() + field.size()) return false;
-    at_end_ = comma == std::string_view::npos;
-    if (!at_end_) row_.remove_prefix(comma + 1);
-    return true;
+    return failure == std::errc() && end == field.data() + field.size();
   }
 
   /// Nothing is left of the row.
   bool at_end() const { return at_end_; }
+
+  /// Of the row, from 1.
+  std::size_t line() const { return line_; }
 
   Error error(std::string_view cause) const { return error(cause, remedy_); }
   Error error(std::string_view cause, std::string_view remedy) const;

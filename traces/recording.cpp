@@ -17,20 +17,25 @@ std::uint64_t frame_count(const RecordingSettings& settings) {
   return static_cast<std::uint64_t>(std::max(1.0, std::round(settings.rate_hz * settings.duration_s)));
 }
 
+void sample_frame(const Avatar& avatar, const Animation* animation, ColliderSource& colliders, double rate_hz,
+                  std::uint64_t index, const glm::dvec3& origin_m, TraceFrame& out) {
+  const double time_s = static_cast<double>(index) / rate_hz;
+  out.index = index;
+  out.time_ns = std::llround(time_s * 1e9);
+  out.pose = looped_pose(avatar, animation, time_s);
+  out.pose.origin_m = origin_m;
+  colliders.sample(time_s, out.colliders);
+  out.teleported = colliders.teleported();
+  for (ColliderSample& sample : out.colliders) sample.position_m += origin_m;
+}
+
 void record(TraceWriter& writer, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
             const RecordingSettings& settings, const std::function<bool(double)>& progress) {
   const std::uint64_t frames = frame_count(settings);
   const glm::dvec3 origin_m = glm::round(settings.origin_m * kGrid) / kGrid;
   TraceFrame frame;
   for (std::uint64_t index = 0; index < frames; ++index) {
-    const double time_s = static_cast<double>(index) / settings.rate_hz;
-    frame.index = index;
-    frame.time_ns = std::llround(time_s * 1e9);
-    frame.pose = looped_pose(avatar, animation, time_s);
-    frame.pose.origin_m = origin_m;
-    colliders.sample(time_s, frame.colliders);
-    frame.teleported = colliders.teleported();
-    for (ColliderSample& sample : frame.colliders) sample.position_m += origin_m;
+    sample_frame(avatar, animation, colliders, settings.rate_hz, index, origin_m, frame);
     writer.write(frame);
     if (!progress(static_cast<double>(index + 1) / static_cast<double>(frames))) return;
   }

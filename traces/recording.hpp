@@ -19,6 +19,11 @@ struct RecordingSettings {
 /// How many frames a recording has: rate times duration, rounded, at least 1.
 std::uint64_t frame_count(const RecordingSettings& settings);
 
+/// Pose and colliders at index / rate; the animation (null: the avatar rests) loops. Times asked of one `colliders`
+/// must not decrease.
+void sample_frame(const Avatar& avatar, const Animation* animation, ColliderSource& colliders, double rate_hz,
+                  std::uint64_t index, const glm::dvec3& origin_m, TraceFrame& out);
+
 /// Samples pose and colliders at k / rate and writes them. The animation (null: the avatar rests) loops. `progress` is
 /// told the share done and returns false to stop. Does not call `writer.finish`.
 void record(TraceWriter& writer, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,

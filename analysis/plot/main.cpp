@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/plot/accuracy_figure.hpp"
 #include "analysis/plot/avatar_figure.hpp"
 #include "analysis/plot/body_figure.hpp"
 #include "analysis/plot/figure_export.hpp"
@@ -100,6 +101,12 @@ std::filesystem::path stem_of(const Options& options) {
   if (stem.empty()) return std::filesystem::path(options.inputs.front()).replace_extension();
   if (stem.extension() == ".svg" || stem.extension() == ".png") stem.replace_extension();
   return stem;
+}
+
+int draw_accuracy(const Options& options) {
+  const std::filesystem::path& folder = options.inputs.front();
+  return write_figure(options, (options.output.empty() ? folder : options.output) / "accuracy",
+                      [&] { return plot::accuracy_figure(plot::read_accuracy(folder)); });
 }
 
 int draw_sweep(const Options& options) {
@@ -253,6 +260,15 @@ int run(int argc, char** argv) {
       ->required();
   add_common_options(sweep, options, "DIR", "Folder for the figures [default: beside the first input]");
 
+  CLI::App& accuracy = add_command(app, "accuracy", "Contacts missed over run time (accuracy.svg, .png)",
+                                   "  vestige plot accuracy results/accuracy\n"
+                                   "  vestige plot accuracy results/accuracy -o figures\n");
+  accuracy.add_option("INPUT", options.inputs, "The folder that 'vestige accuracy -o DIR' wrote")
+      ->type_name("DIR")
+      ->expected(1)
+      ->required();
+  add_common_options(accuracy, options, "DIR", "Folder for the figure [default: the input]");
+
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
                                    "  vestige plot timeline timeline.csv -o figures/timeline --force\n");
@@ -356,6 +372,7 @@ int run(int argc, char** argv) {
   if (options.output == "-")
     throw vestige::UsageError("-o -", "a plot is two files, and standard output is one", "name OUT");
   if (sweep.parsed()) return draw_sweep(options);
+  if (accuracy.parsed()) return draw_accuracy(options);
   if (body.parsed()) return draw_body(options);
   if (scene.parsed()) return draw_scene(options);
   if (avatar.parsed()) return draw_avatar(options);

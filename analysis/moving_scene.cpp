@@ -1,0 +1,19 @@
+#include "analysis/moving_scene.hpp"
+
+#include <cmath>
+
+#include "traces/recording.hpp"
+
+namespace vestige {
+
+const TraceFrame& SceneSampler::next() {
+  sample_frame(scene_.avatar, scene_.animation, *colliders_, rate_hz_, next_++, glm::dvec3(0), frame_);
+  return frame_;
+}
+
+std::uint64_t last_frame_within(const MovingScene& scene, double rate_hz) {
+  constexpr double kSlack = 1e-6;  // 0.1 s at 90 Hz are 9 frames, whatever the product is rounded to
+  return static_cast<std::uint64_t>(std::floor(scene.duration_s * rate_hz + kSlack));
+}
+
+}  // namespace vestige

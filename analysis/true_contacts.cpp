@@ -1,0 +1,89 @@
+#include "analysis/true_contacts.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <thread>
+
+#include "detector/frame.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// Always as many, so that the origin of a part (detector/CONTRACT.md, 2) does not depend on the machine.
+constexpr std::uint64_t kParts = 16;
+
+struct Part {
+  std::vector<ContactEvent> events;
+  std::uint64_t contacts = 0;
+};
+
+/// What the threads share.
+struct Work {
+  std::atomic<std::uint64_t> next_part = 0;
+  std::atomic<std::uint64_t> frames_done = 0;
+  std::atomic<bool> stopped = false;
+};
+
+/// Frames first + 1 … last; `first` only gives them their start.
+Part find_in_part(const MovingScene& scene, double rate_hz, Detector& detector, std::uint64_t first, std::uint64_t last,
+                  Work& work) {
+  SceneSampler sampler(scene, rate_hz, first);
+  FrameBuilder builder(scene.avatar, scene.collider_ids, detector.method());
+  ContactEventFinder finder;
+  ContactRow row;
+  builder.next(sampler.next());
+  for (std::uint64_t index = first + 1; index <= last && !work.stopped; ++index) {
+    const Frame& frame = builder.next(sampler.next());
+    detector.detect(frame, row);
+    finder.add(frame, row);
+    ++work.frames_done;
+  }
+  const std::uint64_t contacts = finder.contacts();
+  return {finder.take(), contacts};
+}
+
+}  // namespace
+
+TrueContacts find_true_contacts(const MovingScene& scene, double rate_hz,
+                                const std::function<std::unique_ptr<Detector>()>& make,
+                                const std::function<bool(double)>& progress) {
+  const std::uint64_t frames = last_frame_within(scene, rate_hz);
+  std::vector<Part> parts(kParts);
+  Work work;
+  const auto find_parts = [&] {
+    try {
+      const std::unique_ptr<Detector> detector = make();
+      for (std::uint64_t i = work.next_part++; i < kParts && !work.stopped; i = work.next_part++)
+        parts[i] = find_in_part(scene, rate_hz, *detector, frames * i / kParts, frames * (i + 1) / kParts, work);
+    } catch (...) {
+      work.stopped = true;
+      throw;
+    }
+  };
+  std::vector<std::future<void>> threads;
+  const unsigned count = std::max(1U, std::thread::hardware_concurrency());
+  threads.reserve(count);
+  for (unsigned i = 0; i < count; ++i) threads.push_back(std::async(std::launch::async, find_parts));
+  for (std::future<void>& thread : threads)
+    while (thread.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready)
+      if (!progress(static_cast<double>(work.frames_done) / static_cast<double>(std::max<std::uint64_t>(1, frames))))
+        work.stopped = true;
+  for (std::future<void>& thread : threads) thread.get();
+
+  TrueContacts truth;
+  truth.rate_hz = rate_hz;
+  if (work.stopped) return truth;
+  std::vector<std::vector<ContactEvent>> events;
+  events.reserve(parts.size());
+  for (Part& part : parts) {
+    truth.contacts += part.contacts;
+    events.push_back(std::move(part.events));
+  }
+  truth.events = join_events(events);
+  return truth;
+}
+
+}  // namespace vestige

@@ -1,0 +1,315 @@
+#include "analysis/accuracy.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <numeric>
+#include <set>
+
+#include "analysis/accuracy_report.hpp"
+#include "analysis/provenance.hpp"
+#include "cli/detectors.hpp"
+#include "cli/help/validators.hpp"
+#include "cli/scene.hpp"
+#include "cli/scene_choice.hpp"
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+constexpr double kMostFrames = 4294967295.0;
+
+struct AccuracyOptions {
+  CommonOptions common;
+  DetectorChoice choice;
+  SceneChoice scene;
+  std::string colliders = "swarm,hug,still";
+  std::string detectors = "paper,cpu";
+  std::string methods = "static,carried,ccd";
+  std::string rates = "60,90,250,1000,4000,10000";
+  double duration_s = 1;
+  std::string truth = "cpu";
+  double truth_rate_hz = 30720;
+  bool no_figure = false;
+  std::string output;
+};
+
+/// The parts of a list, each of which must be known and stand there once.
+template <typename IsKnown>
+std::vector<std::string> parse_names(const std::string& list, const std::string& flag, const std::string& remedy,
+                                     IsKnown&& is_known) {
+  std::vector<std::string> names = parse_list(list);
+  std::set<std::string> seen;
+  for (const std::string& name : names) {
+    if (!is_known(name)) throw UsageError(flag, fmt::format("there is no '{}'", name), remedy);
+    if (!seen.insert(name).second)
+      throw UsageError(flag, fmt::format("'{}' stands there twice", name), "name each once");
+  }
+  return names;
+}
+
+std::vector<double> parse_rates(const AccuracyOptions& options) {
+  const std::string remedy = "give rates in Hz, as 60,90,1000";
+  std::set<double> rates_hz;
+  for (const std::string& text : parse_list(options.rates)) {
+    double rate_hz = 0;
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), rate_hz);
+    if (failure != std::errc() || end != text.data() + text.size() || !std::isfinite(rate_hz) || !(rate_hz > 0))
+      throw UsageError("--rate", fmt::format("'{}' is no rate", text), remedy);
+    if (rate_hz > options.truth_rate_hz / 2)
+      throw UsageError("--rate",
+                       fmt::format("{} Hz is more than half of the truth's {} Hz", text, options.truth_rate_hz),
+                       "the truth must see more than what is measured by it: raise --truth-rate");
+    if (rate_hz * options.duration_s < 2)
+      throw UsageError("--rate", fmt::format("at {} Hz, {} s hold less than two frames", text, options.duration_s),
+                       "raise --duration");
+    if (!rates_hz.insert(rate_hz).second)
+      throw UsageError("--rate", fmt::format("'{}' stands there twice", text), "name each once");
+  }
+  if (rates_hz.empty()) throw UsageError("--rate", "the list is empty", remedy);
+  return {rates_hz.begin(), rates_hz.end()};
+}
+
+Method method_of(const std::string& name) {
+  DetectorChoice choice;
+  choice.method = name;
+  return choice.method_kind();
+}
+
+/// Every detector with every method that it has; what cannot run is said.
+std::vector<AccuracyContestant> make_contestants(const AccuracyOptions& options, const Scene& scene) {
+  std::vector<AccuracyContestant> contestants;
+  for (const std::string& detector : parse_list(options.detectors))
+    for (const std::string& method : parse_list(options.methods)) {
+      DetectorChoice choice = options.choice;
+      choice.method = method;
+      try {
+        contestants.push_back({detector, method_of(method),
+                               make_detector(detector, choice.context, choice, scene.avatar, scene.map, Plane::kTime)});
+      } catch (const Error& error) {
+        warn(fmt::format("no '{}' with {}: {}", detector, method, error.what()), options.common.verbosity());
+      }
+    }
+  if (contestants.empty())
+    throw Error("--detector", "none of those asked for can run here with a method asked for",
+                "'vestige devices' lists this machine's OpenGL contexts; --detector cpu needs none");
+  return contestants;
+}
+
+/// Those that have a column, ascending.
+std::vector<std::uint32_t> collider_ids(const AccuracyOptions& options, const SceneChoice& choice,
+                                        ColliderSource& colliders) {
+  if (!choice.from_file()) {
+    std::vector<std::uint32_t> ids(choice.collider_count());
+    std::iota(ids.begin(), ids.end(), 0U);
+    return ids;
+  }
+  std::set<std::uint32_t> ids;
+  std::vector<ColliderSample> samples;
+  const auto frames = static_cast<std::uint64_t>(options.truth_rate_hz * options.duration_s);
+  for (std::uint64_t i = 0; i <= frames; ++i) {
+    colliders.sample(static_cast<double>(i) / options.truth_rate_hz, samples);
+    for (const ColliderSample& sample : samples) ids.insert(sample.id);
+  }
+  return {ids.begin(), ids.end()};
+}
+
+void draw_figure(const AccuracyOptions& options) {
+  std::vector<std::string> arguments = {"accuracy", options.output};
+  if (options.common.force) arguments.emplace_back("--force");
+  if (options.common.quiet) arguments.emplace_back("-q");
+  try {
+    if (run_plot(arguments) != kDone) warn("the figure is not complete", options.common.verbosity());
+  } catch (const Error& error) {
+    warn(fmt::format("no figure was drawn: {}", error.what()), options.common.verbosity());
+  }
+}
+
+/// The scenes asked for: alike but for the colliders.
+std::vector<SceneChoice> scene_choices(const AccuracyOptions& options) {
+  std::vector<SceneChoice> choices;
+  for (const std::string& colliders :
+       parse_names(options.colliders, "--colliders", "", [](const std::string&) { return true; })) {
+    choices.push_back(options.scene);
+    choices.back().colliders = colliders;
+    check_scene_choice(choices.back());
+    if (choices.back().avatar == "builtin" && choices.back().animation.empty()) choices.back().animation = "walk";
+  }
+  if (choices.empty()) throw UsageError("--colliders", "the list is empty", "name a scenario or a .csv file");
+  return choices;
+}
+
+class Measurement {
+ public:
+  Measurement(const AccuracyOptions& options, const Scene& scene, const std::vector<double>& rates_hz)
+      : options_(options), scene_(scene), rates_hz_(rates_hz), contestants_(make_contestants(options, scene)) {}
+
+  const std::vector<AccuracyContestant>& contestants() const { return contestants_; }
+
+  AccuracyScene measure(const SceneChoice& choice) const {
+    MovingScene moving{
+        scene_.avatar, find_animation(scene_.avatar, choice.animation), nullptr, {}, options_.duration_s};
+    moving.make_colliders = [this, &choice, animation = moving.animation] {
+      return make_colliders(choice, scene_.avatar, animation, options_.common.seed);
+    };
+    const std::unique_ptr<ColliderSource> colliders = moving.make_colliders();
+    check_colliders(choice, *colliders, options_.duration_s, options_.common.verbosity());
+    moving.collider_ids = collider_ids(options_, choice, *colliders);
+    AccuracyScene result;
+    result.colliders = choice.colliders;
+    result.collider_count = moving.collider_ids.size();
+    find_truth(moving, result);
+    if (interrupted()) return result;
+    if (result.truth.events.empty())
+      warn(fmt::format("{}: nothing touches the avatar, so there is nothing to miss", choice.colliders),
+           options_.common.verbosity());
+    Progress progress(choice.colliders + ", measuring", options_.common.verbosity());
+    result.points = run_accuracy(moving, result.truth, contestants_, rates_hz_, options_.common.seed,
+                                 [&](double share) { return progress.update(share); });
+    return result;
+  }
+
+ private:
+  void find_truth(const MovingScene& moving, AccuracyScene& result) const {
+    const auto make = [&] {
+      DetectorChoice choice;
+      choice.surface = options_.choice.surface;
+      choice.method = "ccd";
+      return make_detector(options_.truth, "", choice, scene_.avatar, scene_.map, Plane::kTime);
+    };
+    Progress progress(result.colliders + ", true contacts", options_.common.verbosity());
+    const double rate_hz = options_.truth_rate_hz;
+    result.truth =
+        find_true_contacts(moving, rate_hz, make, [&](double share) { return progress.update(share * 2 / 3); });
+    result.half =
+        find_true_contacts(moving, rate_hz / 2, make, [&](double share) { return progress.update((share + 2) / 3); });
+  }
+
+  const AccuracyOptions& options_;
+  const Scene& scene_;
+  const std::vector<double>& rates_hz_;
+  std::vector<AccuracyContestant> contestants_;
+};
+
+nlohmann::ordered_json results_json(const AccuracyOptions& options, const SceneChoice& choice, const Scene& scene) {
+  return {{"schema_version", 1},
+          {"avatar", to_json(scene.avatar)},
+          {"animation", choice.animation},
+          {"duration_s", options.duration_s},
+          {"surface", options.choice.surface},
+          {"seed", options.common.seed},
+          {"complete", !interrupted()}};
+}
+
+void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
+  parse_names(options.detectors, "--detector", "'vestige replay --help' lists the detectors",
+              [](const std::string& name) { return is_detector(name); });
+  parse_names(options.methods, "--method", "choose of: static, carried, ccd",
+              [](const std::string& name) { return name == "static" || name == "carried" || name == "ccd"; });
+  if (options.truth_rate_hz * options.duration_s > kMostFrames)
+    throw UsageError("--duration", "the truth would have more than 4294967295 frames", "lower it, or --truth-rate");
+  const std::vector<double> rates_hz = parse_rates(options);
+  const std::vector<SceneChoice> choices = scene_choices(options);
+  const std::string errors_path = options.output + "/accuracy.json";
+  const std::string run_path = options.output + "/run.json";
+  std::error_code failure;
+  std::filesystem::create_directories(options.output, failure);
+  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  check_outputs({errors_path, run_path, options.common.json}, {options.scene.avatar, options.scene.map},
+                options.common);
+
+  catch_interrupts();
+  const Scene scene = load_scene(options.scene.avatar, options.scene.map, options.common.verbosity());
+  const Measurement measurement(options, scene, rates_hz);
+  std::vector<AccuracyScene> scenes;
+  scenes.reserve(choices.size());
+  for (const SceneChoice& choice : choices) {
+    AccuracyScene measured = measurement.measure(choice);
+    if (!measured.points.empty()) scenes.push_back(std::move(measured));
+    if (interrupted()) break;
+  }
+  if (scenes.empty())
+    throw Error("accuracy", "was stopped before a rate had been measured", "start it again, with --force");
+
+  const std::vector<AccuracyContestant>& contestants = measurement.contestants();
+  nlohmann::ordered_json results = results_json(options, choices.front(), scene);
+  results["scenes"] = errors_json(scenes, contestants, options.truth);
+  nlohmann::ordered_json run = provenance(invocation.argv);
+  run["scenes"] = times_json(scenes, contestants);
+  write_json(errors_path, results, options.common);
+  write_json(run_path, run, options.common);
+  results["run"] = run;
+  write_json(options.common.json, results, options.common);
+
+  if (interrupted()) warn("stopped early; the rates that were measured were written", options.common.verbosity());
+  print_summary(accuracy_table(scenes, contestants), {options.common.json}, options.common);
+  print_summary(fmt::format("written: {}, {}\n", errors_path, run_path), {options.common.json}, options.common);
+  std::fflush(stdout);  // before the child that draws prints its own
+  if (!options.no_figure && !interrupted()) draw_figure(options);
+  if (interrupted()) invocation.exit_code = kDataLost;
+}
+
+}  // namespace
+
+void add_accuracy(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<AccuracyOptions>();
+  CLI::App* verb = add_verb(program, "accuracy", "Measure run time against error: contacts missed, false and late",
+                            "  vestige accuracy -o accuracy\n"
+                            "  vestige accuracy --detector cpu --rate 60,1000 --duration 0.5 -o accuracy\n");
+  verb->add_option("--rate", options->rates, "Frame rates at which the scene is sampled, in Hz")
+      ->capture_default_str()
+      ->type_name("LIST");
+  verb->add_option("--detector", options->detectors, "Detectors to measure")
+      ->capture_default_str()
+      ->group(kDetectorGroup)
+      ->type_name("LIST");
+  add_detector_options(*verb, options->choice);
+  verb->remove_option(verb->get_option("--method"));  // here it is a list
+  verb->add_option("--method", options->methods,
+                   "Methods to measure: static: each segment against the triangle as it is now, as the paper does; "
+                   "carried: its start moves along with the triangle; ccd: both move, the first time they meet")
+      ->capture_default_str()
+      ->group(kDetectorGroup)
+      ->type_name("LIST");
+  verb->add_option("--context", options->choice.context, "Where detectors that need OpenGL run")
+      ->capture_default_str()
+      ->group(kDetectorGroup)
+      ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
+  add_scene_options(*verb, options->scene);
+  verb->get_option("--animation")
+      ->description(
+          "Its animation, looping: a name, an index, or none [default: walk for the built-in avatar, else the first]");
+  verb->remove_option(verb->get_option("--colliders"));  // here it is a list, too
+  verb->add_option("--colliders", options->colliders,
+                   "Scenarios, each measured apart, or files: 'vestige record --help' explains them")
+      ->capture_default_str()
+      ->type_name("LIST");
+  verb->add_option("--duration", options->duration_s, "How long the scene is, in seconds")
+      ->type_name("S")
+      ->capture_default_str()
+      ->check(help::kPositive);
+  verb->add_option("--truth", options->truth,
+                   "The detector that finds the true contacts, by ccd; exact is independent of the others, and slow")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"cpu", "exact"}));
+  verb->add_option(
+          "--truth-rate", options->truth_rate_hz,
+          "Frames per second at which the true contacts are found; also at half of it, to see what that changes")
+      ->type_name("HZ")
+      ->capture_default_str()
+      ->check(help::kPositive);
+  verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
+  verb->add_option("-o,--output", options->output, "Folder for accuracy.json, run.json (times), and the figure")
+      ->required()
+      ->type_name("DIR");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_accuracy_verb(*options, invocation); });
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,93 @@
+#include "cli/scene_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <string_view>
+#include <vector>
+
+#include "cli/help/suggest.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+UsageError no_scenario(const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
+  return {"--colliders", fmt::format("there is no scenario '{}'", name),
+          fmt::format("{}the scenarios are: {}; or name a .csv file", help::did_you_mean(name, names),
+                      fmt::join(names, ", "))};
+}
+
+std::string describe_colliders() {
+  std::string text = "Where the colliders come from:";
+  for (const Scenario& scenario : scenarios())
+    fmt::format_to(std::back_inserter(text), "\n  {:<6} {}", scenario.name, scenario.summary);
+  return text + "\nor a file of rows time_s,id,x,y,z";
+}
+
+std::string describe_count() {
+  std::string text = fmt::format("Colliders of a scenario [default: {}", scenarios().front().default_count);
+  for (const Scenario& scenario : scenarios())
+    if (scenario.default_count != scenarios().front().default_count)
+      fmt::format_to(std::back_inserter(text), "; {}: {}", scenario.name, scenario.default_count);
+  return text + "]";
+}
+
+/// Samples of a file that the scene does not reach are said, and when it reaches none it is refused.
+void check_span(const TimeSpan& span, const SceneChoice& choice, double duration_s, Verbosity verbosity) {
+  const std::string times = fmt::format("its samples lie from {} s to {} s, the scene from 0 s to {} s", span.first_s,
+                                        span.last_s, duration_s);
+  if (span.last_s < 0 || span.first_s > duration_s)
+    throw Error(choice.colliders, "no sample lies within the scene: " + times,
+                "let the file's time begin at 0, or raise --duration");
+  if (std::isfinite(span.last_s) && (span.first_s < 0 || span.last_s > duration_s))
+    warn(fmt::format("{}: {}; the rest is left out (--duration)", choice.colliders, times), verbosity);
+}
+
+}  // namespace
+
+std::uint32_t SceneChoice::collider_count() const {
+  return count.value_or(find_scenario(colliders)->default_count);
+}
+
+void add_scene_options(CLI::App& verb, SceneChoice& choice) {
+  verb.add_option("--avatar", choice.avatar, "The avatar: the built-in one, or a glTF file (.glb, .gltf, .vrm)")
+      ->capture_default_str()
+      ->type_name("builtin|FILE");
+  verb.add_option("--animation", choice.animation,
+                  "Its animation, looping: a name, an index, or none [default: the first]")
+      ->type_name("NAME|INDEX|none");
+  verb.add_option("--map", choice.map,
+                  "The actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
+                  "[default: builtin for the built-in avatar, else none]")
+      ->type_name("builtin|none|FILE.png");
+  verb.add_option("--colliders", choice.colliders, describe_colliders())
+      ->capture_default_str()
+      ->type_name("SCENARIO|FILE.csv");
+  verb.add_option("--count", choice.count, describe_count())->check(help::whole_number(1, 1000000));
+}
+
+void check_scene_choice(const SceneChoice& choice) {
+  if (!choice.from_file() && find_scenario(choice.colliders) == nullptr) throw no_scenario(choice.colliders);
+  if (choice.count && choice.from_file())
+    throw UsageError("--count", "a file has the colliders that it has", "leave --count out");
+}
+
+std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
+                                               const Animation* animation, std::uint64_t seed) {
+  if (choice.from_file()) return read_collider_csv(choice.colliders);
+  return find_scenario(choice.colliders)->make(avatar, animation, {choice.collider_count(), seed});
+}
+
+void check_colliders(const SceneChoice& choice, const ColliderSource& colliders, double duration_s,
+                     Verbosity verbosity) {
+  check_span(colliders.span_s(), choice, duration_s, verbosity);
+  for (const std::string& warning : colliders.warnings())
+    warn(fmt::format("--colliders {}: {}", choice.colliders, warning), verbosity);
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,64 @@
+#include "tests/support/agreement.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+
+#include "detector/decision.hpp"
+#include "detector/exact/truth.hpp"
+#include "tests/support/contact_cases.hpp"
+
+namespace vestige::test {
+
+namespace {
+
+constexpr std::size_t kMostExamples = 5;
+
+std::string text_of(const glm::dvec3& x) {
+  return fmt::format("{{{:a}, {:a}, {:a}}}", x.x, x.y, x.z);
+}
+std::string text_of(const Corners& triangle) {
+  return fmt::format("{{{}, {}, {}}}", text_of(triangle.a), text_of(triangle.b), text_of(triangle.c));
+}
+std::string text_of(const std::optional<FirstContact>& contact) {
+  return contact ? fmt::format("t = {:a} side {}", contact->t, int{contact->side}) : "no contact";
+}
+
+bool same(const std::optional<FirstContact>& a, const std::optional<FirstContact>& b) {
+  if (!a || !b) return !a && !b;
+  return std::bit_cast<std::uint32_t>(a->t) == std::bit_cast<std::uint32_t>(b->t) && a->side == b->side;
+}
+
+}  // namespace
+
+void Agreement::add(const Agreement& other) {
+  pairs += other.pairs;
+  contacts += other.contacts;
+  exact_arithmetic += other.exact_arithmetic;
+  differences += other.differences;
+  for (const std::string& example : other.examples)
+    if (examples.size() < kMostExamples) examples.push_back(example);
+}
+
+Agreement compare_with_truth(Method method, std::string_view family, std::uint64_t seed, std::uint64_t pairs) {
+  Agreement agreement;
+  agreement.pairs = pairs;
+  CaseGenerator generator(family, seed);
+  for (std::uint64_t i = 0; i < pairs; ++i) {
+    const ContactCase c = generator.next();
+    const bool moves = method == Method::kCcd;
+    const Decision decision = moves ? decide_ccd(c.way, c.before, c.after) : decide_static(c.way, c.after);
+    const auto truth = moves ? exact::ccd_contact(c.way, c.before, c.after) : exact::static_contact(c.way, c.after);
+    if (truth) ++agreement.contacts;
+    if (decision.exact_arithmetic) ++agreement.exact_arithmetic;
+    if (same(decision.contact, truth)) continue;
+    ++agreement.differences;
+    if (agreement.examples.size() < kMostExamples)
+      agreement.examples.push_back(fmt::format(
+          "{} {}: way {{{}, {}}}, before {}, after {}: {}, truth {}", name_of(method), family, text_of(c.way.start),
+          text_of(c.way.end), text_of(c.before), text_of(c.after), text_of(decision.contact), text_of(truth)));
+  }
+  return agreement;
+}
+
+}  // namespace vestige::test
