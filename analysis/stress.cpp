@@ -16,48 +16,38 @@ namespace vestige {
 
 namespace {
 
-/// A box around what a pair's points pass. All its coordinates are theirs: nothing is rounded.
-struct Reach {
-  glm::dvec3 low;
-  glm::dvec3 high;
-
-  explicit Reach(const Corners& corners)
-      : low(glm::min(glm::min(corners.a, corners.b), corners.c)),
-        high(glm::max(glm::max(corners.a, corners.b), corners.c)) {}
-  explicit Reach(const Way& way) : low(glm::min(way.start, way.end)), high(glm::max(way.start, way.end)) {}
-
-  void include(const Reach& other) {
-    low = glm::min(low, other.low);
-    high = glm::max(high, other.high);
+/// Whether, along some axis, the point is beyond the same side of the triangle at t = 0 and at t = 1: since all move
+/// linearly, it is so in between, and they never meet. Coordinates are compared, so nothing is rounded.
+bool always_apart(const Way& way, const Corners& before, const Corners& now) {
+  const auto low = [](const Corners& corners) { return glm::min(glm::min(corners.a, corners.b), corners.c); };
+  const auto high = [](const Corners& corners) { return glm::max(glm::max(corners.a, corners.b), corners.c); };
+  const glm::dvec3 low_before = low(before);
+  const glm::dvec3 low_now = low(now);
+  const glm::dvec3 high_before = high(before);
+  const glm::dvec3 high_now = high(now);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way.start[axis] < low_before[axis] && way.end[axis] < low_now[axis]) return true;
+    if (way.start[axis] > high_before[axis] && way.end[axis] > high_now[axis]) return true;
   }
-  bool apart(const Reach& other) const {
-    for (int axis = 0; axis < 3; ++axis)
-      if (low[axis] > other.high[axis] || high[axis] < other.low[axis]) return true;
-    return false;
-  }
-};
+  return false;
+}
 
 class Truth {
  public:
   Truth(const StressSubject& subject, const Frame& frame, Method method)
       : subject_(subject), frame_(frame), method_(method) {
     skin_.skin(subject.avatar, frame, method);
-    const auto count = static_cast<std::uint32_t>(subject.avatar.triangles.size());
-    reaches_.reserve(count);
-    for (std::uint32_t triangle = 0; triangle < count; ++triangle) {
-      reaches_.emplace_back(corners_of(subject.avatar, skin_.now, triangle));
-      if (method == Method::kCcd) reaches_.back().include(Reach(corners_of(subject.avatar, skin_.before, triangle)));
-    }
   }
 
   Contact winner(const Segment& segment) const {
     Contact first;
-    for (std::uint32_t triangle = 0; triangle < reaches_.size(); ++triangle) {
+    for (std::uint32_t triangle = 0; triangle < subject_.avatar.triangles.size(); ++triangle) {
       const Corners now = corners_of(subject_.avatar, skin_.now, triangle);
-      const Corners before = method_ == Method::kStatic ? now : corners_of(subject_.avatar, skin_.before, triangle);
+      Corners before = now;
+      if (method_ != Method::kStatic) before = corners_of(subject_.avatar, skin_.before, triangle);
       Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
       if (method_ == Method::kCarried) way.start = glm::dvec3(carried_start(segment.start, before, now));
-      if (reaches_[triangle].apart(Reach(way))) continue;
+      if (always_apart(way, method_ == Method::kCcd ? before : now, now)) continue;
       const auto found =
           method_ == Method::kCcd ? exact::ccd_contact(way, before, now) : exact::static_contact(way, now);
       if (!found || found->t >= first.t) continue;  // ascending triangles: a tie goes to the smallest number
@@ -72,7 +62,6 @@ class Truth {
   const Frame& frame_;
   Method method_;
   SkinMotion skin_;
-  std::vector<Reach> reaches_;
 };
 
 void count_row(const ContactRow& row, const ContactRow& truth, StressCount& count) {

@@ -14,8 +14,8 @@ namespace vestige {
 /// All families, in the order of their tables.
 std::vector<StressFamily> stress_families();
 
-/// The winner of each column by `exact::`, pair by pair; pairs whose boxes lie apart are left out, which proves their
-/// miss. Rows carry everything.
+/// The winner of each column by `exact::`, pair by pair; pairs that some axis keeps apart all the time are left out.
+/// Rows carry everything.
 void stress_truth(const StressSubject& subject, const Frame& frame, Method method, ContactRow& row);
 
 /// A detector with a method. `make` is called for each body, and again for no other reason.

@@ -12,6 +12,7 @@
 #include "analysis/provenance.hpp"
 #include "analysis/stress_report.hpp"
 #include "cli/detectors.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
 
@@ -177,7 +178,7 @@ void add_stress(CLI::App& program, Invocation& invocation) {
       ->type_name("all|LIST");
   verb->add_option("--n", options->settings.cases, "Cases of each family and magnitude")
       ->capture_default_str()
-      ->check(CLI::Range(std::size_t{1}, std::size_t{100'000'000}));
+      ->check(help::whole_number(1, 100000000));
   verb->add_option("--detector", options->detectors,
                    fmt::format("Detectors to attack: {}; embree is its robust configuration, embree_default the other",
                                fmt::join(detectors_known(), ", ")))

@@ -55,7 +55,7 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
                            }});
   };
   for (const std::string& detector : parse_list(options.detectors)) {
-    if (detector != "paper") {
+    if (detector != "paper" && detector != "geometry") {
       add(detector, "");
       continue;
     }

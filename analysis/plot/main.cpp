@@ -19,6 +19,7 @@
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/headless_window.hpp"
 #include "analysis/plot/scene_figure.hpp"
+#include "analysis/plot/stress_figure.hpp"
 #include "analysis/plot/sweep_figure.hpp"
 #include "analysis/plot/texture_figure.hpp"
 #include "analysis/plot/timeline_figure.hpp"
@@ -117,6 +118,12 @@ int draw_sweep(const Options& options) {
   }
   return write_figure(options, folder / "frequency",
                       [&] { return plot::sweep_figure(plot::read_sweeps(options.inputs)); });
+}
+
+int draw_stress(const Options& options) {
+  const std::filesystem::path& folder = options.inputs.front();
+  return write_figure(options, (options.output.empty() ? folder : options.output) / "stress",
+                      [&] { return plot::stress_figure(plot::read_stress(folder)); });
 }
 
 int draw_timeline(const Options& options) {
@@ -269,6 +276,15 @@ int run(int argc, char** argv) {
       ->required();
   add_common_options(accuracy, options, "DIR", "Folder for the figure [default: the input]");
 
+  CLI::App& stress = add_command(app, "stress", "What each detector gets wrong, by family of hostile cases",
+                                 "  vestige plot stress results/stress\n"
+                                 "  vestige plot stress results/stress -o figures\n");
+  stress.add_option("INPUT", options.inputs, "The folder that 'vestige stress' wrote")
+      ->type_name("DIR")
+      ->expected(1)
+      ->required();
+  add_common_options(stress, options, "DIR", "Folder for the figures [default: the input]");
+
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
                                    "  vestige plot timeline timeline.csv -o figures/timeline --force\n");
@@ -373,6 +389,7 @@ int run(int argc, char** argv) {
     throw vestige::UsageError("-o -", "a plot is two files, and standard output is one", "name OUT");
   if (sweep.parsed()) return draw_sweep(options);
   if (accuracy.parsed()) return draw_accuracy(options);
+  if (stress.parsed()) return draw_stress(options);
   if (body.parsed()) return draw_body(options);
   if (scene.parsed()) return draw_scene(options);
   if (avatar.parsed()) return draw_avatar(options);

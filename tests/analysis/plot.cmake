@@ -8,6 +8,10 @@ vestige_test(plot_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_test.cpp
   LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG OpenEXR::OpenEXR)
 add_dependencies(plot_test vestige-plot)
+vestige_test(plot_stress_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_stress_test.cpp
+  LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG)
+add_dependencies(plot_stress_test vestige-plot)
 vestige_test(plot_body_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_body_test.cpp ${CMAKE_CURRENT_LIST_DIR}/plot_scene_test.cpp
   LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG)

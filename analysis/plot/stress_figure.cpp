@@ -1,0 +1,183 @@
+#include "analysis/plot/stress_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analysis/plot/palette.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr double kRowPt = 8.6;
+constexpr double kColumnPt = 50;
+constexpr double kNamePt = 92;
+constexpr double kMagnitudePt = 44;
+constexpr double kHeadPt = 24;
+constexpr double kMarginPt = 8;
+constexpr double kSmallLinePt = 8;
+constexpr double kFamilyGapPt = 2;
+constexpr double kLeastWidthPt = 360;
+
+constexpr TextStyle kHeadStyle = {7, kInk, Anchor::kCentre, Level::kFoot, Weight::kBold};
+constexpr TextStyle kMethodStyle = {6, kInk, Anchor::kCentre, Level::kFoot};
+constexpr TextStyle kNameStyle = {7, kInk, Anchor::kLeft, Level::kMiddle};
+constexpr TextStyle kMagnitudeStyle = {6, kSmallPrint, Anchor::kRight, Level::kMiddle};
+constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
+
+struct Column {
+  std::string detector;
+  std::string method;
+  friend bool operator==(const Column&, const Column&) = default;
+};
+
+std::string name_of(const StressLine& line) {
+  return line.variant.empty() ? line.name : fmt::format("{}, {}", line.name, line.variant);
+}
+
+bool same_family(const StressLine& a, const StressLine& b) {
+  return a.name == b.name && a.variant == b.variant;
+}
+
+/// An error in a million is as visible as it must be: the scale is logarithmic, from 1e-6 to 1.
+double shade_of(double rate) {
+  constexpr double kDecades = 6;
+  return std::clamp(1 + std::log10(rate) / kDecades, 0.0, 1.0);
+}
+
+std::string shown(double errors) {
+  if (errors < 1e5) return fmt::format("{:.0f}", errors);
+  return fmt::format("{:.3g}", errors);
+}
+
+class StressFigure : public Figure {
+ public:
+  explicit StressFigure(StressResult result) : result_(std::move(result)) {
+    for (const StressLine& line : result_.lines)
+      for (const StressCell& cell : line.cells) add_column({cell.detector, cell.method});
+  }
+
+  double width_pt() const override {
+    return std::max(kLeastWidthPt,
+                    2 * kMarginPt + kNamePt + kMagnitudePt + kColumnPt * static_cast<double>(columns_.size()));
+  }
+  double height_pt() const override {
+    return 2 * kMarginPt + kHeadPt + rows_pt() + kSmallLinePt * static_cast<double>(small_print().size() + 1);
+  }
+  std::string description() const override {
+    std::string text = "Errors of each detector by family of hostile cases.";
+    for (const Column& column : columns_) {
+      double errors = 0;
+      double cases = 0;
+      for (const StressLine& line : result_.lines)
+        for (const StressCell& cell : line.cells)
+          if (Column{cell.detector, cell.method} == column) {
+            errors += cell.error_rate() * cell.cases;
+            cases += cell.cases;
+          }
+      text += fmt::format(" {}, {}: {:.0f} errors in {:.0f} cases.", column.detector, column.method, errors, cases);
+    }
+    return text;
+  }
+
+  void draw(Canvas& canvas) const override {
+    const double top_pt = height_pt() - kMarginPt - kHeadPt;
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+      const double middle_pt = column_pt(i) + kColumnPt / 2;
+      canvas.text({middle_pt, top_pt + 11}, columns_[i].detector, kHeadStyle);
+      canvas.text({middle_pt, top_pt + 3}, columns_[i].method, kMethodStyle);
+    }
+    double y_pt = top_pt;
+    for (std::size_t i = 0; i < result_.lines.size(); ++i) {
+      const StressLine& line = result_.lines[i];
+      const bool first = i == 0 || !same_family(line, result_.lines[i - 1]);
+      if (first && i > 0) y_pt -= kFamilyGapPt;
+      y_pt -= kRowPt;
+      if (first) canvas.text({kMarginPt, y_pt + kRowPt / 2}, name_of(line), kNameStyle);
+      canvas.text({kMarginPt + kNamePt + kMagnitudePt - 5, y_pt + kRowPt / 2}, fmt::format("{:g}", line.magnitude),
+                  kMagnitudeStyle);
+      for (const StressCell& cell : line.cells) draw_cell(canvas, cell, y_pt);
+    }
+    draw_small_print(canvas);
+  }
+
+ private:
+  /// Those of one detector side by side.
+  void add_column(const Column& column) {
+    if (std::ranges::find(columns_, column) != columns_.end()) return;
+    auto place = columns_.end();
+    while (place != columns_.begin() && std::prev(place)->detector != column.detector) --place;
+    columns_.insert(place == columns_.begin() ? columns_.end() : place, column);
+  }
+
+  double rows_pt() const {
+    double height_pt = kRowPt * static_cast<double>(result_.lines.size());
+    for (std::size_t i = 1; i < result_.lines.size(); ++i)
+      if (!same_family(result_.lines[i], result_.lines[i - 1])) height_pt += kFamilyGapPt;
+    return height_pt;
+  }
+
+  static double column_pt(std::size_t column) {
+    return kMarginPt + kNamePt + kMagnitudePt + kColumnPt * static_cast<double>(column);
+  }
+
+  void draw_cell(Canvas& canvas, const StressCell& cell, double bottom_pt) const {
+    const auto found = std::ranges::find(columns_, Column{cell.detector, cell.method});
+    const double left_pt = column_pt(static_cast<std::size_t>(found - columns_.begin()));
+    const Box box = {left_pt + 0.5, bottom_pt + 0.4, left_pt + kColumnPt - 0.5, bottom_pt + kRowPt - 0.4};
+    const double rate = cell.error_rate();
+    canvas.rectangle(box, rate > 0 ? number_ramp(shade_of(rate)) : Colour{238, 241, 245});
+    const Colour ink = rate > 0 && shade_of(rate) > 0.2 ? kWhite : kInk;
+    const TextStyle style = {6, ink, Anchor::kCentre, Level::kMiddle, rate > 0 ? Weight::kBold : Weight::kRegular};
+    canvas.text({left_pt + kColumnPt / 2, bottom_pt + kRowPt / 2}, shown(rate * cell.cases), style);
+  }
+
+  std::vector<std::string> small_print() const {
+    double fewest = result_.lines.front().cells.front().cases;
+    double most = fewest;
+    for (const StressLine& line : result_.lines)
+      for (const StressCell& cell : line.cells) {
+        fewest = std::min(fewest, cell.cases);
+        most = std::max(most, cell.cases);
+      }
+    const std::string cases =
+        fewest == most ? fmt::format("{:.0f}", most) : fmt::format("{:.0f} to {:.0f}", fewest, most);
+    std::vector<std::string> lines = {
+        fmt::format("Errors among {} cases a cell: missed, false, on another triangle or actuator. Darker: a larger "
+                    "share.",
+                    cases),
+        "Numbers beside the families: magnitudes, as 'vestige stress -v' defines them."};
+    if (!result_.renderer.empty()) lines.push_back(fmt::format("OpenGL: {}.", result_.renderer));
+    std::string last;
+    if (!result_.machine.empty()) last = fmt::format("Machine: {}. ", result_.machine);
+    if (!result_.commit.empty()) last += fmt::format("Commit\u00a0{}.", result_.commit);
+    if (!last.empty()) lines.push_back(last);
+    return lines;
+  }
+
+  void draw_small_print(Canvas& canvas) const {
+    const std::vector<std::string> lines = small_print();
+    double y_pt = kMarginPt + kSmallLinePt * static_cast<double>(lines.size());
+    for (const std::string& line : lines) {
+      canvas.text({kMarginPt, y_pt}, line, kSmallStyle);
+      y_pt -= kSmallLinePt;
+    }
+  }
+
+  StressResult result_;
+  std::vector<Column> columns_;
+};
+
+}  // namespace
+
+std::unique_ptr<Figure> stress_figure(StressResult result) {
+  return std::make_unique<StressFigure>(std::move(result));
+}
+
+}  // namespace vestige::plot

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <memory>
+
+#include "analysis/plot/figure.hpp"
+#include "analysis/plot/stress_data.hpp"
+
+namespace vestige::plot {
+
+/// A heat map of errors: a row for each family and magnitude, a column for each detector and method.
+std::unique_ptr<Figure> stress_figure(StressResult result);
+
+}  // namespace vestige::plot
