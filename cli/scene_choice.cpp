@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/help/suggest.hpp"
+#include "cli/help/validators.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::cli {
