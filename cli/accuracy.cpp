@@ -235,7 +235,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
     if (interrupted()) break;
   }
   if (scenes.empty())
-    throw Error("accuracy", "was stopped before a rate had been measured", "start it again, with --force");
+    throw Error("accuracy", "was stopped before anything had been measured", "start it again, with --force");
 
   const std::vector<AccuracyContestant>& contestants = measurement.contestants();
   nlohmann::ordered_json results = results_json(options, choices.front(), scene);

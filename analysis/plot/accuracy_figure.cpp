@@ -134,7 +134,16 @@ class AccuracyFigure : public Figure {
     return std::min(kLeastShown, round_down_125(least * 0.8));
   }
 
-  Colour colour(std::size_t series) const { return kLineColours[series % kLineColours.size()]; }
+  /// One each; where there are too many, one for each detector, whose methods the marks tell apart.
+  Colour colour(std::size_t series) const {
+    const std::vector<AccuracySeries>& all = result_.panels.front().series;
+    if (all.size() <= kLineColours.size()) return kLineColours[series];
+    std::vector<std::string> detectors;
+    for (const AccuracySeries& one : all)
+      if (std::ranges::find(detectors, one.detector) == detectors.end()) detectors.push_back(one.detector);
+    const auto found = std::ranges::find(detectors, all[series].detector);
+    return kLineColours[static_cast<std::size_t>(found - detectors.begin()) % kLineColours.size()];
+  }
   static Mark mark_of(const AccuracySeries& series) {
     if (series.method == "static") return Mark::kCircle;
     return series.method == "ccd" ? Mark::kDiamond : Mark::kSquare;
@@ -194,6 +203,11 @@ class AccuracyFigure : public Figure {
   void draw_frame(Canvas& canvas, const Box& plot, const Axis& x, const Axis& y, bool is_last) const {
     constexpr Colour kLanes = {244, 246, 244};
     canvas.rectangle({plot.left_pt, plot.bottom_pt, plot.right_pt, y.begin_pt - 1.5}, kLanes);
+    const std::vector<Tick> x_ticks = log_ticks(x.low, x.high);
+    for (const Tick& tick : x_ticks)
+      if (!tick.label.empty())
+        canvas.line({x.place_pt(tick.value), plot.bottom_pt}, {x.place_pt(tick.value), plot.top_pt},
+                    {kGrid, 0.4, Dash::kSolid});
     std::vector<Tick> y_ticks = log_ticks(y.low, y.high);
     for (Tick& tick : y_ticks) {
       if (tick.label.empty()) continue;
@@ -210,11 +224,6 @@ class AccuracyFigure : public Figure {
       canvas.line({x_pt, plot.bottom_pt}, {x_pt, plot.top_pt}, {kSmallPrint, 0.5, Dash::kDotted});
       canvas.text({x_pt, plot.top_pt + 2}, "real time", {6, kSmallPrint, Anchor::kCentre, Level::kFoot});
     }
-    const std::vector<Tick> x_ticks = log_ticks(x.low, x.high);
-    for (const Tick& tick : x_ticks)
-      if (!tick.label.empty())
-        canvas.line({x.place_pt(tick.value), plot.bottom_pt}, {x.place_pt(tick.value), plot.top_pt},
-                    {kGrid, 0.4, Dash::kSolid});
     if (is_last) {
       draw_x_axis(canvas, plot, x, x_ticks, "Run time for a second of motion (s)");
     } else {

@@ -89,6 +89,40 @@ TEST_F(PlotTest, SeveralSweepsInOneFigureAreToldApart) {
   EXPECT_THAT(words, HasSubstr("cpu [2]"));
 }
 
+TEST_F(PlotTest, AnAccuracyFigureNamesItsScenesLinesAndRatesAndShowsWhatMissesNothing) {
+  write_text(folder_ / "accuracy.json", R"({
+    "animation": "walk", "avatar": {"triangles": 5000},
+    "scenes": [{"colliders": "hug", "count": 100, "truth": {"rate_hz": 30720, "events": 631}, "series": [
+      {"detector": "paper", "method": "static", "points": [
+        {"rate_hz": 60, "missed_share": 0.2}, {"rate_hz": 10000, "missed_share": 0.1}]},
+      {"detector": "cpu", "method": "ccd", "points": [
+        {"rate_hz": 60, "missed_share": 0}, {"rate_hz": 10000, "missed_share": 0}]}]}]})");
+  constexpr const char* kRun = R"({
+    "commit": "0123456789abcdef", "dirty": false, "machine": {"processor": "Fast & Cool 9000", "cores": 2},
+    "scenes": [{"colliders": "hug", "series": [
+      {"detector": "paper", "method": "static", "gl": {"renderer": "softpipe", "version": "4.5"}, "points": [
+        {"rate_hz": 60, "us_median": 5000}, {"rate_hz": 10000, "us_median": 5000}]},
+      {"detector": "cpu", "method": "ccd", "gl": null, "points": [
+        {"rate_hz": 60, "us_median": 400}, {"rate_hz": 10000, "us_median": 300}]}]}]})";
+  write_text(folder_ / "run.json", kRun);
+  const Outcome outcome = run("accuracy .");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  const std::string words = words_of(folder_ / "accuracy.svg");
+  for (const char* expected : {"hug: 100 colliders, 631 true events", "paper, static", "cpu, ccd", "none", "10k", "60",
+                               "Events missed", "Run time for a second of motion (s)", "real time", "30720 Hz", "walk",
+                               "softpipe", "Fast & Cool 9000", "0123456789"})
+    EXPECT_THAT(words, HasSubstr(expected));
+  EXPECT_EQ(read_png(folder_ / "accuracy.png").width, 1950U);
+
+  // Times of another run are not drawn over these errors.
+  std::string other = kRun;
+  other.replace(other.find("\"ccd\""), 5, "\"static\"");
+  write_text(folder_ / "run.json", other);
+  const Outcome refused = run("accuracy . --force");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.standard_error, HasSubstr("scenes[0].series[1].method"));
+}
+
 TEST_F(PlotTest, ASinglePulseAmongManyFramesStaysVisible) {
   std::string csv = "time_s,actuator_1,actuator_2\n";
   for (int frame = 0; frame < 50000; ++frame) csv += fmt::format("{},0,{}\n", frame / 1000.0, frame == 30000 ? 255 : 0);

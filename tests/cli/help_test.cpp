@@ -75,6 +75,8 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
       run("vestige record --rate 100 --duration 0.3 -o man.mcap && "
           "vestige replay man.mcap --timeline timeline.csv --textures textures.exr --contacts contacts.csv && "
           "mkdir -p results/sweep gpu software figures && "
+          "vestige accuracy --detector cpu --colliders swarm --rate 60 --truth-rate 240 --duration 0.1 --count 5 "
+          "--no-figure -o results/accuracy -q && "
           "vestige sweep man.mcap --counts 1,10 --detector cpu --min-time 0.01 --runs 1 --run-frames 5 "
           "--no-figure -o results/sweep -q && cp results/sweep/sweep.json gpu && cp results/sweep/sweep.json software "
           "&& vestige claims results -o results/README.md && mkdir given && mv [!g]* gpu given")
@@ -92,15 +94,16 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
       // What the example writes must not be there yet; and a long measurement is only begun.
       if (command == "vestige record") std::filesystem::remove(folder_ / "here/man.mcap");
       if (command == "vestige replay") run("rm here/*.csv here/*.exr");
-      const bool is_long = command == "vestige sweep";
+      const bool is_long = command == "vestige sweep" || command == "vestige accuracy";
       const test::Outcome outcome =
           run("cd here && { " + std::string(is_long ? "timeout -s INT 2 " : "") + example + "\n}");
       if (is_long) {
         EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(0, 124)) << example << "\n" << outcome.standard_error;
         // What there was time for is written; on a slow machine that is nothing, which is said.
-        const auto written = folder_ / "here/sweep/sweep.json";
+        const auto written =
+            folder_ / (command == "vestige sweep" ? "here/sweep/sweep.json" : "here/accuracy/accuracy.json");
         if (std::filesystem::exists(written))
-          EXPECT_THAT(read_text_file(written), HasSubstr("\"colliders\": 1,")) << example;
+          EXPECT_THAT(read_text_file(written), HasSubstr("\"colliders\": ")) << example;
         else
           EXPECT_THAT(outcome.standard_error, HasSubstr("before anything had been measured")) << example;
       } else {

@@ -1,0 +1,112 @@
+// Run time against error, as a user asks for it: real scenes, small ones.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/command_line.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr const char* kSmall =
+    "vestige accuracy --detector cpu --rate 60,250 --truth-rate 4000 --duration 0.1 --count 20 --no-figure ";
+
+class AccuracyCommandLine : public test::CommandLineTest {
+ protected:
+  static const nlohmann::json& point(const nlohmann::json& scene, const std::string& method, std::size_t rate) {
+    for (const auto& series : scene["series"])
+      if (series["method"] == method) return series["points"][rate];
+    throw std::out_of_range(method);
+  }
+
+  void expect_refused(const std::string& flags, const std::string& word) const {
+    const test::Outcome refused = run("vestige accuracy -o refused " + flags);
+    EXPECT_EQ(refused.exit_code, 2) << flags << "\n" << refused.standard_error;
+    EXPECT_THAT(refused.standard_error, HasSubstr(word)) << flags;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "refused")) << flags;
+  }
+};
+
+TEST_F(AccuracyCommandLine, AMethodThatSeesOnlyTheCollidersOwnWaysMissesWhatTheBodyRunsInto) {
+  const auto result = json_of(std::string(kSmall) + "--colliders still --count 100 -o still --json -");
+  const auto& still = result["scenes"][0];
+  EXPECT_EQ(still["colliders"], "still");
+  EXPECT_EQ(still["truth"]["method"], "ccd");
+  EXPECT_GT(still["truth"]["events"], 5);
+  for (const std::size_t rate : {std::size_t{0}, std::size_t{1}}) {
+    EXPECT_GT(point(still, "static", rate)["true_events"], 5);
+    EXPECT_EQ(point(still, "static", rate)["missed"], point(still, "static", rate)["true_events"]);
+    EXPECT_EQ(point(still, "static", rate)["impact_error_ms"], nullptr);
+    EXPECT_EQ(point(still, "ccd", rate)["missed"], 0);
+    EXPECT_LT(point(still, "ccd", rate)["impact_error_ms"]["median"], 0.5);
+  }
+  EXPECT_EQ(result["animation"], "walk");
+  EXPECT_EQ(result["run"]["scenes"][0]["series"][0]["points"][1]["frames"], 25);
+}
+
+TEST_F(AccuracyCommandLine, EqualWorkGivesEqualBytesWhateverItsTime) {
+  ASSERT_EQ(run(std::string(kSmall) + "--colliders swarm,hug -o one").exit_code, 0);
+  ASSERT_EQ(run(std::string(kSmall) + "--colliders swarm,hug -o two").exit_code, 0);
+  const std::string one = read_text_file(folder_ / "one/accuracy.json");
+  EXPECT_EQ(one, read_text_file(folder_ / "two/accuracy.json"));
+  EXPECT_THAT(one, Not(HasSubstr("_us\"")));
+  EXPECT_THAT(read_text_file(folder_ / "one/run.json"), HasSubstr("\"us_p99\""));
+  ASSERT_EQ(run(std::string(kSmall) + "--colliders swarm,hug --seed 2 -o three").exit_code, 0);
+  EXPECT_NE(one, read_text_file(folder_ / "three/accuracy.json"));
+}
+
+TEST_F(AccuracyCommandLine, BothTruthsAreTheSame) {
+  const std::string tiny =
+      "vestige accuracy --detector cpu --method ccd --rate 60 --truth-rate 120 --duration 0.05 --count 3 --colliders "
+      "hug "
+      "--no-figure --json - ";
+  auto cpu = json_of(tiny + "-o a")["scenes"][0]["truth"];
+  auto exact = json_of(tiny + "--truth exact -o b")["scenes"][0]["truth"];
+  EXPECT_EQ(exact["detector"], "exact");
+  cpu.erase("detector");
+  exact.erase("detector");
+  EXPECT_EQ(cpu, exact);
+}
+
+TEST_F(AccuracyCommandLine, ReadsCollidersFromAFileAndSaysWhatThePublishedMethodLacks) {
+  std::ofstream(folder_ / "hand.csv") << "time_s,id,x,y,z\n0,7,0,1.2,-1\n1,7,0,1.2,1\n";
+  const test::Outcome outcome =
+      run("vestige accuracy --detector paper,cpu --method static,ccd --rate 60 --truth-rate 2000 --colliders hand.csv "
+          "--no-figure -o hand");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_error, HasSubstr("no 'paper' with ccd"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("paper, static"));
+  const auto scene = nlohmann::json::parse(read_text_file(folder_ / "hand/accuracy.json"))["scenes"][0];
+  EXPECT_EQ(scene["count"], 1);
+  EXPECT_EQ(scene["truth"]["events"], 2);  // in through the back, out through the chest
+  EXPECT_EQ(point(scene, "ccd", 0)["found"], 2);
+}
+
+TEST_F(AccuracyCommandLine, RefusesWhatItCannotMeasureBeforeAnyWork) {
+  expect_refused("--detector cpu,magic", "magic");
+  expect_refused("--detector cpu,cpu", "twice");
+  expect_refused("--method ccd,later", "later");
+  expect_refused("--colliders swarm,swarn", "did you mean 'swarm'");
+  expect_refused("--rate 60,fast", "fast");
+  expect_refused("--rate 0", "'0'");
+  expect_refused("--rate 20000", "--truth-rate");
+  expect_refused("--rate 60 --duration 0.001", "two frames");
+  expect_refused("--duration nan", "--duration");
+  expect_refused("--truth paper", "--truth");
+}
+
+TEST_F(AccuracyCommandLine, DoesNotOverwriteWithoutForce) {
+  ASSERT_EQ(run("mkdir mine && echo mine > mine/run.json").exit_code, 0);
+  EXPECT_EQ(run(std::string(kSmall) + "-o mine").exit_code, 1);
+  EXPECT_EQ(read_text_file(folder_ / "mine/run.json"), "mine\n");
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "mine/accuracy.json"));
+}
+
+}  // namespace
+}  // namespace vestige
