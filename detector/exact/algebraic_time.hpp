@@ -12,7 +12,7 @@ namespace vestige::exact {
 class AlgebraicTime {
  public:
   /// x * 2^-scale
-  AlgebraicTime(Whole x, unsigned scale) : interval_{x, x, scale} {}
+  AlgebraicTime(const Whole& x, unsigned scale) : interval_{x, x, scale} {}
   /// The only root of `polynomial` in `interval`; it is simple; just right of the interval's low end the polynomial has
   /// `sign_below`, which is not 0.
   AlgebraicTime(const Polynomial& polynomial, Interval interval, int sign_below)
