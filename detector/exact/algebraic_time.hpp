@@ -11,7 +11,8 @@ namespace vestige::exact {
 /// interval whose ends are dyadic. The interval shrinks as answers ask for it; the number stays the same.
 class AlgebraicTime {
  public:
-  /// x * 2^-scale
+  /// x * 2^-scale. By value: g++ 12 falsely warns of uninitialised limbs otherwise.
+  // NOLINTNEXTLINE(performance-unnecessary-value-param)
   AlgebraicTime(Whole x, unsigned scale) : interval_{x, x, scale} {}
   /// The only root of `polynomial` in `interval`; it is simple; just right of the interval's low end the polynomial has
   /// `sign_below`, which is not 0.

@@ -5,6 +5,14 @@
 
 namespace vestige::exact {
 
+namespace {
+
+constexpr std::size_t index_of(int power) {
+  return static_cast<std::size_t>(power);
+}
+
+}  // namespace
+
 Polynomial Polynomial::moving(const Whole& at_0, const Whole& at_1) {
   Polynomial result;
   result.coefficient_[0] = at_0;
@@ -27,22 +35,21 @@ void Polynomial::drop_content() {
 
 Polynomial Polynomial::derivative() const {
   Polynomial result;
-  for (int power = 1; power <= degree_; ++power)
-    result.coefficient_[static_cast<std::size_t>(power - 1)] = (*this)[power] * power;
+  for (int power = 1; power <= degree_; ++power) result.coefficient_[index_of(power - 1)] = (*this)[power] * power;
   result.degree_ = std::max(degree_ - 1, -1);
   return result;
 }
 
 Polynomial operator+(const Polynomial& a, const Polynomial& b) {
   Polynomial sum = a;
-  for (int power = 0; power <= b.degree_; ++power) sum.coefficient_[static_cast<std::size_t>(power)] += b[power];
+  for (int power = 0; power <= b.degree_; ++power) sum.coefficient_[index_of(power)] += b[power];
   sum.drop_leading_zeros(std::max(a.degree_, b.degree_));
   return sum;
 }
 
 Polynomial operator-(const Polynomial& a, const Polynomial& b) {
   Polynomial difference = a;
-  for (int power = 0; power <= b.degree_; ++power) difference.coefficient_[static_cast<std::size_t>(power)] -= b[power];
+  for (int power = 0; power <= b.degree_; ++power) difference.coefficient_[index_of(power)] -= b[power];
   difference.drop_leading_zeros(std::max(a.degree_, b.degree_));
   return difference;
 }
@@ -51,7 +58,7 @@ Polynomial operator*(const Polynomial& a, const Polynomial& b) {
   Polynomial product;
   if (a.vanishes() || b.vanishes()) return product;
   for (int i = 0; i <= a.degree_; ++i)
-    for (int j = 0; j <= b.degree_; ++j) product.coefficient_[static_cast<std::size_t>(i + j)] += a[i] * b[j];
+    for (int j = 0; j <= b.degree_; ++j) product.coefficient_[index_of(i + j)] += a[i] * b[j];
   product.degree_ = a.degree_ + b.degree_;
   return product;
 }
@@ -65,10 +72,10 @@ void Polynomial::reduce_by(const Polynomial& divisor, Polynomial* quotient) {
     const Whole factor = (*this)[degree_];
     for (Whole& coefficient : coefficient_) coefficient *= leading;
     for (int power = 0; power <= divisor.degree_; ++power)
-      coefficient_[static_cast<std::size_t>(power + shift)] -= factor * divisor[power];
+      coefficient_[index_of(power + shift)] -= factor * divisor[power];
     if (quotient != nullptr) {
       for (Whole& coefficient : quotient->coefficient_) coefficient *= leading;
-      quotient->coefficient_[static_cast<std::size_t>(shift)] += factor;
+      quotient->coefficient_[index_of(shift)] += factor;
     }
     drop_leading_zeros(degree_ - 1);
   }
@@ -118,7 +125,7 @@ int Bernstein::sign_changes() const {
   int changes = 0;
   int last = 0;
   for (int i = 0; i <= degree; ++i) {
-    const int sign = sign_of(coefficient[static_cast<std::size_t>(i)]);
+    const int sign = sign_of(coefficient[index_of(i)]);
     if (sign == 0) continue;
     if (last != 0 && sign != last) ++changes;
     last = sign;
@@ -128,7 +135,7 @@ int Bernstein::sign_changes() const {
 
 int Bernstein::first_sign() const {
   for (int i = 0; i <= degree; ++i) {
-    const int sign = sign_of(coefficient[static_cast<std::size_t>(i)]);
+    const int sign = sign_of(coefficient[index_of(i)]);
     if (sign != 0) return sign;
   }
   return 0;
@@ -141,12 +148,11 @@ Bernstein bernstein(const Polynomial& polynomial, const Interval& interval) {
   if (degree < 0) return result;
   auto& c = result.coefficient;
   for (int power = 0; power <= degree; ++power)
-    c[static_cast<std::size_t>(power)] = polynomial[power] << (interval.scale * static_cast<unsigned>(degree - power));
+    c[index_of(power)] = polynomial[power] << (interval.scale * static_cast<unsigned>(degree - power));
   // t = low + s (high - low): Taylor's shift by Horner's scheme, then the stretch.
   if (interval.low != 0)
     for (int i = 0; i < degree; ++i)
-      for (int power = degree - 1; power >= i; --power)
-        c[static_cast<std::size_t>(power)] += c[static_cast<std::size_t>(power + 1)] * interval.low;
+      for (int power = degree - 1; power >= i; --power) c[index_of(power)] += c[index_of(power + 1)] * interval.low;
   const Whole width = interval.high - interval.low;
   Whole stretch = 1;
   // sum_j c_j s^j has the Bernstein coefficients b_i = sum_j (i over j) / (n over j) c_j; all times 3 for n = 3 and
@@ -154,13 +160,12 @@ Bernstein bernstein(const Polynomial& polynomial, const Interval& interval) {
   constexpr std::array<std::array<int, kMaxDegree + 1>, kMaxDegree + 1> kFactor = {
       {{1}, {1, 1}, {2, 1, 2}, {3, 1, 1, 3}}};
   for (int power = 0; power <= degree; ++power) {
-    c[static_cast<std::size_t>(power)] *= stretch;
-    c[static_cast<std::size_t>(power)] *= kFactor[static_cast<std::size_t>(degree)][static_cast<std::size_t>(power)];
+    c[index_of(power)] *= stretch;
+    c[index_of(power)] *= kFactor[index_of(degree)][index_of(power)];
     stretch *= width;
   }
   for (int i = 1; i <= degree; ++i)
-    for (int power = degree; power >= i; --power)
-      c[static_cast<std::size_t>(power)] += c[static_cast<std::size_t>(power - 1)];
+    for (int power = degree; power >= i; --power) c[index_of(power)] += c[index_of(power - 1)];
   return result;
 }
 
