@@ -90,11 +90,11 @@ nlohmann::ordered_json point_times_json(const AccuracyPoint& point) {
 }
 
 std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyContestant>& contestants) {
-  std::string table = fmt::format("{:<16} {:>7} {:>6} {:>6} {:>7} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n",
+  std::string table = fmt::format("{:<23} {:>7} {:>6} {:>6} {:>7} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n",
                                   scene.colliders, "rate", "true", "missed", "missed", "mistaken", "wrong", "false",
                                   "impact error", "onset error", "time a frame");
   fmt::format_to(std::back_inserter(table),
-                 "{:<16} {:>7} {:>6} {:>6} {:>7} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n", "detector", "Hz",
+                 "{:<23} {:>7} {:>6} {:>6} {:>7} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n", "detector", "Hz",
                  "events", "events", "%", "events", "motor", "events", "median/p99 ms", "median/p99 ms",
                  "median/p99 us");
   for (std::size_t i = 0; i < contestants.size(); ++i)
@@ -106,7 +106,7 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
                                : fmt::format("{:.3f}/{:.3f}", quantile_ms(seconds, 0.5), quantile_ms(seconds, 0.99));
       };
       fmt::format_to(
-          std::back_inserter(table), "{:<16} {:>7} {:>6} {:>6} {:>7.2f} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n",
+          std::back_inserter(table), "{:<23} {:>7} {:>6} {:>6} {:>7.2f} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n",
           fmt::format("{}, {}", contestants[i].detector, name_of(contestants[i].method)), point.rate_hz,
           score.true_events(), score.missed, 100 * score.missed_share(), score.mistaken, score.wrong_actuator,
           score.false_events, pair_ms(score.impact_error_s), pair_ms(score.onset_error_s),

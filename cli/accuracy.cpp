@@ -30,7 +30,7 @@ struct AccuracyOptions {
   DetectorChoice choice;
   SceneChoice scene;
   std::string colliders = "swarm,hug,still";
-  std::string detectors = "paper,cpu";
+  std::string detectors = "paper,cpu,embree";
   std::string methods = "static,carried,ccd";
   std::string rates = "60,90,250,1000,4000,10000";
   double duration_s = 1;
