@@ -45,7 +45,7 @@ struct StressCount {
 };
 
 struct StressSettings {
-  std::size_t cases = 1000;  ///< of each family and magnitude
+  std::size_t cases = 200;  ///< of each family and magnitude
   std::uint64_t seed = 1;
 };
 
