@@ -18,6 +18,7 @@ namespace {
 
 using nlohmann::json;
 using test::GltfBuilder;
+using test::primitive;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -110,10 +111,6 @@ void expect_same(const std::vector<std::byte>& glb) {
 
 void expect_same(const GltfBuilder& builder) {
   expect_same(builder.glb());
-}
-
-json& primitive(GltfBuilder& builder) {
-  return builder.document["meshes"][0]["primitives"][0];
 }
 
 /// Puts an accessor that was just added in the place of another.
