@@ -126,10 +126,10 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   std::filesystem::create_directories(options.output, failure);
   if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
   check_outputs({json_path, run_path, options.common.json}, {}, options.common);
+  catch_interrupts();
   const Contestants contestants = make_contestants(options, verbosity);
   if (verbosity == Verbosity::kVerbose) print_message(family_definitions());
 
-  catch_interrupts();
   const auto start = std::chrono::steady_clock::now();
   std::vector<StressCount> counts;
   {
@@ -139,7 +139,8 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
     counts = run_stress(families, contestants.list, settings, [&](double share) { return progress.update(share); });
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (counts.empty()) throw Error("stress", "was stopped before anything was complete", "start it again, with --force");
+  if (counts.empty())
+    throw Error("stress", "was stopped before anything had been measured", "start it again, with --force");
 
   nlohmann::ordered_json result;
   result["schema_version"] = 1;

@@ -67,8 +67,8 @@ machine() {
 }
 
 if [ "$quick" ]; then
-  duration=0.2 counts=1,10,100 sweep_flags="--min-time 0.02 --runs 2 --run-frames 5"
-  accuracy_flags="--duration 0.1 --rate 60,1000 --truth-rate 4000" stress_flags="--n 100"
+  duration=0.05 counts=1,10,100 sweep_flags="--min-time 0.02 --runs 2 --run-frames 5"
+  accuracy_flags="--duration 0.05 --rate 60,1000 --truth-rate 2000" stress_flags="--n 3"
 else
   duration=2 counts=1,2,4,6,8,10:100:5 sweep_flags= accuracy_flags= stress_flags=
 fi

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "tests/support/command_line.hpp"
@@ -94,16 +95,20 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
       // What the example writes must not be there yet; and a long measurement is only begun.
       if (command == "vestige record") std::filesystem::remove(folder_ / "here/man.mcap");
       if (command == "vestige replay") run("rm here/*.csv here/*.exr");
-      const bool is_long = command == "vestige sweep" || command == "vestige accuracy";
+      const std::map<std::string, std::pair<const char*, const char*>> long_ones = {
+          {"vestige sweep", {"sweep.json", "\"colliders\": "}},
+          {"vestige accuracy", {"accuracy.json", "\"colliders\": "}},
+          {"vestige stress", {"stress.json", "\"families\": "}}};
+      const bool is_long = long_ones.contains(command);
       const test::Outcome outcome =
           run("cd here && { " + std::string(is_long ? "timeout -s INT 2 " : "") + example + "\n}");
       if (is_long) {
         EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(0, 124)) << example << "\n" << outcome.standard_error;
         // What there was time for is written; on a slow machine that is nothing, which is said.
-        const auto written =
-            folder_ / (command == "vestige sweep" ? "here/sweep/sweep.json" : "here/accuracy/accuracy.json");
+        const auto& [name, field] = long_ones.at(command);
+        const auto written = folder_ / "here" / example.substr(example.rfind(' ') + 1) / name;
         if (std::filesystem::exists(written))
-          EXPECT_THAT(read_text_file(written), HasSubstr("\"colliders\": ")) << example;
+          EXPECT_THAT(read_text_file(written), HasSubstr(field)) << example;
         else
           EXPECT_THAT(outcome.standard_error, HasSubstr("before anything had been measured")) << example;
       } else {
