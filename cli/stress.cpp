@@ -172,7 +172,7 @@ void add_stress(CLI::App& program, Invocation& invocation) {
   options->detectors = fmt::format("{}", fmt::join(raced, ","));
   CLI::App* verb = add_verb(program, "stress", "Attack the detectors with hostile cases, and count what they get wrong",
                             "  vestige stress -o stress\n"
-                            "  vestige stress --families watertight --detector cpu --n 1000000 -o ladder\n");
+                            "  vestige stress --families watertight --detector cpu --n 10000 -o ladder\n");
   verb->add_option("--families", options->families,
                    fmt::format("Families of cases, of: {}; -v prints what each is", fmt::join(family_names(), ", ")))
       ->capture_default_str()

@@ -78,6 +78,9 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
           "mkdir -p results/sweep gpu software figures && "
           "vestige accuracy --detector cpu --colliders swarm --rate 60 --truth-rate 240 --duration 0.1 --count 5 "
           "--no-figure -o results/accuracy -q && "
+          "vestige stress --detector cpu --families vertex --n 1 --no-figure -o results/stress -q && "
+          "printf '1,4,1,4,1,1,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,1,1,0,1,1\n"
+          "1,4,1,4,-1,1,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,1,1,0,1,1\n' >queries.csv && "
           "vestige sweep man.mcap --counts 1,10 --detector cpu --min-time 0.01 --runs 1 --run-frames 5 "
           "--no-figure -o results/sweep -q && cp results/sweep/sweep.json gpu && cp results/sweep/sweep.json software "
           "&& vestige claims results -o results/README.md && mkdir given && mv [!g]* gpu given")
@@ -101,7 +104,7 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
           {"vestige stress", {"stress.json", "\"families\": "}}};
       const bool is_long = long_ones.contains(command);
       const test::Outcome outcome =
-          run("cd here && { " + std::string(is_long ? "timeout -s INT 2 " : "") + example + "\n}");
+          run("cd here && { " + std::string(is_long ? "timeout --foreground -s INT 2 " : "") + example + "\n}");
       if (is_long) {
         EXPECT_THAT(outcome.exit_code, ::testing::AnyOf(0, 124)) << example << "\n" << outcome.standard_error;
         // What there was time for is written; on a slow machine that is nothing, which is said.
