@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <set>
 
 namespace vestige {
@@ -81,7 +82,94 @@ void add_replay(const nlohmann::json& result, const Claim& base, std::vector<Cla
   claims.push_back(claim);
 }
 
+void add_query(const nlohmann::json& result, Claim claim, std::vector<Claim>& claims) {
+  claim.machine = machine_of(result, nullptr);
+  const auto& total = result.at("total");
+  const auto count = [&total](const char* field) { return total.at(field).get<std::uint64_t>(); };
+  claim.claim = fmt::format(
+      "`{}` by `{}` answers {} queries ({}) with {} false negatives and {} false positives; median {:.2f} us, worst "
+      "{:.0f} us",
+      result.at("method").get<std::string>(), result.at("detector").get<std::string>(), count("queries"),
+      result.at("arithmetic").get<std::string>(), count("false_negatives"), count("false_positives"),
+      total.at("median_us").get<double>(), total.at("max_us").get<double>());
+  claims.push_back(claim);
+}
+
+void add_accuracy(const nlohmann::json& result, const Claim& base, std::vector<Claim>& claims) {
+  for (const auto& scene : result.at("scenes"))
+    for (const auto& series : scene.at("series")) {
+      Claim claim = base;
+      claim.machine = machine_of(result, result.at("gl"));
+      claim.claim =
+          fmt::format("`{}` with `{}`, {}: of {} true contacts it misses", series.at("detector").get<std::string>(),
+                      series.at("method").get<std::string>(), scene.at("colliders").get<std::string>(),
+                      scene.at("truth").at("events").get<std::uint64_t>());
+      for (const auto& point : series.at("points"))
+        fmt::format_to(std::back_inserter(claim.claim), "{} {:.1f} % at {} Hz",
+                       claim.claim.ends_with(" misses") ? "" : ",", 100 * point.at("missed_share").get<double>(),
+                       point.at("rate_hz").get<double>());
+      claims.push_back(claim);
+    }
+}
+
+void add_stress(const nlohmann::json& result, const Claim& base, std::vector<Claim>& claims) {
+  struct Sum {
+    std::uint64_t cases = 0;
+    std::uint64_t missed = 0;
+    std::uint64_t false_positives = 0;
+    std::uint64_t wrong_winner = 0;
+  };
+  std::map<std::pair<std::string, std::string>, Sum> sums;
+  for (const auto& row : result.at("families")) {
+    Sum& sum = sums[{row.at("detector").get<std::string>(), row.at("method").get<std::string>()}];
+    sum.cases += row.at("cases").get<std::uint64_t>();
+    sum.missed += row.at("false_negatives").get<std::uint64_t>();
+    sum.false_positives += row.at("false_positives").get<std::uint64_t>();
+    sum.wrong_winner += row.at("wrong_winner").get<std::uint64_t>();
+  }
+  for (const auto& [contestant, sum] : sums) {
+    Claim claim = base;
+    claim.machine = machine_of(result, result.at("gl"));
+    claim.claim =
+        fmt::format("`{}` with `{}`, of {} hostile cases: {} false negatives, {} false positives, {} wrong winners",
+                    contestant.first, contestant.second, sum.cases, sum.missed, sum.false_positives, sum.wrong_winner);
+    claims.push_back(claim);
+  }
+}
+
+void add_agreement(const nlohmann::json& result, Claim claim, std::vector<Claim>& claims) {
+  claim.machine = machine_of(result, nullptr);
+  std::uint64_t pairs = 0;
+  std::uint64_t differences = 0;
+  for (const auto& family : result.at("families")) {
+    pairs += family.at("pairs").get<std::uint64_t>();
+    differences += family.at("differences").get<std::uint64_t>();
+  }
+  claim.claim = fmt::format("the deciding code and the slow truth differ in {} of {} pairs (`{}`)", differences, pairs,
+                            result.at("method").get<std::string>());
+  claims.push_back(claim);
+}
+
+void add_exactness(const nlohmann::json& result, Claim claim, std::vector<Claim>& claims) {
+  claim.machine = machine_of(result, nullptr);
+  for (const auto& frame : result.at("frames")) {
+    claim.claim = fmt::format("exact decisions take {:.3f} times the time of plain double ones ({}, whole frame)",
+                              frame.at("ratio").get<double>(), frame.at("colliders").get<std::string>());
+    claims.push_back(claim);
+  }
+}
+
 }  // namespace
+
+nlohmann::json with_run(nlohmann::json result, const nlohmann::json& run) {
+  nlohmann::json gl = run.value("gl", nlohmann::json());
+  for (const auto& scene : run.value("scenes", nlohmann::json::array()))
+    for (const auto& series : scene.at("series"))
+      if (gl.is_null()) gl = series.value("gl", nlohmann::json());
+  for (const char* field : {"argv", "time", "commit", "dirty", "machine"}) result[field] = run.at(field);
+  result["gl"] = gl;
+  return result;
+}
 
 std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& file) {
   std::vector<Claim> claims;
@@ -95,6 +183,16 @@ std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& fi
   if (result.contains("series")) add_sweep(result, base, claims);
   if (result.contains("recording_s")) add_record(result, base, claims);
   if (result.contains("texture_hash")) add_replay(result, base, claims);
+  if (result.contains("total")) add_query(result, base, claims);
+  if (result.contains("scenes") && result.contains("duration_s")) add_accuracy(result, base, claims);
+  if (result.contains("families")) {
+    if (result["families"].is_array()) {
+      add_stress(result, base, claims);
+    } else {
+      add_agreement(result, base, claims);
+    }
+  }
+  if (result.contains("decisions")) add_exactness(result, base, claims);
   return claims;
 }
 

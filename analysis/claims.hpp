@@ -16,8 +16,12 @@ struct Claim {
   std::string file;
 };
 
-/// What the JSON of a recording, replay or sweep shows; nothing for any other JSON. `file` is how the table names it.
+/// What the JSON of a recording, replay, sweep, query, accuracy, stress, agreement or decision benchmark shows; nothing
+/// for any other JSON. `file` is how the table names it.
 std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& file);
+
+/// A file that holds results only, with what its run.json says of where they come from.
+nlohmann::json with_run(nlohmann::json result, const nlohmann::json& run);
 
 /// The claims as a Markdown table.
 std::string claims_table(const std::vector<Claim>& claims);

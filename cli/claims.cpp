@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
@@ -34,7 +35,12 @@ std::vector<Claim> claims_of_files(const std::vector<std::string>& files, const 
   for (const std::string& file : files) {
     const std::string name = std::filesystem::relative(file, folder).string();
     try {
-      const std::vector<Claim> found = claims_of(nlohmann::json::parse(read_text_file(file)), name);
+      auto result = nlohmann::json::parse(read_text_file(file));
+      // What holds results only has a run.json beside it, which says where they come from.
+      const auto run = std::filesystem::path(file).parent_path() / "run.json";
+      if (run != file && result.is_object() && !result.contains("argv") && std::filesystem::exists(run))
+        result = with_run(std::move(result), nlohmann::json::parse(read_text_file(run)));
+      const std::vector<Claim> found = claims_of(result, name);
       claims.insert(claims.end(), found.begin(), found.end());
     } catch (const nlohmann::json::exception& exception) {
       throw Error(file, fmt::format("is no result of ours: {}", exception.what()), "remove it, or write it again");
@@ -79,7 +85,7 @@ void add_claims(CLI::App& program, Invocation&) {
   CLI::App* verb = add_verb(program, "claims", "Tabulate what a folder of results shows, as Markdown",
                             "  vestige claims results\n"
                             "  vestige claims results --force -o results/README.md\n");
-  verb->add_option("DIR", options->folder, "Folder of JSON files that sweep and replay wrote")->required();
+  verb->add_option("DIR", options->folder, "Folder of JSON files that the other verbs wrote")->required();
   verb->add_option("-o,--output", options->output, "The table to write, or '-' for standard output")
       ->capture_default_str()
       ->type_name("OUT.md|-");

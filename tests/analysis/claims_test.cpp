@@ -35,6 +35,34 @@ TEST(Claims, QuoteASweepAtThePapersCountsWithIntervalAndOrigin) {
   EXPECT_THAT(claims_table(claims), HasSubstr("[run/sweep.json](run/sweep.json)"));
 }
 
+TEST(Claims, SumAStressUpAndTakeItsOriginFromTheRunBesideIt) {
+  const auto row = [](const char* detector, int missed) {
+    return nlohmann::json{{"detector", detector},      {"method", "static"},   {"cases", 10},
+                          {"false_negatives", missed}, {"false_positives", 1}, {"wrong_winner", 0}};
+  };
+  const nlohmann::json stress = {{"families", {row("cpu", 0), row("paper", 2), row("paper", 3)}}};
+  nlohmann::json run = result();
+  run["gl"] = {{"renderer", "softpipe"}};
+  const auto claims = claims_of(with_run(stress, run), "stress.json");
+  ASSERT_EQ(claims.size(), 2U);
+  EXPECT_THAT(claims[0].claim, HasSubstr("`cpu` with `static`, of 10 hostile cases: 0 false negatives"));
+  EXPECT_THAT(claims[1].claim, HasSubstr("of 20 hostile cases: 5 false negatives, 2 false positives"));
+  EXPECT_EQ(claims[1].machine, "Abacus, 2 cores; softpipe");
+}
+
+TEST(Claims, QuoteWhatEachDetectorMissesAtEachRate) {
+  nlohmann::json accuracy = {{"duration_s", 1.0}};
+  const nlohmann::json points = {{{"rate_hz", 60.0}, {"missed_share", 0.125}},
+                                 {{"rate_hz", 1000.0}, {"missed_share", 0.0}}};
+  accuracy["scenes"] = {{{"colliders", "hug"},
+                         {"truth", {{"events", 8}}},
+                         {"series", {{{"detector", "paper"}, {"method", "static"}, {"points", points}}}}}};
+  const auto claims = claims_of(with_run(accuracy, result()), "accuracy.json");
+  ASSERT_EQ(claims.size(), 1U);
+  EXPECT_EQ(claims[0].claim,
+            "`paper` with `static`, hug: of 8 true contacts it misses 12.5 % at 60 Hz, 0.0 % at 1000 Hz");
+}
+
 TEST(Claims, AreNotMadeOfOtherJson) {
   EXPECT_TRUE(claims_of(nlohmann::json::array(), "a.json").empty());
   EXPECT_TRUE(claims_of(result(), "a.json").empty());
