@@ -165,7 +165,7 @@ StressScene non_finite(StressOrder order) {
 }
 
 constexpr std::array kSizes = {1e-3, 1e-6, 0.0};
-constexpr std::array kTurns_deg = {10.0, 90.0, 180.0};
+constexpr std::array kTurnsInDegrees = {10.0, 90.0, 180.0};
 constexpr std::array kJumps_m = {1.0, 1000.0, 1e7};
 constexpr std::array kAxes = {1.0, 3.0};
 constexpr std::array kBroken = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0};
@@ -177,7 +177,7 @@ constexpr std::array<StressFamily, 5> kFamilies = {{
      kMannequin, non_finite},
     {"collapse", "", "A bone twisted by half a turn and shrunk, so that the skin around it collapses.",
      "scale of the bone", kSizes, kMannequin, collapse},
-    {"spin", "", "An avatar that turns fast.", "degrees a frame", kTurns_deg, kMannequin, spin},
+    {"spin", "", "An avatar that turns fast.", "degrees a frame", kTurnsInDegrees, kMannequin, spin},
     {"teleport", "", "An avatar that jumps; half of the colliders say that they jumped along, and test nothing.",
      "metres", kJumps_m, kMannequin, teleport},
     {"mirrored", "", "A bone with negative scale, which turns its skin inside out.", "mirrored axes", kAxes, kMannequin,

@@ -82,8 +82,7 @@ Plane lattice_plane(Random& random) {
 /// What the bodies of a family are like, and how its segments run.
 class TriangleScene {
  public:
-  explicit TriangleScene(StressOrder order, Stage stage = {})
-      : order_(std::move(order)), random_(order_.random), stage_(stage) {}
+  explicit TriangleScene(StressOrder order, Stage stage = {}) : order_(order), random_(order_.random), stage_(stage) {}
 
   template <typename MakeFan, typename MakeLine>
   StressScene build(MakeFan&& make_fan, MakeLine&& make_line) {
@@ -386,7 +385,7 @@ StressScene texel_border(StressOrder order) {
 
 constexpr std::array kOffsets_m = {0.0, 10.0, 1000.0};
 constexpr std::array kFarOffsets_m = {0.0, 10.0, 1000.0, 1e5, 1e7};
-constexpr std::array kAngles_deg = {1.0, 0.1, 0.01, 0.001};
+constexpr std::array kAnglesInDegrees = {1.0, 0.1, 0.01, 0.001};
 constexpr std::array kWidths = {1e-2, 1e-4, 1e-6};
 constexpr std::array kUlps = {0.0, 1.0};
 constexpr std::array kMoreUlps = {1.0, 2.0, 4.0};
@@ -402,7 +401,7 @@ constexpr std::array<StressFamily, 13> kFamilies = {{
     {"vertex", "", "Segments through a corner that several triangles share.", kFromOrigin, kOffsets_m, kLoose, vertex},
     {"edge", "", "Segments through an edge that two triangles share.", kFromOrigin, kOffsets_m, kLoose, edge},
     {"coplanar", "", "Segments in the very plane of the triangles.", kFromOrigin, kOffsets_m, kLoose, coplanar},
-    {"grazing", "", "Segments that cross a triangle at a small angle.", "degrees", kAngles_deg, kLoose, grazing},
+    {"grazing", "", "Segments that cross a triangle at a small angle.", "degrees", kAnglesInDegrees, kLoose, grazing},
     {"needle", "", "Segments at long thin triangles and at flat caps.", "width, metres, of triangles about 1 m long",
      kWidths, kLoose, needle},
     {"zero_length", "", "Colliders that rest on the surface.", kNudge, kUlps, kLoose, zero_length},

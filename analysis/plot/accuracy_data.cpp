@@ -31,7 +31,7 @@ AccuracyPoint read_point(const JsonField& errors, const JsonField& times) {
 JsonField partner(const JsonField& errors, const JsonField& times, std::size_t index,
                   std::initializer_list<const char*> keys) {
   if (times.count() != errors.count()) times.refuse("is not as long as in accuracy.json");
-  const JsonField found = times.at(index);
+  JsonField found = times.at(index);
   for (const char* key : keys)
     if (found.at(key).text() != errors.at(index).at(key).text()) found.at(key).refuse("is not that of accuracy.json");
   return found;
