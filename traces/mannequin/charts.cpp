@@ -1,6 +1,7 @@
 #include "traces/mannequin/charts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <map>
