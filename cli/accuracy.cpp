@@ -40,20 +40,6 @@ struct AccuracyOptions {
   std::string output;
 };
 
-/// The parts of a list, each of which must be known and stand there once.
-template <typename IsKnown>
-std::vector<std::string> parse_names(const std::string& list, const std::string& flag, const std::string& remedy,
-                                     IsKnown&& is_known) {
-  std::vector<std::string> names = parse_list(list);
-  std::set<std::string> seen;
-  for (const std::string& name : names) {
-    if (!is_known(name)) throw UsageError(flag, fmt::format("there is no '{}'", name), remedy);
-    if (!seen.insert(name).second)
-      throw UsageError(flag, fmt::format("'{}' stands there twice", name), "name each once");
-  }
-  return names;
-}
-
 std::vector<double> parse_rates(const AccuracyOptions& options) {
   const std::string remedy = "give rates in Hz, as 60,90,1000";
   std::set<double> rates_hz;
@@ -76,12 +62,6 @@ std::vector<double> parse_rates(const AccuracyOptions& options) {
   return {rates_hz.begin(), rates_hz.end()};
 }
 
-Method method_of(const std::string& name) {
-  DetectorChoice choice;
-  choice.method = name;
-  return choice.method_kind();
-}
-
 /// Every detector with every method that it has; what cannot run is said.
 std::vector<AccuracyContestant> make_contestants(const AccuracyOptions& options, const Scene& scene) {
   std::vector<AccuracyContestant> contestants;
@@ -90,7 +70,7 @@ std::vector<AccuracyContestant> make_contestants(const AccuracyOptions& options,
       DetectorChoice choice = options.choice;
       choice.method = method;
       try {
-        contestants.push_back({detector, method_of(method),
+        contestants.push_back({detector, method_named(method),
                                make_detector(detector, choice.context, choice, scene.avatar, scene.map, Plane::kTime)});
       } catch (const Error& error) {
         warn(fmt::format("no '{}' with {}: {}", detector, method, error.what()), options.common.verbosity());
@@ -120,22 +100,10 @@ std::vector<std::uint32_t> collider_ids(const AccuracyOptions& options, const Sc
   return {ids.begin(), ids.end()};
 }
 
-void draw_figure(const AccuracyOptions& options) {
-  std::vector<std::string> arguments = {"accuracy", options.output};
-  if (options.common.force) arguments.emplace_back("--force");
-  if (options.common.quiet) arguments.emplace_back("-q");
-  try {
-    if (run_plot(arguments) != kDone) warn("the figure is not complete", options.common.verbosity());
-  } catch (const Error& error) {
-    warn(fmt::format("no figure was drawn: {}", error.what()), options.common.verbosity());
-  }
-}
-
 /// The scenes asked for: alike but for the colliders.
 std::vector<SceneChoice> scene_choices(const AccuracyOptions& options) {
   std::vector<SceneChoice> choices;
-  for (const std::string& colliders :
-       parse_names(options.colliders, "--colliders", "", [](const std::string&) { return true; })) {
+  for (const std::string& colliders : parse_distinct(options.colliders, "--colliders")) {
     choices.push_back(options.scene);
     choices.back().colliders = colliders;
     check_scene_choice(choices.back());
@@ -208,10 +176,8 @@ nlohmann::ordered_json results_json(const AccuracyOptions& options, const SceneC
 }
 
 void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
-  parse_names(options.detectors, "--detector", "'vestige replay --help' lists the detectors",
-              [](const std::string& name) { return is_detector(name); });
-  parse_names(options.methods, "--method", "choose of: static, carried, ccd",
-              [](const std::string& name) { return name == "static" || name == "carried" || name == "ccd"; });
+  parse_names(options.detectors, detector_names(), "--detector");
+  parse_names(options.methods, kMethodNames, "--method");
   if (options.truth_rate_hz * options.duration_s > kMostFrames)
     throw UsageError("--duration", "the truth would have more than 4294967295 frames", "lower it, or --truth-rate");
   const std::vector<double> rates_hz = parse_rates(options);
@@ -250,8 +216,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   if (interrupted()) warn("stopped early; the rates that were measured were written", options.common.verbosity());
   print_summary(accuracy_table(scenes, contestants), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", errors_path, run_path), {options.common.json}, options.common);
-  std::fflush(stdout);  // before the child that draws prints its own
-  if (!options.no_figure && !interrupted()) draw_figure(options);
+  if (!options.no_figure && !interrupted()) draw_figure("accuracy", options.output, options.common);
   if (interrupted()) invocation.exit_code = kDataLost;
 }
 

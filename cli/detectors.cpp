@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "detector/embree_detector.hpp"
 #include "traces/error.hpp"
 
@@ -18,24 +20,30 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
       "static: each segment against the triangle as it is now, as the paper does; carried: its start moves along with "
       "the triangle; ccd: both move, the first time they meet")
       ->capture_default_str()
-      ->check(CLI::IsMember({"static", "carried", "ccd"}));
-  add("--skip", choice.skip, "off: every segment meets every triangle")
+      ->check(CLI::IsMember(kMethodNames));
+  add("--skip", choice.skip,
+      "on: what bounds prove to miss is neither skinned nor tested, the same result; off: every segment meets every "
+      "triangle")
       ->capture_default_str()
-      ->check(CLI::IsMember({"off"}));
+      ->check(CLI::IsMember({"on", "off"}));
   add("--surface", choice.surface,
       "all: skin without an actuator hides what lies behind it; mapped: it is passed through")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "mapped"}));
 }
 
-Method DetectorChoice::method_kind() const {
-  if (method == "carried") return Method::kCarried;
-  return method == "ccd" ? Method::kCcd : Method::kStatic;
+Method method_named(const std::string& name) {
+  if (name == "carried") return Method::kCarried;
+  return name == "ccd" ? Method::kCcd : Method::kStatic;
+}
+
+const std::vector<std::string>& detector_names() {
+  static const std::vector<std::string> names = {"paper", "geometry", "cpu", "exact", "embree", "embree_default"};
+  return names;
 }
 
 bool is_detector(const std::string& name) {
-  return name == "paper" || name == "geometry" || name == "cpu" || name == "exact" || name == "embree" ||
-         name == "embree_default";
+  return std::ranges::find(detector_names(), name) != detector_names().end();
 }
 
 ContextKind context_kind(const std::string& context) {
@@ -47,7 +55,7 @@ ContextKind context_kind(const std::string& context) {
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes) {
-  const DetectorOptions options = {choice.surface_kind(), planes, choice.method_kind()};
+  const DetectorOptions options = {choice.surface_kind(), planes, choice.method_kind(), choice.skip_kind()};
   if (name == "exact") return make_exact_detector(avatar, map, options);
   if (name == "embree") return make_embree_detector(EmbreeMode::kRobust, avatar, map, options);
   if (name == "embree_default") return make_embree_detector(EmbreeMode::kDefault, avatar, map, options);

@@ -3,11 +3,18 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
 
 namespace vestige::cli {
+
+/// What --method takes.
+inline const std::vector<std::string> kMethodNames = {"static", "carried", "ccd"};
+
+/// One of `kMethodNames`.
+Method method_named(const std::string& name);
 
 /// The flags that choose a detector and where it runs.
 struct DetectorChoice {
@@ -16,10 +23,11 @@ struct DetectorChoice {
   int device = -1;
   std::string surface = "all";
   std::string method = "static";
-  std::string skip = "off";
+  std::string skip = "on";
 
-  Method method_kind() const;
+  Method method_kind() const { return method_named(method); }
   Surface surface_kind() const { return surface == "mapped" ? Surface::kMapped : Surface::kAll; }
+  Skip skip_kind() const { return skip == "on" ? Skip::kOn : Skip::kOff; }
 };
 
 /// The group of help that they stand in, with --detector and --context.
@@ -31,7 +39,8 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice);
 /// "auto", "egl" or "osmesa".
 ContextKind context_kind(const std::string& context);
 
-/// Whether `name` is one that `make_detector` knows, "auto" apart.
+/// What `make_detector` knows, "auto" apart.
+const std::vector<std::string>& detector_names();
 bool is_detector(const std::string& name);
 
 /// Makes a detector: "auto" (now: cpu), "cpu", "exact", "geometry", "embree", "embree_default" or "paper". `context`:

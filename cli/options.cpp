@@ -122,4 +122,24 @@ std::vector<std::string> parse_list(const std::string& text) {
   return parts;
 }
 
+std::vector<std::string> parse_distinct(const std::string& text, const std::string& flag) {
+  std::vector<std::string> parts = parse_list(text);
+  std::set<std::string> seen;
+  for (const std::string& part : parts)
+    if (!seen.insert(part).second)
+      throw UsageError(flag, fmt::format("'{}' stands there twice", part), "name each once");
+  return parts;
+}
+
+std::vector<std::string> parse_names(const std::string& text, const std::vector<std::string>& known,
+                                     const std::string& flag) {
+  const std::string remedy = fmt::format("choose of: {}", fmt::join(known, ", "));
+  std::vector<std::string> names = parse_distinct(text, flag);
+  for (const std::string& name : names)
+    if (std::ranges::find(known, name) == known.end())
+      throw UsageError(flag, fmt::format("there is no '{}'", name), remedy);
+  if (names.empty()) throw UsageError(flag, "names nothing", remedy);
+  return names;
+}
+
 }  // namespace vestige::cli

@@ -67,4 +67,11 @@ std::vector<std::uint32_t> parse_counts(const std::string& text, const std::stri
 /// Splits at commas.
 std::vector<std::string> parse_list(const std::string& text);
 
+/// The same, for a list in which each part stands once. Throws `UsageError` naming `flag`.
+std::vector<std::string> parse_distinct(const std::string& text, const std::string& flag);
+
+/// The same, for a list of at least one of `known`.
+std::vector<std::string> parse_names(const std::string& text, const std::vector<std::string>& known,
+                                     const std::string& flag);
+
 }  // namespace vestige::cli

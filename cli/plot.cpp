@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <memory>
@@ -43,6 +44,18 @@ int run_plot(const std::vector<std::string>& arguments) {
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
+}
+
+void draw_figure(const std::string& kind, const std::string& folder, const CommonOptions& options) {
+  std::vector<std::string> arguments = {kind, folder};
+  if (options.force) arguments.emplace_back("--force");
+  if (options.quiet) arguments.emplace_back("-q");
+  std::fflush(stdout);  // before the child prints its own
+  try {
+    if (run_plot(arguments) != kDone) warn("the figure is not complete", options.verbosity());
+  } catch (const Error& error) {
+    warn(fmt::format("no figure was drawn: {}", error.what()), options.verbosity());
+  }
 }
 
 void add_plot(CLI::App& program, Invocation& invocation) {

@@ -29,8 +29,6 @@ struct QueryOptions {
 QueryResponder make_responder(const QueryOptions& options) {
   const std::string& detector = options.choice.detector;
   const Method method = options.choice.method_kind();
-  if (!is_detector(detector))
-    throw UsageError("--detector", fmt::format("'{}' is not part of this build", detector), "choose cpu or exact");
   if (options.arithmetic() == Arithmetic::kFp32)
     return whole_detector([&](const Avatar& avatar, const ActuatorMap& map) {
       return make_detector(detector, options.choice.context, options.choice, avatar, map, PlaneSet());

@@ -32,13 +32,6 @@ struct StressOptions {
   std::string output;
 };
 
-/// Of these, the ones that this build has.
-std::vector<std::string> detectors_known() {
-  std::vector<std::string> known = {"paper", "geometry", "cpu", "exact", "embree", "embree_default"};
-  std::erase_if(known, [](const std::string& name) { return !is_detector(name); });
-  return known;
-}
-
 std::vector<std::string> family_names() {
   std::vector<std::string> names;
   for (const StressFamily& family : stress_families())
@@ -46,25 +39,10 @@ std::vector<std::string> family_names() {
   return names;
 }
 
-std::vector<std::string> checked_list(const std::string& list, const std::vector<std::string>& known,
-                                      const std::string& flag) {
-  std::vector<std::string> names = parse_list(list);
-  std::set<std::string> seen;
-  for (const std::string& name : names) {
-    if (std::ranges::find(known, name) == known.end())
-      throw UsageError(flag, fmt::format("there is no '{}'", name),
-                       fmt::format("choose of: {}", fmt::join(known, ", ")));
-    if (!seen.insert(name).second)
-      throw UsageError(flag, fmt::format("'{}' stands there twice", name), "name each once");
-  }
-  if (names.empty()) throw UsageError(flag, "names nothing", fmt::format("choose of: {}", fmt::join(known, ", ")));
-  return names;
-}
-
 std::vector<StressFamily> families_of(const StressOptions& options) {
   std::vector<StressFamily> families = stress_families();
   if (options.families == "all") return families;
-  const std::vector<std::string> names = checked_list(options.families, family_names(), "--families");
+  const std::vector<std::string> names = parse_names(options.families, family_names(), "--families");
   std::erase_if(families,
                 [&](const StressFamily& family) { return std::ranges::find(names, family.name) == names.end(); });
   return families;
@@ -79,8 +57,8 @@ struct Contestants {
 Contestants make_contestants(const StressOptions& options, Verbosity verbosity) {
   Contestants contestants;
   const StressSubject probe = make_subject(StressBody::kLoose);
-  for (const std::string& detector : checked_list(options.detectors, detectors_known(), "--detector"))
-    for (const std::string& method : checked_list(options.methods, {"static", "carried", "ccd"}, "--method")) {
+  for (const std::string& detector : parse_names(options.detectors, detector_names(), "--detector"))
+    for (const std::string& method : parse_names(options.methods, kMethodNames, "--method")) {
       DetectorChoice choice;
       choice.method = method;
       choice.device = options.device;
@@ -104,22 +82,11 @@ Contestants make_contestants(const StressOptions& options, Verbosity verbosity) 
   return contestants;
 }
 
-void draw_figure(const StressOptions& options) {
-  std::vector<std::string> arguments = {"stress", options.output};
-  if (options.common.force) arguments.emplace_back("--force");
-  if (options.common.quiet) arguments.emplace_back("-q");
-  try {
-    if (run_plot(arguments) != kDone) warn("the figure is not complete", options.common.verbosity());
-  } catch (const Error& error) {
-    warn(fmt::format("no figure was drawn: {}", error.what()), options.common.verbosity());
-  }
-}
-
 void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<StressFamily> families = families_of(options);
-  checked_list(options.methods, {"static", "carried", "ccd"}, "--method");
-  checked_list(options.detectors, detectors_known(), "--detector");
+  parse_names(options.methods, kMethodNames, "--method");
+  parse_names(options.detectors, detector_names(), "--detector");
   const std::string json_path = options.output + "/stress.json";
   const std::string run_path = options.output + "/run.json";
   std::error_code failure;
@@ -158,8 +125,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   if (interrupted()) warn("stopped early; what was complete so far was written", verbosity);
   print_summary(stress_table(counts), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, run_path), {options.common.json}, options.common);
-  std::fflush(stdout);  // before the child that draws prints its own
-  if (!options.no_figure && !interrupted()) draw_figure(options);
+  if (!options.no_figure && !interrupted()) draw_figure("stress", options.output, options.common);
   if (interrupted()) invocation.exit_code = kDataLost;
 }
 
@@ -167,7 +133,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
 
 void add_stress(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<StressOptions>();
-  std::vector<std::string> raced = detectors_known();
+  std::vector<std::string> raced = detector_names();
   std::erase(raced, "exact");
   options->detectors = fmt::format("{}", fmt::join(raced, ","));
   CLI::App* verb = add_verb(program, "stress", "Attack the detectors with hostile cases, and count what they get wrong",
@@ -182,7 +148,7 @@ void add_stress(CLI::App& program, Invocation& invocation) {
       ->check(help::whole_number(1, 100000000));
   verb->add_option("--detector", options->detectors,
                    fmt::format("Detectors to attack: {}; embree is its robust configuration, embree_default the other",
-                               fmt::join(detectors_known(), ", ")))
+                               fmt::join(detector_names(), ", ")))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <set>
 
 #include "analysis/provenance.hpp"
 #include "analysis/sweep_report.hpp"
@@ -32,18 +31,6 @@ struct SweepOptions {
   bool no_figure = false;
   std::string output;
 };
-
-/// Every name of a list must be known, and stand there once.
-void check_names(const std::string& list, const std::vector<std::string>& known, const std::string& flag) {
-  std::set<std::string> seen;
-  for (const std::string& name : parse_list(list)) {
-    if (std::ranges::find(known, name) == known.end())
-      throw UsageError(flag, fmt::format("there is no '{}'", name),
-                       fmt::format("choose of: {}", fmt::join(known, ", ")));
-    if (!seen.insert(name).second)
-      throw UsageError(flag, fmt::format("'{}' stands there twice", name), "name each once");
-  }
-}
 
 /// Every detector asked for, those of OpenGL once in every context that this machine has; a context that it lacks is
 /// said.
@@ -96,23 +83,12 @@ nlohmann::ordered_json first_gl(std::span<const SweepSeries> series) {
   return nullptr;
 }
 
-void draw_figure(const SweepOptions& options) {
-  std::vector<std::string> arguments = {"sweep", options.output};
-  if (options.common.force) arguments.emplace_back("--force");
-  if (options.common.quiet) arguments.emplace_back("-q");
-  try {
-    if (run_plot(arguments) != kDone) warn("the figure is not complete", options.common.verbosity());
-  } catch (const Error& error) {
-    warn(fmt::format("no figure was drawn: {}", error.what()), options.common.verbosity());
-  }
-}
-
 void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   options.settings.counts = parse_counts(options.counts, "--counts");
   options.settings.seed = options.common.seed;
-  check_names(options.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
-  check_names(options.contexts, {"egl", "osmesa", "auto"}, "--context");
+  parse_names(options.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
+  parse_names(options.contexts, {"egl", "osmesa", "auto"}, "--context");
   const std::string json_path = options.output + "/sweep.json";
   const std::string times_path = options.output + "/frame_times.csv.zst";
   std::error_code failure;
@@ -157,8 +133,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
   print_summary(sweep_table(series, options.settings.seed), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {options.common.json}, options.common);
-  std::fflush(stdout);  // before the child that draws prints its own
-  if (!options.no_figure && !interrupted()) draw_figure(options);
+  if (!options.no_figure && !interrupted()) draw_figure("sweep", options.output, options.common);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
   if (interrupted()) invocation.exit_code = kDataLost;
 }

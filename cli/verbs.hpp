@@ -33,4 +33,8 @@ int complete(const CLI::App& program, const std::vector<std::string>& words);
 /// Runs `vestige-plot` with these arguments and returns its exit code; throws `Error` where it is not installed.
 int run_plot(const std::vector<std::string>& arguments);
 
+/// Draws what a verb has just written into `folder`, as 'vestige plot KIND' does. What fails is only a warning: the
+/// results are there.
+void draw_figure(const std::string& kind, const std::string& folder, const CommonOptions& options);
+
 }  // namespace vestige::cli

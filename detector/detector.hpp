@@ -18,10 +18,15 @@ namespace vestige {
 /// texel has an actuator.
 enum class Surface { kAll, kMapped };
 
+/// kOn: meshlets and colliders that cannot meet are left out before anything is skinned or tested. Changes the work,
+/// never a bit of the result. Detectors that test all pairs by their nature ignore it.
+enum class Skip { kOff, kOn };
+
 struct DetectorOptions {
   Surface surface = Surface::kAll;
   PlaneSet planes;  ///< what the rows must carry
   Method method = Method::kStatic;
+  Skip skip = Skip::kOff;
 };
 
 /// Work done by one call of `detect`, for reports.
@@ -30,6 +35,8 @@ struct DetectorWork {
   std::uint64_t triangles_tested = 0;  ///< triangles that met at least one test
   std::uint64_t pairs_captured = 0;    ///< pairs that the geometry shader could not reject
   std::uint64_t pairs_meeting = 0;     ///< pairs of collider and triangle that truly meet (`geometry`, `cpu`)
+  std::uint64_t meshlets_skinned = 0;  ///< 0 where the whole mesh was
+  std::uint64_t frames_skipped = 0;    ///< 1 where bounds alone told that nothing can meet
   std::uint64_t unsure = 0;            ///< pairs that no filter could tell: exact arithmetic decided
 };
 
