@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "detector/bounded.hpp"
+
 namespace vestige {
 
 namespace {
@@ -25,7 +27,6 @@ namespace {
 //
 // so 22 Mi Mj bounds a Bernstein coefficient of A x B and 110 Mx My Mz one of f = -A . (B x C). The constants leave
 // room for the terms of higher order and for rounding the bounds themselves.
-constexpr double kUnit = 0x1p-53;
 constexpr double kAreaError = 24 * kUnit;
 constexpr double kVolumeError = 128 * kUnit;
 

@@ -28,9 +28,9 @@ FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> 
     : avatar_(avatar),
       collider_ids_(collider_ids.begin(), collider_ids.end()),
       columns_(collider_ids.size()),
-      method_(method) {
+      method_(method),
+      bind_extent_m_(bind_extent_m(avatar)) {
   frame_.columns = columns_.size();
-  for (const glm::vec3& position : avatar.position_bind) bind_extent_m_ = glm::max(bind_extent_m_, glm::abs(position));
 }
 
 const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
@@ -67,9 +67,7 @@ const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
 /// Whether no sum of a skinned vertex, over any influences, can leave fp32: weights sum to 1, rounding adds a little.
 bool FrameBuilder::skins_to_finite(std::span<const SkinMatrix> palette) const {
   return std::ranges::all_of(palette, [this](const SkinMatrix& matrix) {
-    const auto magnitude = [&matrix](std::size_t column) { return glm::abs(glm::dvec3(matrix.column[column])); };
-    const glm::dvec3 extent(bind_extent_m_);
-    const glm::dvec3 reach = magnitude(0) * extent.x + magnitude(1) * extent.y + magnitude(2) * extent.z + magnitude(3);
+    const glm::dvec3 reach = skin_reach_m(matrix, bind_extent_m_);
     return reach.x < kLargestSkin_m && reach.y < kLargestSkin_m && reach.z < kLargestSkin_m;
   });
 }

@@ -71,7 +71,7 @@ class FrameBuilder {
   std::vector<glm::dmat4> world_;
   std::vector<glm::dmat4> world_before_;
   glm::dvec3 pose_origin_before_m_ = glm::dvec3(0);
-  glm::vec3 bind_extent_m_ = glm::vec3(0);  ///< largest absolute bind coordinates
+  glm::dvec3 bind_extent_m_;
   Frame frame_;
   bool started_ = false;
   std::uint64_t non_finite_frames_ = 0;

@@ -16,7 +16,9 @@
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
+#include "detector/gl/skinned_mesh.hpp"
 #include "detector/skin_motion.hpp"
+#include "detector/skinning.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
 #include "traces/error.hpp"
@@ -37,11 +39,6 @@ struct GpuSegment {
   glm::vec4 end;
 };
 static_assert(sizeof(GpuSegment) == 64);
-
-struct GpuVertex {
-  glm::vec3 position_bind;
-  Influences influences;
-};
 
 /// std430 layout of the shader's Captured: this, then its pairs.
 struct CapturedHead {
@@ -65,12 +62,11 @@ constexpr std::size_t kPairsReadAtOnce = 64;
 /// less than 2^-126 times the other factors, each time less than 2^-126 (1 + H + X), H the largest |M_0 x| + ... +
 /// |M_3| with |x| taken as at least 1, X the largest such |x|; weights are at most about 1. There are fewer than 100
 /// such times; gradual underflow on the CPU errs by less. This is 1024 of them.
-float least_radius_m(std::span<const SkinMatrix> palette, const glm::dvec3& bind_extent_m) {
-  const glm::dvec3 extent = glm::max(bind_extent_m, glm::dvec3(1));
+float least_radius_m(std::span<const SkinMatrix> palette, const glm::dvec3& extent_m) {
+  const glm::dvec3 extent = glm::max(extent_m, glm::dvec3(1));
   double largest = 0;
   for (const SkinMatrix& matrix : palette) {
-    const auto magnitude = [&matrix](std::size_t column) { return glm::abs(glm::dvec3(matrix.column[column])); };
-    const glm::dvec3 reach = magnitude(0) * extent.x + magnitude(1) * extent.y + magnitude(2) * extent.z + magnitude(3);
+    const glm::dvec3 reach = skin_reach_m(matrix, extent);
     largest = std::max(largest, reach.x + reach.y + reach.z);
   }
   return static_cast<float>(std::ldexp(1 + largest + extent.x + extent.y + extent.z, -116));
@@ -85,20 +81,17 @@ class GeometryDetector final : public Detector {
         avatar_(avatar),
         method_(options.method),
         finder_(avatar, map, options),
+        bind_extent_m_(bind_extent_m(avatar)),
         palette_(gl_),
         segments_(gl_),
-        vertices_(gl_),
-        indices_(gl_),
+        mesh_(gl_, avatar),
         captured_(gl_),
-        skinned_(gl_),
         nowhere_(gl_, PlaneSet()),
         program_(gl_, head(),
                  {{GL_VERTEX_SHADER, "geometry.vert", shaders::kGeometryVert},
                   {GL_GEOMETRY_SHADER, "geometry.geom", shaders::kGeometryGeom}}) {
-    for (const glm::vec3& position : avatar_.position_bind)
-      bind_extent_m_ = glm::max(bind_extent_m_, glm::abs(glm::dvec3(position)));
-    upload_mesh();
     grow_captured(kStartingCapacity);
+    mesh_.bind();
     nowhere_.begin(1);  // a draw without any framebuffer fails in a surfaceless context
     gl_.Enable(GL_RASTERIZER_DISCARD);
     check_gl(gl_, "uploading the avatar");
@@ -107,7 +100,6 @@ class GeometryDetector final : public Detector {
   ~GeometryDetector() override {
     try {
       context_->make_current();
-      gl_.DeleteVertexArrays(1, &vertex_array_);
     } catch (const Error&) {
       // The context is lost, and with it all that was in it.
     }
@@ -154,14 +146,7 @@ class GeometryDetector final : public Detector {
     }
     gl_.UseProgram(skinning_program_->name());
     upload_palette(frame, *skinning_program_);
-    out.resize(avatar_.position_bind.size());
-    const std::size_t bytes = out.size() * sizeof(glm::vec3);
-    skinned_.upload(nullptr, bytes, GL_STREAM_READ);
-    gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, skinned_.name());
-    gl_.BeginTransformFeedback(GL_POINTS);
-    gl_.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(out.size()));
-    gl_.EndTransformFeedback();
-    gl_.GetNamedBufferSubData(skinned_.name(), 0, static_cast<GLsizeiptr>(bytes), out.data());
+    mesh_.capture(out);
     check_gl(gl_, "capturing skinned vertices");
   }
 
@@ -183,38 +168,6 @@ class GeometryDetector final : public Detector {
         "#define PALETTE_ENTRIES {}\n",
         shaders::kConstantsH, static_cast<int>(method_), kBlockSegments, avatar_.influence_count,
         palette_in_uniform_block() ? palette_entries() : 0);
-  }
-
-  void upload_mesh() {
-    std::vector<GpuVertex> vertices(avatar_.position_bind.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i) vertices[i] = {avatar_.position_bind[i], avatar_.influences[i]};
-    vertices_.upload(vertices.data(), vertices.size() * sizeof(GpuVertex), GL_STATIC_DRAW);
-    indices_.upload(avatar_.triangles.data(), avatar_.triangles.size() * sizeof(glm::uvec3), GL_STATIC_DRAW);
-
-    gl_.CreateVertexArrays(1, &vertex_array_);
-    gl_.VertexArrayVertexBuffer(vertex_array_, 0, vertices_.name(), 0, sizeof(GpuVertex));
-    gl_.VertexArrayElementBuffer(vertex_array_, indices_.name());
-    const auto influences = static_cast<GLuint>(offsetof(GpuVertex, influences));
-    const auto palette = influences + static_cast<GLuint>(offsetof(Influences, palette));
-    const auto weight = influences + static_cast<GLuint>(offsetof(Influences, weight));
-    add_attribute(VESTIGE_ATTRIBUTE_POSITION, 3, GL_FLOAT, offsetof(GpuVertex, position_bind));
-    add_attribute(VESTIGE_ATTRIBUTE_PALETTE_0, 4, GL_UNSIGNED_SHORT, palette);
-    add_attribute(VESTIGE_ATTRIBUTE_WEIGHT_0, 4, GL_FLOAT, weight);
-    if (avatar_.influence_count > 4) {
-      add_attribute(VESTIGE_ATTRIBUTE_PALETTE_1, 4, GL_UNSIGNED_SHORT, palette + 4 * sizeof(std::uint16_t));
-      add_attribute(VESTIGE_ATTRIBUTE_WEIGHT_1, 4, GL_FLOAT, weight + 4 * sizeof(float));
-    }
-    gl_.BindVertexArray(vertex_array_);
-  }
-
-  void add_attribute(GLuint location, GLint components, GLenum type, std::size_t offset) {
-    gl_.EnableVertexArrayAttrib(vertex_array_, location);
-    gl_.VertexArrayAttribBinding(vertex_array_, location, 0);
-    if (type == GL_FLOAT) {
-      gl_.VertexArrayAttribFormat(vertex_array_, location, components, type, GL_FALSE, static_cast<GLuint>(offset));
-    } else {
-      gl_.VertexArrayAttribIFormat(vertex_array_, location, components, type, static_cast<GLuint>(offset));
-    }
   }
 
   /// This frame's palette, followed by that of the frame before where the method looks at it.
@@ -255,8 +208,7 @@ class GeometryDetector final : public Detector {
       gl_.ProgramUniform1i(program_.name(), VESTIGE_UNIFORM_SEGMENT_COUNT,
                            static_cast<GLint>(std::min(segments - first, kBlockSegments)));
       gl_.ProgramUniform1i(program_.name(), VESTIGE_UNIFORM_FIRST_SEGMENT, static_cast<GLint>(first));
-      gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(avatar_.triangles.size() * 3), GL_UNSIGNED_INT,
-                                nullptr, 1);
+      mesh_.draw(1);
     }
     gl_.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
   }
@@ -290,14 +242,11 @@ class GeometryDetector final : public Detector {
   const Avatar& avatar_;
   Method method_;
   ContactFinder finder_;
-  glm::dvec3 bind_extent_m_ = glm::dvec3(0);  ///< largest absolute bind coordinates
+  glm::dvec3 bind_extent_m_;
   GlBuffer palette_;
   GlBuffer segments_;
-  GlBuffer vertices_;
-  GlBuffer indices_;
+  SkinnedMesh mesh_;
   GlBuffer captured_;
-  GlBuffer skinned_;
-  GLuint vertex_array_ = 0;
   CollisionTexture nowhere_;
   GlProgram program_;
   std::optional<GlProgram> skinning_program_;

@@ -11,6 +11,7 @@
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
+#include "detector/gl/skinned_mesh.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
 #include "traces/error.hpp"
@@ -28,12 +29,6 @@ struct GpuSegment {
 };
 static_assert(sizeof(GpuSegment) == 32);
 
-struct GpuVertex {
-  glm::vec3 position_bind;
-  glm::vec2 texture_coordinate;
-  Influences influences;
-};
-
 class PaperDetector final : public Detector {
  public:
   PaperDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
@@ -44,9 +39,7 @@ class PaperDetector final : public Detector {
         options_(options),
         palette_(gl_),
         segments_(gl_),
-        vertices_(gl_),
-        indices_(gl_),
-        captured_(gl_),
+        mesh_(gl_, avatar),
         texture_(gl_, options.planes) {
     std::size_t components = 4;  // gl_Position
     for (const GlPlane& plane : kGlPlanes)
@@ -55,7 +48,6 @@ class PaperDetector final : public Detector {
     const auto most = static_cast<std::size_t>(gl_limit(gl_, GL_MAX_GEOMETRY_OUTPUT_VERTICES));
     largest_block_ = std::bit_floor(std::min(total / components, most));
 
-    upload_mesh();
     upload_map(map);
     gl_.Enable(GL_DEPTH_TEST);
     gl_.DepthFunc(GL_LESS);
@@ -67,7 +59,6 @@ class PaperDetector final : public Detector {
   ~PaperDetector() override {
     try {
       context_->make_current();
-      gl_.DeleteVertexArrays(1, &vertex_array_);
       gl_.DeleteTextures(1, &map_texture_);
     } catch (const Error&) {
       // The context is lost, and with it all that was in it.
@@ -92,9 +83,8 @@ class PaperDetector final : public Detector {
     gl_.ProgramUniform1f(program, VESTIGE_UNIFORM_FRAMES_PER_S,
                          frame.duration_s > 0 ? static_cast<float>(1 / frame.duration_s) : 0.0F);
     const auto blocks = static_cast<GLsizei>((frame.segments.size() + block - 1) / block);
-    gl_.BindVertexArray(vertex_array_);
-    gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(avatar_.triangles.size() * 3), GL_UNSIGNED_INT,
-                              nullptr, blocks);
+    mesh_.bind();
+    mesh_.draw(blocks);
     read_back(row);
     check_gl(gl_, "detecting contacts");
     return {frame.segments.size() * avatar_.triangles.size(), avatar_.triangles.size()};
@@ -108,19 +98,11 @@ class PaperDetector final : public Detector {
           gl_, head(1), std::initializer_list<GlProgram::Stage>{{GL_VERTEX_SHADER, "paper.vert", shaders::kPaperVert}},
           "Skinned.position");
     }
-    texture_.begin(1);  // a draw without any framebuffer fails in a surfaceless context
-    out.resize(avatar_.position_bind.size());
-    const std::size_t bytes = out.size() * sizeof(glm::vec3);
-    captured_.upload(nullptr, bytes, GL_STREAM_READ);
-    gl_.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, captured_.name());
+    texture_.begin(1);
     gl_.UseProgram(skinning_program_->name());
-    gl_.BindVertexArray(vertex_array_);
     gl_.Enable(GL_RASTERIZER_DISCARD);
-    gl_.BeginTransformFeedback(GL_POINTS);
-    gl_.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(out.size()));
-    gl_.EndTransformFeedback();
+    mesh_.capture(out);
     gl_.Disable(GL_RASTERIZER_DISCARD);
-    gl_.GetNamedBufferSubData(captured_.name(), 0, static_cast<GLsizeiptr>(bytes), out.data());
     check_gl(gl_, "capturing skinned vertices");
   }
 
@@ -128,38 +110,6 @@ class PaperDetector final : public Detector {
   static const GlFunctions& current(GlContext& context) {
     context.make_current();
     return context.gl();
-  }
-
-  void upload_mesh() {
-    std::vector<GpuVertex> vertices(avatar_.position_bind.size());
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      vertices[i] = {avatar_.position_bind[i], avatar_.texture_coordinate[i], avatar_.influences[i]};
-    vertices_.upload(vertices.data(), vertices.size() * sizeof(GpuVertex), GL_STATIC_DRAW);
-    indices_.upload(avatar_.triangles.data(), avatar_.triangles.size() * sizeof(glm::uvec3), GL_STATIC_DRAW);
-
-    gl_.CreateVertexArrays(1, &vertex_array_);
-    gl_.VertexArrayVertexBuffer(vertex_array_, 0, vertices_.name(), 0, sizeof(GpuVertex));
-    gl_.VertexArrayElementBuffer(vertex_array_, indices_.name());
-    const auto influences = static_cast<GLuint>(offsetof(GpuVertex, influences));
-    const auto palette = influences + static_cast<GLuint>(offsetof(Influences, palette));
-    const auto weight = influences + static_cast<GLuint>(offsetof(Influences, weight));
-    add_attribute(VESTIGE_ATTRIBUTE_POSITION, 3, GL_FLOAT, offsetof(GpuVertex, position_bind));
-    add_attribute(VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE, 2, GL_FLOAT, offsetof(GpuVertex, texture_coordinate));
-    add_attribute(VESTIGE_ATTRIBUTE_PALETTE_0, 4, GL_UNSIGNED_SHORT, palette);
-    add_attribute(VESTIGE_ATTRIBUTE_WEIGHT_0, 4, GL_FLOAT, weight);
-    if (avatar_.influence_count <= 4) return;
-    add_attribute(VESTIGE_ATTRIBUTE_PALETTE_1, 4, GL_UNSIGNED_SHORT, palette + 4 * sizeof(std::uint16_t));
-    add_attribute(VESTIGE_ATTRIBUTE_WEIGHT_1, 4, GL_FLOAT, weight + 4 * sizeof(float));
-  }
-
-  void add_attribute(GLuint location, GLint components, GLenum type, std::size_t offset) {
-    gl_.EnableVertexArrayAttrib(vertex_array_, location);
-    gl_.VertexArrayAttribBinding(vertex_array_, location, 0);
-    if (type == GL_FLOAT) {
-      gl_.VertexArrayAttribFormat(vertex_array_, location, components, type, GL_FALSE, static_cast<GLuint>(offset));
-    } else {
-      gl_.VertexArrayAttribIFormat(vertex_array_, location, components, type, static_cast<GLuint>(offset));
-    }
   }
 
   void upload_map(const ActuatorMap& map) {
@@ -270,10 +220,7 @@ class PaperDetector final : public Detector {
   std::size_t largest_block_ = 1;
   GlBuffer palette_;
   GlBuffer segments_;
-  GlBuffer vertices_;
-  GlBuffer indices_;
-  GlBuffer captured_;
-  GLuint vertex_array_ = 0;
+  SkinnedMesh mesh_;
   GLuint map_texture_ = 0;
   CollisionTexture texture_;
   std::array<std::optional<GlProgram>, 16> programs_;  // by log2 of the block

@@ -1,5 +1,7 @@
 #include "detector/skinning.hpp"
 
+#include <glm/common.hpp>
+
 namespace vestige {
 
 void build_palette(const Avatar& avatar, std::span<const glm::dmat4> world, const glm::dvec3& offset_m,
@@ -14,6 +16,17 @@ void build_palette(const Avatar& avatar, std::span<const glm::dmat4> world, cons
       out[i].column[static_cast<std::size_t>(column)] = glm::vec4(glm::vec3(value), 0.0F);
     }
   }
+}
+
+glm::dvec3 bind_extent_m(const Avatar& avatar) {
+  glm::dvec3 extent_m(0);
+  for (const glm::vec3& position : avatar.position_bind) extent_m = glm::max(extent_m, glm::abs(glm::dvec3(position)));
+  return extent_m;
+}
+
+glm::dvec3 skin_reach_m(const SkinMatrix& matrix, const glm::dvec3& extent_m) {
+  const auto magnitude = [&matrix](std::size_t column) { return glm::abs(glm::dvec3(matrix.column[column])); };
+  return magnitude(0) * extent_m.x + magnitude(1) * extent_m.y + magnitude(2) * extent_m.z + magnitude(3);
 }
 
 glm::vec3 skin_vertex(const Avatar& avatar, std::span<const SkinMatrix> palette, std::size_t vertex) {

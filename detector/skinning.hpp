@@ -21,6 +21,12 @@ struct SkinMatrix {
 void build_palette(const Avatar& avatar, std::span<const glm::dmat4> world, const glm::dvec3& offset_m,
                    std::vector<SkinMatrix>& out);
 
+/// The largest absolute coordinates of the bind pose.
+glm::dvec3 bind_extent_m(const Avatar& avatar);
+
+/// No coordinate of M x, nor any part of its sum, is larger than this for any x within +-`extent_m`.
+glm::dvec3 skin_reach_m(const SkinMatrix& matrix, const glm::dvec3& extent_m);
+
 /// Linear blend skinning of one vertex in fp32, in the one order that every detector keeps: columns are blended over
 /// the influences from zero upwards, then ((c0 x + c1 y) + c2 z) + c3, never contracted to fma. Padding influences of
 /// weight 0 change no bit, since a sum that starts at +0 never is -0.

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "detector/gl/gl_objects.hpp"
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// An avatar's vertices and triangles in a context, with the attributes of shaders/constants.h. Belongs to the context
+/// whose functions it was made with, which must be current.
+class SkinnedMesh {
+ public:
+  SkinnedMesh(const GlFunctions& gl, const Avatar& avatar);
+  ~SkinnedMesh();
+  SkinnedMesh(const SkinnedMesh&) = delete;
+  SkinnedMesh& operator=(const SkinnedMesh&) = delete;
+
+  void bind() const;
+
+  /// Draws all triangles; the mesh must be bound.
+  void draw(GLsizei instances) const;
+
+  /// Runs the current program, linked to capture one vec3, over all vertices and reads back what it captured. Some
+  /// framebuffer must be bound: a draw without any fails in a surfaceless context.
+  void capture(std::vector<glm::vec3>& out);
+
+ private:
+  void add_attribute(GLuint location, GLint components, GLenum type, std::size_t offset) const;
+
+  const GlFunctions& gl_;
+  std::size_t vertex_count_;
+  GLsizei index_count_;
+  GlBuffer vertices_;
+  GlBuffer indices_;
+  GlBuffer captured_;
+  GLuint vertex_array_ = 0;
+};
+
+}  // namespace vestige
