@@ -5,31 +5,16 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <limits>
 
 #include "detector/bounded.hpp"
+#include "detector/ccd_formulas.hpp"
 
 namespace vestige {
 
 namespace {
 
-// Error bounds. u = 2^-53; every operation errs by at most u times its result (Higham, Accuracy and Stability of
-// Numerical Algorithms, 2002, eq. 2.4 and 2.5), and a difference of doubles errs by no more even where it is denormal.
-// A, B, C are the corners as seen from the point; M is, per axis, their largest absolute coordinate at t = 0 and 1,
-// hence at any t between. First-order terms, in units of u:
-//
-//   A(t) = (1-t) A0 + t A1    differences 1, 1-t 1, products 1, sum 1                      4 Mi
-//   (A x B)_k                 two products 4 + 4 + 1 each, difference 2 (it is <= 2)      20 Mi Mj
-//   A0 x B1 + A1 x B0         twice that, sum 4; twice a Bernstein coefficient of A x B   44 Mi Mj
-//   A . (B x C)               per axis 2*4 + 20 + 2, sums 4 + 6                          100 Mx My Mz
-//   3 f1 = that + A0 . (..)   per axis 4*4 + 44 + 4, sums 8 + 12; last sum 18            330 Mx My Mz
-//
-// so 22 Mi Mj bounds a Bernstein coefficient of A x B and 110 Mx My Mz one of f = -A . (B x C). The constants leave
-// room for the terms of higher order and for rounding the bounds themselves.
-constexpr double kAreaError = 24 * kUnit;
-constexpr double kVolumeError = 128 * kUnit;
-
+// M: per axis, the largest absolute coordinate of a corner as seen from the point (ccd_formulas.hpp).
 // With every Mi in this range nothing overflows, and what underflow loses (2^-1075 a product, times 2^250 at most) is
 // far below the bounds (2^-48 * 2^-750 and more). An axis whose coordinates are all zero is exact.
 constexpr double kLeastReach = 0x1p-250;
@@ -53,19 +38,10 @@ Corners as_seen_from(const glm::dvec3& point, const Corners& triangle) {
   return {triangle.a - point, triangle.b - point, triangle.c - point};
 }
 
-/// The Bernstein coefficients of a x b over a part of the motion: the middle one doubled.
-struct QuadraticVector {
-  glm::dvec3 first;
-  glm::dvec3 twice_middle;
-  glm::dvec3 last;
-};
-
-QuadraticVector cross(const glm::dvec3& a0, const glm::dvec3& a1, const glm::dvec3& b0, const glm::dvec3& b1) {
-  return {glm::cross(a0, b0), glm::cross(a0, b1) + glm::cross(a1, b0), glm::cross(a1, b1)};
-}
+using Quadratic = QuadraticVector<glm::dvec3>;
 
 /// The sign that a coordinate is proven to have throughout; 0: none is.
-int proven_sign(const QuadraticVector& quadratic, int axis, double error) {
+int proven_sign(const Quadratic& quadratic, int axis, double error) {
   const double middle = 0.5 * quadratic.twice_middle[axis];
   const double least = std::min({quadratic.first[axis], middle, quadratic.last[axis]});
   const double greatest = std::max({quadratic.first[axis], middle, quadratic.last[axis]});
@@ -127,13 +103,13 @@ class Filter {
     if (--parts_left_ < 0) return kGivenUp;
     const Corners p = at(low);
     const Corners q = at(high);
-    const QuadraticVector bc = cross(p.b, q.b, p.c, q.c);
-    const Cubic volume = {-glm::dot(p.a, bc.first), -(glm::dot(q.a, bc.first) + glm::dot(p.a, bc.twice_middle)) / 3,
-                          -(glm::dot(p.a, bc.last) + glm::dot(q.a, bc.twice_middle)) / 3, -glm::dot(q.a, bc.last)};
+    const Quadratic bc = quadratic_cross(p.b, q.b, p.c, q.c);
+    const std::array<double, 4> dot = cubic_dot(p.a, q.a, bc);
+    const Cubic volume = {-dot[0], -dot[1] / 3, -dot[2] / 3, -dot[3]};
     std::array<int, 4> sign = {};
     for (std::size_t i = 0; i < 4; ++i) sign[i] = proven_sign(volume[i], volume_error_);
     if (sign[0] != 0 && std::ranges::all_of(sign, [&](int other) { return other == sign[0]; })) return kNone;
-    if (passes_beside(bc, cross(p.c, q.c, p.a, q.a), cross(p.a, q.a, p.b, q.b))) return kNone;
+    if (passes_beside(bc, quadratic_cross(p.c, q.c, p.a, q.a), quadratic_cross(p.a, q.a, p.b, q.b))) return kNone;
 
     // The coefficients change their signs once: there is one root, and it is simple (Descartes' rule of signs).
     const bool one_root = sign[0] * sign[3] < 0 && (sign[1] == sign[0] || sign[2] == sign[3]);
@@ -146,18 +122,17 @@ class Filter {
 
  private:
   Corners at(double t) const {
-    const double rest = 1 - t;
-    return {rest * first_.a + t * last_.a, rest * first_.b + t * last_.b, rest * first_.c + t * last_.c};
+    return {corner_at(first_.a, last_.a, t), corner_at(first_.b, last_.b, t), corner_at(first_.c, last_.c, t)};
   }
 
   double volume_at(double t) const {
     const Corners corners = at(t);
-    return -glm::dot(corners.a, glm::cross(corners.b, corners.c));
+    return -dot_product(corners.a, cross_product(corners.b, corners.c));
   }
 
   /// Whether, whenever the point is in the triangle's plane, it is outside: of the triangle's three parts as seen from
   /// the point, two have areas of opposite signs throughout.
-  bool passes_beside(const QuadraticVector& bc, const QuadraticVector& ca, const QuadraticVector& ab) const {
+  bool passes_beside(const Quadratic& bc, const Quadratic& ca, const Quadratic& ab) const {
     for (int axis = 0; axis < 3; ++axis) {
       const double error = kAreaError * area_[axis];
       const int first = proven_sign(bc, axis, error);
@@ -186,9 +161,9 @@ class Filter {
     // The root is between `before` and `after`. Corners there are those at t but for 2 M width, so the areas but for
     // 8 Mi Mj width, to first order; the rest of it is in the factor.
     const Corners corners = at(t);
-    const glm::dvec3 bc = glm::cross(corners.b, corners.c);
-    const glm::dvec3 ca = glm::cross(corners.c, corners.a);
-    const glm::dvec3 ab = glm::cross(corners.a, corners.b);
+    const glm::dvec3 bc = cross_product(corners.b, corners.c);
+    const glm::dvec3 ca = cross_product(corners.c, corners.a);
+    const glm::dvec3 ab = cross_product(corners.a, corners.b);
     const glm::dvec3 error = (kAreaError + 17 * width) * area_;
     bool inside = false;
     for (int axis = 0; axis < 3; ++axis) {

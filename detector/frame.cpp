@@ -54,13 +54,15 @@ const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
     pose_origin_before_m_ = trace_frame.pose.origin_m;
   }
   build_segments(trace_frame);
-  if (!skins_to_finite(frame_.palette)) {
+  // A pose that was in reach of its own origin may be out of reach of this frame's: then it is this frame's report.
+  const bool in_reach = skins_to_finite(frame_.palette);
+  const bool before_in_reach = method_ == Method::kStatic || skins_to_finite(frame_.palette_before);
+  if (!in_reach || (!before_in_reach && before_was_in_reach_)) {
     ++non_finite_frames_;
     note_non_finite();
-    frame_.segments.clear();
-  } else if (method_ != Method::kStatic && !skins_to_finite(frame_.palette_before)) {
-    frame_.segments.clear();
   }
+  if (!in_reach || !before_in_reach) frame_.segments.clear();
+  before_was_in_reach_ = in_reach;
   return frame_;
 }
 

@@ -74,6 +74,7 @@ class FrameBuilder {
   glm::dvec3 bind_extent_m_;
   Frame frame_;
   bool started_ = false;
+  bool before_was_in_reach_ = true;
   std::uint64_t non_finite_frames_ = 0;
   std::uint64_t non_finite_segments_ = 0;
   std::uint64_t origin_changes_ = 0;

@@ -250,5 +250,23 @@ TEST(ContinuousContact, WhatDoublesProveIsWhatWholeNumbersSay) {
   EXPECT_GT(proofs, 6000);
 }
 
+TEST(ContinuousContact, DoublesProveNothingWrongWhereTheirProductsVanishOrOverflow) {
+  std::mt19937 random(4);
+  std::uniform_int_distribution<int> coordinate(-1000, 1000);
+  const auto point = [&] { return glm::dvec3(coordinate(random), coordinate(random), coordinate(random)); };
+  for (int i = 0; i < 1000; ++i) {
+    const Way way = {point(), point()};
+    const Corners before = {point(), point(), point()};
+    const Corners after = {point(), point(), point()};
+    const Contact truth = ccd_in_integers(way, before, after);
+    for (const double unit : {0x1p-368, 0x1p-364, 0x1p-360, 0x1p-356, 0x1p332, 0x1p1000}) {
+      const CcdProof proof = filter_ccd(scaled(way, unit), scaled(before, unit), scaled(after, unit));
+      if (proof.verdict == CcdProof::Verdict::kUnsure) continue;
+      const Contact proven = proof.verdict == CcdProof::Verdict::kContact ? Contact(proof.contact) : std::nullopt;
+      EXPECT_EQ(proven, truth) << unit;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace vestige
