@@ -150,6 +150,17 @@ void add_agreement(const nlohmann::json& result, Claim claim, std::vector<Claim>
   claims.push_back(claim);
 }
 
+void add_geometry_agreement(const nlohmann::json& result, Claim claim, std::vector<Claim>& claims) {
+  for (const auto& method : result.at("methods")) {
+    claim.machine = machine_of(result, method);
+    claim.claim =
+        fmt::format("`geometry` against `cpu` on {} adversarial pairs (`{}`): {} missed, {} winners differ",
+                    method.at("pairs").get<std::uint64_t>(), method.at("method").get<std::string>(),
+                    method.at("missed").get<std::uint64_t>(), method.at("winners_differing").get<std::uint64_t>());
+    claims.push_back(claim);
+  }
+}
+
 void add_exactness(const nlohmann::json& result, Claim claim, std::vector<Claim>& claims) {
   claim.machine = machine_of(result, nullptr);
   for (const auto& frame : result.at("frames")) {
@@ -192,6 +203,7 @@ std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& fi
       add_agreement(result, base, claims);
     }
   }
+  if (result.contains("methods")) add_geometry_agreement(result, base, claims);
   if (result.contains("decisions")) add_exactness(result, base, claims);
   return claims;
 }

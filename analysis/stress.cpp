@@ -95,8 +95,10 @@ class Stress {
   Stress(const std::vector<StressContestant>& contestants, const StressSettings& settings)
       : contestants_(contestants), settings_(settings) {}
 
-  /// Appends the counts of all contestants.
-  void run(const StressFamily& family, std::size_t magnitude_number, std::vector<StressCount>& counts) {
+  /// Appends the counts of all contestants; or none, and returns false, when `keep_going` does.
+  bool run(const StressFamily& family, std::size_t magnitude_number, const std::function<bool()>& keep_going,
+           std::vector<StressCount>& counts) {
+    const std::size_t complete = counts.size();
     const StressSubject& subject = subject_of(family.body);
     const double magnitude = family.magnitudes[magnitude_number];
     for (const Method method : {Method::kStatic, Method::kCarried, Method::kCcd}) {
@@ -112,9 +114,12 @@ class Stress {
         count.magnitude = magnitude;
         count.detector = contestants_[i].detector;
         count.method = method;
-        judge(detector_of(i, family.body), scene, truths, count);
+        if (judge(detector_of(i, family.body), scene, truths, keep_going, count)) continue;
+        counts.resize(complete);
+        return false;
       }
     }
+    return true;
   }
 
  private:
@@ -133,10 +138,11 @@ class Stress {
     return truths;
   }
 
-  static void judge(Detector& detector, const StressScene& scene, const std::vector<ContactRow>& truths,
-                    StressCount& count) {
+  static bool judge(Detector& detector, const StressScene& scene, const std::vector<ContactRow>& truths,
+                    const std::function<bool()>& keep_going, StressCount& count) {
     ContactRow row;
     for (std::size_t i = 0; i < scene.frames.size(); ++i) {
+      if (!keep_going()) return false;
       const Frame& frame = scene.frames[i];
       count.unsure += detector.detect(frame, row).unsure;
       count.cases += frame.columns;
@@ -146,6 +152,7 @@ class Stress {
         count_row(row, truths[i], count);
       }
     }
+    return true;
   }
 
   const StressSubject& subject_of(StressBody body) {
@@ -192,8 +199,10 @@ std::vector<StressCount> run_stress(const std::vector<StressFamily>& families,
   std::size_t done = 0;
   for (const StressFamily& family : families)
     for (std::size_t i = 0; i < family.magnitudes.size(); ++i) {
-      if (!progress(static_cast<double>(done++) / static_cast<double>(rungs))) return counts;
-      stress.run(family, i, counts);
+      const double share = static_cast<double>(done++) / static_cast<double>(rungs);
+      if (!stress.run(
+              family, i, [&] { return progress(share); }, counts))
+        return counts;
     }
   return counts;
 }
