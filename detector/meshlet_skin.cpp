@@ -1,0 +1,155 @@
+#include "detector/meshlet_skin.hpp"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detector/meshlet_skin.cpp"  // NOLINT(bugprone-suspicious-include)
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each instruction set.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace vestige {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, kBoxBlock>;
+
+constexpr std::size_t kCorners = 3 * kBoxBlock;
+
+/// `skin_vertex` for all corners of a meshlet. Every vertex is given every entry of the meshlet, by ascending entries:
+/// a weight of 0 adds a zero, which changes no bit of a sum that starts at +0.
+void SkinCorners(const float* numbers, std::span<const std::uint32_t> entries, const SkinMatrix* palette,
+                 MeshletCorners& out) {
+  const D d;
+  const float* weights = numbers + 3 * kCorners;
+  for (std::size_t i = 0; i < kCorners; i += hn::Lanes(d)) {
+    const auto x = hn::LoadU(d, numbers + i);
+    const auto y = hn::LoadU(d, numbers + kCorners + i);
+    const auto z = hn::LoadU(d, numbers + 2 * kCorners + i);
+    for (int axis = 0; axis < 3; ++axis) {
+      auto blend_0 = hn::Zero(d);
+      auto blend_1 = hn::Zero(d);
+      auto blend_2 = hn::Zero(d);
+      auto blend_3 = hn::Zero(d);
+      for (std::size_t k = 0; k < entries.size(); ++k) {
+        const auto weight = hn::LoadU(d, weights + k * kCorners + i);
+        const std::array<glm::vec4, 4>& column = palette[entries[k]].column;
+        blend_0 = hn::Add(blend_0, hn::Mul(weight, hn::Set(d, column[0][axis])));
+        blend_1 = hn::Add(blend_1, hn::Mul(weight, hn::Set(d, column[1][axis])));
+        blend_2 = hn::Add(blend_2, hn::Mul(weight, hn::Set(d, column[2][axis])));
+        blend_3 = hn::Add(blend_3, hn::Mul(weight, hn::Set(d, column[3][axis])));
+      }
+      const auto world =
+          hn::Add(hn::Add(hn::Add(hn::Mul(blend_0, x), hn::Mul(blend_1, y)), hn::Mul(blend_2, z)), blend_3);
+      hn::StoreU(world, d, &out.position[static_cast<std::size_t>(axis)][0][0] + i);
+    }
+  }
+}
+
+/// For kCarried: a start carried by m, rounded to fp32, is at or above `low` only if it was at or above low - m. Let M
+/// be the largest magnitude of the six coordinates and u = 2^-24. That m is computed here in fp32 errs by less than 10
+/// u M (differences of 2 M, their sums, a third), that the carried start is rounded by 2 u M, and what is subtracted by
+/// 6 u M; the margin is 32 u M, and what denormals need.
+void BoxTriangles(const MeshletCorners& now, const MeshletCorners& before, Method method, MeshletBoxes& out) {
+  const D d;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& now_axis = now.position[axis];
+    const auto& before_axis = before.position[axis];
+    for (std::size_t i = 0; i < kBoxBlock; i += hn::Lanes(d)) {
+      const auto a = hn::Load(d, &now_axis[0][i]);
+      const auto b = hn::Load(d, &now_axis[1][i]);
+      const auto c = hn::Load(d, &now_axis[2][i]);
+      auto low = hn::Min(hn::Min(a, b), c);
+      auto high = hn::Max(hn::Max(a, b), c);
+      if (method != Method::kStatic) {
+        const auto a_before = hn::Load(d, &before_axis[0][i]);
+        const auto b_before = hn::Load(d, &before_axis[1][i]);
+        const auto c_before = hn::Load(d, &before_axis[2][i]);
+        const auto low_all = hn::Min(hn::Min(hn::Min(a_before, b_before), c_before), low);
+        const auto high_all = hn::Max(hn::Max(hn::Max(a_before, b_before), c_before), high);
+        if (method == Method::kCcd) {
+          low = low_all;
+          high = high_all;
+        } else {
+          const auto sum = hn::Add(hn::Add(hn::Sub(a, a_before), hn::Sub(b, b_before)), hn::Sub(c, c_before));
+          const auto moved = hn::Mul(sum, hn::Set(d, 1.0F / 3.0F));
+          const auto largest = hn::Max(hn::Abs(low_all), hn::Abs(high_all));
+          const auto margin = hn::Add(hn::Mul(largest, hn::Set(d, 0x1p-19F)), hn::Set(d, 0x1p-126F));
+          low = hn::Sub(hn::Sub(low, hn::Max(moved, hn::Zero(d))), margin);
+          high = hn::Add(hn::Sub(high, hn::Min(moved, hn::Zero(d))), margin);
+        }
+      }
+      hn::Store(low, d, &out.ends[axis][i]);
+      hn::Store(high, d, &out.ends[axis + 3][i]);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vestige
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vestige {
+
+namespace {
+
+HWY_EXPORT(SkinCorners);
+HWY_EXPORT(BoxTriangles);
+
+/// A meshlet that more palette entries move is skinned vertex by vertex: hardly any weight would not be 0.
+constexpr std::size_t kMostEntries = 24;
+
+}  // namespace
+
+MeshletSkin::MeshletSkin(const Avatar& avatar, const Meshlets& meshlets) : avatar_(avatar), meshlets_(meshlets) {
+  constexpr std::size_t kCorners = 3 * kBoxBlock;
+  blocks_.resize(meshlets.size());
+  for (std::size_t m = 0; m < blocks_.size(); ++m) {
+    const std::span<const RestBox> rest = meshlets.rest_boxes(0, m);
+    if (rest.size() > kMostEntries) continue;
+    blocks_[m] = {numbers_.size(), entries_.size(), rest.size()};
+    for (const RestBox& box : rest) entries_.push_back(box.entry);
+    numbers_.resize(numbers_.size() + (3 + rest.size()) * kCorners);
+    float* numbers = &numbers_[blocks_[m].first_number];
+    const std::span<const std::uint32_t> triangles = meshlets.triangles(m);
+    for (std::size_t i = 0; i < kCorners; ++i) {
+      const std::size_t triangle = i % kBoxBlock < triangles.size() ? i % kBoxBlock : 0;
+      const std::uint32_t vertex = avatar.triangles[triangles[triangle]][static_cast<int>(i / kBoxBlock)];
+      for (int axis = 0; axis < 3; ++axis)
+        numbers[static_cast<std::size_t>(axis) * kCorners + i] = avatar.position_bind[vertex][axis];
+      const Influences& influences = avatar.influences[vertex];
+      for (std::size_t k = 0; k < avatar.influence_count; ++k) {
+        if (influences.weight[k] == 0) continue;
+        const auto place = std::ranges::lower_bound(rest, influences.palette[k], {}, &RestBox::entry);
+        numbers[(3 + static_cast<std::size_t>(place - rest.begin())) * kCorners + i] = influences.weight[k];
+      }
+    }
+  }
+}
+
+void MeshletSkin::skin(std::size_t meshlet, std::span<const SkinMatrix> palette, MeshletCorners& out) const {
+  const Block& block = blocks_[meshlet];
+  if (block.entries > 0) {
+    HWY_DYNAMIC_DISPATCH(SkinCorners)
+    (&numbers_[block.first_number], std::span(entries_).subspan(block.first_entry, block.entries), palette.data(), out);
+    return;
+  }
+  const std::span<const std::uint32_t> triangles = meshlets_.triangles(meshlet);
+  for (std::size_t i = 0; i < kBoxBlock; ++i) {
+    const glm::uvec3& corners = avatar_.triangles[triangles[i < triangles.size() ? i : 0]];
+    for (int corner = 0; corner < 3; ++corner) {
+      const glm::vec3 position = skin_vertex(avatar_, palette, corners[corner]);
+      for (int axis = 0; axis < 3; ++axis)
+        out.position[static_cast<std::size_t>(axis)][static_cast<std::size_t>(corner)][i] = position[axis];
+    }
+  }
+}
+
+void box_triangles(const MeshletCorners& now, const MeshletCorners& before, Method method, MeshletBoxes& out) {
+  HWY_DYNAMIC_DISPATCH(BoxTriangles)(now, before, method, out);
+}
+
+}  // namespace vestige
+#endif
