@@ -108,7 +108,7 @@ MeshletSkin::MeshletSkin(const Avatar& avatar, const Meshlets& meshlets) : avata
   blocks_.resize(meshlets.size());
   for (std::size_t m = 0; m < blocks_.size(); ++m) {
     const std::span<const RestBox> rest = meshlets.rest_boxes(0, m);
-    if (rest.size() > kMostEntries) continue;
+    if (rest.empty() || rest.size() > kMostEntries) continue;
     blocks_[m] = {numbers_.size(), entries_.size(), rest.size()};
     for (const RestBox& box : rest) entries_.push_back(box.entry);
     numbers_.resize(numbers_.size() + (3 + rest.size()) * kCorners);
