@@ -1,12 +1,13 @@
 #include <bit>
-#include <glm/common.hpp>
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "detector/contact_finder.hpp"
 #include "detector/detector.hpp"
-#include "detector/meet_boxes.hpp"
 #include "detector/meshlet_candidates.hpp"
 #include "detector/meshlet_skin.hpp"
+#include "detector/meshlet_triangles.hpp"
 #include "detector/meshlets.hpp"
 #include "detector/skin_motion.hpp"
 #include "detector/triangle_boxes.hpp"
@@ -93,15 +94,16 @@ class SkippingCpuDetector final : public Detector {
   void test(const Frame& frame, const TouchedMeshlet& touched, ContactRow& row) {
     meshlet_skin_.skin(touched.meshlet, frame.palette, now_);
     if (method_ != Method::kStatic) meshlet_skin_.skin(touched.meshlet, frame.palette_before, before_);
-    box_triangles(now_, before_, method_, boxes_);
+    triangles_.bound(now_, before_, method_);
+    const std::span<const std::uint32_t> numbers = candidates_.segments(touched);
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
-    for (const std::uint32_t number : candidates_.segments(touched)) {
-      const Segment& segment = frame.segments[number];
-      const SkinBox box = {glm::vec4(glm::min(segment.start, segment.end), 0),
-                           glm::vec4(glm::max(segment.start, segment.end), 0)};
-      std::uint32_t meets = meet_boxes(box, boxes_.ends[0].data(), kBoxBlock, triangles.size());
-      for (; meets != 0; meets &= meets - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(meets));
+    meets_.resize(numbers.size());
+    triangles_.meet(frame.segments, numbers, meets_.data());
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const Segment& segment = frame.segments[numbers[k]];
+      for (std::uint32_t bits = meets_[k]; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+        if (i >= triangles.size()) break;
         set_corners(triangles[i], i);
         finder_.offer(frame, skin_, segment, triangles[i], row[segment.column]);
       }
@@ -125,8 +127,9 @@ class SkippingCpuDetector final : public Detector {
   MeshletSkin meshlet_skin_;
   MeshletCorners now_ = {};
   MeshletCorners before_ = {};
-  MeshletBoxes boxes_ = {};
-  SkinMotion skin_;  ///< only the corners of triangles that are being decided
+  MeshletTriangles triangles_;
+  std::vector<std::uint32_t> meets_;  ///< of each segment that may meet a meshlet, which triangles
+  SkinMotion skin_;                   ///< only the corners of triangles that are being decided
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec4.hpp>
+#include <span>
 
 namespace vestige {
 
@@ -15,9 +16,10 @@ struct alignas(16) SkinBox {
 /// Boxes tested at once: one bit each.
 inline constexpr std::size_t kBoxBlock = 32;
 
-/// Bit i of the result says whether box i, of `count` up to kBoxBlock, meets `box`; touching is meeting, and what is no
-/// number may meet anything. `ends`: low x of all boxes, then low y, z, high x, y, z, each `stride` after the last;
-/// kBoxBlock floats of each may be read.
-std::uint32_t meet_boxes(const SkinBox& box, const float* ends, std::size_t stride, std::size_t count);
+/// Bit i of meets[k] says whether box i, of `count` up to kBoxBlock, meets boxes[k]; touching is meeting, and what is
+/// no number may meet anything. `ends`: low x of all boxes i, then low y, z, high x, y, z, each `stride` after the
+/// last; kBoxBlock floats of each may be read.
+void meet_boxes(std::span<const SkinBox> boxes, const float* ends, std::size_t stride, std::size_t count,
+                std::uint32_t* meets);
 
 }  // namespace vestige

@@ -57,8 +57,8 @@ inline Ends transformed(std::span<const RestBox> boxes, const BoundTransform* tr
 }
 
 /// The box of one node, which has rest boxes; `other` as in MeshletBounds.
-void BoundNode(std::span<const RestBox> boxes, const BoundTransform* now, const BoundTransform* other, Method method,
-               const glm::vec4& pad, SkinBox& out) {
+inline void bound_node(std::span<const RestBox> boxes, const BoundTransform* now, const BoundTransform* other,
+                       Method method, const glm::vec4& pad, SkinBox& out) {
   const D d;
   for (int first = 0; first < 4; first += static_cast<int>(hn::Lanes(d))) {
     Ends ends = transformed(boxes, now, first);
@@ -77,6 +77,19 @@ void BoundNode(std::span<const RestBox> boxes, const BoundTransform* now, const 
   }
 }
 
+/// Boxes of nodes `first` and following.
+void BoundNodes(const Meshlets& meshlets, std::size_t level, std::size_t first, const BoundTransform* now,
+                const BoundTransform* other, Method method, const glm::vec4& pad, std::span<SkinBox> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::span<const RestBox> rest = meshlets.rest_boxes(level, first + i);
+    if (rest.empty()) {
+      out[i] = {glm::vec4(-std::numeric_limits<float>::infinity()), glm::vec4(std::numeric_limits<float>::infinity())};
+    } else {
+      bound_node(rest, now, other, method, pad, out[i]);
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace vestige
 HWY_AFTER_NAMESPACE();
@@ -86,7 +99,7 @@ namespace vestige {
 
 namespace {
 
-HWY_EXPORT(BoundNode);
+HWY_EXPORT(BoundNodes);
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Within this reach nothing overflows.
@@ -170,14 +183,10 @@ void MeshletBounds::begin(const Frame& frame, Method method) {
 }
 
 void MeshletBounds::boxes(std::size_t level, std::size_t first, std::span<SkinBox> out) const {
-  const auto bound = HWY_DYNAMIC_DISPATCH(BoundNode);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const std::span<const RestBox> rest = meshlets_.rest_boxes(level, first + i);
-    if (bounded_ && !rest.empty()) {
-      bound(rest, now_.data(), other_.data(), method_, pad_, out[i]);
-    } else {
-      out[i] = {glm::vec4(-kInfinity), glm::vec4(kInfinity)};
-    }
+  if (bounded_) {
+    HWY_DYNAMIC_DISPATCH(BoundNodes)(meshlets_, level, first, now_.data(), other_.data(), method_, pad_, out);
+  } else {
+    std::ranges::fill(out, SkinBox{glm::vec4(-kInfinity), glm::vec4(kInfinity)});
   }
 }
 

@@ -9,28 +9,10 @@
 #include "detector/meshlet_bounds.hpp"
 #include "detector/meshlets.hpp"
 #include "detector/method.hpp"
+#include "detector/segment_boxes.hpp"
 #include "traces/avatar.hpp"
 
 namespace vestige {
-
-/// Segments' boxes, axis by axis, so that several are tested at once.
-class SegmentBoxes {
- public:
-  void resize(std::size_t capacity);
-  void clear() { count_ = 0; }
-  void add(const Segment& segment, std::uint32_t number);
-  std::size_t size() const { return count_; }
-  std::span<const std::uint32_t> numbers() const { return std::span(number_).first(count_); }
-
-  /// Fills `out`, which has this one's capacity, with those that meet `box`, in the same order.
-  void meet(const SkinBox& box, SegmentBoxes& out) const;
-
- private:
-  std::size_t count_ = 0;
-  std::size_t stride_ = 0;
-  std::vector<float> ends_;            ///< low x, y, z, high x, y, z: stride_ each
-  std::vector<std::uint32_t> number_;  ///< in the frame
-};
 
 /// A meshlet that some segments may meet: numbers `first` and following of MeshletCandidates::segments().
 struct TouchedMeshlet {
@@ -60,7 +42,7 @@ class MeshletCandidates {
 
   const Meshlets& meshlets_;
   MeshletBounds bounds_;
-  std::vector<SegmentBoxes> of_level_;  ///< those that may meet the node of each level that is being looked into
+  std::vector<SegmentBoxes> segments_of_level_;  ///< that may meet the node of this level that is being looked into
   std::vector<TouchedMeshlet> touched_;
   std::vector<std::uint32_t> segments_;
 };

@@ -13,9 +13,9 @@ namespace vestige {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<float, kBoxBlock>;
+using D = hn::CappedTag<float, 16>;
 
-constexpr std::size_t kCorners = 3 * kBoxBlock;
+constexpr std::size_t kCorners = 3 * kMeshletTriangles;
 
 /// `skin_vertex` for all corners of a meshlet. Every vertex is given every entry of the meshlet, by ascending entries:
 /// a weight of 0 adds a zero, which changes no bit of a sum that starts at +0.
@@ -47,45 +47,6 @@ void SkinCorners(const float* numbers, std::span<const std::uint32_t> entries, c
   }
 }
 
-/// For kCarried: a start carried by m, rounded to fp32, is at or above `low` only if it was at or above low - m. Let M
-/// be the largest magnitude of the six coordinates and u = 2^-24. That m is computed here in fp32 errs by less than 10
-/// u M (differences of 2 M, their sums, a third), that the carried start is rounded by 2 u M, and what is subtracted by
-/// 6 u M; the margin is 32 u M, and what denormals need.
-void BoxTriangles(const MeshletCorners& now, const MeshletCorners& before, Method method, MeshletBoxes& out) {
-  const D d;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto& now_axis = now.position[axis];
-    const auto& before_axis = before.position[axis];
-    for (std::size_t i = 0; i < kBoxBlock; i += hn::Lanes(d)) {
-      const auto a = hn::Load(d, &now_axis[0][i]);
-      const auto b = hn::Load(d, &now_axis[1][i]);
-      const auto c = hn::Load(d, &now_axis[2][i]);
-      auto low = hn::Min(hn::Min(a, b), c);
-      auto high = hn::Max(hn::Max(a, b), c);
-      if (method != Method::kStatic) {
-        const auto a_before = hn::Load(d, &before_axis[0][i]);
-        const auto b_before = hn::Load(d, &before_axis[1][i]);
-        const auto c_before = hn::Load(d, &before_axis[2][i]);
-        const auto low_all = hn::Min(hn::Min(hn::Min(a_before, b_before), c_before), low);
-        const auto high_all = hn::Max(hn::Max(hn::Max(a_before, b_before), c_before), high);
-        if (method == Method::kCcd) {
-          low = low_all;
-          high = high_all;
-        } else {
-          const auto sum = hn::Add(hn::Add(hn::Sub(a, a_before), hn::Sub(b, b_before)), hn::Sub(c, c_before));
-          const auto moved = hn::Mul(sum, hn::Set(d, 1.0F / 3.0F));
-          const auto largest = hn::Max(hn::Abs(low_all), hn::Abs(high_all));
-          const auto margin = hn::Add(hn::Mul(largest, hn::Set(d, 0x1p-19F)), hn::Set(d, 0x1p-126F));
-          low = hn::Sub(hn::Sub(low, hn::Max(moved, hn::Zero(d))), margin);
-          high = hn::Add(hn::Sub(high, hn::Min(moved, hn::Zero(d))), margin);
-        }
-      }
-      hn::Store(low, d, &out.ends[axis][i]);
-      hn::Store(high, d, &out.ends[axis + 3][i]);
-    }
-  }
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace vestige
 HWY_AFTER_NAMESPACE();
@@ -96,7 +57,6 @@ namespace vestige {
 namespace {
 
 HWY_EXPORT(SkinCorners);
-HWY_EXPORT(BoxTriangles);
 
 /// A meshlet that more palette entries move is skinned vertex by vertex: hardly any weight would not be 0.
 constexpr std::size_t kMostEntries = 24;
@@ -104,7 +64,7 @@ constexpr std::size_t kMostEntries = 24;
 }  // namespace
 
 MeshletSkin::MeshletSkin(const Avatar& avatar, const Meshlets& meshlets) : avatar_(avatar), meshlets_(meshlets) {
-  constexpr std::size_t kCorners = 3 * kBoxBlock;
+  constexpr std::size_t kCorners = 3 * kMeshletTriangles;
   blocks_.resize(meshlets.size());
   for (std::size_t m = 0; m < blocks_.size(); ++m) {
     const std::span<const RestBox> rest = meshlets.rest_boxes(0, m);
@@ -115,8 +75,8 @@ MeshletSkin::MeshletSkin(const Avatar& avatar, const Meshlets& meshlets) : avata
     float* numbers = &numbers_[blocks_[m].first_number];
     const std::span<const std::uint32_t> triangles = meshlets.triangles(m);
     for (std::size_t i = 0; i < kCorners; ++i) {
-      const std::size_t triangle = i % kBoxBlock < triangles.size() ? i % kBoxBlock : 0;
-      const std::uint32_t vertex = avatar.triangles[triangles[triangle]][static_cast<int>(i / kBoxBlock)];
+      const std::size_t triangle = i % kMeshletTriangles < triangles.size() ? i % kMeshletTriangles : 0;
+      const std::uint32_t vertex = avatar.triangles[triangles[triangle]][static_cast<int>(i / kMeshletTriangles)];
       for (int axis = 0; axis < 3; ++axis)
         numbers[static_cast<std::size_t>(axis) * kCorners + i] = avatar.position_bind[vertex][axis];
       const Influences& influences = avatar.influences[vertex];
@@ -137,7 +97,7 @@ void MeshletSkin::skin(std::size_t meshlet, std::span<const SkinMatrix> palette,
     return;
   }
   const std::span<const std::uint32_t> triangles = meshlets_.triangles(meshlet);
-  for (std::size_t i = 0; i < kBoxBlock; ++i) {
+  for (std::size_t i = 0; i < kMeshletTriangles; ++i) {
     const glm::uvec3& corners = avatar_.triangles[triangles[i < triangles.size() ? i : 0]];
     for (int corner = 0; corner < 3; ++corner) {
       const glm::vec3 position = skin_vertex(avatar_, palette, corners[corner]);
@@ -145,10 +105,6 @@ void MeshletSkin::skin(std::size_t meshlet, std::span<const SkinMatrix> palette,
         out.position[static_cast<std::size_t>(axis)][static_cast<std::size_t>(corner)][i] = position[axis];
     }
   }
-}
-
-void box_triangles(const MeshletCorners& now, const MeshletCorners& before, Method method, MeshletBoxes& out) {
-  HWY_DYNAMIC_DISPATCH(BoxTriangles)(now, before, method, out);
 }
 
 }  // namespace vestige

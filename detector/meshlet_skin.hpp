@@ -3,31 +3,23 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
-#include "detector/meet_boxes.hpp"
 #include "detector/meshlets.hpp"
-#include "detector/method.hpp"
 #include "detector/skinning.hpp"
 #include "traces/avatar.hpp"
 
 namespace vestige {
 
-static_assert(kMeshletTriangles <= kBoxBlock);
-
 /// The skinned corners of a meshlet's triangles: axis, corner, triangle.
 struct MeshletCorners {
-  alignas(64) std::array<std::array<std::array<float, kBoxBlock>, 3>, 3> position;
+  alignas(64) std::array<std::array<std::array<float, kMeshletTriangles>, 3>, 3> position;
 
   glm::vec3 at(std::size_t corner, std::size_t triangle) const {
     return {position[0][corner][triangle], position[1][corner][triangle], position[2][corner][triangle]};
   }
-};
-
-/// Boxes around what each triangle of a meshlet covers within a frame, as TriangleBoxes are: laid out for meet_boxes.
-struct MeshletBoxes {
-  alignas(64) std::array<std::array<float, kBoxBlock>, 6> ends;
 };
 
 /// Skins the triangles of one meshlet at once, to the bits of `skin_vertex`.
@@ -52,8 +44,5 @@ class MeshletSkin {
   std::vector<float> numbers_;  ///< of each block: bind x, y, z of all corners, then each entry's weights
   std::vector<std::uint32_t> entries_;
 };
-
-/// `before` is not read for `kStatic`.
-void box_triangles(const MeshletCorners& now, const MeshletCorners& before, Method method, MeshletBoxes& out);
 
 }  // namespace vestige

@@ -13,6 +13,7 @@ namespace vestige {
 
 /// Triangles of a meshlet; only the last has fewer. Of 16, 32 and 64, 32 was fastest.
 inline constexpr std::size_t kMeshletTriangles = 32;
+static_assert(kMeshletTriangles % 16 == 0 && kMeshletTriangles <= 32);  // a bit each, and whole vectors
 /// Nodes of one level that make a node of the next.
 inline constexpr std::size_t kMeshletFanout = 8;
 
