@@ -17,33 +17,53 @@ using D = hn::CappedTag<float, 16>;
 
 constexpr std::size_t kCorners = 3 * kMeshletTriangles;
 
+/// One row of the blended matrices.
+struct BlendedRow {
+  hn::Vec<D> x;
+  hn::Vec<D> y;
+  hn::Vec<D> z;
+  hn::Vec<D> offset;
+};
+
+/// `row` points at that row's element of the matrix's first column.
+HWY_INLINE void blend_in(BlendedRow& blend, hn::Vec<D> weight, const float* row) {
+  const D d;
+  blend.x = hn::Add(blend.x, hn::Mul(weight, hn::Set(d, row[0])));
+  blend.y = hn::Add(blend.y, hn::Mul(weight, hn::Set(d, row[4])));
+  blend.z = hn::Add(blend.z, hn::Mul(weight, hn::Set(d, row[8])));
+  blend.offset = hn::Add(blend.offset, hn::Mul(weight, hn::Set(d, row[12])));
+}
+
+HWY_INLINE hn::Vec<D> times_bind(const BlendedRow& blend, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) {
+  return hn::Add(hn::Add(hn::Add(hn::Mul(blend.x, x), hn::Mul(blend.y, y)), hn::Mul(blend.z, z)), blend.offset);
+}
+
 /// `skin_vertex` for all corners of a meshlet. Every vertex is given every entry of the meshlet, by ascending entries:
 /// a weight of 0 adds a zero, which changes no bit of a sum that starts at +0.
 void SkinCorners(const float* numbers, std::span<const std::uint32_t> entries, const SkinMatrix* palette,
                  MeshletCorners& out) {
   const D d;
-  const float* weights = numbers + 3 * kCorners;
+  const auto zero = hn::Zero(d);
   for (std::size_t i = 0; i < kCorners; i += hn::Lanes(d)) {
+    BlendedRow row_x = {zero, zero, zero, zero};
+    BlendedRow row_y = row_x;
+    BlendedRow row_z = row_x;
+    const float* weights = numbers + 3 * kCorners + i;
+    for (const std::uint32_t entry : entries) {
+      const auto weight = hn::LoadU(d, weights);
+      const float* matrix = &palette[entry].column[0].x;
+      blend_in(row_x, weight, matrix);
+      blend_in(row_y, weight, matrix + 1);
+      blend_in(row_z, weight, matrix + 2);
+      weights += kCorners;
+    }
     const auto x = hn::LoadU(d, numbers + i);
     const auto y = hn::LoadU(d, numbers + kCorners + i);
     const auto z = hn::LoadU(d, numbers + 2 * kCorners + i);
-    for (int axis = 0; axis < 3; ++axis) {
-      auto blend_0 = hn::Zero(d);
-      auto blend_1 = hn::Zero(d);
-      auto blend_2 = hn::Zero(d);
-      auto blend_3 = hn::Zero(d);
-      for (std::size_t k = 0; k < entries.size(); ++k) {
-        const auto weight = hn::LoadU(d, weights + k * kCorners + i);
-        const std::array<glm::vec4, 4>& column = palette[entries[k]].column;
-        blend_0 = hn::Add(blend_0, hn::Mul(weight, hn::Set(d, column[0][axis])));
-        blend_1 = hn::Add(blend_1, hn::Mul(weight, hn::Set(d, column[1][axis])));
-        blend_2 = hn::Add(blend_2, hn::Mul(weight, hn::Set(d, column[2][axis])));
-        blend_3 = hn::Add(blend_3, hn::Mul(weight, hn::Set(d, column[3][axis])));
-      }
-      const auto world =
-          hn::Add(hn::Add(hn::Add(hn::Mul(blend_0, x), hn::Mul(blend_1, y)), hn::Mul(blend_2, z)), blend_3);
-      hn::StoreU(world, d, &out.position[static_cast<std::size_t>(axis)][0][0] + i);
-    }
+    float* position = &out.position[0][0][0] + i;
+    hn::StoreU(times_bind(row_x, x, y, z), d, position);
+    hn::StoreU(times_bind(row_y, x, y, z), d, position + kCorners);
+    hn::StoreU(times_bind(row_z, x, y, z), d, position + 2 * kCorners);
   }
 }
 
