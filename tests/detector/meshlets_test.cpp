@@ -196,6 +196,23 @@ TEST(MeshletBounds, AreNoneWhereAPaletteMayOverflowOrAWeightIsNegative) {
   EXPECT_TRUE(inside(far, box()));
 }
 
+TEST(SkinVertices, HaveTheBitsOfSkinVertexOnEveryInstructionSet) {
+  test::on_every_simd_target([](const char* target) {
+    SCOPED_TRACE(target);
+    for (const int influences : {1, 4, 8}) {
+      test::RandomRig rig({.seed = 7, .triangles = 500, .entries = 30, .influences = influences, .matrix_size = 1});
+      const std::vector<SkinMatrix> palette = rig.palette();
+      std::vector<glm::vec3> found;
+      skin_vertices(rig.avatar, palette, found);
+      for (std::size_t vertex = 0; vertex < found.size(); ++vertex) {
+        const glm::vec3 expected = skin_vertex(rig.avatar, palette, vertex);
+        for (int axis = 0; axis < 3; ++axis)
+          ASSERT_EQ(std::bit_cast<std::uint32_t>(found[vertex][axis]), std::bit_cast<std::uint32_t>(expected[axis]));
+      }
+    }
+  });
+}
+
 TEST(MeshletSkin, HasTheBitsOfSkinVertexOnEveryInstructionSet) {
   test::on_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);
