@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -14,9 +15,11 @@
 #include <utility>
 #include <vector>
 
+#include "detector/decision.hpp"
 #include "detector/meshlet_bounds.hpp"
 #include "detector/meshlet_candidates.hpp"
 #include "detector/meshlet_skin.hpp"
+#include "detector/meshlet_triangles.hpp"
 #include "detector/skin_motion.hpp"
 #include "detector/triangle_boxes.hpp"
 #include "tests/support/random_rig.hpp"
@@ -235,6 +238,81 @@ TEST(MeshletSkin, HasTheBitsOfSkinVertexOnEveryInstructionSet) {
       }
     }
   });
+}
+
+/// Segments that end on the triangle, touch it with an end, go through it, or pass close by.
+std::vector<Segment> segments_around(test::RandomRig& rig, const Corners& before, const Corners& now, float reach) {
+  std::vector<Segment> segments;
+  for (const glm::dvec3& weight : {glm::dvec3(1, 0, 0), glm::dvec3(0, 0.5, 0.5), glm::dvec3(0.25, 0.25, 0.5)}) {
+    const glm::vec3 first(weight.x * before.a + weight.y * before.b + weight.z * before.c);
+    const glm::vec3 last(weight.x * now.a + weight.y * now.b + weight.z * now.c);
+    const glm::vec3 back(glm::dvec3(last) - carried_displacement(before, now));
+    const glm::vec3 aside = rig.vector(reach);
+    segments.push_back({0, last + aside, last});
+    segments.push_back({0, back, back + aside});
+    segments.push_back({0, first, last + aside});
+    segments.push_back({0, last - aside, last + aside});
+    segments.push_back({0, glm::vec3(now.a), glm::vec3(now.b)});
+  }
+  return segments;
+}
+
+RC_GTEST_PROP(MeshletTriangles, RejectNoPairThatMeets, ()) {
+  test::RigShape shape = any_rig();
+  shape.triangles = *rc::gen::inRange(1, 40);
+  shape.matrix_size = *rc::gen::inRange(-3, 4);
+  shape.mesh_size = *rc::gen::inRange(-12, 4);
+  shape.mesh_offset = *rc::gen::inRange(-12, 8);
+  shape.translation_size = *rc::gen::inRange(-12, 8);
+  const float reach = std::ldexp(1.0F, *rc::gen::inRange(-14, 4));
+  test::RandomRig rig(shape);
+  const Meshlets meshlets(rig.avatar);
+  const MeshletSkin skin(rig.avatar, meshlets);
+  const std::vector<SkinMatrix> palette = rig.palette();
+  std::vector<SkinMatrix> palette_before = palette;  // a little aside
+  for (SkinMatrix& matrix : palette_before) matrix.column[3] += glm::vec4(rig.vector(reach), 0);
+  MeshletCorners now;
+  MeshletCorners before;
+  for (const Method method : kMethods)
+    for (std::size_t m = 0; m < meshlets.size(); ++m) {
+      skin.skin(m, palette, now);
+      skin.skin(m, palette_before, before);
+      MeshletTriangles triangles;
+      triangles.bound(now, before, method);
+      for (std::size_t i = 0; i < meshlets.triangles(m).size(); ++i) {
+        const Corners corners = {now.at(0, i), now.at(1, i), now.at(2, i)};
+        const Corners corners_before = {before.at(0, i), before.at(1, i), before.at(2, i)};
+        for (const Segment& segment : segments_around(rig, corners_before, corners, reach)) {
+          Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
+          if (method == Method::kCarried) way.start = glm::dvec3(carried_start(segment.start, corners_before, corners));
+          const Decision decision =
+              method == Method::kCcd ? decide_ccd(way, corners_before, corners) : decide_static(way, corners);
+          const std::uint32_t number = 0;
+          std::uint32_t meets = 0;
+          triangles.meet(std::span(&segment, 1), std::span(&number, 1), &meets);
+          if (decision.contact) RC_ASSERT(((meets >> i) & 1U) == 1U);
+        }
+      }
+    }
+}
+
+TEST(MeshletTriangles, RejectMostOfWhatPassesCloseBy) {
+  const Avatar avatar = test::rigid_avatar({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0.5F}}, {{0, 1, 2}});
+  const Meshlets meshlets(avatar);
+  const MeshletSkin skin(avatar, meshlets);
+  const Frame frame = test::frame_of(avatar, {});
+  MeshletCorners corners;
+  skin.skin(0, frame.palette, corners);
+  MeshletTriangles triangles;
+  triangles.bound(corners, corners, Method::kStatic);
+  const Segment beside = {0, {0, 0, 0.249F}, {0, -0.1F, 0.1F}};  // within the box, on one side of the plane
+  const Segment through = {0, {0, 0, 0.249F}, {0, 0, 0.3F}};
+  const std::vector<Segment> segments = {beside, through};
+  const std::uint32_t numbers[] = {0, 1};
+  std::uint32_t meets[2];
+  triangles.meet(segments, numbers, meets);
+  EXPECT_EQ(meets[0] & 1U, 0U);
+  EXPECT_EQ(meets[1] & 1U, 1U);
 }
 
 TEST(MeshletCandidates, AreTheSameOnEveryInstructionSetAndLeaveOutNoPairWhoseBoxesMeet) {
