@@ -6,6 +6,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/common.hpp>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include "detector/decision.hpp"
+#include "detector/meet_boxes.hpp"
 #include "detector/meshlet_bounds.hpp"
 #include "detector/meshlet_candidates.hpp"
 #include "detector/meshlet_skin.hpp"
@@ -236,6 +238,39 @@ TEST(MeshletSkin, HasTheBitsOfSkinVertexOnEveryInstructionSet) {
               ASSERT_EQ(std::bit_cast<std::uint32_t>(found[axis]), std::bit_cast<std::uint32_t>(expected[axis]));
           }
       }
+    }
+  });
+}
+
+TEST(MeetBoxes, SaysThatTouchingIsMeetingAndThatWhatIsNoNumberMayMeetOnEveryInstructionSet) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  const SkinBox unit = {glm::vec4(0, 0, 0, 0), glm::vec4(1, 1, 1, 0)};
+  const SkinBox nowhere = {glm::vec4(7, 7, 7, 0), glm::vec4(8, 8, 8, 0)};
+  const SkinBox anywhere = {glm::vec4(kNan), glm::vec4(kNan)};
+  const std::vector<SkinBox> boxes = {unit, nowhere, anywhere};
+  test::on_every_simd_target([&](const char* target) {
+    SCOPED_TRACE(target);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      std::array<std::array<float, kBoxBlock>, 6> ends = {};  // boxes of points at 0.5, but for some along one axis
+      for (auto& numbers : ends) numbers.fill(0.5F);
+      const auto place = [&](std::size_t i, float low, float high) {
+        ends[axis][i] = low;
+        ends[axis + 3][i] = high;
+      };
+      place(3, -1, 0);
+      place(7, 1, 2);
+      place(11, -1, -1e-30F);
+      place(15, 1 + 0x1p-23F, 2);
+      place(19, kNan, kNan);
+      place(23, -1, 2);
+      std::array<std::uint32_t, 3> meets = {};
+      meet_boxes(boxes, ends[0].data(), kBoxBlock, kBoxBlock, meets.data());
+      EXPECT_EQ(meets[0], ~(1U << 11 | 1U << 15));
+      EXPECT_EQ(meets[1], 0U);
+      EXPECT_EQ(meets[2], ~0U);
+      meet_boxes(boxes, ends[0].data(), kBoxBlock, 5, meets.data());
+      EXPECT_EQ(meets[0], 0x1FU);
+      EXPECT_EQ(meets[2], 0x1FU);
     }
   });
 }
