@@ -16,8 +16,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void MeetBlock(std::span<const SkinBox> boxes, const float* ends, std::size_t stride, std::size_t count,
-               std::uint32_t* meets) {
+void meet_block(std::span<const SkinBox> boxes, const float* ends, std::size_t stride, std::size_t count,
+                std::uint32_t* meets) {
   const hn::CappedTag<float, 16> d;
   std::fill_n(meets, boxes.size(), 0U);
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
@@ -46,11 +46,11 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace vestige {
 
-HWY_EXPORT(MeetBlock);
+HWY_EXPORT(meet_block);
 
 void meet_boxes(std::span<const SkinBox> boxes, const float* ends, std::size_t stride, std::size_t count,
                 std::uint32_t* meets) {
-  HWY_DYNAMIC_DISPATCH(MeetBlock)(boxes, ends, stride, count, meets);
+  HWY_DYNAMIC_DISPATCH(meet_block)(boxes, ends, stride, count, meets);
 }
 
 }  // namespace vestige

@@ -40,8 +40,8 @@ HWY_INLINE hn::Vec<D> times_bind(const BlendedRow& blend, hn::Vec<D> x, hn::Vec<
 
 /// `skin_vertex` for all corners of a meshlet. Every vertex is given every entry of the meshlet, by ascending entries:
 /// a weight of 0 adds a zero, which changes no bit of a sum that starts at +0.
-void SkinCorners(const float* numbers, std::span<const std::uint32_t> entries, const SkinMatrix* palette,
-                 MeshletCorners& out) {
+void skin_corners(const float* numbers, std::span<const std::uint32_t> entries, const SkinMatrix* palette,
+                  MeshletCorners& out) {
   const D d;
   const auto zero = hn::Zero(d);
   for (std::size_t i = 0; i < kCorners; i += hn::Lanes(d)) {
@@ -76,7 +76,7 @@ namespace vestige {
 
 namespace {
 
-HWY_EXPORT(SkinCorners);
+HWY_EXPORT(skin_corners);
 
 /// A meshlet that more palette entries move is skinned vertex by vertex: hardly any weight would not be 0.
 constexpr std::size_t kMostEntries = 24;
@@ -112,7 +112,7 @@ MeshletSkin::MeshletSkin(const Avatar& avatar, const Meshlets& meshlets) : avata
 void MeshletSkin::skin(std::size_t meshlet, std::span<const SkinMatrix> palette, MeshletCorners& out) const {
   const Block& block = blocks_[meshlet];
   if (block.entries > 0) {
-    HWY_DYNAMIC_DISPATCH(SkinCorners)
+    HWY_DYNAMIC_DISPATCH(skin_corners)
     (&numbers_[block.first_number], std::span(entries_).subspan(block.first_entry, block.entries), palette.data(), out);
     return;
   }

@@ -93,8 +93,8 @@ inline Vector margin_of(const Vector& size) {
   return {margin_of(size.x), margin_of(size.y), margin_of(size.z)};
 }
 
-void BoundTriangles(const MeshletCorners& now, const MeshletCorners& before, Method method,
-                    MeshletTriangles::Bounds& out) {
+void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Method method,
+                     MeshletTriangles::Bounds& out) {
   const D d;
   for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(d)) {
     const Vector a = corner_of(now, 0, i);
@@ -176,8 +176,8 @@ inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Seg
   return mask_bits(d, meets);
 }
 
-void MeetTriangles(const MeshletTriangles::Bounds& bounds, std::span<const Segment> segments,
-                   std::span<const std::uint32_t> numbers, std::uint32_t* meets) {
+void meet_triangles(const MeshletTriangles::Bounds& bounds, std::span<const Segment> segments,
+                    std::span<const std::uint32_t> numbers, std::uint32_t* meets) {
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     meets[k] = 0;
     for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(D()))
@@ -194,18 +194,18 @@ namespace vestige {
 
 namespace {
 
-HWY_EXPORT(BoundTriangles);
-HWY_EXPORT(MeetTriangles);
+HWY_EXPORT(bound_triangles);
+HWY_EXPORT(meet_triangles);
 
 }  // namespace
 
 void MeshletTriangles::bound(const MeshletCorners& now, const MeshletCorners& before, Method method) {
-  HWY_DYNAMIC_DISPATCH(BoundTriangles)(now, before, method, bounds_);
+  HWY_DYNAMIC_DISPATCH(bound_triangles)(now, before, method, bounds_);
 }
 
 void MeshletTriangles::meet(std::span<const Segment> segments, std::span<const std::uint32_t> numbers,
                             std::uint32_t* meets) const {
-  HWY_DYNAMIC_DISPATCH(MeetTriangles)(bounds_, segments, numbers, meets);
+  HWY_DYNAMIC_DISPATCH(meet_triangles)(bounds_, segments, numbers, meets);
 }
 
 }  // namespace vestige

@@ -14,7 +14,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// A vertex at a time, as many of its blended matrix's 16 numbers at once as there are lanes: the order of operations
 /// on each number stays that of `skin_vertex`.
-void SkinVertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::span<glm::vec3> out) {
+void skin_all_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::span<glm::vec3> out) {
   const hn::CappedTag<float, 16> d;
   alignas(64) std::array<float, 16> blend;
   for (std::size_t vertex = 0; vertex < out.size(); ++vertex) {
@@ -44,13 +44,13 @@ namespace vestige {
 
 namespace {
 
-HWY_EXPORT(SkinVertices);
+HWY_EXPORT(skin_all_vertices);
 
 }  // namespace
 
 void skin_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::vector<glm::vec3>& out) {
   out.resize(avatar.position_bind.size());
-  HWY_DYNAMIC_DISPATCH(SkinVertices)(avatar, palette, out);
+  HWY_DYNAMIC_DISPATCH(skin_all_vertices)(avatar, palette, out);
 }
 
 }  // namespace vestige
