@@ -1,5 +1,14 @@
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "detector/contact_finder.hpp"
 #include "detector/detector.hpp"
+#include "detector/meshlet_candidates.hpp"
+#include "detector/meshlet_skin.hpp"
+#include "detector/meshlet_triangles.hpp"
+#include "detector/meshlets.hpp"
 #include "detector/skin_motion.hpp"
 #include "detector/triangle_boxes.hpp"
 
@@ -7,6 +16,7 @@ namespace vestige {
 
 namespace {
 
+/// Every segment against every triangle.
 class CpuDetector final : public Detector {
  public:
   CpuDetector(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
@@ -41,10 +51,92 @@ class CpuDetector final : public Detector {
   TriangleBoxes boxes_;
 };
 
+/// Every segment against the meshlets that it may meet; only those are skinned.
+class SkippingCpuDetector final : public Detector {
+ public:
+  SkippingCpuDetector(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
+      : avatar_(avatar),
+        method_(options.method),
+        finder_(avatar, map, options),
+        meshlets_(avatar),
+        candidates_(avatar, meshlets_),
+        meshlet_skin_(avatar, meshlets_) {
+    skin_.now.resize(avatar.position_bind.size());
+    if (method_ != Method::kStatic) skin_.before.resize(avatar.position_bind.size());
+  }
+
+  const char* name() const override { return "cpu"; }
+  Method method() const override { return method_; }
+
+  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+    row.assign(frame.columns, Contact());
+    if (frame.segments.empty()) return {};
+    candidates_.find(frame, method_);
+    DetectorWork work;
+    work.frames_skipped = candidates_.touched().empty() ? 1 : 0;
+    work.meshlets_skinned = candidates_.touched().size();
+    for (const TouchedMeshlet& touched : candidates_.touched()) {
+      const std::size_t triangles = meshlets_.triangles(touched.meshlet).size();
+      work.triangles_tested += triangles;
+      work.pairs_tested += triangles * touched.count;
+      test(frame, touched, row);
+    }
+    work.pairs_meeting = finder_.take_meeting();
+    work.unsure = finder_.take_unsure();
+    return work;
+  }
+
+  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+    skin_vertices(avatar_, frame.palette, out);
+  }
+
+ private:
+  void test(const Frame& frame, const TouchedMeshlet& touched, ContactRow& row) {
+    meshlet_skin_.skin(touched.meshlet, frame.palette, now_);
+    if (method_ != Method::kStatic) meshlet_skin_.skin(touched.meshlet, frame.palette_before, before_);
+    triangles_.bound(now_, before_, method_);
+    const std::span<const std::uint32_t> numbers = candidates_.segments(touched);
+    const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
+    meets_.resize(numbers.size());
+    triangles_.meet(frame.segments, numbers, meets_.data());
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const Segment& segment = frame.segments[numbers[k]];
+      for (std::uint32_t bits = meets_[k]; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+        if (i >= triangles.size()) break;
+        set_corners(triangles[i], i);
+        finder_.offer(frame, skin_, segment, triangles[i], row[segment.column]);
+      }
+    }
+  }
+
+  /// Puts the corners of triangle i of the meshlet where ContactFinder looks for them.
+  void set_corners(std::uint32_t triangle, std::size_t i) {
+    const glm::uvec3& corners = avatar_.triangles[triangle];
+    for (int corner = 0; corner < 3; ++corner) {
+      skin_.now[corners[corner]] = now_.at(static_cast<std::size_t>(corner), i);
+      if (method_ != Method::kStatic) skin_.before[corners[corner]] = before_.at(static_cast<std::size_t>(corner), i);
+    }
+  }
+
+  const Avatar& avatar_;
+  Method method_;
+  ContactFinder finder_;
+  Meshlets meshlets_;
+  MeshletCandidates candidates_;
+  MeshletSkin meshlet_skin_;
+  MeshletCorners now_ = {};
+  MeshletCorners before_ = {};
+  MeshletTriangles triangles_;
+  std::vector<std::uint32_t> meets_;  ///< of each segment that may meet a meshlet, which triangles
+  SkinMotion skin_;                   ///< only the corners of triangles that are being decided
+};
+
 }  // namespace
 
 std::unique_ptr<Detector> make_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
                                             const DetectorOptions& options) {
+  if (options.skip == Skip::kOn) return std::make_unique<SkippingCpuDetector>(avatar, map, options);
   return std::make_unique<CpuDetector>(avatar, map, options);
 }
 

@@ -94,9 +94,12 @@ void FrameBuilder::follow_origin(const Pose& pose) {
 
 void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
   frame_.segments.clear();
+  auto place = collider_ids_.begin();  // samples mostly come in ascending order: the next is tried first
   for (const ColliderSample& sample : trace_frame.colliders) {
-    const auto place = std::ranges::lower_bound(collider_ids_, sample.id);
-    if (place == collider_ids_.end() || *place != sample.id) continue;
+    if (place == collider_ids_.end() || *place != sample.id) {
+      place = std::ranges::lower_bound(collider_ids_, sample.id);
+      if (place == collider_ids_.end() || *place != sample.id) continue;
+    }
     const auto column = static_cast<std::size_t>(place - collider_ids_.begin());
     Column& before = columns_[column];
     const bool has_start = before.seen_in != 0 && before.seen_in == trace_frame.index &&
@@ -112,6 +115,7 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
       }
     }
     before = {sample.position_m, trace_frame.index + 1};
+    ++place;
   }
   if (!std::ranges::is_sorted(frame_.segments, {}, &Segment::column))
     std::ranges::sort(frame_.segments, {}, &Segment::column);

@@ -42,9 +42,4 @@ glm::vec3 skin_vertex(const Avatar& avatar, std::span<const SkinMatrix> palette,
   return {world};
 }
 
-void skin_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::vector<glm::vec3>& out) {
-  out.resize(avatar.position_bind.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = skin_vertex(avatar, palette, i);
-}
-
 }  // namespace vestige

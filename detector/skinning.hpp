@@ -32,7 +32,7 @@ glm::dvec3 skin_reach_m(const SkinMatrix& matrix, const glm::dvec3& extent_m);
 /// weight 0 change no bit, since a sum that starts at +0 never is -0.
 glm::vec3 skin_vertex(const Avatar& avatar, std::span<const SkinMatrix> palette, std::size_t vertex);
 
-/// All vertices, by `skin_vertex`.
+/// All vertices, to the bits of `skin_vertex`.
 void skin_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::vector<glm::vec3>& out);
 
 }  // namespace vestige

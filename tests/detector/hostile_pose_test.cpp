@@ -1,10 +1,12 @@
 // What poses and colliders that nobody would send bring about: numbers that are none fire nothing and are reported with
-// their frame; whatever is finite is decided as ever, exactly, and to the same bits by `cpu` and `exact`.
+// their frame; whatever is finite is decided as ever, exactly, and to the same bits by `cpu`, skipping or not, and
+// `exact`.
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
+#include <memory>
 #include <ostream>
 #include <string>
 
@@ -37,6 +39,13 @@ const ActuatorMap& no_map() {
 /// Colliders that go through the walking avatar in every frame.
 std::vector<TraceFrame> calm_scene() {
   return test::scene("hug", builtin_avatar(), kColliders, static_cast<int>(kFrames), 5);
+}
+
+std::unique_ptr<Detector> make_skipping_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
+                                                     const DetectorOptions& options) {
+  DetectorOptions skipping = options;
+  skipping.skip = Skip::kOn;
+  return make_cpu_detector(avatar, map, skipping);
 }
 
 test::SceneRun run(const std::vector<TraceFrame>& scene, Method method, decltype(make_cpu_detector)* make) {
@@ -84,7 +93,7 @@ TEST_P(PoseThatIsNotFinite, FiresNothingIsReportedWithItsFrameAndLeavesTheOthers
   std::vector<TraceFrame> hostile = calm_scene();
   const test::SceneRun calm = run(hostile, method, make_cpu_detector);
   hostility.change(hostile[kHostileFrame]);
-  for (const auto make : {make_cpu_detector, make_exact_detector}) {
+  for (const auto make : {make_cpu_detector, make_skipping_cpu_detector, make_exact_detector}) {
     const test::SceneRun found = run(hostile, method, make);
     EXPECT_EQ(found.non_finite_frames, 1U);
     EXPECT_EQ(found.first_non_finite, kHostileFrame);
@@ -122,7 +131,7 @@ TEST_P(ColliderThatIsNotFinite, FiresNothingIsReportedWithItsFrameAndLeavesTheOt
   std::vector<TraceFrame> hostile = calm_scene();
   const test::SceneRun calm = run(hostile, method, make_cpu_detector);
   hostility.change(hostile[kHostileFrame]);
-  for (const auto make : {make_cpu_detector, make_exact_detector}) {
+  for (const auto make : {make_cpu_detector, make_skipping_cpu_detector, make_exact_detector}) {
     const test::SceneRun found = run(hostile, method, make);
     EXPECT_EQ(found.non_finite_frames, 0U);
     EXPECT_EQ(found.non_finite_segments, 2U);  // there and away again
@@ -157,10 +166,12 @@ TEST_P(FinitePose, HoweverStrangeIsDecidedToTheSameBitsAsTheTruth) {
   const test::SceneRun calm = run(hostile, method, make_cpu_detector);
   hostility.change(hostile[kHostileFrame]);
   const test::SceneRun found = run(hostile, method, make_cpu_detector);
+  const test::SceneRun skipping = run(hostile, method, make_skipping_cpu_detector);
   const test::SceneRun truth = run(hostile, method, make_exact_detector);
   EXPECT_FALSE(found.first_non_finite);
   for (std::size_t frame = 0; frame < kFrames; ++frame) {
     EXPECT_EQ(hash_of(found.rows[frame]), hash_of(truth.rows[frame])) << frame;
+    EXPECT_EQ(hash_of(skipping.rows[frame]), hash_of(truth.rows[frame])) << frame;
     if (frame == kHostileFrame || frame == kHostileFrame + 1) continue;
     EXPECT_EQ(hash_of(found.rows[frame]), hash_of(calm.rows[frame])) << frame;
   }

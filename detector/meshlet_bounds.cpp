@@ -1,0 +1,194 @@
+#include "detector/meshlet_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detector/meshlet_bounds.cpp"  // NOLINT(bugprone-suspicious-include)
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each instruction set.
+#include <hwy/highway.h>
+
+// How much a computed box is widened, `pad`. Let u = 2^-24, and R the reach of the palette along an axis: the largest
+// |M_0 x| + |M_1 y| + |M_2 z| + |M_3| of any entry, with |x|, |y|, |z| the largest of the vertices that it moves. No
+// intermediate result is larger than R, but for factors near 1. By the standard model (Higham, Accuracy and Stability
+// of Numerical Algorithms, 2nd ed., 2.2 and Lemma 3.1) a sum of products each of which meets k rounded operations errs
+// by at most k u / (1 - k u) times the sum of the products' magnitudes:
+//   skin_vertex        a term meets 2 products, at most 7 sums over influences and 3 over columns: k = 12
+//   a box's centre     1 product, 3 sums: k = 4
+//   its half extent    1 product, 2 sums: k = 3
+//   its ends           1 sum, and 1 for the pad: k = 2 on up to 2 R
+// Together less than 32 u R. The rest boxes are rounded outwards. `pad` has 64 u R, which covers its own rounding too.
+// Weights: where those of a vertex sum to s, and lie between low and high times s, |s - 1| R more are needed; `pad` has
+// twice the largest |s - 1| of the avatar. A weight below 0 would be no convex combination: then nothing is bounded.
+// Underflow: a product below 2^-126 errs by at most 2^-150, times |x|, |y| or |z| if it is of a weight and a matrix.
+// With fewer than 64 products, 2^-116 (1 + |x| + |y| + |z|) is more than enough.
+// A rest box under a matrix: centre M c, half extent |M| h.
+HWY_BEFORE_NAMESPACE();
+namespace vestige {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, 4>;
+using V = hn::Vec<D>;
+
+struct Ends {
+  V low;
+  V high;
+};
+
+/// Of the axes `first` and following, as many as there are lanes.
+inline Ends transformed(std::span<const RestBox> boxes, const BoundTransform* transforms, int first) {
+  const D d;
+  Ends ends = {hn::Set(d, std::numeric_limits<float>::infinity()), hn::Set(d, -std::numeric_limits<float>::infinity())};
+  for (const RestBox& box : boxes) {
+    const BoundTransform& t = transforms[box.entry];
+    const auto axes_of = [&](const glm::vec4& column) { return hn::Load(d, &column[first]); };
+    const auto product = [&](const glm::vec4& column, float x) { return hn::Mul(axes_of(column), hn::Set(d, x)); };
+    V centre = hn::Add(product(t.column[0], box.centre.x), product(t.column[1], box.centre.y));
+    centre = hn::Add(hn::Add(centre, product(t.column[2], box.centre.z)), axes_of(t.column[3]));
+    V half = hn::Add(product(t.magnitude[0], box.half_extent.x), product(t.magnitude[1], box.half_extent.y));
+    half = hn::Add(half, product(t.magnitude[2], box.half_extent.z));
+    ends.low = hn::Min(ends.low, hn::Sub(centre, half));
+    ends.high = hn::Max(ends.high, hn::Add(centre, half));
+  }
+  return ends;
+}
+
+/// The box of one node, which has rest boxes; `other` as in MeshletBounds.
+inline void bound_node(std::span<const RestBox> boxes, const BoundTransform* now, const BoundTransform* other,
+                       Method method, const glm::vec4& pad, SkinBox& out) {
+  const D d;
+  for (int first = 0; first < 4; first += static_cast<int>(hn::Lanes(d))) {
+    Ends ends = transformed(boxes, now, first);
+    if (method == Method::kCcd) {
+      const Ends before = transformed(boxes, other, first);
+      ends = {hn::Min(ends.low, before.low), hn::Max(ends.high, before.high)};
+    } else if (method == Method::kCarried) {
+      // A start carried by m is at or above `low` only if it was at or above low - m.
+      const Ends moved = transformed(boxes, other, first);
+      ends.low = hn::Sub(ends.low, hn::Max(moved.high, hn::Zero(d)));
+      ends.high = hn::Sub(ends.high, hn::Min(moved.low, hn::Zero(d)));
+    }
+    const V margin = hn::LoadU(d, &pad[first]);
+    hn::Store(hn::Sub(ends.low, margin), d, &out.low[first]);
+    hn::Store(hn::Add(ends.high, margin), d, &out.high[first]);
+  }
+}
+
+/// Boxes of nodes `first` and following.
+void bound_nodes(const Meshlets& meshlets, std::size_t level, std::size_t first, const BoundTransform* now,
+                 const BoundTransform* other, Method method, const glm::vec4& pad, std::span<SkinBox> out) {
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const std::span<const RestBox> rest = meshlets.rest_boxes(level, first + i);
+    if (rest.empty()) {
+      out[i] = {glm::vec4(-std::numeric_limits<float>::infinity()), glm::vec4(std::numeric_limits<float>::infinity())};
+    } else {
+      bound_node(rest, now, other, method, pad, out[i]);
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vestige
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vestige {
+
+namespace {
+
+HWY_EXPORT(bound_nodes);
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+/// Within this reach nothing overflows.
+constexpr float kLargestReach_m = std::numeric_limits<float>::max() / 64;
+
+glm::vec4 magnitude(const glm::vec4& v) {
+  return {std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(v.w)};
+}
+
+/// The largest |s - 1| of the avatar, s the sum of a vertex's weights; infinity where one is no weight.
+double weight_excess(const Avatar& avatar) {
+  double excess = 0;
+  for (const Influences& influences : avatar.influences) {
+    double sum = 0;
+    for (std::size_t k = 0; k < avatar.influence_count; ++k) {
+      if (!(influences.weight[k] >= 0)) return static_cast<double>(kInfinity);
+      sum += static_cast<double>(influences.weight[k]);
+    }
+    excess = std::max(excess, std::abs(sum - 1));
+  }
+  return excess;
+}
+
+/// Fills `out`; returns the palette's reach.
+glm::vec4 prepare(std::span<const SkinMatrix> palette, const std::vector<RestBox>& extents,
+                  std::vector<BoundTransform>& out) {
+  out.resize(palette.size());
+  for (std::size_t i = 0; i < palette.size(); ++i) {
+    out[i].column = palette[i].column;
+    for (std::size_t column = 0; column < 3; ++column) out[i].magnitude[column] = magnitude(palette[i].column[column]);
+  }
+  glm::vec4 reach(0);
+  for (const RestBox& extent : extents) {
+    const BoundTransform& t = out[extent.entry];
+    const glm::vec4 of_entry = t.magnitude[0] * extent.half_extent.x + t.magnitude[1] * extent.half_extent.y +
+                               t.magnitude[2] * extent.half_extent.z + magnitude(t.column[3]);
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(of_entry[axis] <= reach[axis])) reach[axis] = of_entry[axis];  // what is no number stays
+  }
+  return reach;
+}
+
+bool within_reach(const glm::vec4& reach) {
+  return reach.x <= kLargestReach_m && reach.y <= kLargestReach_m && reach.z <= kLargestReach_m;
+}
+
+}  // namespace
+
+MeshletBounds::MeshletBounds(const Avatar& avatar, const Meshlets& meshlets) : meshlets_(meshlets) {
+  rounding_ = static_cast<float>(0x1p-18 + 2 * weight_excess(avatar));
+  double largest = 0;
+  if (meshlets.levels() > 0) {
+    for (const RestBox& box : meshlets.rest_boxes(meshlets.levels() - 1, 0)) {
+      const glm::vec3 extent = glm::vec3(magnitude(glm::vec4(box.centre, 0))) + box.half_extent;
+      extents_.push_back({glm::vec3(0), box.entry, extent, 0});
+      largest = std::max(largest,
+                         static_cast<double>(extent.x) + static_cast<double>(extent.y) + static_cast<double>(extent.z));
+    }
+  }
+  underflow_m_ = static_cast<float>(0x1p-116 * (1 + largest));
+}
+
+void MeshletBounds::begin(const Frame& frame, Method method) {
+  method_ = method;
+  const glm::vec4 reach = prepare(frame.palette, extents_, now_);
+  bounded_ = within_reach(reach) && rounding_ < 1;
+  pad_ = reach * rounding_ + underflow_m_;
+  if (method == Method::kStatic) return;
+  const glm::vec4 reach_before = prepare(frame.palette_before, extents_, other_);
+  bounded_ = bounded_ && within_reach(reach_before);
+  pad_ += reach_before * rounding_ + underflow_m_;
+  if (method == Method::kCcd) return;
+  for (std::size_t i = 0; i < other_.size(); ++i) {
+    for (std::size_t column = 0; column < 4; ++column)
+      other_[i].column[column] = frame.palette[i].column[column] - frame.palette_before[i].column[column];
+    for (std::size_t column = 0; column < 3; ++column)
+      other_[i].magnitude[column] = magnitude(other_[i].column[column]);
+  }
+  // The box, the matrices' difference and its box, the vertices' displacement, and the start rounded to fp32.
+  pad_ *= 4;
+}
+
+void MeshletBounds::boxes(std::size_t level, std::size_t first, std::span<SkinBox> out) const {
+  if (bounded_) {
+    HWY_DYNAMIC_DISPATCH(bound_nodes)(meshlets_, level, first, now_.data(), other_.data(), method_, pad_, out);
+  } else {
+    std::ranges::fill(out, SkinBox{glm::vec4(-kInfinity), glm::vec4(kInfinity)});
+  }
+}
+
+}  // namespace vestige
+#endif

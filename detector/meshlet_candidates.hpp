@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "detector/frame.hpp"
+#include "detector/meshlet_bounds.hpp"
+#include "detector/meshlets.hpp"
+#include "detector/method.hpp"
+#include "detector/segment_boxes.hpp"
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// A meshlet that some segments may meet: numbers `first` and following of MeshletCandidates::segments().
+struct TouchedMeshlet {
+  std::uint32_t meshlet = 0;
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
+/// Which segments may meet which meshlets. What is not listed surely misses, bit for bit: no contact is lost.
+class MeshletCandidates {
+ public:
+  /// Keeps a reference to `meshlets`.
+  MeshletCandidates(const Avatar& avatar, const Meshlets& meshlets);
+
+  void find(const Frame& frame, Method method);
+
+  /// Of the last `find`, by ascending meshlets; each with at least one segment.
+  std::span<const TouchedMeshlet> touched() const { return touched_; }
+
+  /// Numbers in Frame::segments, ascending.
+  std::span<const std::uint32_t> segments(const TouchedMeshlet& touched) const {
+    return std::span(segments_).subspan(touched.first, touched.count);
+  }
+
+ private:
+  void descend(std::size_t level, std::size_t node);
+
+  const Meshlets& meshlets_;
+  MeshletBounds bounds_;
+  std::vector<SegmentBoxes> segments_of_level_;  ///< that may meet the node of this level that is being looked into
+  std::vector<TouchedMeshlet> touched_;
+  std::vector<std::uint32_t> segments_;
+};
+
+}  // namespace vestige

@@ -1,0 +1,212 @@
+#include "detector/meshlet_triangles.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "detector/meshlet_triangles.cpp"  // NOLINT(bugprone-suspicious-include)
+#include <hwy/foreach_target.h>
+// After foreach_target.h, which includes this file once for each instruction set.
+#include <hwy/highway.h>
+
+#include "detector/mask_bits-inl.hpp"
+
+// Boxes. Those of `static` and `ccd` are not rounded. For `carried`, a start carried by m and rounded to fp32 is at or
+// above `low` only if it was at or above low - m. With M the largest magnitude of the six coordinates and u = 2^-24, m,
+// computed here in fp32, errs by less than 10 u M (differences of at most 2 M, their sums, a third), the carried start
+// is rounded by 2 u M at most where it is near the box, and the subtractions here err by 6 u M. The margin is 64 u M,
+// and 2^-120 for underflow.
+//
+// Slabs. A segment whose ends, seen from the triangle's corners at their time, are all on one side along any axis n
+// misses it (the separating axis theorem; for `ccd` as in shaders/geometry.geom). n need not be accurate, only the same
+// for all. n . x is computed with an error of at most 4 u |n| . |x| (Higham, Accuracy and Stability of Numerical
+// Algorithms, 2nd ed., 3.1). For `carried`, the start's n . (x + m) is compared as n . x with a slab moved by -n . m:
+// m's errors above, its product's, 6 u |n| . M, the subtraction's, 3 u |n| . M, and the start's rounding, u |n| . (|x|
+// + 2 M). Together that is less than 32 u |n| . M on the slab's side, and 8 u |n| . |x| on the segment's. Each side
+// gets 64 u, its own rounding included, and 2^-120 for underflow: where it overflows it is infinite or no number, which
+// proves nothing.
+HWY_BEFORE_NAMESPACE();
+namespace vestige {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using D = hn::CappedTag<float, 16>;
+using V = hn::Vec<D>;
+
+constexpr float kMargin = 0x1p-18F;  // 64 u
+constexpr float kTiny = 0x1p-120F;
+
+struct Vector {
+  V x;
+  V y;
+  V z;
+};
+
+inline Vector corner_of(const MeshletCorners& corners, std::size_t corner, std::size_t i) {
+  const D d;
+  return {hn::Load(d, &corners.position[0][corner][i]), hn::Load(d, &corners.position[1][corner][i]),
+          hn::Load(d, &corners.position[2][corner][i])};
+}
+inline void store(const Vector& v, std::array<MeshletTriangles::Numbers, 3>& out, std::size_t i) {
+  const D d;
+  hn::Store(v.x, d, &out[0][i]);
+  hn::Store(v.y, d, &out[1][i]);
+  hn::Store(v.z, d, &out[2][i]);
+}
+
+inline Vector operator+(const Vector& a, const Vector& b) {
+  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
+}
+inline Vector operator-(const Vector& a, const Vector& b) {
+  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
+}
+inline Vector operator*(const Vector& a, float factor) {
+  const auto f = hn::Set(D(), factor);
+  return {hn::Mul(a.x, f), hn::Mul(a.y, f), hn::Mul(a.z, f)};
+}
+inline Vector least(const Vector& a, const Vector& b) {
+  return {hn::Min(a.x, b.x), hn::Min(a.y, b.y), hn::Min(a.z, b.z)};
+}
+inline Vector greatest(const Vector& a, const Vector& b) {
+  return {hn::Max(a.x, b.x), hn::Max(a.y, b.y), hn::Max(a.z, b.z)};
+}
+inline Vector magnitude(const Vector& a) {
+  return {hn::Abs(a.x), hn::Abs(a.y), hn::Abs(a.z)};
+}
+inline Vector everywhere(const glm::vec3& v) {
+  const D d;
+  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+inline V dot(const Vector& a, const Vector& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+inline Vector cross(const Vector& a, const Vector& b) {
+  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
+          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+}
+/// 64 u of it, and what underflow needs.
+inline V margin_of(V size) {
+  const D d;
+  return hn::Add(hn::Mul(size, hn::Set(d, kMargin)), hn::Set(d, kTiny));
+}
+inline Vector margin_of(const Vector& size) {
+  return {margin_of(size.x), margin_of(size.y), margin_of(size.z)};
+}
+
+void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Method method,
+                     MeshletTriangles::Bounds& out) {
+  const D d;
+  for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(d)) {
+    const Vector a = corner_of(now, 0, i);
+    const Vector b = corner_of(now, 1, i);
+    const Vector c = corner_of(now, 2, i);
+    Vector low = least(least(a, b), c);
+    Vector high = greatest(greatest(a, b), c);
+    const Vector normal = cross(b - a, c - a);
+    const V along_a = dot(normal, a);
+    const V along_b = dot(normal, b);
+    const V along_c = dot(normal, c);
+    V slab_low_end = hn::Min(hn::Min(along_a, along_b), along_c);
+    V slab_high_end = hn::Max(hn::Max(along_a, along_b), along_c);
+    V slab_low_start = slab_low_end;
+    V slab_high_start = slab_high_end;
+    Vector largest = greatest(magnitude(low), magnitude(high));
+    if (method != Method::kStatic) {
+      const Vector a_before = corner_of(before, 0, i);
+      const Vector b_before = corner_of(before, 1, i);
+      const Vector c_before = corner_of(before, 2, i);
+      const Vector low_before = least(least(a_before, b_before), c_before);
+      const Vector high_before = greatest(greatest(a_before, b_before), c_before);
+      largest = greatest(largest, greatest(magnitude(low_before), magnitude(high_before)));
+      if (method == Method::kCcd) {
+        low = least(low, low_before);
+        high = greatest(high, high_before);
+        const V before_a = dot(normal, a_before);
+        const V before_b = dot(normal, b_before);
+        const V before_c = dot(normal, c_before);
+        slab_low_start = hn::Min(hn::Min(before_a, before_b), before_c);
+        slab_high_start = hn::Max(hn::Max(before_a, before_b), before_c);
+      } else {
+        const Vector moved = ((a - a_before) + (b - b_before) + (c - c_before)) * (1.0F / 3.0F);
+        const Vector nothing = everywhere(glm::vec3(0));
+        const Vector margin = margin_of(largest);
+        low = low - greatest(moved, nothing) - margin;
+        high = high - least(moved, nothing) + margin;
+        const V along_moved = dot(normal, moved);
+        slab_low_start = hn::Sub(slab_low_start, along_moved);
+        slab_high_start = hn::Sub(slab_high_start, along_moved);
+      }
+    }
+    const V margin = margin_of(dot(magnitude(normal), largest));
+    store(low, out.low, i);
+    store(high, out.high, i);
+    store(normal, out.normal, i);
+    hn::Store(hn::Sub(slab_low_start, margin), d, &out.slab_low[0][i]);
+    hn::Store(hn::Add(slab_high_start, margin), d, &out.slab_high[0][i]);
+    hn::Store(hn::Sub(slab_low_end, margin), d, &out.slab_low[1][i]);
+    hn::Store(hn::Add(slab_high_end, margin), d, &out.slab_high[1][i]);
+  }
+}
+
+/// Bit k of the result: whether triangle i + k may meet the segment.
+inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Segment& segment, std::size_t i) {
+  const D d;
+  const auto number = [&](const MeshletTriangles::Numbers& numbers) { return hn::Load(d, &numbers[i]); };
+  auto apart = hn::FirstN(d, 0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto place = static_cast<std::size_t>(axis);
+    const float low = std::min(segment.start[axis], segment.end[axis]);
+    const float high = std::max(segment.start[axis], segment.end[axis]);
+    apart = hn::Or(apart, hn::Gt(number(bounds.low[place]), hn::Set(d, high)));
+    apart = hn::Or(apart, hn::Lt(number(bounds.high[place]), hn::Set(d, low)));
+  }
+  auto meets = hn::Not(apart);
+  if (hn::AllFalse(d, meets)) return 0;
+  const Vector normal = {number(bounds.normal[0]), number(bounds.normal[1]), number(bounds.normal[2])};
+  const Vector start = everywhere(segment.start);
+  const Vector end = everywhere(segment.end);
+  const V margin = margin_of(dot(magnitude(normal), greatest(magnitude(start), magnitude(end))));
+  const V along_start = dot(normal, start);
+  const V along_end = dot(normal, end);
+  const auto above = hn::And(hn::Gt(hn::Sub(along_start, margin), number(bounds.slab_high[0])),
+                             hn::Gt(hn::Sub(along_end, margin), number(bounds.slab_high[1])));
+  const auto below = hn::And(hn::Lt(hn::Add(along_start, margin), number(bounds.slab_low[0])),
+                             hn::Lt(hn::Add(along_end, margin), number(bounds.slab_low[1])));
+  meets = hn::AndNot(hn::Or(above, below), meets);
+  return mask_bits(d, meets);
+}
+
+void meet_triangles(const MeshletTriangles::Bounds& bounds, std::span<const Segment> segments,
+                    std::span<const std::uint32_t> numbers, std::uint32_t* meets) {
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    meets[k] = 0;
+    for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(D()))
+      meets[k] |= meet_some(bounds, segments[numbers[k]], i) << i;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace vestige
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace vestige {
+
+namespace {
+
+HWY_EXPORT(bound_triangles);
+HWY_EXPORT(meet_triangles);
+
+}  // namespace
+
+void MeshletTriangles::bound(const MeshletCorners& now, const MeshletCorners& before, Method method) {
+  HWY_DYNAMIC_DISPATCH(bound_triangles)(now, before, method, bounds_);
+}
+
+void MeshletTriangles::meet(std::span<const Segment> segments, std::span<const std::uint32_t> numbers,
+                            std::uint32_t* meets) const {
+  HWY_DYNAMIC_DISPATCH(meet_triangles)(bounds_, segments, numbers, meets);
+}
+
+}  // namespace vestige
+#endif

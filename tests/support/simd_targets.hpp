@@ -1,0 +1,23 @@
+#pragma once
+
+#include <hwy/highway.h>
+#include <hwy/targets.h>
+
+#include <cstdint>
+
+namespace vestige::test {
+
+/// Calls `run(name)` once for each instruction set that this machine has and the program was compiled for, plain scalar
+/// code included, with everything that chooses at run time choosing that one.
+template <typename Run>
+void on_every_simd_target(Run&& run) {
+  const std::int64_t supported = hwy::SupportedTargets();
+  for (std::int64_t rest = supported; rest != 0; rest &= rest - 1) {
+    const std::int64_t target = rest & -rest;
+    hwy::GetChosenTarget().Update(target);
+    run(hwy::TargetName(target));
+  }
+  hwy::GetChosenTarget().Update(supported);
+}
+
+}  // namespace vestige::test
