@@ -61,6 +61,8 @@ class Sweep {
       detectors_.push_back(contestant.make(PlaneSet()));
       SweepSeries series;
       series.detector = contestant.detector;
+      series.skip = contestant.skip;
+      series.method = detectors_.back()->method();
       series.gl = detectors_.back()->gl_info();
       for (const std::uint32_t count : settings.counts) {
         if (count > ids_.size())
@@ -166,6 +168,8 @@ class Sweep {
       ++repetition.frames;
       work.pairs_tested += done.pairs_tested;
       work.triangles_tested += done.triangles_tested;
+      work.meshlets_skinned += done.meshlets_skinned;
+      work.frames_skipped += done.frames_skipped;
       const ContactRow& expected = references_[series].rows[place_number][i - 1];
       if (!std::equal(row.begin(), row.end(), expected.begin(), same))
         throw Error(series_[series].detector,
@@ -174,8 +178,11 @@ class Sweep {
                     "this is a fault of ours or of the GL driver: try another --context, and report it");
     }
     if (point.repetitions.size() < places_.size()) {
+      point.pass_frames += repetition.frames;
       point.pairs_tested += work.pairs_tested;
       point.triangles_tested += work.triangles_tested;
+      point.meshlets_skinned += work.meshlets_skinned;
+      point.frames_skipped += work.frames_skipped;
     }
     point.repetitions.push_back(repetition);
   }

@@ -16,6 +16,7 @@ namespace vestige {
 /// One of those that are measured against each other.
 struct Contestant {
   std::string detector;
+  Skip skip = Skip::kOff;  ///< only told: `make` knows
   /// Makes it, able to deliver these planes. Called twice: for timing and for the hash.
   std::function<std::unique_ptr<Detector>(PlaneSet)> make;
 };
@@ -32,9 +33,10 @@ struct SweepSettings {
 struct SweepPoint {
   std::uint32_t colliders = 0;
   std::vector<Repetition> repetitions;
-  std::vector<double> frame_us;  ///< duration of every frame timed
-  std::uint64_t frames_skipped = 0;
-  std::uint64_t contacts = 0;          ///< in one pass over the measured places
+  std::vector<double> frame_us;        ///< duration of every frame timed
+  std::uint64_t pass_frames = 0;       ///< frames in one pass over the measured places
+  std::uint64_t contacts = 0;          ///< in one such pass
+  std::uint64_t frames_skipped = 0;    ///< likewise
   std::uint64_t pairs_tested = 0;      ///< likewise
   std::uint64_t triangles_tested = 0;  ///< likewise
   std::uint64_t meshlets_skinned = 0;  ///< likewise
@@ -45,6 +47,8 @@ struct SweepPoint {
 
 struct SweepSeries {
   std::string detector;
+  Skip skip = Skip::kOff;
+  Method method = Method::kStatic;
   GlInfo gl;
   std::vector<SweepPoint> points;
 };

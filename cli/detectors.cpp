@@ -9,7 +9,13 @@
 
 namespace vestige::cli {
 
-void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
+namespace {
+
+constexpr const char* kSkipHelp =
+    "on: what bounds prove to miss is neither skinned nor tested, the same result; off: every segment meets every "
+    "triangle";
+
+void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   const auto add = [&](const char* name, auto& value, const char* description) {
     return verb.add_option(name, value, description)->group(kDetectorGroup);
   };
@@ -21,15 +27,32 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
       "the triangle; ccd: both move, the first time they meet")
       ->capture_default_str()
       ->check(CLI::IsMember(kMethodNames));
-  add("--skip", choice.skip,
-      "on: what bounds prove to miss is neither skinned nor tested, the same result; off: every segment meets every "
-      "triangle")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"on", "off"}));
   add("--surface", choice.surface,
       "all: skin without an actuator hides what lies behind it; mapped: it is passed through")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "mapped"}));
+}
+
+}  // namespace
+
+void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
+  add_common_detector_options(verb, choice);
+  verb.add_option("--skip", choice.skip, kSkipHelp)
+      ->group(kDetectorGroup)
+      ->capture_default_str()
+      ->check(CLI::IsMember(kSkipNames));
+}
+
+void add_detector_options(CLI::App& verb, DetectorChoice& choice, std::string& skips) {
+  add_common_detector_options(verb, choice);
+  verb.add_option("--skip", skips, std::string(kSkipHelp) + "; off,on: both, against each other")
+      ->group(kDetectorGroup)
+      ->capture_default_str()
+      ->type_name("LIST");
+}
+
+bool knows_skip(const std::string& detector) {
+  return detector == "cpu" || detector == "geometry";
 }
 
 Method method_named(const std::string& name) {

@@ -27,19 +27,26 @@ struct SweepOptions {
   std::string counts = "1:100";
   std::string detectors = "paper,cpu";
   std::string contexts = "egl,osmesa";
+  std::string skips = "on";
   SweepSettings settings;
   bool no_figure = false;
   std::string output;
 };
 
-/// Every detector asked for, those of OpenGL once in every context that this machine has; a context that it lacks is
-/// said.
+/// Every detector asked for, those of OpenGL once in every context that this machine has, those that can skip with
+/// every setting of it; a context that the machine lacks is said.
 std::vector<Contestant> make_contestants(const SweepOptions& options, const OpenTrace& trace, Verbosity verbosity) {
   std::vector<Contestant> contestants;
   const auto add = [&](const std::string& detector, const std::string& context) {
-    contestants.push_back({detector, [&options, &trace, detector, context](PlaneSet planes) {
-                             return make_detector(detector, context, options.choice, trace.avatar, trace.map, planes);
-                           }});
+    const std::vector<std::string> skips =
+        knows_skip(detector) ? parse_list(options.skips) : std::vector<std::string>{"off"};
+    for (const std::string& skip : skips) {
+      DetectorChoice choice = options.choice;
+      choice.skip = skip;
+      contestants.push_back({detector, choice.skip_kind(), [&trace, choice, detector, context](PlaneSet planes) {
+                               return make_detector(detector, context, choice, trace.avatar, trace.map, planes);
+                             }});
+    }
   };
   for (const std::string& detector : parse_list(options.detectors)) {
     if (detector != "paper" && detector != "geometry") {
@@ -89,6 +96,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   options.settings.seed = options.common.seed;
   parse_names(options.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
   parse_names(options.contexts, {"egl", "osmesa", "auto"}, "--context");
+  parse_names(options.skips, kSkipNames, "--skip");
   const std::string json_path = options.output + "/sweep.json";
   const std::string times_path = options.output + "/frame_times.csv.zst";
   std::error_code failure;
@@ -131,11 +139,14 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
 
   if (interrupted()) warn("stopped early; what was measured so far was written", verbosity);
   for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
+  const std::vector<std::string> wrong = disagreements(series);
+  for (const std::string& warning : wrong) warn(warning, verbosity);
   print_summary(sweep_table(series, options.settings.seed), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {options.common.json}, options.common);
   if (!options.no_figure && !interrupted()) draw_figure("sweep", options.output, options.common);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
   if (interrupted()) invocation.exit_code = kDataLost;
+  if (!wrong.empty()) invocation.exit_code = kCheckFailed;
 }
 
 }  // namespace
@@ -159,7 +170,7 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
-  add_detector_options(*verb, options->choice);
+  add_detector_options(*verb, options->choice, options->skips);
   verb->add_option("--runs", options->settings.runs, "Places of the trace, evenly spread, that are measured")
       ->capture_default_str()
       ->check(help::whole_number(1, 10000));

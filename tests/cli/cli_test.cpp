@@ -406,7 +406,37 @@ TEST_F(CommandLine, SweepMeasuresEverySeriesAndKeepsEveryFrame) {
   }
   EXPECT_EQ(json["series"][0]["points"][4]["texture_hash"], json["series"][1]["points"][4]["texture_hash"]);
   EXPECT_EQ(run("zstd -qdc s/frame_times.csv.zst | head -1").standard_output,
-            "detector,context,colliders,repetition,frame,us\n");
+            "detector,context,skip,colliders,repetition,frame,us\n");
+}
+
+TEST_F(CommandLine, SweepMeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --detector paper,cpu,embree --context osmesa --skip off,on --method static "
+          "--counts 1,20 --min-time 0.01 --runs 2 --run-frames 10 --no-figure -o s");
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("cpu, skip on"), HasSubstr("Times as fast as the fastest paper"),
+                                           HasSubstr("Times as fast as the fastest Embree")));
+  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  std::vector<std::string> names;
+  for (const auto& series : json["series"])
+    names.push_back(series["detector"].get<std::string>() + " " + series["skip"].get<std::string>());
+  EXPECT_THAT(names, testing::ElementsAre("paper off", "cpu off", "cpu on", "embree off"));
+  for (const std::size_t p : {0U, 1U}) {
+    const auto point = [&](std::size_t series) { return json["series"][series]["points"][p]; };
+    EXPECT_EQ(point(1)["texture_hash"], point(2)["texture_hash"]);
+    EXPECT_DOUBLE_EQ(point(0)["times_paper"], 1);
+    EXPECT_DOUBLE_EQ(point(2)["times_paper"].get<double>(),
+                     point(2)["hz"].get<double>() / point(0)["hz"].get<double>());
+    EXPECT_DOUBLE_EQ(point(1)["times_embree"].get<double>(),
+                     point(1)["hz"].get<double>() / point(3)["hz"].get<double>());
+    EXPECT_EQ(point(1)["pass_frames"], 20);
+  }
+  EXPECT_EQ(json_of("vestige sweep small.mcap --detector cpu --method ccd --counts 1 --min-time 0.01 --runs 1 "
+                    "--no-figure -o ccd --json -")["series"][0]["method"],
+            "ccd");
+  expect_failure("vestige sweep small.mcap -o t --skip maybe", 2, {"--skip", "maybe", "off"}, "t/sweep.json");
+  expect_failure("vestige sweep small.mcap -o t --skip on,on", 2, {"--skip", "twice"}, "t/sweep.json");
 }
 
 TEST_F(CommandLine, FiresEveryActuatorOfARealAvatarsMap) {
