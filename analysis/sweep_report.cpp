@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "analysis/provenance.hpp"
+#include "analysis/render_thread.hpp"
 
 namespace vestige {
 
@@ -40,7 +41,7 @@ constexpr std::array<Rival, 2> kRivals = {
 double fastest_hz(std::span<const SweepSeries> series, const Rival& rival, std::size_t p) {
   double fastest = 0;
   for (const SweepSeries& one : series)
-    if (one.detector.starts_with(rival.prefix) && !one.points[p].repetitions.empty())
+    if (one.detector.starts_with(rival.prefix) && !one.renderer && !one.points[p].repetitions.empty())
       fastest = std::max(fastest, one.points[p].hz());
   return fastest;
 }
@@ -90,12 +91,33 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"texture_hash", point.texture_hash}};
 }
 
+/// Empty where nothing was drawn.
+std::string rendered_table(std::span<const SweepSeries> series) {
+  const auto is_rendered = [](const SweepSeries& one) { return one.renderer.has_value(); };
+  if (std::ranges::none_of(series, is_rendered)) return "";
+  std::string table = fmt::format("\nFrames of the scene drawn meanwhile, Hz ({:.0f} asked for):\n{:>9}",
+                                  RenderThread::kRate_hz, "colliders");
+  for (const SweepSeries& one : series)
+    if (is_rendered(one)) fmt::format_to(std::back_inserter(table), "  {:>28}", name_of(one));
+  for (std::size_t p = 0; p < series.front().points.size(); ++p) {
+    fmt::format_to(std::back_inserter(table), "\n{:>9}", series.front().points[p].colliders);
+    for (const SweepSeries& one : series) {
+      if (!is_rendered(one)) continue;
+      const bool known = one.points[p].rendered_s > 0;
+      fmt::format_to(std::back_inserter(table), "  {:>28}",
+                     known ? fmt::format("{:.1f}", one.points[p].rendered_hz()) : "-");
+    }
+  }
+  return table + "\n";
+}
+
 }  // namespace
 
 std::string name_of(const SweepSeries& series) {
   std::string name = series.detector;
   if (!series.gl.context.empty()) name += ", " + series.gl.context;
   if (series.skip == Skip::kOn) name += ", skip on";
+  if (series.renderer) name += ", rendering";
   return name;
 }
 
@@ -109,12 +131,15 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
       for (const Rival& rival : kRivals)
         if (const double rival_hz = fastest_hz(series, rival, p); rival_hz > 0)
           point[rival.field] = one.points[p].hz() / rival_hz;
+      if (one.renderer) point["rendered_hz"] = one.points[p].rendered_hz();
       points.push_back(std::move(point));
     }
     list.push_back({{"detector", one.detector},
                     {"context", one.gl.context},
                     {"skip", one.skip == Skip::kOn ? "on" : "off"},
                     {"method", name_of(one.method)},
+                    {"renderer", one.renderer ? "on" : "off"},
+                    {"renderer_gl", one.renderer ? to_json(*one.renderer) : nullptr},
                     {"gl", to_json(one.gl)},
                     {"points", points}});
   }
@@ -122,14 +147,15 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
 }
 
 std::string frame_times_csv(std::span<const SweepSeries> series) {
-  std::string csv = "detector,context,skip,colliders,repetition,frame,us\n";
+  std::string csv = "detector,context,skip,renderer,colliders,repetition,frame,us\n";
   for (const SweepSeries& one : series)
     for (const SweepPoint& point : one.points) {
       std::size_t frame = 0;
       for (std::size_t r = 0; r < point.repetitions.size(); ++r)
         for (std::uint64_t i = 0; i < point.repetitions[r].frames; ++i)
-          fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{:.2f}\n", one.detector, one.gl.context,
-                         one.skip == Skip::kOn ? "on" : "off", point.colliders, r, i, point.frame_us[frame++]);
+          fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{:.2f}\n", one.detector, one.gl.context,
+                         one.skip == Skip::kOn ? "on" : "off", one.renderer ? "on" : "off", point.colliders, r, i,
+                         point.frame_us[frame++]);
     }
   return csv;
 }
@@ -152,6 +178,7 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
   }
   table += "Hz: frames / total time, whole round trip (95 % bootstrap interval).\n";
   for (const Rival& rival : kRivals) table += ratio_table(series, rival);
+  table += rendered_table(series);
   return table;
 }
 

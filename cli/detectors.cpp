@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "detector/embree_detector.hpp"
+#include "detector/mapped_skin.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::cli {
@@ -75,9 +76,11 @@ ContextKind context_kind(const std::string& context) {
   return ContextKind::kAuto;
 }
 
-std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
-                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
-                                        PlaneSet planes) {
+namespace {
+
+std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, const std::string& context,
+                                             const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
+                                             PlaneSet planes) {
   const DetectorOptions options = {choice.surface_kind(), planes, choice.method_kind(), choice.skip_kind()};
   if (name == "exact") return make_exact_detector(avatar, map, options);
   if (name == "embree") return make_embree_detector(EmbreeMode::kRobust, avatar, map, options);
@@ -89,6 +92,17 @@ std::unique_ptr<Detector> make_detector(const std::string& name, const std::stri
     throw UsageError("--method", fmt::format("the published method knows no '{}'", choice.method),
                      "choose --detector geometry or cpu, or --method static");
   return make_paper_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
+}
+
+}  // namespace
+
+std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
+                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
+                                        PlaneSet planes) {
+  const auto make = [&](const Avatar& skin) { return make_on_whole_skin(name, context, choice, skin, map, planes); };
+  // The slow truth takes no short cut.
+  if (choice.surface_kind() == Surface::kAll || name == "exact") return make(avatar);
+  return on_mapped_skin(avatar, map, make);
 }
 
 }  // namespace vestige::cli

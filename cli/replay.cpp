@@ -133,6 +133,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& 
   json["hold_ms"] = options.hold_ms;
   json["gl"] = vestige::to_json(detector.gl_info());
   json["avatar"] = vestige::to_json(trace.avatar);
+  if (options.choice.surface == "mapped") json["triangles_left_out"] = detector.triangles_left_out();
   json["frames"] = result.frames;
   json["frames_skipped"] = result.frames_skipped;
   json["colliders"] = colliders;
@@ -171,6 +172,9 @@ std::string summary(const ReplayResult& result, const OpenTrace& trace, std::siz
   for (std::size_t i = 0; i < trace.map.actuator_count; ++i)
     text += fmt::format("  {:<24} {:>8} contacts\n", trace.map.names[i], result.contacts_of_actuator[i + 1]);
   text += fmt::format("  {:<24} {:>8} contacts\n", "(no actuator)", result.contacts_of_actuator[0]);
+  if (detector.triangles_left_out() != 0)
+    text += fmt::format("left out: {} of {} triangles, which no actuator covers\n", detector.triangles_left_out(),
+                        trace.avatar.triangles.size());
   text += fmt::format(
       "skinning: at most {:.2g} of the avatar's height from the double reference; {} of {} vertices "
       "have the bits of the CPU's\n",

@@ -28,13 +28,15 @@ struct SweepOptions {
   std::string detectors = "paper,cpu";
   std::string contexts = "egl,osmesa";
   std::string skips = "on";
+  std::string renderer = "off";
   SweepSettings settings;
   bool no_figure = false;
   std::string output;
 };
 
 /// Every detector asked for, those of OpenGL once in every context that this machine has, those that can skip with
-/// every setting of it; a context that the machine lacks is said.
+/// every setting of it, and with --renderer on all once more beside a renderer; a context that the machine lacks is
+/// said.
 std::vector<Contestant> make_contestants(const SweepOptions& options, const OpenTrace& trace, Verbosity verbosity) {
   std::vector<Contestant> contestants;
   const auto add = [&](const std::string& detector, const std::string& context) {
@@ -46,6 +48,12 @@ std::vector<Contestant> make_contestants(const SweepOptions& options, const Open
       contestants.push_back({detector, choice.skip_kind(), [&trace, choice, detector, context](PlaneSet planes) {
                                return make_detector(detector, context, choice, trace.avatar, trace.map, planes);
                              }});
+      if (options.renderer == "off") continue;
+      Contestant beside_renderer = contestants.back();
+      beside_renderer.make_renderer_context = [choice, context] {
+        return make_gl_context(context_kind(context), choice.device);
+      };
+      contestants.push_back(std::move(beside_renderer));
     }
   };
   for (const std::string& detector : parse_list(options.detectors)) {
@@ -171,6 +179,11 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
       ->group(kDetectorGroup)
       ->type_name("LIST");
   add_detector_options(*verb, options->choice, options->skips);
+  verb->add_option("--renderer", options->renderer,
+                   "on: measures everything also while a second thread draws the scene at 90 Hz in a context of its "
+                   "own, as HAVE 2010 does")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"on", "off"}));
   verb->add_option("--runs", options->settings.runs, "Places of the trace, evenly spread, that are measured")
       ->capture_default_str()
       ->check(help::whole_number(1, 10000));

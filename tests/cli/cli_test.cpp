@@ -406,7 +406,7 @@ TEST_F(CommandLine, SweepMeasuresEverySeriesAndKeepsEveryFrame) {
   }
   EXPECT_EQ(json["series"][0]["points"][4]["texture_hash"], json["series"][1]["points"][4]["texture_hash"]);
   EXPECT_EQ(run("zstd -qdc s/frame_times.csv.zst | head -1").standard_output,
-            "detector,context,skip,colliders,repetition,frame,us\n");
+            "detector,context,skip,renderer,colliders,repetition,frame,us\n");
 }
 
 TEST_F(CommandLine, SweepMeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) {
@@ -437,6 +437,26 @@ TEST_F(CommandLine, SweepMeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) 
             "ccd");
   expect_failure("vestige sweep small.mcap -o t --skip maybe", 2, {"--skip", "maybe", "off"}, "t/sweep.json");
   expect_failure("vestige sweep small.mcap -o t --skip on,on", 2, {"--skip", "twice"}, "t/sweep.json");
+}
+
+TEST_F(CommandLine, SweepMeasuresBesideARendererInAThreadOfItsOwn) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --detector paper,cpu --context osmesa --renderer on --counts 20 --min-time 0.01 "
+          "--runs 2 --run-frames 10 --no-figure -o s");
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("paper, osmesa, rendering"), HasSubstr("90 asked for")));
+  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  ASSERT_EQ(json["series"].size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& series = json["series"][i];
+    EXPECT_EQ(series["renderer"], i % 2 == 0 ? "off" : "on");
+    EXPECT_EQ(series["renderer_gl"].is_null(), i % 2 == 0);
+    EXPECT_EQ(series["points"][0].contains("rendered_hz"), i % 2 == 1);
+    EXPECT_EQ(series["points"][0]["texture_hash"], json["series"][i / 2 * 2]["points"][0]["texture_hash"]);
+  }
+  EXPECT_GT(json["series"][1]["points"][0]["rendered_hz"], 0);
+  EXPECT_LE(json["series"][1]["points"][0]["rendered_hz"], 91);
 }
 
 TEST_F(CommandLine, FiresEveryActuatorOfARealAvatarsMap) {
