@@ -197,6 +197,10 @@ class Sweep {
       point.frame_us.push_back(elapsed.count() * 1e6);
       repetition.seconds += elapsed.count();
       ++repetition.frames;
+      if (done.frames_skipped != 0) {
+        ++point.skipped_timed;
+        point.skipped_us += point.frame_us.back();
+      }
       work.pairs_tested += done.pairs_tested;
       work.triangles_tested += done.triangles_tested;
       work.meshlets_skinned += done.meshlets_skinned;

@@ -46,6 +46,8 @@ struct SweepPoint {
   std::uint64_t meshlets_skinned = 0;  ///< likewise
   std::string texture_hash;            ///< likewise
 
+  std::uint64_t skipped_timed = 0;    ///< of `frame_us`, those that bounds alone told to be without contact
+  double skipped_us = 0;              ///< how long they took altogether
   std::uint64_t rendered_frames = 0;  ///< of the scene, while this was measured
   double rendered_s = 0;              ///< how long that took
 
