@@ -42,6 +42,7 @@ struct SweepPoint {
   std::uint64_t contacts = 0;          ///< in one such pass
   std::uint64_t frames_skipped = 0;    ///< likewise
   std::uint64_t pairs_tested = 0;      ///< likewise
+  std::uint64_t pairs_meeting = 0;     ///< likewise; only `cpu` and `geometry` count them
   std::uint64_t triangles_tested = 0;  ///< likewise
   std::uint64_t meshlets_skinned = 0;  ///< likewise
   std::string texture_hash;            ///< likewise

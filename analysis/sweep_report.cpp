@@ -53,14 +53,14 @@ std::string ratio_table(std::span<const SweepSeries> series, const Rival& rival)
   if (rivals == 0 || rivals == std::ssize(series)) return "";
   std::string table = fmt::format("\nTimes as fast as {}:\n{:>9}", rival.title, "colliders");
   for (const SweepSeries& one : series)
-    if (!is_rival(one)) fmt::format_to(std::back_inserter(table), "  {:>28}", name_of(one));
+    if (!is_rival(one)) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
   for (std::size_t p = 0; p < series.front().points.size(); ++p) {
     fmt::format_to(std::back_inserter(table), "\n{:>9}", series.front().points[p].colliders);
     const double rival_hz = fastest_hz(series, rival, p);
     for (const SweepSeries& one : series) {
       if (is_rival(one)) continue;
       const bool known = rival_hz > 0 && !one.points[p].repetitions.empty();
-      fmt::format_to(std::back_inserter(table), "  {:>28}",
+      fmt::format_to(std::back_inserter(table), "  {:>34}",
                      known ? fmt::format("{:.2f}", one.points[p].hz() / rival_hz) : "-");
     }
   }
@@ -86,6 +86,7 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"repetitions", point.repetitions.size()},
           {"contacts", point.contacts},
           {"pairs_tested", point.pairs_tested},
+          {"pairs_meeting", point.pairs_meeting},
           {"triangles_tested", point.triangles_tested},
           {"meshlets_skinned", point.meshlets_skinned},
           {"texture_hash", point.texture_hash}};
@@ -98,13 +99,13 @@ std::string rendered_table(std::span<const SweepSeries> series) {
   std::string table = fmt::format("\nFrames of the scene drawn meanwhile, Hz ({:.0f} asked for):\n{:>9}",
                                   RenderThread::kRate_hz, "colliders");
   for (const SweepSeries& one : series)
-    if (is_rendered(one)) fmt::format_to(std::back_inserter(table), "  {:>28}", name_of(one));
+    if (is_rendered(one)) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
   for (std::size_t p = 0; p < series.front().points.size(); ++p) {
     fmt::format_to(std::back_inserter(table), "\n{:>9}", series.front().points[p].colliders);
     for (const SweepSeries& one : series) {
       if (!is_rendered(one)) continue;
       const bool known = one.points[p].rendered_s > 0;
-      fmt::format_to(std::back_inserter(table), "  {:>28}",
+      fmt::format_to(std::back_inserter(table), "  {:>34}",
                      known ? fmt::format("{:.1f}", one.points[p].rendered_hz()) : "-");
     }
   }
@@ -162,7 +163,7 @@ std::string frame_times_csv(std::span<const SweepSeries> series) {
 
 std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed) {
   std::string table = fmt::format("{:>9}", "colliders");
-  for (const SweepSeries& one : series) fmt::format_to(std::back_inserter(table), "  {:>28}", name_of(one));
+  for (const SweepSeries& one : series) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
   table += "   HAVE 2010, GTX 285\n";
   if (series.empty()) return table;
   for (std::size_t p = 0; p < series.front().points.size(); ++p) {
@@ -171,7 +172,7 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
       const SweepPoint& point = one.points[p];
       const Interval interval = bootstrap_frequency_hz(point.repetitions, seed);
       const std::string cell = fmt::format("{:.0f} ({:.0f} to {:.0f})", point.hz(), interval.low, interval.high);
-      fmt::format_to(std::back_inserter(table), "  {:>28}", point.repetitions.empty() ? "-" : cell);
+      fmt::format_to(std::back_inserter(table), "  {:>34}", point.repetitions.empty() ? "-" : cell);
     }
     const std::string_view paper = paper_figure(series.front().points[p].colliders);
     fmt::format_to(std::back_inserter(table), "   {}\n", paper);

@@ -52,7 +52,7 @@ ContextKind context_kind(const std::string& context);
 const std::vector<std::string>& detector_names();
 bool is_detector(const std::string& name);
 
-/// Makes a detector: "auto" (now: cpu), "cpu", "exact", "geometry", "embree", "embree_default" or "paper". `context`:
+/// Makes a detector: "cpu" (also "auto"), "exact", "geometry", "embree", "embree_default" or "paper". `context`:
 /// "auto", "egl" or "osmesa".
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,

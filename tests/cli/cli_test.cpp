@@ -439,6 +439,52 @@ TEST_F(CommandLine, SweepMeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) 
   expect_failure("vestige sweep small.mcap -o t --skip on,on", 2, {"--skip", "twice"}, "t/sweep.json");
 }
 
+TEST_F(CommandLine, ReplaySaysWhatItPickedAndWhy) {
+  record_small();
+  const auto picked = json_of("vestige replay small.mcap --json -");
+  EXPECT_EQ(picked["picked"], "cpu, skip on");
+  EXPECT_THAT(picked["why"].get<std::string>(), HasSubstr("20 colliders x 4998 triangles"));
+  EXPECT_EQ(json_of("vestige replay small.mcap --skip off --json -")["picked"], "cpu, skip off");
+  EXPECT_FALSE(json_of("vestige replay small.mcap --detector cpu --json -").contains("picked"));
+  EXPECT_THAT(run("vestige replay small.mcap").standard_output, HasSubstr("picked cpu, skip on (20 colliders"));
+}
+
+TEST_F(CommandLine, ReplayLeavesOutWhatNoActuatorCovers) {
+  record_small();
+  const auto mapped = json_of("vestige replay small.mcap --surface mapped --json -");
+  EXPECT_GT(mapped["triangles_left_out"], 3000);
+  EXPECT_EQ(json_of("vestige replay small.mcap --surface mapped --detector exact --json -")["texture_hash"],
+            mapped["texture_hash"]);
+  EXPECT_THAT(run("vestige replay small.mcap --surface mapped").standard_output, HasSubstr("of 4998 triangles, which"));
+  EXPECT_FALSE(json_of("vestige replay small.mcap --json -").contains("triangles_left_out"));
+}
+
+TEST_F(CommandLine, GrowthMeasuresCollidersAndTrianglesAndWhatSkippingSaves) {
+  record_small();
+  const test::Outcome growth =
+      run("vestige growth small.mcap --detector paper,cpu --context osmesa --counts 1,20 --count 5 --subdivisions 1 "
+          "--min-time 0.01 --runs 2 --run-frames 3 --no-figure -o g");
+  ASSERT_EQ(growth.exit_code, 0) << growth.standard_error;
+  EXPECT_THAT(growth.standard_output, AllOf(HasSubstr("cpu, skip on"), HasSubstr("With 5 colliders"),
+                                            HasSubstr("19992"), HasSubstr("What skipping saves")));
+  const auto json = nlohmann::json::parse(read_text_file(folder_ / "g/growth.json"));
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["by_colliders"]["series"].size(), 3U);
+  EXPECT_EQ(json["by_colliders"]["series"][0]["points"].size(), 2U);
+  ASSERT_EQ(json["by_triangles"].size(), 2U);
+  EXPECT_EQ(json["by_triangles"][1]["triangles"], 4 * 4998);
+  EXPECT_EQ(json["by_triangles"][1]["series"][1]["points"][0]["colliders"], 5);
+  ASSERT_EQ(json["ablation"].size(), 3U);  // two counts, and the larger avatar
+  for (const auto& one : json["ablation"]) {
+    EXPECT_EQ(one["pairs"], one["triangles"].get<double>() * one["colliders"].get<double>());
+    EXPECT_LE(one["pairs_tested"], one["pairs"]);
+    EXPECT_NEAR(one["us_off"].get<double>() - one["us_on"].get<double>(),
+                one["us_saved_by_frames"].get<double>() + one["us_saved_by_meshlets"].get<double>(), 1e-6);
+  }
+  expect_failure("vestige growth small.mcap --count 21 --counts 1 --subdivisions 0 -o h", 1, {"21", "20"});
+  expect_failure("vestige growth small.mcap --subdivisions 9 -o h", 2, {"--subdivisions"});
+}
+
 TEST_F(CommandLine, SweepMeasuresBesideARendererInAThreadOfItsOwn) {
   record_small();
   const test::Outcome sweep =
