@@ -10,30 +10,53 @@
 
 namespace vestige {
 
+namespace {
+
+SweepSettings settings_for(const GrowthSettings& settings, const Avatar& avatar, std::uint32_t colliders) {
+  SweepSettings sweep = settings.sweep;
+  sweep.counts = {colliders};
+  if (std::uint64_t{colliders} * avatar.triangles.size() > kManyPairs) {
+    sweep.runs = 3;
+    sweep.run_frames = 1;
+  }
+  return sweep;
+}
+
+/// Puts the one point of each series of `more` behind those of `all`.
+void append(std::vector<SweepSeries>& all, std::vector<SweepSeries> more) {
+  if (all.empty()) {
+    all = std::move(more);
+    return;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].points.push_back(std::move(more[i].points.front()));
+}
+
+}  // namespace
+
 Growth run_growth(TraceReader& trace, const Avatar& avatar, const ContestantMaker& make, const GrowthSettings& settings,
                   const std::function<bool(double)>& progress) {
   Growth growth;
   bool goes_on = true;
-  const double steps = 2 + settings.subdivisions;
+  const double steps = static_cast<double>(settings.sweep.counts.size()) + settings.subdivisions + 1;
   double step = 0;
   const auto step_progress = [&](double share) {
     goes_on = goes_on && progress((step + share) / steps);
     return goes_on;
   };
-  growth.by_colliders = run_sweep(trace, avatar, make(avatar), settings.sweep, step_progress);
+  for (const std::uint32_t count : settings.sweep.counts) {
+    if (!goes_on) return growth;
+    append(growth.by_colliders,
+           run_sweep(trace, avatar, make(avatar), settings_for(settings, avatar, count), step_progress));
+    ++step;
+  }
   Avatar fine = avatar;
   for (std::uint32_t level = 0; goes_on && level <= settings.subdivisions; ++level) {
-    ++step;
     if (level > 0) fine = subdivided(fine);
-    SweepSettings sweep = settings.sweep;
-    sweep.counts = {settings.colliders};
-    if (fine.triangles.size() > kManyTriangles) {
-      sweep.runs = 3;
-      sweep.run_frames = 1;
-    }
+    const SweepSettings sweep = settings_for(settings, fine, settings.colliders);
     GrowthSize size = {fine.triangles.size(), fine.position_bind.size(), sweep.runs * sweep.run_frames, {}};
     size.series = run_sweep(trace, fine, make(fine), sweep, step_progress);
     growth.by_triangles.push_back(std::move(size));
+    ++step;
   }
   return growth;
 }
@@ -76,19 +99,19 @@ std::vector<Ablation> ablations(std::span<const SweepSeries> series) {
       const SweepPoint& with = on.points[p];
       const SweepPoint& without = off->points[p];
       if (with.repetitions.empty() || without.repetitions.empty()) continue;
-      Ablation one = {name_of(on),
-                      with.colliders,
-                      with.pass_frames,
-                      with.frames_skipped,
-                      with.meshlets_skinned,
-                      without.triangles_tested,
-                      with.triangles_tested,
-                      without.pairs_tested,
-                      with.pairs_tested,
-                      1e6 / without.hz(),
-                      1e6 / with.hz(),
-                      0,
-                      0};
+      Ablation one;
+      one.name = name_of(on);
+      one.colliders = with.colliders;
+      one.frames = with.pass_frames;
+      one.frames_skipped = with.frames_skipped;
+      one.meshlets_skinned = with.meshlets_skinned;
+      one.triangles = without.triangles_tested;
+      one.triangles_tested = with.triangles_tested;
+      one.pairs = without.pairs_tested;
+      one.pairs_tested = with.pairs_tested;
+      one.pairs_meeting = with.pairs_meeting;
+      one.off_us = 1e6 / without.hz();
+      one.on_us = 1e6 / with.hz();
       const double skipped_share = static_cast<double>(with.skipped_timed) / static_cast<double>(with.frame_us.size());
       if (with.skipped_timed != 0)
         one.saved_by_frames_us =

@@ -31,14 +31,16 @@ struct Growth {
   std::vector<GrowthSize> by_triangles;
 };
 
-/// On avatars of more than so many triangles, single frames at three places are measured: one may take seconds.
-inline constexpr std::size_t kManyTriangles = 50'000;
+/// Where a frame has more pairs of collider and triangle, one may take seconds: then single frames at three places are
+/// measured, whatever the settings say.
+inline constexpr std::uint64_t kManyPairs = 500'000;
 
 /// Makes the contestants for an avatar, to which they keep references.
 using ContestantMaker = std::function<std::vector<Contestant>(const Avatar&)>;
 
 /// Cost against colliders on the avatar, then against triangles on its subdivisions. All contestants take turns within
-/// one size; sizes follow each other, since the largest fill the memory. `progress` as for `run_sweep`.
+/// one size, be it of colliders or triangles; sizes follow each other, since the largest fill the memory. `progress` as
+/// for `run_sweep`.
 Growth run_growth(TraceReader& trace, const Avatar& avatar, const ContestantMaker& make, const GrowthSettings& settings,
                   const std::function<bool(double)>& progress);
 
@@ -72,6 +74,7 @@ struct Ablation {
   std::uint64_t triangles_tested = 0;
   std::uint64_t pairs = 0;  ///< that brute force tested
   std::uint64_t pairs_tested = 0;
+  std::uint64_t pairs_meeting = 0;  ///< of those, what no test could have saved
   double off_us = 0;                ///< a frame without skipping
   double on_us = 0;                 ///< a frame with it
   double saved_by_frames_us = 0;    ///< of off_us - on_us, what frames saved that were skipped altogether

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <utility>
 
 #include "analysis/growth_report.hpp"
 #include "analysis/provenance.hpp"
@@ -126,8 +127,9 @@ void add_growth(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->check(help::whole_number(1, 10000));
   verb->add_option("--run-frames", options->settings.sweep.run_frames,
-                   fmt::format("Consecutive frames at each place; above {} triangles it is single frames at 3 places",
-                               kManyTriangles))
+                   fmt::format("Consecutive frames at each place; above {} pairs of collider and triangle it is single "
+                               "frames at 3 places",
+                               kManyPairs))
       ->capture_default_str()
       ->check(help::whole_number(1, 100000));
   verb->add_option("--min-time", options->settings.sweep.min_time_s, "Seconds spent on every point, at least")

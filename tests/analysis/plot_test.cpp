@@ -93,6 +93,33 @@ TEST_F(PlotTest, SeveralSweepsInOneFigureAreToldApart) {
   EXPECT_THAT(words, HasSubstr("cpu [2]"));
 }
 
+constexpr const char* kGrowth = R"({
+  "commit": "0123456789abcdef", "machine": {"processor": "Fast & Cool 9000", "cores": 2}, "colliders": 100,
+  "avatar": {"vertices": 2600, "triangles": 5000},
+  "by_colliders": {"series": [
+    {"detector": "cpu", "context": "", "skip": "off", "gl": null, "points": [
+      {"colliders": 1, "hz": 14000}, {"colliders": 1000, "hz": 24}]},
+    {"detector": "cpu", "context": "", "skip": "on", "gl": null, "points": [
+      {"colliders": 1, "hz": 290000}, {"colliders": 1000, "hz": 1600}]}]},
+  "by_triangles": [
+    {"triangles": 5000, "series": [
+      {"detector": "cpu", "context": "", "skip": "off", "points": [{"colliders": 100, "hz": 240}]},
+      {"detector": "cpu", "context": "", "skip": "on", "points": [{"colliders": 100, "hz": 16000}]}]},
+    {"triangles": 20000, "series": [
+      {"detector": "cpu", "context": "", "skip": "off", "points": [{"colliders": 100, "hz": 60}]},
+      {"detector": "cpu", "context": "", "skip": "on", "points": [{"colliders": 100, "hz": 9000}]}]}]})";
+
+TEST_F(PlotTest, AGrowthFigureNamesItsLinesAndWhatTheyRunAlong) {
+  write_text(folder_ / "growth.json", kGrowth);
+  const Outcome outcome = run("growth .");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  const std::string words = words_of(folder_ / "growth.svg");
+  for (const char* expected : {"cpu, no skipping", "cpu", "Number of colliders", "Number of triangles", "100 colliders",
+                               "Cost of a frame", "Fast & Cool 9000", "0123456789", "5000 triangles"})
+    EXPECT_THAT(words, HasSubstr(expected));
+  EXPECT_LT(read_png(folder_ / "growth.png").height, 1500U);
+}
+
 TEST_F(PlotTest, AnAccuracyFigureNamesItsScenesLinesAndRatesAndShowsWhatMissesNothing) {
   write_text(folder_ / "accuracy.json", R"({
     "animation": "walk", "avatar": {"triangles": 5000},
@@ -209,6 +236,7 @@ INSTANTIATE_TEST_SUITE_P(
                  R"({"commit": "x", "series": [{"detector": "cpu", "points": [{"colliders": 1, "hz": 2},
                     {"colliders": 1, "hz": 3}]}]})",
                  "1 colliders twice"},
+        BadInput{"MissingGrowth", "growth", nullptr, "no such file"},
         BadInput{"MissingTimeline", "timeline", nullptr, "no such file"},
         BadInput{"EmptyTimeline", "timeline", "", "line 1"},
         BadInput{"WrongColumns", "timeline", "time_s,actuator_2\n0,1\n", "line 1"},
