@@ -4,6 +4,8 @@
 
 #include <limits>
 
+#include "analysis/sweep_report.hpp"
+
 namespace vestige {
 namespace {
 
@@ -58,6 +60,23 @@ TEST(Ablations, TellWhatWholeFramesSavedFromWhatMeshletsDid) {
   EXPECT_NEAR(found[0].saved_by_frames_us, 0.4 * (100 - 2), 1e-9);
   EXPECT_NEAR(found[0].saved_by_meshlets_us, 0.6 * (100 - 20), 1e-9);
   EXPECT_TRUE(ablations(std::vector<SweepSeries>{off}).empty());
+}
+
+TEST(Disagreements, AreSaidOfDetectorsThatPromiseTheSameBitsAndOfNoOthers) {
+  SweepSeries cpu;
+  cpu.detector = "cpu";
+  cpu.points = {point(1, 1, 1)};
+  cpu.points[0].texture_hash = "a";
+  SweepSeries geometry = cpu;
+  geometry.detector = "geometry";
+  SweepSeries paper = cpu;
+  paper.detector = "paper";
+  paper.points[0].texture_hash = "b";
+  EXPECT_TRUE(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).empty());
+  geometry.points[0].texture_hash = "b";
+  EXPECT_EQ(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).size(), 1U);
+  geometry.points[0].texture_hash.clear();  // stopped before it was known
+  EXPECT_TRUE(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).empty());
 }
 
 }  // namespace
