@@ -90,6 +90,7 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
     const DetectorWork work = detector.detect(frame, row);
     result.detection_s += seconds_since(start);
 
+    result.frames_skipped += work.frames_skipped;
     result.pairs_tested += work.pairs_tested;
     result.pairs_captured += work.pairs_captured;
     result.pairs_meeting += work.pairs_meeting;

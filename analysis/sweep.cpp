@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "analysis/render_thread.hpp"
 #include "detector/texture_hash.hpp"
 #include "traces/error.hpp"
 
@@ -17,6 +18,8 @@ namespace vestige {
 namespace {
 
 constexpr std::size_t kWarmUpFrames = 2;
+/// What is measured at a time beside a renderer: 18 of its frames.
+constexpr double kRenderedStretch_s = 0.2;
 
 /// Consecutive frames of the trace; the first only gives the segments of the second their start.
 using Place = std::vector<TraceFrame>;
@@ -61,6 +64,10 @@ class Sweep {
       detectors_.push_back(contestant.make(PlaneSet()));
       SweepSeries series;
       series.detector = contestant.detector;
+      series.skip = contestant.skip;
+      series.method = detectors_.back()->method();
+      renderers_.push_back(make_renderer(contestant));
+      if (renderers_.back() != nullptr) series.renderer = renderers_.back()->gl_info();
       series.gl = detectors_.back()->gl_info();
       for (const std::uint32_t count : settings.counts) {
         if (count > ids_.size())
@@ -95,12 +102,13 @@ class Sweep {
     std::mt19937_64 random(settings_.seed);
     const double total_s = settings_.min_time_s * static_cast<double>(open.size());
     double spent_s = 0;
-    for (std::size_t round = 0; !open.empty(); ++round) {
+    while (!open.empty()) {
       std::ranges::shuffle(open, random);
       for (const Entry& entry : open) {
         SweepPoint& point = series_[entry.series].points[entry.point];
-        measure(entry.series, round % places_.size(), point);
-        spent_s += std::min(point.repetitions.back().seconds, settings_.min_time_s);
+        const double seconds =
+            renderers_[entry.series] == nullptr ? measure(entry.series, point) : measure_rendered(entry.series, point);
+        spent_s += std::min(seconds, settings_.min_time_s);
         if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return std::move(series_);
       }
       std::erase_if(open, [&](const Entry& entry) {
@@ -150,7 +158,32 @@ class Sweep {
     }
   }
 
-  void measure(std::size_t series, std::size_t place_number, SweepPoint& point) {
+  std::unique_ptr<RenderThread> make_renderer(const Contestant& contestant) const {
+    if (!contestant.make_renderer_context) return nullptr;
+    std::vector<const TraceFrame*> frames;
+    for (const Place& place : places_)
+      for (const TraceFrame& frame : place) frames.push_back(&frame);
+    return std::make_unique<RenderThread>(contestant.make_renderer_context, avatar_, std::move(frames));
+  }
+
+  /// One stretch beside the renderer, as many places as it takes. Returns the seconds timed.
+  double measure_rendered(std::size_t series, SweepPoint& point) {
+    const auto start = std::chrono::steady_clock::now();
+    std::chrono::duration<double> elapsed = {};
+    double seconds = 0;
+    renderers_[series]->resume();
+    do {
+      seconds += measure(series, point);
+      elapsed = std::chrono::steady_clock::now() - start;
+    } while (elapsed.count() < kRenderedStretch_s);
+    point.rendered_frames += renderers_[series]->pause();
+    point.rendered_s += elapsed.count();
+    return seconds;
+  }
+
+  /// The place whose turn it is. Returns the seconds timed.
+  double measure(std::size_t series, SweepPoint& point) {
+    const std::size_t place_number = point.repetitions.size() % places_.size();
     const Place& place = places_[place_number];
     FrameBuilder builder(avatar_, first_ids(point.colliders), detectors_[series]->method());
     builder.next(place.front());
@@ -164,8 +197,15 @@ class Sweep {
       point.frame_us.push_back(elapsed.count() * 1e6);
       repetition.seconds += elapsed.count();
       ++repetition.frames;
+      if (done.frames_skipped != 0) {
+        ++point.skipped_timed;
+        point.skipped_us += point.frame_us.back();
+      }
       work.pairs_tested += done.pairs_tested;
+      work.pairs_meeting += done.pairs_meeting;
       work.triangles_tested += done.triangles_tested;
+      work.meshlets_skinned += done.meshlets_skinned;
+      work.frames_skipped += done.frames_skipped;
       const ContactRow& expected = references_[series].rows[place_number][i - 1];
       if (!std::equal(row.begin(), row.end(), expected.begin(), same))
         throw Error(series_[series].detector,
@@ -174,10 +214,15 @@ class Sweep {
                     "this is a fault of ours or of the GL driver: try another --context, and report it");
     }
     if (point.repetitions.size() < places_.size()) {
+      point.pass_frames += repetition.frames;
       point.pairs_tested += work.pairs_tested;
+      point.pairs_meeting += work.pairs_meeting;
       point.triangles_tested += work.triangles_tested;
+      point.meshlets_skinned += work.meshlets_skinned;
+      point.frames_skipped += work.frames_skipped;
     }
     point.repetitions.push_back(repetition);
+    return repetition.seconds;
   }
 
   const Avatar& avatar_;
@@ -186,6 +231,7 @@ class Sweep {
   std::vector<std::uint32_t> ids_;
   std::vector<Place> places_;
   std::vector<std::unique_ptr<Detector>> detectors_;
+  std::vector<std::unique_ptr<RenderThread>> renderers_;  // null for a contestant that is measured alone
   std::vector<SweepSeries> series_;
   std::vector<Reference> references_;
 };

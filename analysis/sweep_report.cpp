@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "analysis/provenance.hpp"
+#include "analysis/render_thread.hpp"
 
 namespace vestige {
 
@@ -27,11 +28,51 @@ std::string_view paper_figure(std::uint32_t colliders) {
   return found == kPaper.end() ? "" : found->hz;
 }
 
+/// What others are measured against: `paper` in any context, Embree in any mode.
+struct Rival {
+  std::string_view prefix;  ///< of the detector's name
+  std::string_view title;
+  const char* field;  ///< in JSON
+};
+constexpr std::array<Rival, 2> kRivals = {
+    {{"paper", "the fastest paper", "times_paper"}, {"embree", "the fastest Embree", "times_embree"}}};
+
+/// At the p-th count; 0 where none was measured.
+double fastest_hz(std::span<const SweepSeries> series, const Rival& rival, std::size_t p) {
+  double fastest = 0;
+  for (const SweepSeries& one : series)
+    if (one.detector.starts_with(rival.prefix) && !one.renderer && !one.points[p].repetitions.empty())
+      fastest = std::max(fastest, one.points[p].hz());
+  return fastest;
+}
+
+/// Empty where the rival was not measured, or nothing else was.
+std::string ratio_table(std::span<const SweepSeries> series, const Rival& rival) {
+  const auto is_rival = [&](const SweepSeries& one) { return one.detector.starts_with(rival.prefix); };
+  const auto rivals = std::ranges::count_if(series, is_rival);
+  if (rivals == 0 || rivals == std::ssize(series)) return "";
+  std::string table = fmt::format("\nTimes as fast as {}:\n{:>9}", rival.title, "colliders");
+  for (const SweepSeries& one : series)
+    if (!is_rival(one)) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
+  for (std::size_t p = 0; p < series.front().points.size(); ++p) {
+    fmt::format_to(std::back_inserter(table), "\n{:>9}", series.front().points[p].colliders);
+    const double rival_hz = fastest_hz(series, rival, p);
+    for (const SweepSeries& one : series) {
+      if (is_rival(one)) continue;
+      const bool known = rival_hz > 0 && !one.points[p].repetitions.empty();
+      fmt::format_to(std::back_inserter(table), "  {:>34}",
+                     known ? fmt::format("{:.2f}", one.points[p].hz() / rival_hz) : "-");
+    }
+  }
+  return table + "\n";
+}
+
 nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
   const Interval interval = bootstrap_frequency_hz(point.repetitions, seed);
   const auto us = [&](double p) { return quantile(point.frame_us, p); };
   return {{"colliders", point.colliders},
           {"frames", point.frame_us.size()},
+          {"pass_frames", point.pass_frames},
           {"frames_skipped", point.frames_skipped},
           {"hz", point.hz()},
           {"hz_low", interval.low},
@@ -45,27 +86,61 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"repetitions", point.repetitions.size()},
           {"contacts", point.contacts},
           {"pairs_tested", point.pairs_tested},
+          {"pairs_meeting", point.pairs_meeting},
           {"triangles_tested", point.triangles_tested},
           {"meshlets_skinned", point.meshlets_skinned},
           {"texture_hash", point.texture_hash}};
 }
 
+/// Empty where nothing was drawn.
+std::string rendered_table(std::span<const SweepSeries> series) {
+  const auto is_rendered = [](const SweepSeries& one) { return one.renderer.has_value(); };
+  if (std::ranges::none_of(series, is_rendered)) return "";
+  std::string table = fmt::format("\nFrames of the scene drawn meanwhile, Hz ({:.0f} asked for):\n{:>9}",
+                                  RenderThread::kRate_hz, "colliders");
+  for (const SweepSeries& one : series)
+    if (is_rendered(one)) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
+  for (std::size_t p = 0; p < series.front().points.size(); ++p) {
+    fmt::format_to(std::back_inserter(table), "\n{:>9}", series.front().points[p].colliders);
+    for (const SweepSeries& one : series) {
+      if (!is_rendered(one)) continue;
+      const bool known = one.points[p].rendered_s > 0;
+      fmt::format_to(std::back_inserter(table), "  {:>34}",
+                     known ? fmt::format("{:.1f}", one.points[p].rendered_hz()) : "-");
+    }
+  }
+  return table + "\n";
+}
+
 }  // namespace
 
 std::string name_of(const SweepSeries& series) {
-  return series.gl.context.empty() ? series.detector : fmt::format("{}, {}", series.detector, series.gl.context);
+  std::string name = series.detector;
+  if (!series.gl.context.empty()) name += ", " + series.gl.context;
+  if (series.skip == Skip::kOn) name += ", skip on";
+  if (series.renderer) name += ", rendering";
+  return name;
 }
 
 nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_t seed) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const SweepSeries& one : series) {
     nlohmann::ordered_json points = nlohmann::ordered_json::array();
-    for (const SweepPoint& point : one.points)
-      if (!point.repetitions.empty()) points.push_back(to_json(point, seed));
+    for (std::size_t p = 0; p < one.points.size(); ++p) {
+      if (one.points[p].repetitions.empty()) continue;
+      nlohmann::ordered_json point = to_json(one.points[p], seed);
+      for (const Rival& rival : kRivals)
+        if (const double rival_hz = fastest_hz(series, rival, p); rival_hz > 0)
+          point[rival.field] = one.points[p].hz() / rival_hz;
+      if (one.renderer) point["rendered_hz"] = one.points[p].rendered_hz();
+      points.push_back(std::move(point));
+    }
     list.push_back({{"detector", one.detector},
                     {"context", one.gl.context},
-                    {"skip", "off"},
-                    {"method", "static"},
+                    {"skip", one.skip == Skip::kOn ? "on" : "off"},
+                    {"method", name_of(one.method)},
+                    {"renderer", one.renderer ? "on" : "off"},
+                    {"renderer_gl", one.renderer ? to_json(*one.renderer) : nullptr},
                     {"gl", to_json(one.gl)},
                     {"points", points}});
   }
@@ -73,21 +148,22 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
 }
 
 std::string frame_times_csv(std::span<const SweepSeries> series) {
-  std::string csv = "detector,context,colliders,repetition,frame,us\n";
+  std::string csv = "detector,context,skip,renderer,colliders,repetition,frame,us\n";
   for (const SweepSeries& one : series)
     for (const SweepPoint& point : one.points) {
       std::size_t frame = 0;
       for (std::size_t r = 0; r < point.repetitions.size(); ++r)
         for (std::uint64_t i = 0; i < point.repetitions[r].frames; ++i)
-          fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{:.2f}\n", one.detector, one.gl.context,
-                         point.colliders, r, i, point.frame_us[frame++]);
+          fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{:.2f}\n", one.detector, one.gl.context,
+                         one.skip == Skip::kOn ? "on" : "off", one.renderer ? "on" : "off", point.colliders, r, i,
+                         point.frame_us[frame++]);
     }
   return csv;
 }
 
 std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed) {
   std::string table = fmt::format("{:>9}", "colliders");
-  for (const SweepSeries& one : series) fmt::format_to(std::back_inserter(table), "  {:>28}", name_of(one));
+  for (const SweepSeries& one : series) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
   table += "   HAVE 2010, GTX 285\n";
   if (series.empty()) return table;
   for (std::size_t p = 0; p < series.front().points.size(); ++p) {
@@ -96,12 +172,33 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
       const SweepPoint& point = one.points[p];
       const Interval interval = bootstrap_frequency_hz(point.repetitions, seed);
       const std::string cell = fmt::format("{:.0f} ({:.0f} to {:.0f})", point.hz(), interval.low, interval.high);
-      fmt::format_to(std::back_inserter(table), "  {:>28}", point.repetitions.empty() ? "-" : cell);
+      fmt::format_to(std::back_inserter(table), "  {:>34}", point.repetitions.empty() ? "-" : cell);
     }
     const std::string_view paper = paper_figure(series.front().points[p].colliders);
     fmt::format_to(std::back_inserter(table), "   {}\n", paper);
   }
-  return table + "Hz: frames / total time, whole round trip (95 % bootstrap interval).\n";
+  table += "Hz: frames / total time, whole round trip (95 % bootstrap interval).\n";
+  for (const Rival& rival : kRivals) table += ratio_table(series, rival);
+  table += rendered_table(series);
+  return table;
+}
+
+std::vector<std::string> disagreements(std::span<const SweepSeries> series) {
+  std::vector<std::string> found;
+  const SweepSeries* first = nullptr;
+  for (const SweepSeries& one : series) {
+    if (one.detector != "cpu" && one.detector != "geometry") continue;
+    if (first == nullptr) first = &one;
+    for (std::size_t p = 0; p < one.points.size(); ++p) {
+      const std::string& expected = first->points[p].texture_hash;
+      const std::string& hash = one.points[p].texture_hash;
+      // Empty: stopped before it was computed.
+      if (!hash.empty() && !expected.empty() && hash != expected)
+        found.push_back(fmt::format("with {} colliders, '{}' and '{}' gave different contacts, and promise the same",
+                                    one.points[p].colliders, name_of(*first), name_of(one)));
+    }
+  }
+  return found;
 }
 
 std::vector<std::string> noise_warnings(std::span<const SweepSeries> series) {

@@ -5,11 +5,18 @@
 #include <algorithm>
 
 #include "detector/embree_detector.hpp"
+#include "detector/mapped_skin.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::cli {
 
-void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
+namespace {
+
+constexpr const char* kSkipHelp =
+    "on: what bounds prove to miss is neither skinned nor tested, the same result; off: every segment meets every "
+    "triangle";
+
+void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   const auto add = [&](const char* name, auto& value, const char* description) {
     return verb.add_option(name, value, description)->group(kDetectorGroup);
   };
@@ -21,15 +28,32 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
       "the triangle; ccd: both move, the first time they meet")
       ->capture_default_str()
       ->check(CLI::IsMember(kMethodNames));
-  add("--skip", choice.skip,
-      "on: what bounds prove to miss is neither skinned nor tested, the same result; off: every segment meets every "
-      "triangle")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"on", "off"}));
   add("--surface", choice.surface,
       "all: skin without an actuator hides what lies behind it; mapped: it is passed through")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "mapped"}));
+}
+
+}  // namespace
+
+void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
+  add_common_detector_options(verb, choice);
+  verb.add_option("--skip", choice.skip, kSkipHelp)
+      ->group(kDetectorGroup)
+      ->capture_default_str()
+      ->check(CLI::IsMember(kSkipNames));
+}
+
+void add_detector_options(CLI::App& verb, DetectorChoice& choice, std::string& skips) {
+  add_common_detector_options(verb, choice);
+  verb.add_option("--skip", skips, std::string(kSkipHelp) + "; off,on: both, against each other")
+      ->group(kDetectorGroup)
+      ->capture_default_str()
+      ->type_name("LIST");
+}
+
+bool knows_skip(const std::string& detector) {
+  return detector == "cpu" || detector == "geometry";
 }
 
 Method method_named(const std::string& name) {
@@ -52,9 +76,11 @@ ContextKind context_kind(const std::string& context) {
   return ContextKind::kAuto;
 }
 
-std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
-                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
-                                        PlaneSet planes) {
+namespace {
+
+std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, const std::string& context,
+                                             const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
+                                             PlaneSet planes) {
   const DetectorOptions options = {choice.surface_kind(), planes, choice.method_kind(), choice.skip_kind()};
   if (name == "exact") return make_exact_detector(avatar, map, options);
   if (name == "embree") return make_embree_detector(EmbreeMode::kRobust, avatar, map, options);
@@ -66,6 +92,17 @@ std::unique_ptr<Detector> make_detector(const std::string& name, const std::stri
     throw UsageError("--method", fmt::format("the published method knows no '{}'", choice.method),
                      "choose --detector geometry or cpu, or --method static");
   return make_paper_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
+}
+
+}  // namespace
+
+std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
+                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
+                                        PlaneSet planes) {
+  const auto make = [&](const Avatar& skin) { return make_on_whole_skin(name, context, choice, skin, map, planes); };
+  // The slow truth takes no short cut.
+  if (choice.surface_kind() == Surface::kAll || name == "exact") return make(avatar);
+  return on_mapped_skin(avatar, map, make);
 }
 
 }  // namespace vestige::cli

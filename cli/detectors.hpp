@@ -36,6 +36,15 @@ inline constexpr const char* kDetectorGroup = "Detector";
 /// Adds --device, --method, --skip and --surface, which mean the same in every verb.
 void add_detector_options(CLI::App& verb, DetectorChoice& choice);
 
+/// The same, for a verb that measures several settings of --skip against each other: `skips` is their list.
+void add_detector_options(CLI::App& verb, DetectorChoice& choice, std::string& skips);
+
+/// What --skip takes, or lists.
+inline const std::vector<std::string> kSkipNames = {"on", "off"};
+
+/// Whether --skip makes a difference to the detector of this name.
+bool knows_skip(const std::string& detector);
+
 /// "auto", "egl" or "osmesa".
 ContextKind context_kind(const std::string& context);
 
@@ -43,7 +52,7 @@ ContextKind context_kind(const std::string& context);
 const std::vector<std::string>& detector_names();
 bool is_detector(const std::string& name);
 
-/// Makes a detector: "auto" (now: cpu), "cpu", "exact", "geometry", "embree", "embree_default" or "paper". `context`:
+/// Makes a detector: "cpu" (also "auto"), "exact", "geometry", "embree", "embree_default" or "paper". `context`:
 /// "auto", "egl" or "osmesa".
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,

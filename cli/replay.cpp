@@ -13,6 +13,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
+#include "detector/path_choice.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
 
@@ -122,17 +123,32 @@ bool captures(const Detector& detector) {
   return std::string_view(detector.name()) == "geometry";
 }
 
+/// What --detector auto picks for this trace; nothing where a detector was named.
+std::optional<PickedPath> picked_path(const ReplayOptions& options, const OpenTrace& trace, std::size_t colliders) {
+  if (options.choice.detector != "auto") return std::nullopt;
+  return pick_path(trace.avatar.triangles.size(), colliders, options.choice.skip_kind());
+}
+
+std::string describe(const PickedPath& picked) {
+  return fmt::format("{}, skip {}", picked.detector, picked.skip == Skip::kOn ? "on" : "off");
+}
+
 nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& options, const OpenTrace& trace,
                                std::size_t colliders, const Detector& detector, const Invocation& invocation) {
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.trace;
   json["detector"] = detector.name();
+  if (const auto picked = picked_path(options, trace, colliders)) {
+    json["picked"] = describe(*picked);
+    json["why"] = picked->why;
+  }
   json["method"] = options.choice.method;
   json["skip"] = options.choice.skip;
   json["surface"] = options.choice.surface;
   json["hold_ms"] = options.hold_ms;
   json["gl"] = vestige::to_json(detector.gl_info());
   json["avatar"] = vestige::to_json(trace.avatar);
+  if (options.choice.surface == "mapped") json["triangles_left_out"] = detector.triangles_left_out();
   json["frames"] = result.frames;
   json["frames_skipped"] = result.frames_skipped;
   json["colliders"] = colliders;
@@ -161,16 +177,21 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& 
   return json;
 }
 
-std::string summary(const ReplayResult& result, const OpenTrace& trace, std::size_t colliders,
-                    const Detector& detector) {
+std::string summary(const ReplayResult& result, const ReplayOptions& options, const OpenTrace& trace,
+                    std::size_t colliders, const Detector& detector) {
   const GlInfo gl = detector.gl_info();
   const std::string where = gl.context.empty() ? "" : fmt::format(" on {} ({})", gl.context, gl.renderer);
   std::string text =
       fmt::format("{}{}: {} frames, {} colliders, {} contacts, {:.0f} Hz\n", detector.name(), where, result.frames,
                   colliders, result.contacts, static_cast<double>(result.frames) / result.detection_s);
+  if (const auto picked = picked_path(options, trace, colliders))
+    text += fmt::format("picked {} ({})\n", describe(*picked), picked->why);
   for (std::size_t i = 0; i < trace.map.actuator_count; ++i)
     text += fmt::format("  {:<24} {:>8} contacts\n", trace.map.names[i], result.contacts_of_actuator[i + 1]);
   text += fmt::format("  {:<24} {:>8} contacts\n", "(no actuator)", result.contacts_of_actuator[0]);
+  if (detector.triangles_left_out() != 0)
+    text += fmt::format("left out: {} of {} triangles, which no actuator covers\n", detector.triangles_left_out(),
+                        trace.avatar.triangles.size());
   text += fmt::format(
       "skinning: at most {:.2g} of the avatar's height from the double reference; {} of {} vertices "
       "have the bits of the CPU's\n",
@@ -209,8 +230,9 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   PlaneSet planes = kHashedPlanes;
   if (!options.textures.empty()) planes = planes | texture_planes;
   if (!options.contacts.empty()) planes = PlaneSet::all();
-  const auto detector =
-      make_detector(options.choice.detector, options.choice.context, options.choice, trace.avatar, trace.map, planes);
+  const auto picked = picked_path(options, trace, collider_ids.size());
+  const auto detector = make_detector(picked ? picked->detector : options.choice.detector, options.choice.context,
+                                      options.choice, trace.avatar, trace.map, planes);
   const Verification verification = load_verification(options, trace, *detector);
 
   catch_interrupts();  // before the first temporary file
@@ -249,7 +271,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
              options.trace, result.non_finite_frames, result.non_finite_segments, *result.first_non_finite),
          verbosity);
 
-  print_summary(summary(result, trace, collider_ids.size(), *detector), outputs, options.common);
+  print_summary(summary(result, options, trace, collider_ids.size(), *detector), outputs, options.common);
   write_json(options.common.json, to_json(result, options, trace, collider_ids.size(), *detector, invocation),
              options.common);
   invocation.exit_code = report_verification(options, result, verification, outputs);
@@ -266,11 +288,12 @@ void add_replay(CLI::App& program, Invocation& invocation) {
                             "  vestige replay man.mcap --contacts contacts.csv --timeline timeline.csv\n"
                             "  vestige replay man.mcap --detector paper --textures textures.exr --json replay.json\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
-  verb->add_option("--detector", options->choice.detector,
-                   "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts, a geometry shader "
-                   "proves misses and the processor decides the rest; cpu: exact contacts, without OpenGL; exact: the "
-                   "same by slow rational arithmetic, to check with; embree: Embree 3, robust and refitted each frame, "
-                   "its fastest configuration; embree_default: the same without its robust flag; auto: cpu")
+  verb->add_option(
+          "--detector", options->choice.detector,
+          "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts, a geometry shader "
+          "proves misses and the processor decides the rest; cpu: exact contacts, without OpenGL; exact: the "
+          "same by slow rational arithmetic, to check with; embree: Embree 3, robust and refitted each frame, "
+          "its fastest configuration; embree_default: the same without its robust flag; auto: the cheapest exact one")
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "paper", "geometry", "cpu", "exact", "embree", "embree_default"}));

@@ -8,13 +8,13 @@
 
 #include "analysis/provenance.hpp"
 #include "analysis/sweep_report.hpp"
-#include "cli/detectors.hpp"
+#include "cli/contestants.hpp"
+#include "cli/default_trace.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
 #include "traces/mcap/compression.hpp"
-#include "traces/recording.hpp"
 
 namespace vestige::cli {
 
@@ -22,59 +22,13 @@ namespace {
 
 struct SweepOptions {
   CommonOptions common;
-  DetectorChoice choice;
+  ContestantChoice contestants = {{}, "paper,cpu", "egl,osmesa", "on"};
   std::string trace;
   std::string counts = "1:100";
-  std::string detectors = "paper,cpu";
-  std::string contexts = "egl,osmesa";
   SweepSettings settings;
   bool no_figure = false;
   std::string output;
 };
-
-/// Every detector asked for, those of OpenGL once in every context that this machine has; a context that it lacks is
-/// said.
-std::vector<Contestant> make_contestants(const SweepOptions& options, const OpenTrace& trace, Verbosity verbosity) {
-  std::vector<Contestant> contestants;
-  const auto add = [&](const std::string& detector, const std::string& context) {
-    contestants.push_back({detector, [&options, &trace, detector, context](PlaneSet planes) {
-                             return make_detector(detector, context, options.choice, trace.avatar, trace.map, planes);
-                           }});
-  };
-  for (const std::string& detector : parse_list(options.detectors)) {
-    if (detector != "paper" && detector != "geometry") {
-      add(detector, "");
-      continue;
-    }
-    for (const std::string& context : parse_list(options.contexts)) {
-      try {
-        make_gl_context(context_kind(context), options.choice.device);
-      } catch (const Error& error) {
-        warn(fmt::format("no series '{}' on {}: {}", detector, context, error.what()), verbosity);
-        continue;
-      }
-      add(detector, context);
-    }
-  }
-  if (contestants.empty())
-    throw Error("--context", "none of the detectors asked for can run on this machine",
-                "'vestige devices' lists its OpenGL contexts; --detector cpu needs none");
-  return contestants;
-}
-
-/// Without a trace, the built-in avatar in a swarm as large as the largest count, kept beside the results.
-void record_default_trace(const std::string& path, const SweepOptions& options, const Invocation& invocation) {
-  const Scene scene = load_scene("builtin", "builtin", Verbosity::kQuiet);
-  const Animation* animation = find_animation(scene.avatar, "");
-  const auto swarm = find_scenario("swarm")->make(scene.avatar, animation,
-                                                  {std::ranges::max(options.settings.counts), options.common.seed});
-  TraceWriterOptions writing;
-  writing.overwrite = options.common.overwrite();
-  TraceWriter writer(path, {{"argv", nlohmann::json(invocation.argv).dump()}}, scene.avatar, scene.attachments(),
-                     writing);
-  record(writer, scene.avatar, animation, *swarm, {}, [](double) { return !interrupted(); });
-  writer.finish();
-}
 
 /// The series' own GL first; the whole file's is that of the first series that has one.
 nlohmann::ordered_json first_gl(std::span<const SweepSeries> series) {
@@ -87,8 +41,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   options.settings.counts = parse_counts(options.counts, "--counts");
   options.settings.seed = options.common.seed;
-  parse_names(options.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
-  parse_names(options.contexts, {"egl", "osmesa", "auto"}, "--context");
+  check_contestant_choice(options.contestants);
   const std::string json_path = options.output + "/sweep.json";
   const std::string times_path = options.output + "/frame_times.csv.zst";
   std::error_code failure;
@@ -98,10 +51,11 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   check_outputs({json_path, times_path, new_trace, options.common.json}, {options.trace}, options.common);
 
   catch_interrupts();
-  if (!new_trace.empty()) record_default_trace(new_trace, options, invocation);
+  if (!new_trace.empty())
+    record_default_trace(new_trace, std::ranges::max(options.settings.counts), options.common, invocation);
   const std::string path = new_trace.empty() ? options.trace : new_trace;
   OpenTrace trace(path, verbosity);
-  const std::vector<Contestant> contestants = make_contestants(options, trace, verbosity);
+  const std::vector<Contestant> contestants = make_contestants(options.contestants, trace.avatar, trace.map, verbosity);
   std::vector<SweepSeries> series;
   {
     Progress progress("Measuring", verbosity);
@@ -131,11 +85,14 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
 
   if (interrupted()) warn("stopped early; what was measured so far was written", verbosity);
   for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
+  const std::vector<std::string> wrong = disagreements(series);
+  for (const std::string& warning : wrong) warn(warning, verbosity);
   print_summary(sweep_table(series, options.settings.seed), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {options.common.json}, options.common);
   if (!options.no_figure && !interrupted()) draw_figure("sweep", options.output, options.common);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
   if (interrupted()) invocation.exit_code = kDataLost;
+  if (!wrong.empty()) invocation.exit_code = kCheckFailed;
 }
 
 }  // namespace
@@ -149,17 +106,12 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
   verb->add_option("--counts", options->counts, "Numbers of colliders, as 1,10,40,100 or 1:100 or 5:100:5")
       ->capture_default_str()
       ->type_name("LIST");
-  verb->add_option("--detector", options->detectors,
-                   "Detectors to measure: paper, geometry, cpu, embree, embree_default")
+  add_contestant_options(*verb, options->contestants);
+  verb->add_option("--renderer", options->contestants.renderer,
+                   "on: measures everything also while a second thread draws the scene at 90 Hz in a context of its "
+                   "own, as HAVE 2010 does")
       ->capture_default_str()
-      ->group(kDetectorGroup)
-      ->type_name("LIST");
-  verb->add_option("--context", options->contexts,
-                   "OpenGL contexts to measure paper and geometry in: egl, osmesa, auto")
-      ->capture_default_str()
-      ->group(kDetectorGroup)
-      ->type_name("LIST");
-  add_detector_options(*verb, options->choice);
+      ->check(CLI::IsMember({"on", "off"}));
   verb->add_option("--runs", options->settings.runs, "Places of the trace, evenly spread, that are measured")
       ->capture_default_str()
       ->check(help::whole_number(1, 10000));

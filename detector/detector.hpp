@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
@@ -64,6 +65,8 @@ class Detector {
   /// Frames for `detect` must come from a FrameBuilder with this method.
   virtual Method method() const { return Method::kStatic; }
   virtual GlInfo gl_info() const { return {}; }
+  /// Of the avatar, those proven to fire nothing (`on_mapped_skin`).
+  virtual std::size_t triangles_left_out() const { return 0; }
 
   /// Fills `row` (resized to frame.columns). The whole round trip is in here: skinning or upload, test, read-back.
   virtual DetectorWork detect(const Frame& frame, ContactRow& row) = 0;

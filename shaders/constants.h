@@ -22,6 +22,7 @@
 #define VESTIGE_UNIFORM_CAPACITY 5         // uint, pairs that the captured buffer has room for
 #define VESTIGE_UNIFORM_PALETTE_SIZE 6     // uint, entries; those of the frame before follow them
 #define VESTIGE_UNIFORM_LEAST_RADIUS 7     // float, metres: what flushed denormals may do to a skinned vertex
+#define VESTIGE_UNIFORM_WORLD_TO_CLIP 8    // mat4, of the scene that is drawn
 
 // How a collider's way and the moving skin meet (detector/method.hpp).
 #define VESTIGE_METHOD_STATIC 0

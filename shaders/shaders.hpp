@@ -11,5 +11,7 @@ extern const std::string_view kPaperGeom;
 extern const std::string_view kPaperFrag;
 extern const std::string_view kGeometryVert;
 extern const std::string_view kGeometryGeom;
+extern const std::string_view kSceneVert;
+extern const std::string_view kSceneFrag;
 
 }  // namespace vestige::shaders

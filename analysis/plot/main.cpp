@@ -17,6 +17,7 @@
 #include "analysis/plot/avatar_figure.hpp"
 #include "analysis/plot/body_figure.hpp"
 #include "analysis/plot/figure_export.hpp"
+#include "analysis/plot/growth_figure.hpp"
 #include "analysis/plot/headless_window.hpp"
 #include "analysis/plot/scene_figure.hpp"
 #include "analysis/plot/stress_figure.hpp"
@@ -118,6 +119,12 @@ int draw_sweep(const Options& options) {
   }
   return write_figure(options, folder / "frequency",
                       [&] { return plot::sweep_figure(plot::read_sweeps(options.inputs)); });
+}
+
+int draw_growth(const Options& options) {
+  const std::filesystem::path& folder = options.inputs.front();
+  return write_figure(options, (options.output.empty() ? folder : options.output) / "growth",
+                      [&] { return plot::growth_figure(plot::read_growth(folder)); });
 }
 
 int draw_stress(const Options& options) {
@@ -276,6 +283,15 @@ int run(int argc, char** argv) {
       ->required();
   add_common_options(accuracy, options, "DIR", "Folder for the figure [default: the input]");
 
+  CLI::App& growth = add_command(app, "growth", "Cost over colliders and over triangles (growth.svg, .png)",
+                                 "  vestige plot growth results/growth\n"
+                                 "  vestige plot growth results/growth -o figures\n");
+  growth.add_option("INPUT", options.inputs, "The folder that 'vestige growth -o DIR' wrote")
+      ->type_name("DIR")
+      ->expected(1)
+      ->required();
+  add_common_options(growth, options, "DIR", "Folder for the figure [default: the input]");
+
   CLI::App& stress = add_command(app, "stress", "What each detector gets wrong, by family of hostile cases",
                                  "  vestige plot stress results/stress\n"
                                  "  vestige plot stress results/stress -o figures\n");
@@ -389,6 +405,7 @@ int run(int argc, char** argv) {
     throw vestige::UsageError("-o -", "a plot is two files, and standard output is one", "name OUT");
   if (sweep.parsed()) return draw_sweep(options);
   if (accuracy.parsed()) return draw_accuracy(options);
+  if (growth.parsed()) return draw_growth(options);
   if (stress.parsed()) return draw_stress(options);
   if (body.parsed()) return draw_body(options);
   if (scene.parsed()) return draw_scene(options);

@@ -56,22 +56,28 @@ Colour darkened(Colour colour) {
   return {part(colour.red), part(colour.green), part(colour.blue), colour.alpha};
 }
 
+/// Whether the same was also measured with the other setting of skipping, from which a line must be told.
+bool has_twin(const Sweeps& sweeps, const SweepSeries& series) {
+  return std::ranges::any_of(sweeps.series, [&](const SweepSeries& one) {
+    return one.detector == series.detector && one.context == series.context && one.method == series.method &&
+           one.sweep == series.sweep && one.skip != series.skip;
+  });
+}
+
 /// Names each series by its detector and by whatever else tells it from the others.
 std::vector<std::string> series_names(const Sweeps& sweeps) {
   std::set<std::string> contexts;
   std::set<std::string> methods;
-  std::set<std::string> skips;
   for (const SweepSeries& series : sweeps.series) {
     if (!series.context.empty()) contexts.insert(series.context);
     methods.insert(series.method);
-    skips.insert(series.skip);
   }
   std::vector<std::string> names;
   for (const SweepSeries& series : sweeps.series) {
     std::string name = series.detector;
     if (contexts.size() > 1 && !series.context.empty()) name.append(", ").append(shown_context(series.context));
     if (methods.size() > 1) name.append(", ").append(series.method);
-    if (skips.size() > 1 && series.skip == "off") name += ", no skipping";
+    if (series.skip == "off" && has_twin(sweeps, series)) name += ", no skipping";
     if (sweeps.sources.size() > 1) name += fmt::format(" [{}]", series.sweep + 1);
     names.push_back(name);
   }
@@ -240,10 +246,7 @@ class SweepFigure : public Figure {
     const SweepSeries& series = sweeps_.series[index];
     std::vector<Place> line;
     for (const SweepPoint& point : series.points) line.push_back(place(point, x, y));
-    // Dashes tell brute force from skipping, where there are both.
-    const bool both =
-        std::ranges::any_of(sweeps_.series, [&](const SweepSeries& one) { return one.skip != series.skip; });
-    const Dash dash = both && series.skip == "off" ? Dash::kDashed : Dash::kSolid;
+    const Dash dash = series.skip == "off" && has_twin(sweeps_, series) ? Dash::kDashed : Dash::kSolid;
     canvas.polyline(line, {colour(index), 1.2, dash});
     const std::size_t step = (line.size() + kMarkedPoints - 1) / kMarkedPoints;
     for (std::size_t i = line.size(); i > 0; i -= std::min(step, i))

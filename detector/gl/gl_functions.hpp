@@ -39,6 +39,7 @@ namespace vestige {
   X(PFNGLENABLEPROC, Enable)                                             \
   X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)           \
   X(PFNGLENDTRANSFORMFEEDBACKPROC, EndTransformFeedback)                 \
+  X(PFNGLFINISHPROC, Finish)                                             \
   X(PFNGLGETERRORPROC, GetError)                                         \
   X(PFNGLGETINTEGER64VPROC, GetInteger64v)                               \
   X(PFNGLGETINTEGERVPROC, GetIntegerv)                                   \
@@ -61,6 +62,7 @@ namespace vestige {
   X(PFNGLPROGRAMUNIFORM1FPROC, ProgramUniform1f)                         \
   X(PFNGLPROGRAMUNIFORM1IPROC, ProgramUniform1i)                         \
   X(PFNGLPROGRAMUNIFORM1UIPROC, ProgramUniform1ui)                       \
+  X(PFNGLPROGRAMUNIFORMMATRIX4FVPROC, ProgramUniformMatrix4fv)           \
   X(PFNGLREADPIXELSPROC, ReadPixels)                                     \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                                 \
   X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                       \

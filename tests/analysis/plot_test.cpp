@@ -26,6 +26,7 @@ using test::read_png;
 using test::words_of;
 using test::write_text;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 constexpr const char* kSweep = R"({
@@ -37,6 +38,8 @@ constexpr const char* kSweep = R"({
     {"detector": "paper", "context": "egl", "skip": "off", "method": "static", "points": [
       {"colliders": 1, "hz": 2800, "hz_low": 2700, "hz_high": 2900},
       {"colliders": 100, "hz": 170, "hz_low": 160, "hz_high": 180}]},
+    {"detector": "cpu", "context": null, "skip": "off", "method": "static", "points": [
+      {"colliders": 1, "hz": 14000}, {"colliders": 100, "hz": 240}]},
     {"detector": "cpu", "context": null, "skip": "on", "method": "static", "points": [
       {"colliders": 1, "hz": 290000}, {"colliders": 100, "hz": 16000}]}]})";
 
@@ -64,9 +67,10 @@ TEST_F(PlotTest, ASweepNamesItsSeriesThePublishedPointsAndWhereItComesFrom) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   const std::string words = words_of(folder_ / "frequency.svg");
   for (const char* expected :
-       {"paper, no skipping", "cpu", "HAVE 2010, GeForce GTX 285", "1 kHz", "500 Hz", "Number of colliders",
+       {"paper", "cpu, no skipping", "cpu", "HAVE 2010, GeForce GTX 285", "1 kHz", "500 Hz", "Number of colliders",
         "Detection frequency (Hz)", "softpipe", "Fast & Cool 9000", "0123456789", "5000 triangles"})
     EXPECT_THAT(words, HasSubstr(expected));
+  EXPECT_THAT(words, Not(HasSubstr("paper, no skipping")));  // it knows none, so there is nothing to tell apart
 }
 
 TEST_F(PlotTest, APngIsSixAndAHalfInchesWideAt300DotsPerInchAndNotBlank) {
@@ -87,6 +91,33 @@ TEST_F(PlotTest, SeveralSweepsInOneFigureAreToldApart) {
   const std::string words = words_of(folder_ / "frequency.svg");
   EXPECT_THAT(words, HasSubstr("cpu [1]"));
   EXPECT_THAT(words, HasSubstr("cpu [2]"));
+}
+
+constexpr const char* kGrowth = R"({
+  "commit": "0123456789abcdef", "machine": {"processor": "Fast & Cool 9000", "cores": 2}, "colliders": 100,
+  "avatar": {"vertices": 2600, "triangles": 5000},
+  "by_colliders": {"series": [
+    {"detector": "cpu", "context": "", "skip": "off", "gl": null, "points": [
+      {"colliders": 1, "hz": 14000}, {"colliders": 1000, "hz": 24}]},
+    {"detector": "cpu", "context": "", "skip": "on", "gl": null, "points": [
+      {"colliders": 1, "hz": 290000}, {"colliders": 1000, "hz": 1600}]}]},
+  "by_triangles": [
+    {"triangles": 5000, "series": [
+      {"detector": "cpu", "context": "", "skip": "off", "points": [{"colliders": 100, "hz": 240}]},
+      {"detector": "cpu", "context": "", "skip": "on", "points": [{"colliders": 100, "hz": 16000}]}]},
+    {"triangles": 20000, "series": [
+      {"detector": "cpu", "context": "", "skip": "off", "points": [{"colliders": 100, "hz": 60}]},
+      {"detector": "cpu", "context": "", "skip": "on", "points": [{"colliders": 100, "hz": 9000}]}]}]})";
+
+TEST_F(PlotTest, AGrowthFigureNamesItsLinesAndWhatTheyRunAlong) {
+  write_text(folder_ / "growth.json", kGrowth);
+  const Outcome outcome = run("growth .");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  const std::string words = words_of(folder_ / "growth.svg");
+  for (const char* expected : {"cpu, no skipping", "cpu", "Number of colliders", "Number of triangles", "100 colliders",
+                               "Cost of a frame", "Fast & Cool 9000", "0123456789", "5000 triangles"})
+    EXPECT_THAT(words, HasSubstr(expected));
+  EXPECT_LT(read_png(folder_ / "growth.png").height, 1500U);
 }
 
 TEST_F(PlotTest, AnAccuracyFigureNamesItsScenesLinesAndRatesAndShowsWhatMissesNothing) {
@@ -205,6 +236,7 @@ INSTANTIATE_TEST_SUITE_P(
                  R"({"commit": "x", "series": [{"detector": "cpu", "points": [{"colliders": 1, "hz": 2},
                     {"colliders": 1, "hz": 3}]}]})",
                  "1 colliders twice"},
+        BadInput{"MissingGrowth", "growth", nullptr, "no such file"},
         BadInput{"MissingTimeline", "timeline", nullptr, "no such file"},
         BadInput{"EmptyTimeline", "timeline", "", "line 1"},
         BadInput{"WrongColumns", "timeline", "time_s,actuator_2\n0,1\n", "line 1"},

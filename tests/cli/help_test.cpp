@@ -79,6 +79,9 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
           "vestige accuracy --detector cpu --colliders swarm --rate 60 --truth-rate 240 --duration 0.1 --count 5 "
           "--no-figure -o results/accuracy -q && "
           "vestige stress --detector cpu --families vertex --n 1 --no-figure -o results/stress -q && "
+          "vestige growth --detector cpu --counts 1,2 --count 2 --subdivisions 0 --min-time 0.01 --runs 1 --run-frames "
+          "2 "
+          "--no-figure -o results/growth -q && rm results/growth/trace.mcap && "
           "printf '1,4,1,4,1,1,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,1,1,0,1,1\n"
           "1,4,1,4,-1,1,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,1,1,0,1,1\n' >queries.csv && "
           "vestige sweep man.mcap --counts 1,10 --detector cpu --min-time 0.01 --runs 1 --run-frames 5 "
@@ -100,6 +103,7 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
       if (command == "vestige replay") run("rm here/*.csv here/*.exr");
       const std::map<std::string, std::pair<const char*, const char*>> long_ones = {
           {"vestige sweep", {"sweep.json", "\"colliders\": "}},
+          {"vestige growth", {"growth.json", "\"colliders\": "}},
           {"vestige accuracy", {"accuracy.json", "\"colliders\": "}},
           {"vestige stress", {"stress.json", "\"families\": "}}};
       const bool is_long = long_ones.contains(command);

@@ -1,0 +1,126 @@
+#include "analysis/growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "analysis/sweep_report.hpp"
+#include "traces/subdivision.hpp"
+
+namespace vestige {
+
+namespace {
+
+SweepSettings settings_for(const GrowthSettings& settings, const Avatar& avatar, std::uint32_t colliders) {
+  SweepSettings sweep = settings.sweep;
+  sweep.counts = {colliders};
+  if (std::uint64_t{colliders} * avatar.triangles.size() > kManyPairs) {
+    sweep.runs = 3;
+    sweep.run_frames = 1;
+  }
+  return sweep;
+}
+
+/// Puts the one point of each series of `more` behind those of `all`.
+void append(std::vector<SweepSeries>& all, std::vector<SweepSeries> more) {
+  if (all.empty()) {
+    all = std::move(more);
+    return;
+  }
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].points.push_back(std::move(more[i].points.front()));
+}
+
+}  // namespace
+
+Growth run_growth(TraceReader& trace, const Avatar& avatar, const ContestantMaker& make, const GrowthSettings& settings,
+                  const std::function<bool(double)>& progress) {
+  Growth growth;
+  bool goes_on = true;
+  const double steps = static_cast<double>(settings.sweep.counts.size()) + settings.subdivisions + 1;
+  double step = 0;
+  const auto step_progress = [&](double share) {
+    goes_on = goes_on && progress((step + share) / steps);
+    return goes_on;
+  };
+  for (const std::uint32_t count : settings.sweep.counts) {
+    if (!goes_on) return growth;
+    append(growth.by_colliders,
+           run_sweep(trace, avatar, make(avatar), settings_for(settings, avatar, count), step_progress));
+    ++step;
+  }
+  Avatar fine = avatar;
+  for (std::uint32_t level = 0; goes_on && level <= settings.subdivisions; ++level) {
+    if (level > 0) fine = subdivided(fine);
+    const SweepSettings sweep = settings_for(settings, fine, settings.colliders);
+    GrowthSize size = {fine.triangles.size(), fine.position_bind.size(), sweep.runs * sweep.run_frames, {}};
+    size.series = run_sweep(trace, fine, make(fine), sweep, step_progress);
+    growth.by_triangles.push_back(std::move(size));
+    ++step;
+  }
+  return growth;
+}
+
+std::vector<double> mean_us(const SweepSeries& series) {
+  std::vector<double> us;
+  us.reserve(series.points.size());
+  for (const SweepPoint& point : series.points)
+    us.push_back(point.repetitions.empty() ? std::numeric_limits<double>::quiet_NaN() : 1e6 / point.hz());
+  return us;
+}
+
+std::vector<Crossover> crossovers(std::span<const double> sizes, std::span<const CostLine> lines) {
+  std::vector<Crossover> found;
+  for (std::size_t a = 0; a < lines.size(); ++a)
+    for (std::size_t b = a + 1; b < lines.size(); ++b)
+      for (std::size_t i = 1; i < sizes.size(); ++i) {
+        // By how much a costs more than b, before and after.
+        const double before = std::log(lines[a].us[i - 1] / lines[b].us[i - 1]);
+        const double after = std::log(lines[a].us[i] / lines[b].us[i]);
+        if (!(before * after < 0)) continue;
+        const double part = before / (before - after);
+        const double at = std::exp(std::lerp(std::log(sizes[i - 1]), std::log(sizes[i]), part));
+        const bool a_below = before < 0;
+        found.push_back({lines[a_below ? a : b].name, lines[a_below ? b : a].name, at});
+      }
+  return found;
+}
+
+std::vector<Ablation> ablations(std::span<const SweepSeries> series) {
+  std::vector<Ablation> found;
+  for (const SweepSeries& on : series) {
+    if (on.skip != Skip::kOn) continue;
+    const auto off = std::ranges::find_if(series, [&](const SweepSeries& one) {
+      return one.detector == on.detector && one.gl.context == on.gl.context && one.skip == Skip::kOff &&
+             one.renderer.has_value() == on.renderer.has_value();
+    });
+    if (off == series.end()) continue;
+    for (std::size_t p = 0; p < on.points.size(); ++p) {
+      const SweepPoint& with = on.points[p];
+      const SweepPoint& without = off->points[p];
+      if (with.repetitions.empty() || without.repetitions.empty()) continue;
+      Ablation one;
+      one.name = name_of(on);
+      one.colliders = with.colliders;
+      one.frames = with.pass_frames;
+      one.frames_skipped = with.frames_skipped;
+      one.meshlets_skinned = with.meshlets_skinned;
+      one.triangles = without.triangles_tested;
+      one.triangles_tested = with.triangles_tested;
+      one.pairs = without.pairs_tested;
+      one.pairs_tested = with.pairs_tested;
+      one.pairs_meeting = with.pairs_meeting;
+      one.off_us = 1e6 / without.hz();
+      one.on_us = 1e6 / with.hz();
+      const double skipped_share = static_cast<double>(with.skipped_timed) / static_cast<double>(with.frame_us.size());
+      if (with.skipped_timed != 0)
+        one.saved_by_frames_us =
+            skipped_share * one.off_us - with.skipped_us / static_cast<double>(with.frame_us.size());
+      one.saved_by_meshlets_us = one.off_us - one.on_us - one.saved_by_frames_us;
+      found.push_back(std::move(one));
+    }
+  }
+  return found;
+}
+
+}  // namespace vestige

@@ -1,0 +1,80 @@
+#include "analysis/plot/growth_data.hpp"
+
+#include <algorithm>
+
+#include "analysis/plot/json_field.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr std::string_view kRemedy = "was it written by 'vestige growth'? Measure again, or name another folder";
+
+/// What an axis can show; nothing real lies outside.
+constexpr double kMostSize = 1e10;
+constexpr double kLeastHz = 1e-6;
+constexpr double kMostHz = 1e12;
+
+GrowthLine read_line(const JsonField& series) {
+  GrowthLine line;
+  line.detector = series.at("detector").text();
+  if (series.has("context")) line.context = series.at("context").text();
+  line.skip = series.at("skip").text();
+  return line;
+}
+
+double us_of(const JsonField& point) {
+  return 1e6 / point.at("hz").within(kLeastHz, kMostHz);
+}
+
+/// Lines by their place in the file: every size lists the same series in the same order.
+void add(GrowthPanel& panel, std::size_t index, const JsonField& series, const GrowthPoint& point) {
+  if (panel.lines.size() <= index) panel.lines.resize(index + 1);
+  GrowthLine& line = panel.lines[index];
+  if (line.detector.empty()) line = read_line(series);
+  line.points.push_back(point);
+}
+
+void finish(GrowthPanel& panel) {
+  std::erase_if(panel.lines, [](const GrowthLine& line) { return line.points.empty(); });
+  for (GrowthLine& line : panel.lines) std::ranges::sort(line.points, {}, &GrowthPoint::size);
+}
+
+}  // namespace
+
+GrowthResult read_growth(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / "growth.json";
+  const nlohmann::json json = read_json(path, kRemedy);
+  const JsonField document(json, path, kRemedy);
+  if (!json.is_object()) document.refuse("is no JSON object");
+  GrowthResult result;
+  auto& [by_colliders, by_triangles] = result.panels;
+  by_colliders.along = "Number of colliders";
+  by_triangles.along = "Number of triangles";
+  const JsonField all = document.at("by_colliders").at("series");
+  for (std::size_t s = 0; s < all.count(); ++s) {
+    const JsonField series = all.at(s);
+    if (result.renderer.empty() && series.has("gl"))
+      result.renderer = phrase(series.at("gl"), {{"renderer", ""}, {"version", ""}});
+    const JsonField points = series.at("points");
+    for (std::size_t p = 0; p < points.count(); ++p)
+      add(by_colliders, s, series, {points.at(p).at("colliders").within(1, kMostSize), us_of(points.at(p))});
+  }
+  const JsonField sizes = document.at("by_triangles");
+  for (std::size_t i = 0; i < sizes.count(); ++i) {
+    const double triangles = sizes.at(i).at("triangles").within(1, kMostSize);
+    const JsonField series = sizes.at(i).at("series");
+    for (std::size_t s = 0; s < series.count(); ++s)
+      add(by_triangles, s, series.at(s), {triangles, us_of(series.at(s).at("points").at(std::size_t{0}))});
+  }
+  finish(by_colliders);
+  finish(by_triangles);
+  result.colliders = document.at("colliders").within(1, kMostSize);
+  if (document.has("machine"))
+    result.machine = phrase(document.at("machine"), {{"processor", ""}, {"cores", " cores"}});
+  result.avatar = phrase(document.at("avatar"), {{"triangles", " triangles"}, {"vertices", " vertices"}});
+  result.commit = commit_of(document);
+  return result;
+}
+
+}  // namespace vestige::plot

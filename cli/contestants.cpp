@@ -1,0 +1,79 @@
+#include "cli/contestants.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "cli/options.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+bool needs_opengl(const std::string& detector) {
+  return detector == "paper" || detector == "geometry";
+}
+
+}  // namespace
+
+void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
+  verb.add_option("--detector", choice.detectors, "Detectors to measure: paper, geometry, cpu, embree, embree_default")
+      ->capture_default_str()
+      ->group(kDetectorGroup)
+      ->type_name("LIST");
+  verb.add_option("--context", choice.contexts, "OpenGL contexts to measure paper and geometry in: egl, osmesa, auto")
+      ->capture_default_str()
+      ->group(kDetectorGroup)
+      ->type_name("LIST");
+  add_detector_options(verb, choice.choice, choice.skips);
+}
+
+void check_contestant_choice(const ContestantChoice& choice) {
+  parse_names(choice.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
+  parse_names(choice.contexts, {"egl", "osmesa", "auto"}, "--context");
+  parse_names(choice.skips, kSkipNames, "--skip");
+}
+
+std::vector<Contestant> make_contestants(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map,
+                                         Verbosity verbosity) {
+  std::vector<Contestant> contestants;
+  const auto add = [&](const std::string& detector, const std::string& context) {
+    const std::vector<std::string> skips =
+        knows_skip(detector) ? parse_list(choice.skips) : std::vector<std::string>{"off"};
+    for (const std::string& skip : skips) {
+      DetectorChoice one = choice.choice;
+      one.skip = skip;
+      contestants.push_back({detector, one.skip_kind(), [&avatar, &map, one, detector, context](PlaneSet planes) {
+                               return make_detector(detector, context, one, avatar, map, planes);
+                             }});
+      if (choice.renderer == "off") continue;
+      Contestant beside_renderer = contestants.back();
+      beside_renderer.make_renderer_context = [one, context] {
+        return make_gl_context(context_kind(context), one.device);
+      };
+      contestants.push_back(std::move(beside_renderer));
+    }
+  };
+  for (const std::string& detector : parse_list(choice.detectors)) {
+    if (!needs_opengl(detector)) {
+      add(detector, "");
+      continue;
+    }
+    for (const std::string& context : parse_list(choice.contexts)) {
+      try {
+        make_gl_context(context_kind(context), choice.choice.device);
+      } catch (const Error& error) {
+        warn(fmt::format("no series '{}' on {}: {}", detector, context, error.what()), verbosity);
+        continue;
+      }
+      add(detector, context);
+    }
+  }
+  if (contestants.empty())
+    throw Error("--context", "none of the detectors asked for can run on this machine",
+                "'vestige devices' lists its OpenGL contexts; --detector cpu needs none");
+  return contestants;
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,25 @@
+#include "cli/default_trace.hpp"
+
+#include <memory>
+
+#include "cli/scene.hpp"
+#include "cli/terminal.hpp"
+#include "traces/colliders.hpp"
+#include "traces/recording.hpp"
+
+namespace vestige::cli {
+
+void record_default_trace(const std::string& path, std::uint32_t colliders, const CommonOptions& options,
+                          const Invocation& invocation) {
+  const Scene scene = load_scene("builtin", "builtin", Verbosity::kQuiet);
+  const Animation* animation = find_animation(scene.avatar, "");
+  const auto swarm = find_scenario("swarm")->make(scene.avatar, animation, {colliders, options.seed});
+  TraceWriterOptions writing;
+  writing.overwrite = options.overwrite();
+  TraceWriter writer(path, {{"argv", nlohmann::json(invocation.argv).dump()}}, scene.avatar, scene.attachments(),
+                     writing);
+  record(writer, scene.avatar, animation, *swarm, {}, [](double) { return !interrupted(); });
+  writer.finish();
+}
+
+}  // namespace vestige::cli
