@@ -13,12 +13,14 @@
 
 #include "detector/contact_finder.hpp"
 #include "detector/detector.hpp"
+#include "detector/gl/captured_pairs.hpp"
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
 #include "detector/gl/skinned_mesh.hpp"
 #include "detector/skin_motion.hpp"
 #include "detector/skinning.hpp"
+#include "detector/skipping_geometry_detector.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
 #include "traces/error.hpp"
@@ -40,22 +42,9 @@ struct GpuSegment {
 };
 static_assert(sizeof(GpuSegment) == 64);
 
-/// std430 layout of the shader's Captured: this, then its pairs.
-struct CapturedHead {
-  std::uint32_t count = 0;
-  std::uint32_t unused = 0;
-};
-struct CapturedPair {
-  std::uint32_t segment;
-  std::uint32_t triangle;
-};
-
 /// What every driver grants a uniform block (GL_MAX_UNIFORM_BLOCK_SIZE).
 constexpr std::size_t kUniformBlockBytes = 16384;
 constexpr std::size_t kBlockSegments = kUniformBlockBytes / sizeof(GpuSegment);
-/// Pairs that there is room for at first, and that are read back at once.
-constexpr std::size_t kStartingCapacity = 1024;
-constexpr std::size_t kPairsReadAtOnce = 64;
 
 /// The shader's `least_radius`: what denormals, flushed to zero, may do to a coordinate of a skinned vertex. The vertex
 /// is a sum of 8 products w M x and intermediate results thereof; to flush an operand or a result below 2^-126 errs by
@@ -72,6 +61,7 @@ float least_radius_m(std::span<const SkinMatrix> palette, const glm::dvec3& exte
   return static_cast<float>(std::ldexp(1 + largest + extent.x + extent.y + extent.z, -116));
 }
 
+/// Every segment against every triangle.
 class GeometryDetector final : public Detector {
  public:
   GeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
@@ -90,7 +80,6 @@ class GeometryDetector final : public Detector {
         program_(gl_, head(),
                  {{GL_VERTEX_SHADER, "geometry.vert", shaders::kGeometryVert},
                   {GL_GEOMETRY_SHADER, "geometry.geom", shaders::kGeometryGeom}}) {
-    grow_captured(kStartingCapacity);
     mesh_.bind();
     nowhere_.begin(1);  // a draw without any framebuffer fails in a surfaceless context
     gl_.Enable(GL_RASTERIZER_DISCARD);
@@ -116,12 +105,10 @@ class GeometryDetector final : public Detector {
     gl_.UseProgram(program_.name());
     upload_palette(frame, program_);
     upload_segments(frame);
-    while (true) {
+    do {
+      captured_.begin();
       draw(frame.segments.size());
-      const std::size_t captured = read_captured();
-      if (captured <= capacity_) break;
-      grow_captured(captured);  // some pairs found no room: all over again
-    }
+    } while (!captured_.read(pairs_));
     check_gl(gl_, "capturing pairs");
 
     for (const CapturedPair& pair : pairs_) {
@@ -199,8 +186,6 @@ class GeometryDetector final : public Detector {
   }
 
   void draw(std::size_t segments) {
-    constexpr CapturedHead kNone;
-    captured_.upload(&kNone, sizeof(kNone), GL_STREAM_READ);
     for (std::size_t first = 0; first < segments; first += kBlockSegments) {
       gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_SEGMENTS, segments_.name(),
                           static_cast<GLintptr>(first * sizeof(GpuSegment)),
@@ -210,31 +195,6 @@ class GeometryDetector final : public Detector {
       gl_.ProgramUniform1i(program_.name(), VESTIGE_UNIFORM_FIRST_SEGMENT, static_cast<GLint>(first));
       mesh_.draw(1);
     }
-    gl_.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
-  }
-
-  /// Fills `pairs_`, as far as there was room, and returns how many pairs there were.
-  std::size_t read_captured() {
-    struct Beginning {
-      CapturedHead head;
-      std::array<CapturedPair, kPairsReadAtOnce> pairs;
-    } beginning;
-    gl_.GetNamedBufferSubData(captured_.name(), 0, sizeof(beginning), &beginning);
-    const std::size_t count = beginning.head.count;
-    pairs_.resize(std::min(count, capacity_));
-    const std::size_t read = std::min(pairs_.size(), kPairsReadAtOnce);
-    std::copy_n(beginning.pairs.begin(), read, pairs_.begin());
-    if (pairs_.size() > read)
-      gl_.GetNamedBufferSubData(captured_.name(), static_cast<GLintptr>(sizeof(beginning)),
-                                static_cast<GLsizeiptr>((pairs_.size() - read) * sizeof(CapturedPair)), &pairs_[read]);
-    return count;
-  }
-
-  void grow_captured(std::size_t pairs) {
-    capacity_ = std::bit_ceil(pairs);
-    captured_.upload(nullptr, sizeof(CapturedHead) + capacity_ * sizeof(CapturedPair), GL_STREAM_READ);
-    gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, captured_.name());
-    gl_.ProgramUniform1ui(program_.name(), VESTIGE_UNIFORM_CAPACITY, static_cast<GLuint>(capacity_));
   }
 
   std::unique_ptr<GlContext> context_;
@@ -246,11 +206,10 @@ class GeometryDetector final : public Detector {
   GlBuffer palette_;
   GlBuffer segments_;
   SkinnedMesh mesh_;
-  GlBuffer captured_;
+  CapturedPairs captured_;
   CollisionTexture nowhere_;
   GlProgram program_;
   std::optional<GlProgram> skinning_program_;
-  std::size_t capacity_ = 0;  ///< pairs that `captured_` has room for
   std::vector<SkinMatrix> gpu_palette_;
   std::vector<GpuSegment> gpu_segments_;
   std::vector<CapturedPair> pairs_;
@@ -261,6 +220,7 @@ class GeometryDetector final : public Detector {
 
 std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options) {
+  if (options.skip == Skip::kOn) return make_skipping_geometry_detector(std::move(context), avatar, map, options);
   return std::make_unique<GeometryDetector>(std::move(context), avatar, map, options);
 }
 

@@ -4,6 +4,10 @@
 #define VESTIGE_BINDING_SEGMENTS 1  // one GpuSegment for each collider that has a segment
 
 #define VESTIGE_BINDING_CAPTURED 2  // a count, and the (segment, triangle) pairs that `geometry` could not reject
+#define VESTIGE_BINDING_CANDIDATES 3  // touched meshlets, and the segments that may meet each (candidates.geom)
+
+#define VESTIGE_ATTRIBUTE_CORNERS 0         // candidates.vert: vec3 a, b, c
+#define VESTIGE_ATTRIBUTE_CORNERS_BEFORE 3  // the same in the frame before
 
 #define VESTIGE_ATTRIBUTE_POSITION 0            // vec3, bind pose
 #define VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE 1  // vec2
@@ -19,10 +23,9 @@
 #define VESTIGE_UNIFORM_TEXTURE_ROWS 2     // int
 #define VESTIGE_UNIFORM_FRAMES_PER_S 3     // float, 1 / the frame's duration; 0 in the first frame
 #define VESTIGE_UNIFORM_FIRST_SEGMENT 4    // int, number of the first segment of the bound block
-#define VESTIGE_UNIFORM_CAPACITY 5         // uint, pairs that the captured buffer has room for
-#define VESTIGE_UNIFORM_PALETTE_SIZE 6     // uint, entries; those of the frame before follow them
-#define VESTIGE_UNIFORM_LEAST_RADIUS 7     // float, metres: what flushed denormals may do to a skinned vertex
-#define VESTIGE_UNIFORM_WORLD_TO_CLIP 8    // mat4, of the scene that is drawn
+#define VESTIGE_UNIFORM_PALETTE_SIZE 5     // uint, entries; those of the frame before follow them
+#define VESTIGE_UNIFORM_LEAST_RADIUS 6     // float, metres: what flushed denormals may do to a skinned vertex
+#define VESTIGE_UNIFORM_WORLD_TO_CLIP 7    // mat4, of the scene that is drawn
 
 // How a collider's way and the moving skin meet (detector/method.hpp).
 #define VESTIGE_METHOD_STATIC 0

@@ -40,13 +40,12 @@ layout(std140, binding = VESTIGE_BINDING_SEGMENTS) uniform Segments {
 };
 layout(std430, binding = VESTIGE_BINDING_CAPTURED) buffer Captured {
   uint captured_count;  // counts on where there is no room
-  uint unused;
+  uint capacity;        // pairs that there is room for
   uvec2 captured[];  // number of the segment, number of the triangle
 };
 
 layout(location = VESTIGE_UNIFORM_SEGMENT_COUNT) uniform int segment_count;  // in this block
 layout(location = VESTIGE_UNIFORM_FIRST_SEGMENT) uniform int first_segment;
-layout(location = VESTIGE_UNIFORM_CAPACITY) uniform uint capacity;
 
 const float kLargest = 67108864.0;
 const float kSlack = 1.001;

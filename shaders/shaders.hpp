@@ -11,6 +11,8 @@ extern const std::string_view kPaperGeom;
 extern const std::string_view kPaperFrag;
 extern const std::string_view kGeometryVert;
 extern const std::string_view kGeometryGeom;
+extern const std::string_view kCandidatesVert;
+extern const std::string_view kCandidatesGeom;
 extern const std::string_view kSceneVert;
 extern const std::string_view kSceneFrag;
 

@@ -1,0 +1,279 @@
+#include "detector/skipping_geometry_detector.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "detector/contact_finder.hpp"
+#include "detector/gl/captured_pairs.hpp"
+#include "detector/gl/collision_texture.hpp"
+#include "detector/gl/gl_objects.hpp"
+#include "detector/meshlet_candidates.hpp"
+#include "detector/meshlet_skin.hpp"
+#include "detector/meshlets.hpp"
+#include "detector/skin_motion.hpp"
+#include "detector/skinning.hpp"
+#include "shaders/constants.h"
+#include "shaders/shaders.hpp"
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::size_t kBlockSlots = 256;
+constexpr std::size_t kBlockSegments = 384;
+
+/// std140 layout of the shader's Candidates: what one draw tests.
+struct Slot {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  std::uint32_t touched = 0;
+  std::uint32_t offset = 0;
+};
+struct GpuSegment {
+  glm::vec4 start;  ///< w is padding
+  glm::vec4 end;
+};
+struct Block {
+  std::array<Slot, kBlockSlots> slots;
+  std::array<GpuSegment, kBlockSegments> segments;
+};
+static_assert(sizeof(Block) == 16384);  // what every driver grants a uniform block (GL_MAX_UNIFORM_BLOCK_SIZE)
+
+/// Whole slots, of meshlets with all of their triangles, that one draw tests.
+struct Draw {
+  std::size_t slots = 0;
+  std::size_t segments = 0;
+};
+
+/// The segments of a frame against the meshlets that they may meet. A frame without such a pair costs no call of
+/// OpenGL; else only those meshlets are skinned, by the CPU, and sent: a point for each triangle, whose corners are
+/// attributes. The geometry shader finds its segments by its primitive's number, in a uniform block.
+class SkippingGeometryDetector final : public Detector {
+ public:
+  SkippingGeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
+                           const DetectorOptions& options)
+      : context_(std::move(context)),
+        gl_(current(*context_)),
+        avatar_(avatar),
+        method_(options.method),
+        finder_(avatar, map, options),
+        meshlets_(avatar),
+        candidates_(avatar, meshlets_),
+        meshlet_skin_(avatar, meshlets_),
+        corners_(gl_),
+        blocks_(gl_),
+        captured_(gl_),
+        nowhere_(gl_, PlaneSet()),
+        program_(gl_, head(),
+                 {{GL_VERTEX_SHADER, "candidates.vert", shaders::kCandidatesVert},
+                  {GL_GEOMETRY_SHADER, "candidates.geom", shaders::kCandidatesGeom}}) {
+    skin_.now.resize(avatar.position_bind.size());
+    if (method_ != Method::kStatic) skin_.before.resize(avatar.position_bind.size());
+    gl_.CreateVertexArrays(1, &vertex_array_);
+    gl_.VertexArrayVertexBuffer(vertex_array_, 0, corners_.name(), 0,
+                                static_cast<GLsizei>(corners_per_triangle() * sizeof(glm::vec3)));
+    for (GLuint i = 0; i < corners_per_triangle(); ++i) add_attribute(VESTIGE_ATTRIBUTE_CORNERS + i, i);
+    gl_.BindVertexArray(vertex_array_);
+    gl_.UseProgram(program_.name());
+    nowhere_.begin(1);  // a draw without any framebuffer fails in a surfaceless context
+    gl_.Enable(GL_RASTERIZER_DISCARD);
+    check_gl(gl_, "preparing the candidates' shaders");
+  }
+
+  ~SkippingGeometryDetector() override {
+    try {
+      context_->make_current();
+      gl_.DeleteVertexArrays(1, &vertex_array_);
+    } catch (const Error&) {
+      // The context is lost, and with it all that was in it.
+    }
+  }
+
+  const char* name() const override { return "geometry"; }
+  Method method() const override { return method_; }
+  GlInfo gl_info() const override { return context_->info(); }
+
+  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+    row.assign(frame.columns, Contact());
+    if (frame.segments.empty()) return {};
+    candidates_.find(frame, method_);
+    DetectorWork work;
+    if (candidates_.touched().empty()) {
+      work.frames_skipped = 1;
+      return work;
+    }
+    skin_touched(frame, work);
+    fill_slots(frame);
+    upload();
+    do {
+      captured_.begin();
+      draw();
+    } while (!captured_.read(pairs_));
+    check_gl(gl_, "capturing pairs");
+    for (const CapturedPair& pair : pairs_) work.pairs_captured += decide(frame, pair, row);
+    work.pairs_meeting = finder_.take_meeting();
+    work.unsure = finder_.take_unsure();
+    return work;
+  }
+
+  /// Those that the detector works with are skinned by the CPU.
+  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+    skin_vertices(avatar_, frame.palette, out);
+  }
+
+ private:
+  static const GlFunctions& current(GlContext& context) {
+    context.make_current();
+    return context.gl();
+  }
+
+  std::string head() const {
+    return fmt::format(
+        "#version 450 core\n{}#define METHOD {}\n#define BLOCK_SLOTS {}\n#define BLOCK_SEGMENTS {}\n"
+        "#define MESHLET_TRIANGLES {}\n",
+        shaders::kConstantsH, static_cast<int>(method_), kBlockSlots, kBlockSegments, kMeshletTriangles);
+  }
+
+  /// Three now, and where the method looks at them the same three before.
+  std::size_t corners_per_triangle() const { return method_ == Method::kStatic ? 3 : 6; }
+
+  void add_attribute(GLuint location, GLuint corner) const {
+    gl_.EnableVertexArrayAttrib(vertex_array_, location);
+    gl_.VertexArrayAttribBinding(vertex_array_, location, 0);
+    gl_.VertexArrayAttribFormat(vertex_array_, location, 3, GL_FLOAT, GL_FALSE,
+                                static_cast<GLuint>(corner * sizeof(glm::vec3)));
+  }
+
+  void skin_touched(const Frame& frame, DetectorWork& work) {
+    const std::span<const TouchedMeshlet> touched = candidates_.touched();
+    now_.resize(touched.size());
+    if (method_ != Method::kStatic) before_.resize(touched.size());
+    for (std::size_t i = 0; i < touched.size(); ++i) {
+      meshlet_skin_.skin(touched[i].meshlet, frame.palette, now_[i]);
+      if (method_ != Method::kStatic) meshlet_skin_.skin(touched[i].meshlet, frame.palette_before, before_[i]);
+      const std::size_t triangles = meshlets_.triangles(touched[i].meshlet).size();
+      work.triangles_tested += triangles;
+      work.pairs_tested += triangles * touched[i].count;
+    }
+    work.meshlets_skinned = touched.size();
+  }
+
+  /// Deals the candidates out to as many blocks as they need; a meshlet whose segments find no room in one goes on in
+  /// the next.
+  void fill_slots(const Frame& frame) {
+    draws_.clear();
+    gpu_corners_.clear();
+    const std::span<const TouchedMeshlet> touched = candidates_.touched();
+    for (std::size_t i = 0; i < touched.size(); ++i) {
+      const std::span<const std::uint32_t> numbers = candidates_.segments(touched[i]);
+      for (std::size_t offset = 0; offset < numbers.size();) {
+        if (draws_.empty() || draws_.back().slots == kBlockSlots || draws_.back().segments == kBlockSegments) {
+          draws_.emplace_back();
+          if (gpu_blocks_.size() < draws_.size()) gpu_blocks_.resize(draws_.size());
+        }
+        Draw& draw = draws_.back();
+        Block& block = gpu_blocks_[draws_.size() - 1];
+        const std::size_t count = std::min(numbers.size() - offset, kBlockSegments - draw.segments);
+        block.slots[draw.slots++] = {static_cast<std::uint32_t>(draw.segments), static_cast<std::uint32_t>(count),
+                                     static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(offset)};
+        for (const std::uint32_t number : numbers.subspan(offset, count)) {
+          const Segment& segment = frame.segments[number];
+          block.segments[draw.segments++] = {glm::vec4(segment.start, 0), glm::vec4(segment.end, 0)};
+        }
+        add_corners(i);
+        offset += count;
+      }
+    }
+  }
+
+  void add_corners(std::size_t touched) {
+    const std::size_t first = gpu_corners_.size();
+    gpu_corners_.resize(first + kMeshletTriangles * corners_per_triangle());
+    glm::vec3* out = &gpu_corners_[first];
+    for (std::size_t i = 0; i < kMeshletTriangles; ++i) {
+      for (std::size_t corner = 0; corner < 3; ++corner) *out++ = now_[touched].at(corner, i);
+      if (method_ == Method::kStatic) continue;
+      for (std::size_t corner = 0; corner < 3; ++corner) *out++ = before_[touched].at(corner, i);
+    }
+  }
+
+  void upload() {
+    context_->make_current();
+    corners_.upload(gpu_corners_.data(), gpu_corners_.size() * sizeof(glm::vec3), GL_STREAM_DRAW);
+    blocks_.upload(nullptr, draws_.size() * sizeof(Block), GL_STREAM_DRAW);  // a uniform block is backed to its end
+    blocks_.upload(gpu_blocks_.data(),
+                   draws_.size() * sizeof(Block) - (kBlockSegments - draws_.back().segments) * sizeof(GpuSegment),
+                   GL_STREAM_DRAW);
+  }
+
+  void draw() {
+    std::size_t first_slot = 0;
+    for (std::size_t i = 0; i < draws_.size(); ++i) {
+      gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_CANDIDATES, blocks_.name(),
+                          static_cast<GLintptr>(i * sizeof(Block)), static_cast<GLsizeiptr>(sizeof(Block)));
+      gl_.DrawArrays(GL_POINTS, static_cast<GLint>(first_slot * kMeshletTriangles),
+                     static_cast<GLsizei>(draws_[i].slots * kMeshletTriangles));
+      first_slot += draws_[i].slots;
+    }
+  }
+
+  /// Returns 0 for the places that fill up the last meshlet, else 1.
+  std::uint64_t decide(const Frame& frame, const CapturedPair& pair, ContactRow& row) {
+    const std::size_t touched = pair.triangle / kMeshletTriangles;
+    const std::size_t i = pair.triangle % kMeshletTriangles;
+    const TouchedMeshlet& meshlet = candidates_.touched()[touched];
+    const std::span<const std::uint32_t> triangles = meshlets_.triangles(meshlet.meshlet);
+    if (i >= triangles.size()) return 0;
+    const glm::uvec3& corners = avatar_.triangles[triangles[i]];
+    for (int corner = 0; corner < 3; ++corner) {
+      const auto place = static_cast<std::size_t>(corner);
+      skin_.now[corners[corner]] = now_[touched].at(place, i);
+      if (method_ != Method::kStatic) skin_.before[corners[corner]] = before_[touched].at(place, i);
+    }
+    const Segment& segment = frame.segments[candidates_.segments(meshlet)[pair.segment]];
+    finder_.offer(frame, skin_, segment, triangles[i], row[segment.column]);
+    return 1;
+  }
+
+  std::unique_ptr<GlContext> context_;
+  const GlFunctions& gl_;
+  const Avatar& avatar_;
+  Method method_;
+  ContactFinder finder_;
+  Meshlets meshlets_;
+  MeshletCandidates candidates_;
+  MeshletSkin meshlet_skin_;
+  GlBuffer corners_;
+  GlBuffer blocks_;
+  CapturedPairs captured_;
+  CollisionTexture nowhere_;
+  GlProgram program_;
+  GLuint vertex_array_ = 0;
+  std::vector<MeshletCorners> now_;  ///< of each touched meshlet
+  std::vector<MeshletCorners> before_;
+  std::vector<Draw> draws_;
+  std::vector<Block> gpu_blocks_;       ///< one for each draw
+  std::vector<glm::vec3> gpu_corners_;  ///< of the triangles of each slot
+  std::vector<CapturedPair> pairs_;
+  SkinMotion skin_;  ///< only the corners of triangles that are being decided
+};
+
+}  // namespace
+
+std::unique_ptr<Detector> make_skipping_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+                                                          const ActuatorMap& map, const DetectorOptions& options) {
+  return std::make_unique<SkippingGeometryDetector>(std::move(context), avatar, map, options);
+}
+
+}  // namespace vestige

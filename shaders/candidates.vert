@@ -1,0 +1,92 @@
+// One triangle of a touched meshlet, its corners skinned by the CPU to the bits that it will decide on: a box that holds
+// it within the frame, and along its normal two slabs, one at the frame's start, where a segment starts, and one at its
+// end. What misses the box, or has its ends on the same side of both slabs, surely misses the triangle.
+//
+// Boxes. Those of `static` and `ccd` are not rounded, and denormals flushed to zero keep their order. For `carried`, a
+// start carried by m and rounded to fp32 is at or above `low` only if it was at or above low - m. With M the largest
+// magnitude of the corners' coordinates and u = 2^-24, m, computed here in fp32 in whatever order, errs by less than 20
+// u M (differences of at most 2 M, their sums, a third), the carried start is rounded by 2 u M at most where it is near
+// the box, and the subtractions here err by 6 u M. The margin is 64 u M.
+//
+// Slabs. A segment whose ends, seen from the triangle's corners at their time, are all on one side along any axis n
+// misses it (shaders/geometry.geom). n need not be accurate, only the same for all. n . x errs by at most 4 u |n| . |x|,
+// with fma or without (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 3.1). For `carried`, the start's
+// n . (x + m) is compared as n . x with a slab moved by -n . m: m's errors above, its product's, 6 u |n| . M, the
+// subtraction's, 3 u |n| . M, and the start's rounding, u |n| . (|x| + 2 M). Together that is less than 48 u |n| . M on
+// the slab's side, and 8 u |n| . |x| on the segment's. Each side gets 64 u, its own rounding included.
+//
+// Flushed denormals. A coordinate, or what m is made of, errs by less than 2^-126 each time, fewer than 64 times; M
+// counts as 2^-90 at least, so that 64 u M covers it. A product that is flushed, or whose factor is, errs by less than
+// 2^-126 times the other factor, at most kLargest for a coordinate, or is among the margin's own: kTiny is more. Within
+// kLargest nothing overflows: n is below 2^56 and a product below 2^84. Beyond it nothing is proven.
+
+layout(location = VESTIGE_ATTRIBUTE_CORNERS) in vec3 corners[3];
+#if METHOD != VESTIGE_METHOD_STATIC
+layout(location = VESTIGE_ATTRIBUTE_CORNERS_BEFORE) in vec3 corners_before[3];
+#endif
+
+out Bounds {
+  vec4 low;   // w: the slab at the end
+  vec4 high;
+  vec3 normal;
+#if METHOD != VESTIGE_METHOD_STATIC
+  vec2 slab_start;
+#endif
+} bounds;
+
+const float kInfinite = 3.402823466e38;
+const float kLargest = 67108864.0;                          // 2^26
+const float kLeast = 1.0 / 1237940039285380274899124224.0;  // 2^-90
+const float kTiny = kLeast;
+const float kMargin = 1.0 / 262144.0;  // 64 u
+const float kThird = 1.0 / 3.0;
+
+vec2 slab_of(vec3 normal, vec3 a, vec3 b, vec3 c) {
+  float along_a = dot(normal, a);
+  float along_b = dot(normal, b);
+  float along_c = dot(normal, c);
+  return vec2(min(min(along_a, along_b), along_c), max(max(along_a, along_b), along_c));
+}
+
+void main() {
+  vec3 a = corners[0];
+  vec3 b = corners[1];
+  vec3 c = corners[2];
+  vec3 low = min(min(a, b), c);
+  vec3 high = max(max(a, b), c);
+  vec3 largest = max(max(abs(low), abs(high)), vec3(kLeast));
+  precise vec3 normal = cross(b - a, c - a);
+#if METHOD != VESTIGE_METHOD_STATIC
+  vec3 a_before = corners_before[0];
+  vec3 b_before = corners_before[1];
+  vec3 c_before = corners_before[2];
+  vec3 low_before = min(min(a_before, b_before), c_before);
+  vec3 high_before = max(max(a_before, b_before), c_before);
+  largest = max(largest, max(abs(low_before), abs(high_before)));
+#endif
+  bool computable = max(largest.x, max(largest.y, largest.z)) <= kLargest;
+  if (!computable) normal = vec3(0.0);
+
+  float margin = kMargin * dot(abs(normal), largest) + kTiny;
+  vec2 slab = slab_of(normal, a, b, c);
+#if METHOD == VESTIGE_METHOD_CCD
+  vec2 slab_start = slab_of(normal, a_before, b_before, c_before);
+  low = min(low, low_before);
+  high = max(high, high_before);
+#elif METHOD == VESTIGE_METHOD_CARRIED
+  vec3 moved = ((a - a_before) + (b - b_before) + (c - c_before)) * kThird;
+  vec2 slab_start = slab - dot(normal, moved);
+  low -= max(moved, vec3(0.0)) + kMargin * largest;
+  high += max(-moved, vec3(0.0)) + kMargin * largest;
+#endif
+
+  vec2 infinite = vec2(-kInfinite, kInfinite);
+  vec2 wider = vec2(-margin, margin);
+  slab = computable ? slab + wider : infinite;
+  bounds.low = vec4(computable ? low : vec3(-kInfinite), slab.x);
+  bounds.high = vec4(computable ? high : vec3(kInfinite), slab.y);
+  bounds.normal = normal;
+#if METHOD != VESTIGE_METHOD_STATIC
+  bounds.slab_start = computable ? slab_start + wider : infinite;
+#endif
+}
