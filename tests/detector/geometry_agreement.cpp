@@ -1,6 +1,6 @@
-// Run by hand: geometry_agreement [--pairs N] [--seed K] [--context auto|egl|osmesa]. Adversarial pairs through
-// `geometry` and `cpu`, every method, N pairs each. Prints JSON: what meets, what was captured and what differs; exits
-// 4 if anything does.
+// Run by hand: geometry_agreement [--pairs N] [--seed K] [--context auto|egl|osmesa] [--skip]. Adversarial pairs
+// through `geometry` and `cpu`, every method, N pairs each. Prints JSON: what meets, what was captured and what
+// differs; exits 4 if anything does.
 
 #include <fmt/format.h>
 
@@ -31,12 +31,13 @@ struct Settings {
   std::uint64_t pairs = 10'000'000;
   std::uint64_t seed = 2;
   ContextKind context = ContextKind::kAuto;
+  bool skip = false;
 };
 
 nlohmann::ordered_json compare(Method method, const Settings& settings) {
   const Avatar avatar = loose_triangles(kTriangles);
   const ActuatorMap map;
-  const DetectorOptions options = {Surface::kAll, PlaneSet::all(), method};
+  const DetectorOptions options = {Surface::kAll, PlaneSet::all(), method, settings.skip ? Skip::kOn : Skip::kOff};
   const auto geometry = make_geometry_detector(make_gl_context(settings.context, -1), avatar, map, options);
   const auto cpu = make_cpu_detector(avatar, map, options);
   test::AdversarialSource source(settings.seed);
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
   app.add_option("--pairs", settings.pairs)->check(CLI::PositiveNumber);
   app.add_option("--seed", settings.seed);
   app.add_option("--context", settings.context)->transform(CLI::CheckedTransformer(contexts));
+  app.add_flag("--skip", settings.skip);
   CLI11_PARSE(app, argc, argv);
 
   std::vector<std::string> arguments(argv, argv + argc);

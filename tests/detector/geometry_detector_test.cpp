@@ -32,8 +32,8 @@ const ActuatorMap& builtin_map() {
   return map;
 }
 
-DetectorOptions options(Method method, Surface surface = Surface::kAll) {
-  return {surface, PlaneSet::all(), method};
+DetectorOptions options(Method method, Skip skip = Skip::kOff) {
+  return {Surface::kAll, PlaneSet::all(), method, skip};
 }
 
 bool same(const Contact& a, const Contact& b) {
@@ -65,22 +65,27 @@ std::unique_ptr<GlContext> context_named(const std::string& name) {
   return name == "egl" ? make_egl_surfaceless_context() : make_osmesa_context();
 }
 
-class GeometryDetector : public ::testing::TestWithParam<std::tuple<const char*, Method>> {
+class GeometryDetector : public ::testing::TestWithParam<std::tuple<const char*, Method, Skip>> {
  protected:
-  std::unique_ptr<GlContext> context() const { return context_named(std::get<0>(GetParam())); }
+  std::unique_ptr<Detector> make_geometry(const Avatar& avatar, const ActuatorMap& map) const {
+    return make_geometry_detector(context_named(std::get<0>(GetParam())), avatar, map, options(method(), skip()));
+  }
   Method method() const { return std::get<1>(GetParam()); }
+  Skip skip() const { return std::get<2>(GetParam()); }
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, GeometryDetector,
                          ::testing::Combine(::testing::Values("egl", "osmesa"),
-                                            ::testing::Values(Method::kStatic, Method::kCarried, Method::kCcd)),
+                                            ::testing::Values(Method::kStatic, Method::kCarried, Method::kCcd),
+                                            ::testing::Values(Skip::kOff, Skip::kOn)),
                          [](const auto& test) {
-                           return std::string(std::get<0>(test.param)) + "_" + name_of(std::get<1>(test.param));
+                           return std::string(std::get<0>(test.param)) + "_" + name_of(std::get<1>(test.param)) +
+                                  (std::get<2>(test.param) == Skip::kOn ? "_skipping" : "");
                          });
 
 TEST_P(GeometryDetector, GivesTheBitsOfTheCpuInEveryScenario) {
-  const auto geometry = make_geometry_detector(context(), builtin_avatar(), builtin_map(), options(method()));
-  const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options(method()));
+  const auto geometry = make_geometry(builtin_avatar(), builtin_map());
+  const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options(method(), skip()));
   ContactRow row;
   ContactRow expected;
   for (const Scenario& scenario : scenarios()) {
@@ -91,6 +96,10 @@ TEST_P(GeometryDetector, GivesTheBitsOfTheCpuInEveryScenario) {
       const DetectorWork expected_work = cpu->detect(frame, expected);
       EXPECT_EQ(work.pairs_meeting, expected_work.pairs_meeting);
       EXPECT_GE(work.pairs_captured, work.pairs_meeting);
+      EXPECT_EQ(work.pairs_tested, expected_work.pairs_tested);
+      EXPECT_EQ(work.triangles_tested, expected_work.triangles_tested);
+      EXPECT_EQ(work.meshlets_skinned, expected_work.meshlets_skinned);
+      EXPECT_EQ(work.frames_skipped, expected_work.frames_skipped);
       ASSERT_EQ(row.size(), expected.size());
       for (std::size_t i = 0; i < row.size(); ++i) {
         ASSERT_TRUE(same(row[i], expected[i])) << scenario.name << ", frame " << frame.index << ", column " << i;
@@ -108,7 +117,7 @@ TEST_P(GeometryDetector, CapturesEveryPairThatMeetsHoweverItWasAimed) {
   constexpr std::size_t kSegments = 60;
   const Avatar avatar = loose_triangles(kTriangles);
   const ActuatorMap map;
-  const auto geometry = make_geometry_detector(context(), avatar, map, options(method()));
+  const auto geometry = make_geometry(avatar, map);
   const auto cpu = make_cpu_detector(avatar, map, options(method()));
   test::AdversarialSource source(1);
   ContactRow row;
@@ -140,7 +149,7 @@ TEST_P(GeometryDetector, LosesNoPairWhereFarMoreMeetThanThereWasRoomFor) {
   }
   const Avatar avatar = test::rigid_avatar(vertices, triangles);
   const ActuatorMap map;
-  const auto geometry = make_geometry_detector(context(), avatar, map, options(method()));
+  const auto geometry = make_geometry(avatar, map);
   std::vector<Segment> segments;
   for (std::uint32_t i = 0; i < 100; ++i) {
     const float x = 0.4F * static_cast<float>(i) / 100;
@@ -157,16 +166,60 @@ TEST_P(GeometryDetector, LosesNoPairWhereFarMoreMeetThanThereWasRoomFor) {
   }
 }
 
+/// More meshlets, and more segments at one of them, than one draw of `skip` takes; the last meshlet is not full.
+TEST_P(GeometryDetector, FindsAllPairsWhereMeshletsAndSegmentsAreMany) {
+  std::vector<glm::vec3> vertices;
+  std::vector<glm::uvec3> triangles;
+  for (std::uint32_t i = 0; i < 9000; ++i) {
+    for (const glm::vec2 corner : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
+      vertices.emplace_back(corner.x + 2 * static_cast<float>(i), corner.y, 0);
+    triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  const Avatar avatar = test::rigid_avatar(vertices, triangles);
+  const ActuatorMap map;
+  const auto geometry = make_geometry(avatar, map);
+  std::vector<Segment> segments;
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    // Almost all meshlets, each met about once; then the last, met by 700 more.
+    const float x = i < 300 ? 60.0F * static_cast<float>(i) : 17998.0F;
+    segments.push_back({i, {x + 0.25F, 0.25F, 1}, {x + 0.25F, 0.25F, -1}});
+  }
+  Frame frame = test::frame_of(avatar, segments);
+  frame.palette_before = frame.palette;
+  ContactRow row;
+  const DetectorWork work = geometry->detect(frame, row);
+  EXPECT_EQ(work.pairs_captured, 1000U);
+  EXPECT_EQ(work.pairs_meeting, 1000U);
+  for (std::uint32_t i = 0; i < 1000; ++i) ASSERT_EQ(row[i].triangle, i < 300 ? 30 * i : 8999U) << i;
+}
+
 TEST_P(GeometryDetector, CapturesWhatItCannotComputeWith) {
   const float huge = std::ldexp(1.0F, 100);
   const std::vector<LooseTriangle> triangles = {{glm::vec3(-huge, -huge, 0), {huge, -huge, 0}, {0, huge, 0}}};
   const Avatar avatar = loose_triangles(1);
   const ActuatorMap map;
-  const auto geometry = make_geometry_detector(context(), avatar, map, options(method()));
+  const auto geometry = make_geometry(avatar, map);
   ContactRow row;
   geometry->detect(loose_frame(triangles, triangles, {{0, {0, 0, -huge}, {0, 0, 3 * huge}}}), row);
   ASSERT_TRUE(row[0].hit());
   EXPECT_EQ(row[0].t, 0.25F);
+  // A triangle that it can compute with, a segment that it cannot.
+  const std::vector<LooseTriangle> small = {{glm::vec3(-1, -1, 0), {1, -1, 0}, {0, 1, 0}}};
+  geometry->detect(loose_frame(small, small, {{0, {0, 0, -huge}, {0, 0, 3 * huge}}}), row);
+  ASSERT_TRUE(row[0].hit());
+  EXPECT_EQ(row[0].t, 0.25F);
+}
+
+TEST_P(GeometryDetector, SkipsAFrameWhoseCollidersAreFarAway) {
+  const auto geometry = make_geometry(builtin_avatar(), builtin_map());
+  Frame frame = test::frame_of(builtin_avatar(), {{0, {9, 9, 9}, {9, 9, 8}}});
+  frame.palette_before = frame.palette;
+  ContactRow row = {Contact()};
+  row[0].triangle = 7;
+  const DetectorWork work = geometry->detect(frame, row);
+  EXPECT_FALSE(row[0].hit());
+  EXPECT_EQ(work.frames_skipped, skip() == Skip::kOn ? 1U : 0U);
+  EXPECT_EQ(work.pairs_tested, skip() == Skip::kOn ? 0U : builtin_avatar().triangles.size());
 }
 
 /// At most 1 % more than what meets, at the rate that traces are recorded with.

@@ -1,6 +1,6 @@
 // What poses and colliders that nobody would send bring about: numbers that are none fire nothing and are reported with
-// their frame; whatever is finite is decided as ever, exactly, and to the same bits by `cpu`, skipping or not, and
-// `exact`.
+// their frame; whatever is finite is decided as ever, exactly, and to the same bits by `cpu`, `geometry`, skipping or
+// not, and `exact`.
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include <string>
 
 #include "detector/detector.hpp"
+#include "detector/gl/gl_context.hpp"
 #include "detector/texture_hash.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
@@ -46,6 +47,17 @@ std::unique_ptr<Detector> make_skipping_cpu_detector(const Avatar& avatar, const
   DetectorOptions skipping = options;
   skipping.skip = Skip::kOn;
   return make_cpu_detector(avatar, map, skipping);
+}
+
+std::unique_ptr<Detector> make_geometry(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
+  return make_geometry_detector(make_egl_surfaceless_context(), avatar, map, options);
+}
+
+std::unique_ptr<Detector> make_skipping_geometry(const Avatar& avatar, const ActuatorMap& map,
+                                                 const DetectorOptions& options) {
+  DetectorOptions skipping = options;
+  skipping.skip = Skip::kOn;
+  return make_geometry(avatar, map, skipping);
 }
 
 test::SceneRun run(const std::vector<TraceFrame>& scene, Method method, decltype(make_cpu_detector)* make) {
@@ -93,7 +105,8 @@ TEST_P(PoseThatIsNotFinite, FiresNothingIsReportedWithItsFrameAndLeavesTheOthers
   std::vector<TraceFrame> hostile = calm_scene();
   const test::SceneRun calm = run(hostile, method, make_cpu_detector);
   hostility.change(hostile[kHostileFrame]);
-  for (const auto make : {make_cpu_detector, make_skipping_cpu_detector, make_exact_detector}) {
+  for (const auto make :
+       {make_cpu_detector, make_skipping_cpu_detector, make_geometry, make_skipping_geometry, make_exact_detector}) {
     const test::SceneRun found = run(hostile, method, make);
     EXPECT_EQ(found.non_finite_frames, 1U);
     EXPECT_EQ(found.first_non_finite, kHostileFrame);
@@ -131,7 +144,8 @@ TEST_P(ColliderThatIsNotFinite, FiresNothingIsReportedWithItsFrameAndLeavesTheOt
   std::vector<TraceFrame> hostile = calm_scene();
   const test::SceneRun calm = run(hostile, method, make_cpu_detector);
   hostility.change(hostile[kHostileFrame]);
-  for (const auto make : {make_cpu_detector, make_skipping_cpu_detector, make_exact_detector}) {
+  for (const auto make :
+       {make_cpu_detector, make_skipping_cpu_detector, make_geometry, make_skipping_geometry, make_exact_detector}) {
     const test::SceneRun found = run(hostile, method, make);
     EXPECT_EQ(found.non_finite_frames, 0U);
     EXPECT_EQ(found.non_finite_segments, 2U);  // there and away again
@@ -167,11 +181,15 @@ TEST_P(FinitePose, HoweverStrangeIsDecidedToTheSameBitsAsTheTruth) {
   hostility.change(hostile[kHostileFrame]);
   const test::SceneRun found = run(hostile, method, make_cpu_detector);
   const test::SceneRun skipping = run(hostile, method, make_skipping_cpu_detector);
+  const test::SceneRun drawn = run(hostile, method, make_geometry);
+  const test::SceneRun drawn_skipping = run(hostile, method, make_skipping_geometry);
   const test::SceneRun truth = run(hostile, method, make_exact_detector);
   EXPECT_FALSE(found.first_non_finite);
   for (std::size_t frame = 0; frame < kFrames; ++frame) {
     EXPECT_EQ(hash_of(found.rows[frame]), hash_of(truth.rows[frame])) << frame;
     EXPECT_EQ(hash_of(skipping.rows[frame]), hash_of(truth.rows[frame])) << frame;
+    EXPECT_EQ(hash_of(drawn.rows[frame]), hash_of(truth.rows[frame])) << frame;
+    EXPECT_EQ(hash_of(drawn_skipping.rows[frame]), hash_of(truth.rows[frame])) << frame;
     if (frame == kHostileFrame || frame == kHostileFrame + 1) continue;
     EXPECT_EQ(hash_of(found.rows[frame]), hash_of(calm.rows[frame])) << frame;
   }

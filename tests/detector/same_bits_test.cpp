@@ -6,6 +6,7 @@
 #include <string>
 
 #include "detector/detector.hpp"
+#include "detector/gl/gl_context.hpp"
 #include "detector/texture_hash.hpp"
 #include "tests/support/scene_run.hpp"
 #include "traces/avatar_gltf.hpp"
@@ -51,6 +52,23 @@ TEST_P(SameBits, ComeFromTheCpuAndFromTheSlowTruthHereAndTenThousandKilometresAw
   EXPECT_EQ(hash_of(test::run_scene(there, builtin_avatar(), colliders, *cpu)), hash_of(truth));
 }
 
+TEST_P(SameBits, ComeFromTheGeometryShaderInEveryContextSkippingOrNot) {
+  const auto [scenario, method] = GetParam();
+  const std::uint32_t colliders = find_scenario(scenario)->default_count;
+  const auto scene = test::scene(scenario, builtin_avatar(), colliders, 10, 20);
+  DetectorOptions options = {Surface::kAll, kHashedPlanes, method};
+  const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options);
+  const std::string expected = hash_of(test::run_scene(scene, builtin_avatar(), colliders, *cpu));
+  for (const auto make_context : {make_egl_surfaceless_context, make_osmesa_context}) {
+    for (const Skip skip : {Skip::kOff, Skip::kOn}) {
+      options.skip = skip;
+      const auto geometry = make_geometry_detector(make_context(), builtin_avatar(), builtin_map(), options);
+      EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), colliders, *geometry)), expected)
+          << geometry->gl_info().context << (skip == Skip::kOn ? ", skipping" : "");
+    }
+  }
+}
+
 std::vector<std::string_view> scenario_names() {
   std::vector<std::string_view> names;
   names.reserve(scenarios().size());
@@ -73,6 +91,11 @@ TEST(MappedSurface, GivesTheSameBitsFromTheCpuAndFromTheSlowTruth) {
   const test::SceneRun truth = test::run_scene(scene, builtin_avatar(), 100, *exact);
   EXPECT_GT(truth.contacts(), 10U);
   EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *cpu)), hash_of(truth));
+  for (const Skip skip : {Skip::kOff, Skip::kOn}) {
+    const auto geometry = make_geometry_detector(make_egl_surfaceless_context(), builtin_avatar(), builtin_map(),
+                                                 {Surface::kMapped, kHashedPlanes, Method::kCcd, skip});
+    EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *geometry)), hash_of(truth));
+  }
 }
 
 }  // namespace
