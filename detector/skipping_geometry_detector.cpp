@@ -59,6 +59,12 @@ struct Draw {
 /// The segments of a frame against the meshlets that they may meet. A frame without such a pair costs no call of
 /// OpenGL; else only those meshlets are skinned, by the CPU, and sent: a point for each triangle, whose corners are
 /// attributes. The geometry shader finds its segments by its primitive's number, in a uniform block.
+///
+/// Measured on llvmpipe, processor time per frame, 40 and 100 colliders of a swarm, all axes of geometry.geom: one
+/// indirect draw command a meshlet, skinned by the vertex shader, 236 and 418 us; one draw with the touched meshlets'
+/// indices, 214 and 477 us; this way, skinned by the CPU, 162 and 290 us; with a box and a slab alone, 67 and 145 us. A
+/// storage buffer in place of the uniform block took 15 % longer, and a persistently mapped buffer saved less than 2
+/// us.
 class SkippingGeometryDetector final : public Detector {
  public:
   SkippingGeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
