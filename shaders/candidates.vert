@@ -29,7 +29,11 @@ out Bounds {
   vec4 low;   // w: the slab at the end
   vec4 high;
   vec3 normal;
-#if METHOD != VESTIGE_METHOD_STATIC
+#if METHOD == VESTIGE_METHOD_STATIC
+  vec3 a;  // 0, as b and c, where nothing can be computed
+  vec3 b;
+  vec3 c;
+#else
   vec2 slab_start;
 #endif
 } bounds;
@@ -86,7 +90,11 @@ void main() {
   bounds.low = vec4(computable ? low : vec3(-kInfinite), slab.x);
   bounds.high = vec4(computable ? high : vec3(kInfinite), slab.y);
   bounds.normal = normal;
-#if METHOD != VESTIGE_METHOD_STATIC
+#if METHOD == VESTIGE_METHOD_STATIC
+  bounds.a = computable ? a : vec3(0.0);
+  bounds.b = computable ? b : vec3(0.0);
+  bounds.c = computable ? c : vec3(0.0);
+#else
   bounds.slab_start = computable ? slab_start + wider : infinite;
 #endif
 }

@@ -63,17 +63,19 @@ TEST(Ablations, TellWhatWholeFramesSavedFromWhatMeshletsDid) {
 }
 
 TEST(Disagreements, AreSaidOfDetectorsThatPromiseTheSameBitsAndOfNoOthers) {
+  const std::string one(64, '1');
+  const std::string other(64, '2');
   SweepSeries cpu;
   cpu.detector = "cpu";
   cpu.points = {point(1, 1, 1)};
-  cpu.points[0].texture_hash = "a";
+  cpu.points[0].texture_hash = one;
   SweepSeries geometry = cpu;
   geometry.detector = "geometry";
   SweepSeries paper = cpu;
   paper.detector = "paper";
-  paper.points[0].texture_hash = "b";
+  paper.points[0].texture_hash = other;
   EXPECT_TRUE(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).empty());
-  geometry.points[0].texture_hash = "b";
+  geometry.points[0].texture_hash = other;
   EXPECT_EQ(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).size(), 1U);
   geometry.points[0].texture_hash.clear();  // stopped before it was known
   EXPECT_TRUE(disagreements(std::vector<SweepSeries>{paper, cpu, geometry}).empty());
