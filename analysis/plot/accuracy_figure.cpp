@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/free_place.hpp"
@@ -38,22 +37,8 @@ std::string short_rate(double rate_hz) {
   return rate_hz >= 1000 ? fmt::format("{:.4g}k", rate_hz / 1000) : fmt::format("{:.4g}", rate_hz);
 }
 
-/// Breaks `text` at spaces into lines of the small print.
 std::vector<std::string> wrapped(const std::string& text) {
-  std::vector<std::string> lines;
-  std::string line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : fmt::format("{} {}", line, word);
-    if (!line.empty() && text_width_pt(longer, kSmallStyle) > kWidthPt - 2 * kMarginPt) {
-      lines.push_back(line);
-      line = word;
-    } else {
-      line = longer;
-    }
-  }
-  lines.push_back(line);
-  return lines;
+  return plot::wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
 }
 
 std::vector<std::string> small_print(const AccuracyResult& result) {

@@ -1,5 +1,6 @@
 #include "analysis/plot/canvas.hpp"
 
+#include <fmt/format.h>
 #include <vtkBrush.h>
 #include <vtkContext2D.h>
 #include <vtkContextDevice2D.h>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <sstream>
 #include <vector>
 
 #include "traces/error.hpp"
@@ -219,6 +221,23 @@ void Canvas::image(const Box& box, const Raster& raster) {
   }
   context_.DrawImage(vtkRectf(dots(box.left_pt), dots(box.bottom_pt), dots(box.width_pt()), dots(box.height_pt())),
                      pixels);
+}
+
+std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_pt) {
+  std::vector<std::string> lines;
+  std::string line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::string longer = line.empty() ? word : fmt::format("{} {}", line, word);
+    if (!line.empty() && text_width_pt(longer, style) > width_pt) {
+      lines.push_back(line);
+      line = word;
+    } else {
+      line = longer;
+    }
+  }
+  lines.push_back(line);
+  return lines;
 }
 
 }  // namespace vestige::plot

@@ -94,6 +94,9 @@ double whole_dots_pt(double length_pt);
 /// The same on every canvas.
 double text_width_pt(std::string_view text, const TextStyle& style);
 
+/// Its words in lines that are no wider than that, unless a word alone is.
+std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_pt);
+
 /// What a figure is drawn with: lengths in points, text in Liberation Sans. Draws through VTK, into a window (PNG) or
 /// an SVG document alike.
 class Canvas {

@@ -105,10 +105,22 @@ std::filesystem::path stem_of(const Options& options) {
   return stem;
 }
 
-int draw_accuracy(const Options& options) {
+/// NAME.json, which 'vestige NAME' wrote into the input folder, as NAME.svg and .png there or in OUT.
+int draw_results(const Options& options, const char* name,
+                 std::unique_ptr<plot::Figure> (*figure_of)(const std::filesystem::path& folder)) {
   const std::filesystem::path& folder = options.inputs.front();
-  return write_figure(options, (options.output.empty() ? folder : options.output) / "accuracy",
-                      [&] { return plot::accuracy_figure(plot::read_accuracy(folder)); });
+  const std::filesystem::path results = folder / fmt::format("{}.json", name);
+  if (!std::filesystem::exists(results))
+    throw vestige::Error(results.string(), "no such file",
+                         fmt::format("name a folder that 'vestige {} -o' wrote", name));
+  return write_figure(options, (options.output.empty() ? folder : options.output) / name,
+                      [&] { return figure_of(folder); });
+}
+
+int draw_accuracy(const Options& options) {
+  return draw_results(options, "accuracy", [](const std::filesystem::path& folder) {
+    return plot::accuracy_figure(plot::read_accuracy(folder));
+  });
 }
 
 int draw_sweep(const Options& options) {
@@ -122,15 +134,15 @@ int draw_sweep(const Options& options) {
 }
 
 int draw_growth(const Options& options) {
-  const std::filesystem::path& folder = options.inputs.front();
-  return write_figure(options, (options.output.empty() ? folder : options.output) / "growth",
-                      [&] { return plot::growth_figure(plot::read_growth(folder)); });
+  return draw_results(options, "growth", [](const std::filesystem::path& folder) {
+    return plot::growth_figure(plot::read_growth(folder));
+  });
 }
 
 int draw_stress(const Options& options) {
-  const std::filesystem::path& folder = options.inputs.front();
-  return write_figure(options, (options.output.empty() ? folder : options.output) / "stress",
-                      [&] { return plot::stress_figure(plot::read_stress(folder)); });
+  return draw_results(options, "stress", [](const std::filesystem::path& folder) {
+    return plot::stress_figure(plot::read_stress(folder));
+  });
 }
 
 int draw_timeline(const Options& options) {
@@ -246,6 +258,15 @@ CLI::App& add_command(CLI::App& app, const char* name, const char* what, const s
   return command;
 }
 
+/// The folder that the verb of the same name wrote.
+void add_results_input(CLI::App& command, Options& options) {
+  command
+      .add_option("INPUT", options.inputs, fmt::format("The folder that 'vestige {} -o DIR' wrote", command.get_name()))
+      ->type_name("DIR")
+      ->expected(1)
+      ->required();
+}
+
 void add_common_options(CLI::App& command, Options& options, const char* output_name, const char* output_help) {
   command.add_option("-o", options.output, output_help)->type_name(output_name);
   command.add_flag("--force", options.force, "Overwrite existing files");
@@ -277,28 +298,19 @@ int run(int argc, char** argv) {
   CLI::App& accuracy = add_command(app, "accuracy", "Contacts missed over run time (accuracy.svg, .png)",
                                    "  vestige plot accuracy results/accuracy\n"
                                    "  vestige plot accuracy results/accuracy -o figures\n");
-  accuracy.add_option("INPUT", options.inputs, "The folder that 'vestige accuracy -o DIR' wrote")
-      ->type_name("DIR")
-      ->expected(1)
-      ->required();
+  add_results_input(accuracy, options);
   add_common_options(accuracy, options, "DIR", "Folder for the figure [default: the input]");
 
   CLI::App& growth = add_command(app, "growth", "Cost over colliders and over triangles (growth.svg, .png)",
                                  "  vestige plot growth results/growth\n"
                                  "  vestige plot growth results/growth -o figures\n");
-  growth.add_option("INPUT", options.inputs, "The folder that 'vestige growth -o DIR' wrote")
-      ->type_name("DIR")
-      ->expected(1)
-      ->required();
+  add_results_input(growth, options);
   add_common_options(growth, options, "DIR", "Folder for the figure [default: the input]");
 
   CLI::App& stress = add_command(app, "stress", "What each detector gets wrong, by family of hostile cases",
                                  "  vestige plot stress results/stress\n"
                                  "  vestige plot stress results/stress -o figures\n");
-  stress.add_option("INPUT", options.inputs, "The folder that 'vestige stress' wrote")
-      ->type_name("DIR")
-      ->expected(1)
-      ->required();
+  add_results_input(stress, options);
   add_common_options(stress, options, "DIR", "Folder for the figures [default: the input]");
 
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",

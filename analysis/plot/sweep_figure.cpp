@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <sstream>
 
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/free_place.hpp"
@@ -84,22 +83,8 @@ std::vector<std::string> series_names(const Sweeps& sweeps) {
   return names;
 }
 
-/// Breaks `text` at spaces into lines of the small print.
 std::vector<std::string> wrapped(const std::string& text) {
-  std::vector<std::string> lines;
-  std::string line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : fmt::format("{} {}", line, word);
-    if (!line.empty() && text_width_pt(longer, kSmallStyle) > kWidthPt - 2 * kMarginPt) {
-      lines.push_back(line);
-      line = word;
-    } else {
-      line = longer;
-    }
-  }
-  lines.push_back(line);
-  return lines;
+  return plot::wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
 }
 
 std::vector<std::string> small_print(const Sweeps& sweeps) {

@@ -40,9 +40,10 @@ class CommandLine : public test::CommandLineTest {
     EXPECT_FALSE(std::filesystem::exists(folder_ / absent)) << command;
   }
 
-  /// Waits for the first bytes in the temporary file behind an output, which begins with its name.
-  static std::string until_written(const std::string& name) {
-    return "until [ -n \"$(find . -name '*" + name + "*' -size +0)\" ] || ! kill -0 $P; do sleep 0.01; done; ";
+  /// Waits for so many bytes in the temporary file behind an output, which begins with its name.
+  static std::string until_written(const std::string& name, int bytes = 1) {
+    return "until [ -n \"$(find . -name '*" + name + "*' -size +" + std::to_string(bytes - 1) +
+           "c)\" ] || ! kill -0 $P; do sleep 0.01; done; ";
   }
 };
 
@@ -231,7 +232,7 @@ TEST_F(CommandLine, ReadsATraceThatWasCutOffAndSaysSo) {
 
 TEST_F(CommandLine, InterruptedRecordingLeavesAValidTrace) {
   const test::Outcome outcome = run("vestige record --duration 100000 --rate 1000 --count 5 -o long.mcap & P=$!; " +
-                                    until_written("long.mcap") + "kill -INT $P; wait $P");
+                                    until_written("long.mcap", 1000000) + "kill -INT $P; wait $P");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_error, HasSubstr("stopped after"));
   const auto inspect = json_of("vestige inspect long.mcap --json -");
@@ -386,7 +387,8 @@ TEST_F(CommandLine, SaysWhatToInstallWithoutAnyOpenGl) {
 TEST_F(CommandLine, SweepMeasuresEverySeriesAndKeepsEveryFrame) {
   record_small();
   const test::Outcome sweep =
-      run("vestige sweep small.mcap --counts 1,5:20:5 --min-time 0.01 --runs 2 --run-frames 10 --no-figure -o s");
+      run("vestige sweep small.mcap --counts 1,5:20:5 --min-time 0.01 --runs 2 --run-frames 10 --skip off --no-figure "
+          "-o s");
   ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
   EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("HAVE 2010"), HasSubstr("paper, osmesa"), HasSubstr("cpu")));
   const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
