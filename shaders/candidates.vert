@@ -1,5 +1,5 @@
 // One triangle of a touched meshlet, its corners skinned by the CPU to the bits that it will decide on: a box that holds
-// it within the frame, and along its normal two slabs, one at the frame's start, where a segment starts, and one at its
+// it within the frame, and, but for `static`, along its normal two slabs, one at the frame's start, where a segment starts, and one at its
 // end. What misses the box, or has its ends on the same side of both slabs, surely misses the triangle.
 //
 // Boxes. Those of `static` and `ccd` are not rounded, and denormals flushed to zero keep their order. For `carried`, a
@@ -28,12 +28,12 @@ layout(location = VESTIGE_ATTRIBUTE_CORNERS_BEFORE) in vec3 corners_before[3];
 out Bounds {
   vec4 low;   // w: the slab at the end
   vec4 high;
-  vec3 normal;
 #if METHOD == VESTIGE_METHOD_STATIC
   vec3 a;  // 0, as b and c, where nothing can be computed
   vec3 b;
   vec3 c;
 #else
+  vec3 normal;
   vec2 slab_start;
 #endif
 } bounds;
@@ -59,42 +59,42 @@ void main() {
   vec3 low = min(min(a, b), c);
   vec3 high = max(max(a, b), c);
   vec3 largest = max(max(abs(low), abs(high)), vec3(kLeast));
-  precise vec3 normal = cross(b - a, c - a);
-#if METHOD != VESTIGE_METHOD_STATIC
+#if METHOD == VESTIGE_METHOD_STATIC
+  bool computable = max(largest.x, max(largest.y, largest.z)) <= kLargest;
+  vec2 slab = vec2(0.0);
+  bounds.a = computable ? a : vec3(0.0);
+  bounds.b = computable ? b : vec3(0.0);
+  bounds.c = computable ? c : vec3(0.0);
+#else
   vec3 a_before = corners_before[0];
   vec3 b_before = corners_before[1];
   vec3 c_before = corners_before[2];
   vec3 low_before = min(min(a_before, b_before), c_before);
   vec3 high_before = max(max(a_before, b_before), c_before);
   largest = max(largest, max(abs(low_before), abs(high_before)));
-#endif
   bool computable = max(largest.x, max(largest.y, largest.z)) <= kLargest;
+  precise vec3 normal = cross(b - a, c - a);
   if (!computable) normal = vec3(0.0);
 
   float margin = kMargin * dot(abs(normal), largest) + kTiny;
+  vec2 wider = vec2(-margin, margin);
   vec2 slab = slab_of(normal, a, b, c);
 #if METHOD == VESTIGE_METHOD_CCD
   vec2 slab_start = slab_of(normal, a_before, b_before, c_before);
   low = min(low, low_before);
   high = max(high, high_before);
-#elif METHOD == VESTIGE_METHOD_CARRIED
+#else
   vec3 moved = ((a - a_before) + (b - b_before) + (c - c_before)) * kThird;
   vec2 slab_start = slab - dot(normal, moved);
   low -= max(moved, vec3(0.0)) + kMargin * largest;
   high += max(-moved, vec3(0.0)) + kMargin * largest;
 #endif
-
   vec2 infinite = vec2(-kInfinite, kInfinite);
-  vec2 wider = vec2(-margin, margin);
   slab = computable ? slab + wider : infinite;
-  bounds.low = vec4(computable ? low : vec3(-kInfinite), slab.x);
-  bounds.high = vec4(computable ? high : vec3(kInfinite), slab.y);
   bounds.normal = normal;
-#if METHOD == VESTIGE_METHOD_STATIC
-  bounds.a = computable ? a : vec3(0.0);
-  bounds.b = computable ? b : vec3(0.0);
-  bounds.c = computable ? c : vec3(0.0);
-#else
   bounds.slab_start = computable ? slab_start + wider : infinite;
 #endif
+
+  bounds.low = vec4(computable ? low : vec3(-kInfinite), slab.x);
+  bounds.high = vec4(computable ? high : vec3(kInfinite), slab.y);
 }
