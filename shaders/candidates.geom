@@ -48,11 +48,11 @@ const float kTiny = 1.0 / 1237940039285380274899124224.0;  // 2^-90
 const float kMargin = 1.0 / 262144.0;                      // 64 u
 
 #if METHOD == VESTIGE_METHOD_STATIC
-const float kSixteenUlps = 1.0 / 1048576.0;             // 16 u
+const float kVolumeError = 96.0 / 16777216.0;            // 96 u
 const float kTinyVolume = 1.0 / 1152921504606846976.0;  // 2^-60
 
-vec3 permanent(vec3 v, vec3 w) {
-  return abs(v.yzx * w.zxy) + abs(v.zxy * w.yzx);
+float largest(vec3 v) {
+  return max(abs(v.x), max(abs(v.y), abs(v.z)));
 }
 
 bool one_sign(float x, float x_error, float y, float y_error) {
@@ -61,27 +61,24 @@ bool one_sign(float x, float x_error, float y, float y_error) {
 
 // Seen from the way's start: the volumes that the way spans with the triangle's edges, of which two of opposite signs
 // prove a miss, and that of the triangle itself, the start's height. What the way takes from it is the sum of the
-// others: a miss where both ends have heights of one sign. In each term of a volume meet 8 roundings
-// (detector/bounded.hpp), fewer with fma; 16 u times the sum of the terms' magnitudes covers its own rounding and those
-// of adding volumes. Flushed denormals err by less than 2^-126 times two factors of at most 2^27, fewer than 64 times.
+// others: a miss where both ends have heights of one sign. A volume has 6 terms, each at most the product of the largest
+// coordinates, and in each meet 8 roundings (detector/bounded.hpp), fewer with fma; twice that covers the bound's own
+// rounding and those of adding volumes. Flushed denormals err by less than 2^-126 times two factors of at most 2^27,
+// fewer than 64 times.
 bool proven_beside(vec3 start, vec3 end) {
   precise vec3 way = end - start;
   precise vec3 a = bounds[0].a - start;
   precise vec3 b = bounds[0].b - start;
   precise vec3 c = bounds[0].c - start;
-  vec3 ab = permanent(a, b);
-  vec3 bc = permanent(b, c);
-  vec3 ca = permanent(c, a);
   vec3 normal_bc = cross(b, c);
   vec3 volumes = vec3(dot(way, cross(a, b)), dot(way, normal_bc), dot(way, cross(c, a)));
-  vec3 sizes = vec3(dot(abs(way), ab), dot(abs(way), bc), dot(abs(way), ca));
-  vec3 errors = kSixteenUlps * sizes + kTinyVolume;
+  float reach = max(largest(a), max(largest(b), largest(c)));
+  float error = kVolumeError * largest(way) * reach * reach + kTinyVolume;
   float height = dot(a, normal_bc);
-  float height_error = kSixteenUlps * dot(abs(a), bc) + kTinyVolume;
+  float height_error = kVolumeError * reach * reach * reach + kTinyVolume;
   float height_end = height - (volumes.x + volumes.y + volumes.z);
-  float height_end_error = height_error + (errors.x + errors.y + errors.z);
-  return (any(greaterThan(volumes, errors)) && any(lessThan(volumes, -errors))) ||
-         one_sign(height, height_error, height_end, height_end_error);
+  return (any(greaterThan(volumes, vec3(error))) && any(lessThan(volumes, vec3(-error)))) ||
+         one_sign(height, height_error, height_end, height_error + 3.0 * error);
 }
 #else
 bool proven_beside(vec3 start, vec3 end) {
