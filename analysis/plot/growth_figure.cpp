@@ -94,7 +94,8 @@ class GrowthFigure : public Figure {
  private:
   const std::vector<GrowthLine>& lines() const { return result_.panels.front().lines; }
   double legend_pt() const {
-    return static_cast<double>((lines().size() + kLegendColumns - 1) / kLegendColumns) * kLegendLinePt + 4;
+    const std::size_t rows = (lines().size() + kLegendColumns - 1) / kLegendColumns;
+    return static_cast<double>(rows) * kLegendLinePt + 4;
   }
 
   bool has_twin(const GrowthLine& line) const {
@@ -174,7 +175,8 @@ class GrowthFigure : public Figure {
   void draw_legend(Canvas& canvas, double top_pt) const {
     for (std::size_t i = 0; i < lines().size(); ++i) {
       const double left_pt = kMarginPt + static_cast<double>(i % kLegendColumns) * kLegendColumnPt;
-      const double y_pt = top_pt - static_cast<double>(i / kLegendColumns) * kLegendLinePt;
+      const std::size_t row = i / kLegendColumns;
+      const double y_pt = top_pt - static_cast<double>(row) * kLegendLinePt;
       canvas.line({left_pt, y_pt}, {left_pt + 14, y_pt}, {colour(lines()[i]), 1.2, dash(lines()[i])});
       canvas.text({left_pt + 18, y_pt}, name(lines()[i]), kLegendStyle);
     }
