@@ -34,8 +34,10 @@ void add_sweep(const nlohmann::json& result, const Claim& base, std::vector<Clai
     Claim claim = base;
     claim.machine = machine_of(result, series.at("gl"));
     const auto context = series.at("context").get<std::string>();
-    claim.claim = fmt::format("`{}`{} detects at", series.at("detector").get<std::string>(),
-                              context.empty() ? "" : " on " + context);
+    claim.claim = fmt::format("`{}`{}{}{} detects at", series.at("detector").get<std::string>(),
+                              context.empty() ? "" : " on " + context,
+                              series.value("skip", "off") == "on" ? " with skipping" : "",
+                              series.value("renderer", "off") == "on" ? " beside a renderer" : "");
     for (const auto& point : series.at("points")) {
       const int colliders = point.at("colliders").get<int>();
       if (!kQuotedCounts.contains(colliders)) continue;
@@ -194,7 +196,7 @@ std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& fi
   if (result.contains("series")) add_sweep(result, base, claims);
   if (result.contains("recording_s")) add_record(result, base, claims);
   if (result.contains("texture_hash")) add_replay(result, base, claims);
-  if (result.contains("total")) add_query(result, base, claims);
+  if (result.contains("files")) add_query(result, base, claims);
   if (result.contains("scenes") && result.contains("duration_s")) add_accuracy(result, base, claims);
   if (result.contains("families")) {
     if (result["families"].is_array()) {

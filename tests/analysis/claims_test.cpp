@@ -63,6 +63,17 @@ TEST(Claims, QuoteWhatEachDetectorMissesAtEachRate) {
             "`paper` with `static`, hug: of 8 true contacts it misses 12.5 % at 60 Hz, 0.0 % at 1000 Hz");
 }
 
+TEST(Claims, SumAgreementUp) {
+  nlohmann::json agreement = result();
+  agreement["method"] = "ccd";
+  agreement["families"] = {{"edge", {{"pairs", 7}, {"differences", 0}}},
+                           {"vertex", {{"pairs", 5}, {"differences", 1}}}};
+  agreement["total"] = {{"pairs", 12}, {"differences", 1}};
+  const auto claims = claims_of(agreement, "a.json");
+  ASSERT_EQ(claims.size(), 1U);
+  EXPECT_EQ(claims[0].claim, "the deciding code and the slow truth differ in 1 of 12 pairs (`ccd`)");
+}
+
 TEST(Claims, AreNotMadeOfOtherJson) {
   EXPECT_TRUE(claims_of(nlohmann::json::array(), "a.json").empty());
   EXPECT_TRUE(claims_of(result(), "a.json").empty());
