@@ -49,7 +49,7 @@ std::string text_of(const CostTable& table) {
     fmt::format_to(std::back_inserter(text), "{:>9.0f}", table.sizes[i]);
     for (const CostLine& line : table.lines)
       fmt::format_to(std::back_inserter(text), "  {:>26}",
-                     std::isnan(line.us[i]) ? "-" : fmt::format("{:.4g} us", line.us[i]));
+                     std::isnan(line.us[i]) ? "-" : fmt::format("{:.{}f} us", line.us[i], line.us[i] < 1000 ? 1 : 0));
     text += "\n";
   }
   for (const Crossover& crossover : crossovers(table.sizes, table.lines))

@@ -15,6 +15,10 @@ bool needs_opengl(const std::string& detector) {
   return detector == "paper" || detector == "geometry";
 }
 
+bool is_embree(const std::string& detector) {
+  return detector == "embree" || detector == "embree_default";
+}
+
 }  // namespace
 
 void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
@@ -56,15 +60,16 @@ std::vector<Contestant> make_contestants(const ContestantChoice& choice, const A
     }
   };
   for (const std::string& detector : parse_list(choice.detectors)) {
-    if (!needs_opengl(detector)) {
-      add(detector, "");
-      continue;
-    }
-    for (const std::string& context : parse_list(choice.contexts)) {
+    for (const std::string& context :
+         needs_opengl(detector) ? parse_list(choice.contexts) : std::vector<std::string>{""}) {
       try {
-        make_gl_context(context_kind(context), choice.choice.device);
+        if (needs_opengl(detector)) make_gl_context(context_kind(context), choice.choice.device);
+        if (is_embree(detector)) make_detector(detector, context, choice.choice, avatar, map, PlaneSet());
+      } catch (const UsageError&) {
+        throw;
       } catch (const Error& error) {
-        warn(fmt::format("no series '{}' on {}: {}", detector, context, error.what()), verbosity);
+        warn(fmt::format("no series '{}'{}: {}", detector, context.empty() ? "" : " on " + context, error.what()),
+             verbosity);
         continue;
       }
       add(detector, context);

@@ -384,6 +384,18 @@ TEST_F(CommandLine, SaysWhatToInstallWithoutAnyOpenGl) {
   EXPECT_THAT(sweep.standard_error, HasSubstr("no series 'paper'"));
 }
 
+TEST_F(CommandLine, SweepGoesOnWithoutEmbree) {
+  record_small();
+  ASSERT_EQ(run("mkdir none && echo > none/libembree3.so.3").exit_code, 0);
+  const test::Outcome sweep =
+      run("LD_LIBRARY_PATH=\"$PWD/none\" vestige sweep small.mcap --detector cpu,embree --counts 1 --min-time 0.01 "
+          "--runs 1 "
+          "--no-figure -o s");
+  EXPECT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_error, AllOf(HasSubstr("no series 'embree'"), HasSubstr("libembree3-3")));
+  EXPECT_THAT(sweep.standard_output, HasSubstr("cpu"));
+}
+
 TEST_F(CommandLine, SweepMeasuresEverySeriesAndKeepsEveryFrame) {
   record_small();
   const test::Outcome sweep =
