@@ -13,9 +13,30 @@ namespace {
 
 constexpr std::uint64_t kSkinningFrames = 5;
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+using Clock = std::chrono::steady_clock;
+
+double seconds(Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
 }
+
+/// How many frames to detect together: enough that threads seldom wait for each other, few enough that progress is
+/// seen and an interrupt answered. A thread alone takes them one by one.
+class BatchSize {
+ public:
+  explicit BatchSize(std::size_t threads) : alone_(threads == 1), size_(alone_ ? 1 : 4 * threads) {}
+
+  std::size_t now() const { return size_; }
+
+  void took(double batch_s) {
+    if (alone_) return;
+    if (batch_s < 2e-3) size_ = std::min<std::size_t>(2 * size_, 4096);
+    if (batch_s > 0.1) size_ = std::max<std::size_t>(size_ / 2, 1);
+  }
+
+ private:
+  bool alone_;
+  std::size_t size_;
+};
 
 /// Turns the contacts of a CSV file back into rows, frame by frame.
 class RecordedRows {
@@ -59,7 +80,7 @@ class RecordedRows {
 
 }  // namespace
 
-ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, Detector& detector,
+ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
                     double hold_s, const ReplayOutputs& outputs, const ReplayExpectation& expectation,
                     const std::function<bool(double)>& progress) {
   const std::vector<std::uint32_t>& ids = trace.collider_ids();
@@ -68,33 +89,37 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
 
   ReplayResult result;
   result.contacts_of_actuator.resize(actuator_count + 1);
-  if (expectation.detector != nullptr || expectation.contacts != nullptr) result.comparison.emplace();
+  if (expectation.detectors != nullptr || expectation.contacts != nullptr) result.comparison.emplace();
   RecordedRows recorded(
       expectation.contacts != nullptr ? std::span(*expectation.contacts) : std::span<const RecordedContact>(), ids);
-  FrameBuilder builder(avatar, ids, detector.method());
+  FrameBuilder builder(avatar, ids, detectors.first().method());
   BinaryLaw law(actuator_count, hold_s);
   TextureHash hash;
   TraceFrame trace_frame;
-  ContactRow row;
-  ContactRow expected;
-  trace.rewind();
-  const auto next_frame = [&] {
-    const auto start = std::chrono::steady_clock::now();
-    const bool more = trace.next(trace_frame);
-    result.reading_s += seconds_since(start);
-    return more;
+  std::uint64_t frames_read = 0;
+  double building_s = 0;
+  double checking_s = 0;
+  const auto read_batch = [&](FrameBatch& batch, std::size_t size) {
+    batch.clear();
+    while (batch.count < size) {
+      const auto start = Clock::now();
+      const bool more = trace.next(trace_frame);
+      const auto read = Clock::now();
+      result.reading_s += seconds(read - start);
+      if (!more) return;
+      const Frame& frame = builder.next(trace_frame);
+      batch.add(frame);
+      building_s += seconds(Clock::now() - read);
+      if (frames_read % skinning_step == 0) {
+        const auto check = Clock::now();
+        result.skinning.add(avatar, trace_frame, frame, detectors.first());
+        checking_s += seconds(Clock::now() - check);
+      }
+      ++frames_read;
+    }
   };
-  while (next_frame()) {
-    const auto start = std::chrono::steady_clock::now();
-    const Frame& frame = builder.next(trace_frame);
-    const DetectorWork work = detector.detect(frame, row);
-    result.detection_s += seconds_since(start);
-
-    result.frames_skipped += work.frames_skipped;
-    result.pairs_tested += work.pairs_tested;
-    result.pairs_captured += work.pairs_captured;
-    result.pairs_meeting += work.pairs_meeting;
-    result.unsure += work.unsure;
+  const auto take = [&](const Frame& frame, const ContactRow& row, const DetectorWork& work) {
+    result.work += work;
     for (const Contact& contact : row) {
       if (!contact.hit()) continue;
       ++result.contacts;
@@ -104,19 +129,41 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
     if (outputs.contacts != nullptr) outputs.contacts->write(frame, row, ids);
     if (outputs.textures != nullptr) outputs.textures->add(frame, row);
     if (outputs.timeline != nullptr) outputs.timeline->write(law.next(frame.time_s, row));
-    if (expectation.detector != nullptr) {
-      expectation.detector->detect(frame, expected);
-      result.comparison->add(row, expected);
-    } else if (expectation.contacts != nullptr) {
-      result.comparison->add(row, recorded.row_of(frame.index));
-    }
-    if (result.frames % skinning_step == 0) result.skinning.add(avatar, trace_frame, frame, detector);
+    if (expectation.contacts != nullptr) result.comparison->add(row, recorded.row_of(frame.index));
     ++result.frames;
-    if (!progress(static_cast<double>(result.frames) / static_cast<double>(frame_count))) {
-      result.interrupted = true;
-      break;
+    return progress(static_cast<double>(result.frames) / static_cast<double>(frame_count));
+  };
+
+  trace.rewind();
+  BatchSize size(detectors.threads());
+  FrameBatch batch;
+  FrameBatch next_batch;
+  FrameBatch expected;
+  read_batch(batch, size.now());
+  while (batch.count != 0 && !result.interrupted) {
+    const auto start = Clock::now();
+    const double checked_before_s = checking_s;
+    detectors.start(batch);
+    read_batch(next_batch, size.now());
+    const auto finish = Clock::now();
+    detectors.finish();
+    const auto end = Clock::now();
+    const bool alone = detectors.threads() == 1;
+    const double spent_s = alone ? seconds(end - finish) : seconds(end - start) - (checking_s - checked_before_s);
+    result.detection_s += spent_s;
+    size.took(spent_s);
+    if (expectation.detectors != nullptr) {
+      expected = batch;
+      expectation.detectors->start(expected);
+      expectation.detectors->finish();
     }
+    for (std::size_t i = 0; i < batch.count && !result.interrupted; ++i) {
+      if (expectation.detectors != nullptr) result.comparison->add(batch.rows[i], expected.rows[i]);
+      result.interrupted = !take(batch.frames[i], batch.rows[i], batch.work[i]);
+    }
+    std::swap(batch, next_batch);
   }
+  if (detectors.threads() == 1) result.detection_s += building_s;  // several had it within their time
   if (expectation.contacts != nullptr && !result.interrupted) {
     result.comparison->missing += recorded.strangers();
     result.comparison->expected += recorded.strangers();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/comparison.hpp"
+#include "analysis/detector_team.hpp"
 #include "analysis/skinning_error.hpp"
 #include "detector/contacts_csv.hpp"
 #include "detector/detector.hpp"
@@ -25,18 +26,14 @@ struct ReplayOutputs {
 
 /// What a replay is compared with, at most one of the two.
 struct ReplayExpectation {
-  Detector* detector = nullptr;                            ///< run beside, on the same frames
+  DetectorTeam* detectors = nullptr;                       ///< run beside, on the same frames
   const std::vector<RecordedContact>* contacts = nullptr;  ///< of an earlier run, ascending frames
 };
 
 struct ReplayResult {
   std::uint64_t frames = 0;
-  std::uint64_t frames_skipped = 0;
   std::uint64_t contacts = 0;
-  std::uint64_t unsure = 0;  ///< pairs that the float filter passed on to exact arithmetic
-  std::uint64_t pairs_tested = 0;
-  std::uint64_t pairs_captured = 0;  ///< that `geometry` could not reject on the GPU
-  std::uint64_t pairs_meeting = 0;   ///< those of them that truly meet
+  DetectorWork work;
   std::uint64_t origin_changes = 0;
   std::uint64_t non_finite_frames = 0;
   std::uint64_t non_finite_segments = 0;
@@ -44,15 +41,15 @@ struct ReplayResult {
   std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: on skin that no actuator covers
   std::string texture_hash;
   double reading_s = 0;    ///< decoding the trace
-  double detection_s = 0;  ///< whole round trips, without decoding and writing
+  double detection_s = 0;  ///< whole round trips; decoding is apart, but beside it where there are several threads
   SkinningError skinning;  ///< of a few frames, evenly spread
   std::optional<Comparison> comparison;
   bool interrupted = false;
 };
 
-/// Runs all frames of `trace` through `detector`, whose rows must carry what the outputs need and `kHashedPlanes`.
+/// Runs all frames of `trace` through `detectors`, whose rows must carry what the outputs need and `kHashedPlanes`.
 /// `hold_s` as for `BinaryLaw`. `progress` is told the share done and returns false to stop early.
-ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, Detector& detector,
+ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
                     double hold_s, const ReplayOutputs& outputs, const ReplayExpectation& expectation,
                     const std::function<bool(double)>& progress);
 

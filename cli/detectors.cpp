@@ -36,6 +36,23 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
 
 }  // namespace
 
+void add_detector_and_context(CLI::App& verb, DetectorChoice& choice) {
+  verb.add_option(
+          "--detector", choice.detector,
+          "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts, a geometry shader proves "
+          "misses and the processor decides the rest; cpu: exact contacts, without OpenGL; exact: the same by "
+          "slow rational arithmetic, to check with; embree: Embree 3, robust and refitted each frame, its "
+          "fastest configuration; embree_default: the same without its robust flag; auto: the cheapest exact "
+          "one")
+      ->group(kDetectorGroup)
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "paper", "geometry", "cpu", "exact", "embree", "embree_default"}));
+  verb.add_option("--context", choice.context, "OpenGL context that paper and geometry run in")
+      ->group(kDetectorGroup)
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
+}
+
 void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
   add_common_detector_options(verb, choice);
   verb.add_option("--skip", choice.skip, kSkipHelp)

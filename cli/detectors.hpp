@@ -33,6 +33,9 @@ struct DetectorChoice {
 /// The group of help that they stand in, with --detector and --context.
 inline constexpr const char* kDetectorGroup = "Detector";
 
+/// Adds --detector and --context, for a verb that runs one detector.
+void add_detector_and_context(CLI::App& verb, DetectorChoice& choice);
+
 /// Adds --device, --method, --skip and --surface, which mean the same in every verb.
 void add_detector_options(CLI::App& verb, DetectorChoice& choice);
 

@@ -52,6 +52,8 @@ int run(int argc, char** argv) {
   invocation.argv.assign(argv, argv + argc);
   add_record(program, invocation);
   add_replay(program, invocation);
+  add_stream(program, invocation);
+  add_vest(program, invocation);
   add_sweep(program, invocation);
   add_growth(program, invocation);
   add_query(program, invocation);

@@ -25,6 +25,7 @@ struct ReplayOptions {
   CommonOptions common;
   DetectorChoice choice;
   std::string trace;
+  std::size_t threads = 1;
   double hold_ms = 60;
   std::string contacts;
   std::string textures;
@@ -65,12 +66,12 @@ PlaneSet parse_planes(const std::string& text) {
 
 /// What --verify names: another detector, or a file that an earlier replay wrote.
 struct Verification {
-  std::unique_ptr<Detector> detector;
+  std::unique_ptr<DetectorTeam> detectors;
   std::vector<RecordedContact> contacts;
   std::string texture_hash;
   bool from_csv = false;
 
-  ReplayExpectation expectation() const { return {detector.get(), from_csv ? &contacts : nullptr}; }
+  ReplayExpectation expectation() const { return {detectors.get(), from_csv ? &contacts : nullptr}; }
 };
 
 Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector) {
@@ -80,8 +81,10 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
     if (options.verify == detector.name())
       throw UsageError("--verify", fmt::format("'{}' would be compared with itself", options.verify),
                        "name the other detector, or a file");
-    verification.detector =
-        make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, kHashedPlanes);
+    verification.detectors = std::make_unique<DetectorTeam>(options.threads, [&] {
+      return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map,
+                           kHashedPlanes);
+    });
   } else if (options.verify.ends_with(".csv")) {
     verification.contacts = read_contacts_csv(options.verify);
     verification.from_csv = true;
@@ -123,42 +126,47 @@ bool captures(const Detector& detector) {
   return std::string_view(detector.name()) == "geometry";
 }
 
-/// What --detector auto picks for this trace; nothing where a detector was named.
-std::optional<PickedPath> picked_path(const ReplayOptions& options, const OpenTrace& trace, std::size_t colliders) {
-  if (options.choice.detector != "auto") return std::nullopt;
-  return pick_path(trace.avatar.triangles.size(), colliders, options.choice.skip_kind());
-}
+/// A trace under replay, and what runs it.
+struct Run {
+  const ReplayOptions& options;
+  const OpenTrace& trace;
+  std::size_t colliders;
+  std::optional<PickedPath> picked;  ///< by --detector auto
+  const Detector& detector;
+};
 
 std::string describe(const PickedPath& picked) {
   return fmt::format("{}, skip {}", picked.detector, picked.skip == Skip::kOn ? "on" : "off");
 }
 
-nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& options, const OpenTrace& trace,
-                               std::size_t colliders, const Detector& detector, const Invocation& invocation) {
+nlohmann::ordered_json to_json(const ReplayResult& result, const Run& run, const Invocation& invocation) {
+  const ReplayOptions& options = run.options;
+  const OpenTrace& trace = run.trace;
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.trace;
-  json["detector"] = detector.name();
-  if (const auto picked = picked_path(options, trace, colliders)) {
-    json["picked"] = describe(*picked);
-    json["why"] = picked->why;
+  json["detector"] = run.detector.name();
+  if (run.picked) {
+    json["picked"] = describe(*run.picked);
+    json["why"] = run.picked->why;
   }
+  json["threads"] = options.threads;
   json["method"] = options.choice.method;
   json["skip"] = options.choice.skip;
   json["surface"] = options.choice.surface;
   json["hold_ms"] = options.hold_ms;
-  json["gl"] = vestige::to_json(detector.gl_info());
+  json["gl"] = vestige::to_json(run.detector.gl_info());
   json["avatar"] = vestige::to_json(trace.avatar);
-  if (options.choice.surface == "mapped") json["triangles_left_out"] = detector.triangles_left_out();
+  if (options.choice.surface == "mapped") json["triangles_left_out"] = run.detector.triangles_left_out();
   json["frames"] = result.frames;
-  json["frames_skipped"] = result.frames_skipped;
-  json["colliders"] = colliders;
+  json["frames_skipped"] = result.work.frames_skipped;
+  json["colliders"] = run.colliders;
   json["contacts"] = result.contacts;
-  json["unsure"] = result.unsure;
+  json["unsure"] = result.work.unsure;
   json["texture_hash"] = result.texture_hash;
-  json["pairs_tested"] = result.pairs_tested;
-  if (captures(detector)) {
-    json["pairs_captured"] = result.pairs_captured;
-    json["pairs_meeting"] = result.pairs_meeting;
+  json["pairs_tested"] = result.work.pairs_tested;
+  if (captures(run.detector)) {
+    json["pairs_captured"] = result.work.pairs_captured;
+    json["pairs_meeting"] = result.work.pairs_meeting;
   }
   json["origin_changes"] = result.origin_changes;
   json["non_finite_frames"] = result.non_finite_frames;
@@ -177,28 +185,28 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayOptions& 
   return json;
 }
 
-std::string summary(const ReplayResult& result, const ReplayOptions& options, const OpenTrace& trace,
-                    std::size_t colliders, const Detector& detector) {
+std::string summary(const ReplayResult& result, const Run& run) {
+  const Detector& detector = run.detector;
+  const ActuatorMap& map = run.trace.map;
   const GlInfo gl = detector.gl_info();
   const std::string where = gl.context.empty() ? "" : fmt::format(" on {} ({})", gl.context, gl.renderer);
   std::string text =
       fmt::format("{}{}: {} frames, {} colliders, {} contacts, {:.0f} Hz\n", detector.name(), where, result.frames,
-                  colliders, result.contacts, static_cast<double>(result.frames) / result.detection_s);
-  if (const auto picked = picked_path(options, trace, colliders))
-    text += fmt::format("picked {} ({})\n", describe(*picked), picked->why);
-  for (std::size_t i = 0; i < trace.map.actuator_count; ++i)
-    text += fmt::format("  {:<24} {:>8} contacts\n", trace.map.names[i], result.contacts_of_actuator[i + 1]);
+                  run.colliders, result.contacts, static_cast<double>(result.frames) / result.detection_s);
+  if (run.picked) text += fmt::format("picked {} ({})\n", describe(*run.picked), run.picked->why);
+  for (std::size_t i = 0; i < map.actuator_count; ++i)
+    text += fmt::format("  {:<24} {:>8} contacts\n", map.names[i], result.contacts_of_actuator[i + 1]);
   text += fmt::format("  {:<24} {:>8} contacts\n", "(no actuator)", result.contacts_of_actuator[0]);
   if (detector.triangles_left_out() != 0)
     text += fmt::format("left out: {} of {} triangles, which no actuator covers\n", detector.triangles_left_out(),
-                        trace.avatar.triangles.size());
+                        run.trace.avatar.triangles.size());
   text += fmt::format(
       "skinning: at most {:.2g} of the avatar's height from the double reference; {} of {} vertices "
       "have the bits of the CPU's\n",
       result.skinning.largest_m / result.skinning.height_m, result.skinning.identical, result.skinning.vertices);
   if (captures(detector))
-    text += fmt::format("captured {} pairs of {}, {} of them contact\n", result.pairs_captured, result.pairs_tested,
-                        result.pairs_meeting);
+    text += fmt::format("captured {} pairs of {}, {} of them contact\n", result.work.pairs_captured,
+                        result.work.pairs_tested, result.work.pairs_meeting);
   return text + fmt::format("texture_hash {}\n", result.texture_hash);
 }
 
@@ -230,10 +238,15 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   PlaneSet planes = kHashedPlanes;
   if (!options.textures.empty()) planes = planes | texture_planes;
   if (!options.contacts.empty()) planes = PlaneSet::all();
-  const auto picked = picked_path(options, trace, collider_ids.size());
-  const auto detector = make_detector(picked ? picked->detector : options.choice.detector, options.choice.context,
-                                      options.choice, trace.avatar, trace.map, planes);
-  const Verification verification = load_verification(options, trace, *detector);
+  std::optional<PickedPath> picked;
+  if (options.choice.detector == "auto")
+    picked = pick_path(trace.avatar.triangles.size(), collider_ids.size(), options.choice.skip_kind());
+  DetectorTeam detectors(options.threads, [&] {
+    return make_detector(picked ? picked->detector : options.choice.detector, options.choice.context, options.choice,
+                         trace.avatar, trace.map, planes);
+  });
+  const Run run = {options, trace, collider_ids.size(), picked, detectors.first()};
+  const Verification verification = load_verification(options, trace, run.detector);
 
   catch_interrupts();  // before the first temporary file
   std::optional<ContactsCsv> contacts;
@@ -246,8 +259,8 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (!options.textures.empty()) {
     texture_file.emplace(options.textures, options.common.overwrite());
     std::map<std::string, std::string> attributes = {
-        {"vestige_trace", options.trace}, {"vestige_detector", detector->name()}, {"vestige_commit", commit()}};
-    const GlInfo gl = detector->gl_info();
+        {"vestige_trace", options.trace}, {"vestige_detector", run.detector.name()}, {"vestige_commit", commit()}};
+    const GlInfo gl = run.detector.gl_info();
     if (!gl.context.empty()) attributes.emplace("vestige_gl_renderer", gl.renderer);
     textures.emplace(texture_planes, collider_ids.size(), std::move(attributes));
   }
@@ -255,7 +268,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   ReplayResult result;
   {
     Progress progress("Replaying", verbosity);
-    result = replay(trace.reader, trace.avatar, trace.map.actuator_count, *detector, options.hold_ms / 1e3,
+    result = replay(trace.reader, trace.avatar, trace.map.actuator_count, detectors, options.hold_ms / 1e3,
                     {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline ? &*timeline : nullptr},
                     verification.expectation(), [&](double share) { return progress.update(share); });
   }
@@ -271,9 +284,8 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
              options.trace, result.non_finite_frames, result.non_finite_segments, *result.first_non_finite),
          verbosity);
 
-  print_summary(summary(result, options, trace, collider_ids.size(), *detector), outputs, options.common);
-  write_json(options.common.json, to_json(result, options, trace, collider_ids.size(), *detector, invocation),
-             options.common);
+  print_summary(summary(result, run), outputs, options.common);
+  write_json(options.common.json, to_json(result, run, invocation), options.common);
   invocation.exit_code = report_verification(options, result, verification, outputs);
   int damage = report_damage(trace.reader, options.trace, verbosity);
   if (result.interrupted || result.non_finite_frames + result.non_finite_segments != 0) damage = kDataLost;
@@ -288,20 +300,13 @@ void add_replay(CLI::App& program, Invocation& invocation) {
                             "  vestige replay man.mcap --contacts contacts.csv --timeline timeline.csv\n"
                             "  vestige replay man.mcap --detector paper --textures textures.exr --json replay.json\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
-  verb->add_option(
-          "--detector", options->choice.detector,
-          "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts, a geometry shader "
-          "proves misses and the processor decides the rest; cpu: exact contacts, without OpenGL; exact: the "
-          "same by slow rational arithmetic, to check with; embree: Embree 3, robust and refitted each frame, "
-          "its fastest configuration; embree_default: the same without its robust flag; auto: the cheapest exact one")
-      ->group(kDetectorGroup)
-      ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "paper", "geometry", "cpu", "exact", "embree", "embree_default"}));
-  verb->add_option("--context", options->choice.context, "OpenGL context that paper and geometry run in")
-      ->group(kDetectorGroup)
-      ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
+  add_detector_and_context(*verb, options->choice);
   add_detector_options(*verb, options->choice);
+  verb->add_option("--threads", options->threads,
+                   "Detect on this many processor threads, frame by frame; the same result")
+      ->group(kDetectorGroup)
+      ->capture_default_str()
+      ->check(CLI::Range(1, 256));
   const auto add_result = [&](const char* name, auto& value, const char* description) {
     return verb->add_option(name, value, description)->group("Results");
   };

@@ -39,6 +39,17 @@ struct DetectorWork {
   std::uint64_t meshlets_skinned = 0;  ///< 0 where the whole mesh was
   std::uint64_t frames_skipped = 0;    ///< 1 where bounds alone told that nothing can meet
   std::uint64_t unsure = 0;            ///< pairs that no filter could tell: exact arithmetic decided
+
+  DetectorWork& operator+=(const DetectorWork& other) {
+    pairs_tested += other.pairs_tested;
+    triangles_tested += other.triangles_tested;
+    pairs_captured += other.pairs_captured;
+    pairs_meeting += other.pairs_meeting;
+    meshlets_skinned += other.meshlets_skinned;
+    frames_skipped += other.frames_skipped;
+    unsure += other.unsure;
+    return *this;
+  }
 };
 
 /// Where a detector runs, as the driver says it. Empty for a detector without GL.

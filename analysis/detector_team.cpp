@@ -1,0 +1,75 @@
+#include "analysis/detector_team.hpp"
+
+#include <utility>
+
+namespace vestige {
+
+void FrameBatch::add(const Frame& frame) {
+  if (count == frames.size()) {
+    frames.emplace_back();
+    rows.emplace_back();
+    work.emplace_back();
+  }
+  frames[count] = frame;
+  ++count;
+}
+
+DetectorTeam::DetectorTeam(std::size_t threads, Make make)
+    : make_(std::move(make)),
+      first_(make_()),
+      begin_(static_cast<std::ptrdiff_t>(threads)),
+      end_(static_cast<std::ptrdiff_t>(threads)) {
+  helpers_.reserve(threads - 1);
+  for (std::size_t i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
+}
+
+DetectorTeam::~DetectorTeam() {
+  if (batch_ != nullptr) {  // something failed between start and finish
+    next_ = batch_->count;
+    end_.arrive_and_wait();
+  }
+  batch_ = nullptr;
+  begin_.arrive_and_wait();
+  for (std::thread& helper : helpers_) helper.join();
+}
+
+void DetectorTeam::start(FrameBatch& batch) {
+  batch_ = &batch;
+  next_ = 0;
+  begin_.arrive_and_wait();
+}
+
+void DetectorTeam::finish() {
+  work_through(*first_);
+  end_.arrive_and_wait();
+  batch_ = nullptr;
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void DetectorTeam::help() {
+  std::unique_ptr<Detector> detector;
+  for (begin_.arrive_and_wait(); batch_ != nullptr; begin_.arrive_and_wait()) {
+    try {
+      if (detector == nullptr) detector = make_();
+      work_through(*detector);
+    } catch (...) {
+      note_failure();
+    }
+    end_.arrive_and_wait();
+  }
+}
+
+void DetectorTeam::work_through(Detector& detector) try {
+  for (std::size_t i = next_++; i < batch_->count; i = next_++)
+    batch_->work[i] = detector.detect(batch_->frames[i], batch_->rows[i]);
+} catch (...) {
+  note_failure();
+}
+
+void DetectorTeam::note_failure() {
+  const std::lock_guard lock(failure_mutex_);
+  next_ = batch_->count;  // nobody need go on
+  if (!failure_) failure_ = std::current_exception();
+}
+
+}  // namespace vestige

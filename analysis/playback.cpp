@@ -1,0 +1,124 @@
+#include "analysis/playback.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <thread>
+
+#include "detector/frame.hpp"
+
+namespace vestige {
+
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = PlaybackCalls::Clock;
+
+constexpr auto kSlice = 50ms;  ///< of waiting, so that an interrupt is answered
+constexpr double kGap_s = 0.2;
+
+double seconds(Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+Clock::duration to_duration(double duration_s) {
+  // Beyond a century the clock's count would overflow.
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(std::min(duration_s, 3e9)));
+}
+
+/// One run through the trace.
+class Run {
+ public:
+  /// `offset_s`: added to the trace's times in what is handed on.
+  Run(double rate, const PlaybackCalls& calls, double first_s, double offset_s, Clock::time_point begin,
+      std::size_t columns)
+      : rate_(rate),
+        calls_(calls),
+        law_(calls.make_law()),
+        first_s_(first_s),
+        last_s_(first_s),
+        offset_s_(offset_s),
+        begin_(begin),
+        nothing_(columns) {}
+
+  Clock::time_point due(double time_s) const { return begin_ + to_duration((time_s - first_s_) / rate_); }
+
+  /// False: the playback is to end.
+  bool wait_for(double time_s, double share) {
+    const auto until = due(time_s);
+    for (auto now = Clock::now(); now < until; now = Clock::now()) {
+      if (!calls_.go_on(share)) return false;
+      const double now_s = first_s_ + seconds(now - begin_) * rate_;
+      if (now_s > last_s_ + kGap_s && now_s < time_s) calls_.take(law_(now_s + offset_s_, nothing_), now);
+      std::this_thread::sleep_until(std::min(until, now + kSlice));
+    }
+    return calls_.go_on(share);
+  }
+
+  void take(double time_s, const ContactRow& row) {
+    ++frames_;
+    last_s_ = time_s;
+    calls_.take(law_(time_s + offset_s_, row), due(time_s));
+  }
+
+  std::uint64_t frames() const { return frames_; }
+  /// From the first frame to the first of the next run: the step between runs is as long as the others are.
+  double length_s() const {
+    const double length_s = last_s_ - first_s_;
+    return frames_ > 1 ? length_s + length_s / static_cast<double>(frames_ - 1) : kGap_s;
+  }
+
+ private:
+  double rate_;
+  const PlaybackCalls& calls_;
+  PlaybackCalls::Law law_;
+  double first_s_;
+  double last_s_;
+  double offset_s_;
+  Clock::time_point begin_;
+  ContactRow nothing_;
+  std::uint64_t frames_ = 0;
+};
+
+}  // namespace
+
+PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector, const PlaybackOptions& options,
+                    const PlaybackCalls& calls) {
+  const std::vector<std::uint32_t>& ids = trace.collider_ids();
+  const auto frame_count = static_cast<double>(trace.frame_count());
+  PlaybackResult result;
+  const auto start = Clock::now();
+  auto begin = start;
+  double offset_s = 0;
+  TraceFrame trace_frame;
+  ContactRow row;
+  bool going = frame_count > 0;
+  while (going) {
+    trace.rewind();
+    FrameBuilder builder(avatar, ids, detector.method());
+    std::optional<Run> run;
+    while (going && trace.next(trace_frame)) {
+      const Frame& frame = builder.next(trace_frame);
+      if (!run) {
+        run.emplace(options.rate, calls, frame.time_s, offset_s, begin, ids.size());
+      } else if (Clock::now() > run->due(frame.time_s)) {
+        ++result.missed_deadlines;
+      }
+      going = run->wait_for(frame.time_s, static_cast<double>(run->frames()) / frame_count);
+      if (!going) break;
+      detector.detect(frame, row);
+      run->take(frame.time_s, row);
+      ++result.frames;
+      result.contacts += static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
+    }
+    if (going) ++result.loops;
+    going = going && options.loop && run;
+    if (!going) break;
+    begin += to_duration(run->length_s() / options.rate);
+    offset_s += run->length_s();
+  }
+  result.duration_s = seconds(Clock::now() - start);
+  return result;
+}
+
+}  // namespace vestige

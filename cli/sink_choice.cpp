@@ -1,0 +1,166 @@
+#include "cli/sink_choice.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <utility>
+
+#include "traces/error.hpp"
+#include "traces/output_file.hpp"
+#include "transport/frame_file_sink.hpp"
+#include "transport/osc_sink.hpp"
+#include "transport/serial_sink.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+constexpr const char* kVestGroup = "Vest";
+constexpr double kBitsOnTheLine = 10;  // of a byte, with start and stop bit
+
+std::uint64_t parse_address(const std::string& text) {
+  std::uint64_t address = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), address, 16);
+  if (failure != std::errc() || end != text.data() + text.size())
+    throw UsageError("--xbee-address", fmt::format("'{}' is no address", text),
+                     "give up to 16 hexadecimal digits, as 0013A20041AABBCC; FFFF is every radio that listens");
+  return address;
+}
+
+std::optional<XbeeOptions> xbee_options(const SinkChoice& choice) {
+  if (!choice.xbee_api) return std::nullopt;
+  return XbeeOptions{choice.xbee_request == "tx16" ? XbeeRequest::kTx16 : XbeeRequest::kTransmit,
+                     choice.xbee_escaped ? XbeeEscaping::kEscaped : XbeeEscaping::kNone,
+                     parse_address(choice.xbee_address)};
+}
+
+void refuse_serial_flags(const CLI::App& verb, const SinkChoice& choice) {
+  if (!choice.is_osc() && !choice.osc_address.empty())
+    throw UsageError("--osc-address", "says nothing where frames do not go out as OSC",
+                     "send to osc://HOST:PORT, or leave it out");
+  if (!choice.is_osc() && !choice.is_file()) return;
+  for (const char* flag : {"--baud", "--xbee-api"})
+    if (verb.count(flag) != 0)
+      throw UsageError(flag, fmt::format("says nothing of '{}', which is no serial port", choice.port), "leave it out");
+}
+
+}  // namespace
+
+std::string SinkChoice::output_path() const {
+  if (port == "-") return port;
+  return port.starts_with(kFilePrefix) ? port.substr(kFilePrefix.size()) : "";
+}
+
+void add_sink_options(CLI::App& verb, SinkChoice& choice) {
+  choice.baud = kDefaultBaud;
+  const auto add = [&](const char* name, auto& value, const char* description) {
+    return verb.add_option(name, value, description)->group(kVestGroup);
+  };
+  add("--port", choice.port,
+      "Where frames go: a serial device (an XBee, or the board's USB), OSC over UDP, a file, or standard output")
+      ->required()
+      ->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
+  add("--baud", choice.baud, "Of the serial line, as the board was built for")->capture_default_str()->type_name("N");
+  add("--ttl", choice.ttl_ms, "The board switches all off when it hears nothing newer for so long, in ms")
+      ->capture_default_str()
+      ->check(CLI::Range(50, 2550))
+      ->type_name("MS");
+  add("--levels", choice.levels,
+      "duty: of vibrators; pressure: of pneumatic cells, the share of 1 m/s at which something is pushed into the skin")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"duty", "pressure"}));
+  CLI::Option* xbee =
+      verb.add_flag("--xbee-api", choice.xbee_api, "The XBee at this port is in API mode (its setting AP is not 0)")
+          ->group(kVestGroup);
+  add("--xbee-request", choice.xbee_request,
+      "transmit: frame 0x10, 64-bit addresses; tx16: frame 0x01, 16-bit addresses, for the first series")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"transmit", "tx16"}))
+      ->needs(xbee);
+  add("--xbee-address", choice.xbee_address, "The radio at the vest, in hexadecimal; FFFF: all that listen")
+      ->capture_default_str()
+      ->type_name("HEX")
+      ->needs(xbee);
+  verb.add_flag("--xbee-escaped", choice.xbee_escaped, "The module's setting AP is 2")->group(kVestGroup)->needs(xbee);
+  add("--osc-address", choice.osc_address,
+      "Template of an actuator's OSC address: {n} is its number from 1, {i} from 0, {name} its name; bHaptics' bridge "
+      "takes /avatar/parameters/bOSC/v2/VestFront/{i}/self [default: /avatar/parameters/vestige_{n}]")
+      ->type_name("TEMPLATE");
+  verb.final_callback([&verb, &choice] { refuse_serial_flags(verb, choice); });
+}
+
+OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names,
+                   const CommonOptions& options)
+    : choice_(choice) {
+  const Verbosity verbosity = options.verbosity();
+  if (choice.is_osc()) {
+    OscOptions osc = parse_osc_url(choice.port);
+    if (!choice.osc_address.empty()) osc.address_template = choice.osc_address;
+    sink_ = std::make_unique<OscSink>(osc, actuator_names);
+    return;
+  }
+  const std::vector<std::uint8_t> all_off(actuator_names.size());
+  frame_bytes_ = encode_state(choice.quantity(), all_off, 0, 1).size();
+  if (choice.is_file()) {
+    const std::string path = choice.output_path();
+    if (path == "-") refuse_terminal("--port -");
+    auto file = std::make_unique<FrameFileSink>(path, options.overwrite(), choice.quantity(), choice.ttl_ms);
+    file_ = file.get();
+    sink_ = std::move(file);
+    return;
+  }
+  SerialSinkOptions serial;
+  serial.path = choice.port;
+  serial.baud = choice.baud;
+  serial.ttl_ms = choice.ttl_ms;
+  serial.quantity = choice.quantity();
+  serial.xbee = xbee_options(choice);
+  auto sink = std::make_unique<SerialSink>(serial);
+  greeting_ = sink->greet();
+  if (!greeting_) {
+    warn(fmt::format("{}: no board answers; frames are sent all the same\n  Is it on, is the baud {}, is the vest's "
+                     "own program on it?",
+                     choice.port, choice.baud),
+         verbosity);
+  } else if (greeting_->actuators < actuator_names.size()) {
+    warn(fmt::format("{}: the board drives {} actuators; those beyond, up to {}, will not be felt", choice.port,
+                     greeting_->actuators, actuator_names.size()),
+         verbosity);
+  }
+  if (serial.xbee) frame_bytes_ = xbee_wrap(*serial.xbee, 1, encode_state(choice.quantity(), all_off, 0, 1)).size();
+  sink_ = std::move(sink);
+}
+
+OpenSink::~OpenSink() = default;
+
+void OpenSink::commit() {
+  if (file_ != nullptr) file_->commit();
+}
+
+double OpenSink::line_time_s() const {
+  return static_cast<double>(frame_bytes_) * kBitsOnTheLine / static_cast<double>(choice_.baud);
+}
+
+nlohmann::ordered_json OpenSink::link_json() const {
+  nlohmann::ordered_json json = {{"port", choice_.port}};
+  if (choice_.is_osc()) return json;
+  json["frame_bytes"] = frame_bytes_;
+  if (choice_.is_file()) return json;
+  json["baud"] = choice_.baud;
+  json["line_time_us"] = line_time_s() * 1e6;
+  json["ttl_ms"] = choice_.ttl_ms;
+  json["xbee_api"] = choice_.xbee_api;
+  if (greeting_) json["board"] = {{"version", greeting_->version}, {"actuators", greeting_->actuators}};
+  return json;
+}
+
+std::string OpenSink::describe_link(std::uint64_t bytes) const {
+  if (choice_.is_osc() || choice_.is_file()) return fmt::format("{}: {} bytes\n", sink_->name(), bytes);
+  const std::string board =
+      greeting_ ? fmt::format("board version {}, {} actuators", greeting_->version, greeting_->actuators)
+                : "no board answered";
+  return fmt::format("{}: {}; {} bytes at {} baud, a frame of {} bytes takes {:.2f} ms on the line\n", choice_.port,
+                     board, bytes, choice_.baud, frame_bytes_, line_time_s() * 1e3);
+}
+
+}  // namespace vestige::cli

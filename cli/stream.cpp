@@ -1,0 +1,259 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "analysis/playback.hpp"
+#include "analysis/provenance.hpp"
+#include "cli/detectors.hpp"
+#include "cli/help/validators.hpp"
+#include "cli/scene.hpp"
+#include "cli/sink_choice.hpp"
+#include "cli/verbs.hpp"
+#include "detector/actuator_map_watch.hpp"
+#include "detector/intensity.hpp"
+#include "detector/path_choice.hpp"
+#include "traces/error.hpp"
+#include "transport/sender.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct StreamOptions {
+  CommonOptions common;
+  DetectorChoice choice;
+  SinkChoice sink;
+  PlaybackOptions playback;
+  std::string trace;
+  std::string map;
+  double hold_ms = 60;
+  std::string log;
+};
+
+/// Writes what became of each changed state: `time_s,state,written_us,actuator_1,…`.
+class StreamLog {
+ public:
+  StreamLog(const std::string& path, Overwrite overwrite, std::size_t actuator_count) : file_(path, overwrite) {
+    std::string header = "time_s,state,written_us";
+    for (std::size_t i = 1; i <= actuator_count; ++i) header += fmt::format(",actuator_{}", i);
+    file_.write(header + "\n");
+  }
+
+  void write(const std::vector<SentState>& states) {
+    for (const SentState& state : states) {
+      const bool sent = state.fate == SentState::Fate::kSent;
+      std::string line = fmt::format("{},{},{}", state.frame.time_s, sent ? "sent" : "superseded",
+                                     sent ? fmt::format("{:.1f}", state.written_s * 1e6) : "");
+      for (const std::uint8_t duty : state.frame.duty) line += fmt::format(",{}", duty);
+      file_.write(line + "\n");
+    }
+  }
+
+  void commit() { file_.commit(); }
+
+ private:
+  OutputFile file_;
+};
+
+/// A playback that has ended, and where it went.
+struct Streamed {
+  PlaybackResult playback;
+  SenderStatistics sender;
+  std::uint64_t maps_reloaded = 0;
+};
+
+nlohmann::ordered_json to_json(const LatencyHistogram& latency) {
+  return {{"p50", latency.quantile_us(0.5)},
+          {"p95", latency.quantile_us(0.95)},
+          {"p99", latency.quantile_us(0.99)},
+          {"max", latency.max_us()}};
+}
+
+nlohmann::ordered_json to_json(const Streamed& streamed, const StreamOptions& options, const OpenSink& sink,
+                               const Detector& detector, const Invocation& invocation) {
+  const SenderStatistics& sender = streamed.sender;
+  nlohmann::ordered_json json = provenance(invocation.argv);
+  json["trace"] = options.trace;
+  json["detector"] = detector.name();
+  json["gl"] = vestige::to_json(detector.gl_info());
+  json["frames"] = streamed.playback.frames;
+  json["contacts"] = streamed.playback.contacts;
+  json["loops"] = streamed.playback.loops;
+  json["duration_s"] = streamed.playback.duration_s;
+  json["missed_deadlines"] = streamed.playback.missed_deadlines;
+  json["sent"] = sender.sent;
+  json["changes"] = sender.changes;
+  json["superseded"] = sender.superseded;
+  json["acknowledged"] = sender.acknowledged;
+  json["off_acknowledged"] = sender.off_acknowledged;
+  json["most_unanswered"] = sender.most_unanswered;
+  json["fail_safes"] = sender.fail_safes;
+  json["overruns"] = sender.overruns;
+  json["receive_errors"] = sender.receive_errors;
+  json["links_lost"] = sender.links_lost;
+  json["maps_reloaded"] = streamed.maps_reloaded;
+  json["floor_us"] = SenderOptions().floor.count();
+  json["latency_us"] = {{"written", to_json(sender.written)}, {"acknowledged", to_json(sender.acknowledged_after)}};
+  json["link"] = sink.link_json();
+  json["link"]["bytes"] = sender.bytes;
+  return json;
+}
+
+std::string describe(const LatencyHistogram& latency) {
+  return fmt::format("p50 {:.2f}, p95 {:.2f}, p99 {:.2f}, max {:.2f} ms", latency.quantile_us(0.5) / 1e3,
+                     latency.quantile_us(0.95) / 1e3, latency.quantile_us(0.99) / 1e3, latency.max_us() / 1e3);
+}
+
+std::string summary(const Streamed& streamed, const OpenSink& sink) {
+  const PlaybackResult& playback = streamed.playback;
+  const SenderStatistics& sender = streamed.sender;
+  std::string text = fmt::format("{} frames in {:.2f} s, {} contacts, {} deadlines missed\n", playback.frames,
+                                 playback.duration_s, playback.contacts, playback.missed_deadlines);
+  text += fmt::format("sent {} frames, {} of them changes; {} changes superseded by newer ones", sender.sent,
+                      sender.changes, sender.superseded);
+  text += sink.sink().acknowledges() ? fmt::format("; {} acknowledged\n", sender.acknowledged) : "\n";
+  if (sender.written.count() != 0) text += fmt::format("contact to last byte written: {}\n", describe(sender.written));
+  if (sender.acknowledged_after.count() != 0)
+    text += fmt::format("contact to acknowledgement:   {}\n", describe(sender.acknowledged_after));
+  return text + sink.describe_link(sender.bytes);
+}
+
+/// What went wrong on the way, to standard error; returns the exit code.
+int report_losses(const Streamed& streamed, const OpenSink& sink, Verbosity verbosity) {
+  const SenderStatistics& sender = streamed.sender;
+  const std::string name = sink.sink().name();
+  if (sender.receive_errors + sender.overruns != 0)
+    warn(fmt::format("{}: the board counted {} damaged frames and {} times lost bytes: a loose wire, or another baud?",
+                     name, sender.receive_errors, sender.overruns),
+         verbosity);
+  if (sender.fail_safes > sender.links_lost + 1)  // the first answer may tell of the time before
+    warn(fmt::format("{}: the board switched itself off {} times, since frames came too late", name,
+                     sender.fail_safes - 1),
+         verbosity);
+  if (!sink.sink().acknowledges() || sender.acknowledged == sender.sent)
+    return sender.links_lost == 0 ? kDone : kDataLost;
+  warn(fmt::format("{}: {} of {} frames were not acknowledged", name, sender.sent - sender.acknowledged, sender.sent),
+       verbosity);
+  if (!sender.off_acknowledged)
+    warn(fmt::format("{}: nothing confirms that the last frame switched everything off; the board's own time-out "
+                     "does, if it has one",
+                     name),
+         verbosity);
+  return kDataLost;
+}
+
+PlaybackCalls::Law make_law(const SinkChoice& sink, std::size_t actuator_count, double hold_s) {
+  if (sink.quantity() == Quantity::kPressure)
+    return [law = std::make_shared<PressureLaw>(actuator_count, hold_s)](
+               double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
+  return [law = std::make_shared<BinaryLaw>(actuator_count, hold_s)](
+             double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
+}
+
+void run_stream(const StreamOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  const std::vector<std::string> outputs = {options.log, options.common.json, options.sink.output_path()};
+  check_outputs(outputs, {options.trace, options.map}, options.common);
+  if (!options.map.empty() && options.choice.surface == "mapped")
+    throw UsageError("--map", "may change while it is felt, which --surface mapped cannot follow",
+                     "leave one of the two out");
+
+  OpenTrace trace(options.trace, verbosity);
+  if (!options.map.empty()) {
+    const ActuatorMapFiles files = read_actuator_map_files(options.map);
+    trace.map = parse_actuator_map(files.png, files.json, options.map);
+    for (const std::string& warning : trace.map.warnings) warn(warning, verbosity);
+  }
+  const std::size_t actuator_count = trace.map.actuator_count;
+  if (actuator_count == 0)
+    throw Error(options.trace, "holds no actuator map, so that nothing would be felt", "name one: --map FILE.png");
+  const std::size_t colliders = trace.reader.collider_ids().size();
+  const std::string name =
+      options.choice.detector == "auto"
+          ? pick_path(trace.avatar.triangles.size(), colliders, options.choice.skip_kind()).detector
+          : options.choice.detector;
+  const PlaneSet planes =
+      options.sink.quantity() == Quantity::kPressure ? kHashedPlanes | Plane::kPressure : kHashedPlanes;
+  const auto detector = make_detector(name, options.choice.context, options.choice, trace.avatar, trace.map, planes);
+
+  catch_interrupts();
+  std::optional<StreamLog> log;
+  if (!options.log.empty()) log.emplace(options.log, options.common.overwrite(), actuator_count);
+  OpenSink sink(options.sink, trace.map.names, options.common);
+  const auto tell = [verbosity](const std::string& text) { warn(text, verbosity); };
+  std::optional<ActuatorMapWatch> watch;
+  if (!options.map.empty() && options.map != "builtin") watch.emplace(options.map, actuator_count, tell);
+
+  Streamed streamed;
+  {
+    Sender sender(sink.sink(), {.keep_log = log.has_value()}, tell);
+    Progress progress("Streaming", verbosity);
+    PlaybackCalls calls;
+    calls.make_law = [&] { return make_law(options.sink, actuator_count, options.hold_ms / 1e3); };
+    calls.go_on = [&](double share) {
+      if (auto map = watch ? watch->take() : std::nullopt) {
+        trace.map = std::move(*map);
+        ++streamed.maps_reloaded;
+      }
+      return progress.update(share);
+    };
+    calls.take = [&](const ActuatorFrame& frame, Sender::Clock::time_point due) {
+      sender.post(frame, due);
+      if (log) log->write(sender.take_log());
+    };
+    streamed.playback = play(trace.reader, trace.avatar, *detector, options.playback, calls);
+    streamed.sender = sender.finish();
+    if (log) log->write(sender.take_log());
+  }
+  sink.commit();
+  if (log) log->commit();
+  if (streamed.playback.frames == 0 && !interrupted()) throw Error(options.trace, "holds no frame", "record it again");
+
+  print_summary(summary(streamed, sink), outputs, options.common);
+  write_json(options.common.json, to_json(streamed, options, sink, *detector, invocation), options.common);
+  const int losses = report_losses(streamed, sink, verbosity);
+  const int damage = report_damage(trace.reader, options.trace, verbosity);
+  const bool cut_short = interrupted() && !options.playback.loop;
+  if (cut_short) warn(fmt::format("stopped after {} frames", streamed.playback.frames), verbosity);
+  invocation.exit_code = losses != kDone || damage != kDone || cut_short ? kDataLost : kDone;
+}
+
+}  // namespace
+
+void add_stream(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<StreamOptions>();
+  CLI::App* verb = add_verb(program, "stream", "Replay a trace in real time and drive a vest with it",
+                            "  vestige stream man.mcap --port /dev/ttyUSB0\n"
+                            "  vestige stream man.mcap --port osc://127.0.0.1:9000 --loop\n");
+  verb->add_option("TRACE", options->trace, "The trace")->required();
+  add_sink_options(*verb, options->sink);
+  const auto add_playing = [&](const char* name, auto& value, const char* description) {
+    return verb->add_option(name, value, description)->group("Playing");
+  };
+  add_playing("--rate", options->playback.rate, "How fast the trace plays: 2 is twice as fast as it was recorded")
+      ->capture_default_str()
+      ->check(help::between(1e-3, 1e3))
+      ->type_name("X");
+  verb->add_flag("--loop", options->playback.loop, "Begin anew at the trace's end, until Ctrl-C")->group("Playing");
+  add_playing("--map", options->map,
+              "Use this actuator map instead of the trace's, and read it again whenever it changes on disk")
+      ->type_name("builtin|FILE.png");
+  add_playing("--hold", options->hold_ms,
+              "How long a contact keeps its actuator on, in ms: a coin motor cannot answer a single frame")
+      ->capture_default_str()
+      ->check(help::kNotNegative)
+      ->type_name("MS");
+  add_detector_and_context(*verb, options->choice);
+  add_detector_options(*verb, options->choice);
+  verb->add_option("--log", options->log,
+                   "Write every changed state: when it was due, whether it was sent or superseded, after how many "
+                   "microseconds, and its levels")
+      ->group("Results")
+      ->type_name("OUT.csv|-");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_stream(*options, invocation); });
+}
+
+}  // namespace vestige::cli

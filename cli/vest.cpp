@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <memory>
+#include <thread>
+
+#include "analysis/provenance.hpp"
+#include "cli/help/validators.hpp"
+#include "cli/sink_choice.hpp"
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+#include "transport/sender.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+constexpr std::size_t kDefaultActuators = 6;  // the paper's vest
+constexpr std::chrono::milliseconds kPause(300);
+
+struct CheckOptions {
+  CommonOptions common;
+  SinkChoice sink;
+  std::size_t actuators = 0;
+  int level = 255;
+  double on_s = 0.7;
+};
+
+/// Waits; false when the user pressed Ctrl-C.
+bool rest(std::chrono::duration<double> duration) {
+  const auto until = Sender::Clock::now() + duration;
+  while (Sender::Clock::now() < until && !interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return !interrupted();
+}
+
+/// Each actuator in turn; says which while it runs.
+SenderStatistics run_in_turn(const OpenSink& sink, std::size_t actuators, const CheckOptions& options) {
+  Sender sender(sink.sink(), {}, [&](const std::string& text) { warn(text, options.common.verbosity()); });
+  ActuatorFrame frame;
+  bool going = true;
+  for (std::size_t i = 0; i < actuators && going; ++i) {
+    print_summary(fmt::format("actuator {} of {}\n", i + 1, actuators), {options.common.json}, options.common);
+    frame.duty.assign(actuators, 0);
+    frame.duty[i] = static_cast<std::uint8_t>(options.level);
+    sender.post(frame, Sender::Clock::now());
+    going = rest(std::chrono::duration<double>(options.on_s));
+    frame.duty[i] = 0;
+    sender.post(frame, Sender::Clock::now());
+    going = going && rest(kPause);
+  }
+  return sender.finish();
+}
+
+void run_check(const CheckOptions& options, Invocation& invocation) {
+  check_outputs({options.common.json, options.sink.output_path()}, {}, options.common);
+  catch_interrupts();
+  std::size_t actuators = options.actuators == 0 ? kDefaultActuators : options.actuators;
+  OpenSink sink(options.sink, std::vector<std::string>(actuators), options.common);
+  if (options.actuators == 0 && sink.greeting()) actuators = sink.greeting()->actuators;
+  const SenderStatistics statistics = run_in_turn(sink, actuators, options);
+  sink.commit();
+
+  const bool acknowledges = sink.sink().acknowledges();
+  const bool good = !acknowledges || (sink.greeting() && statistics.acknowledged == statistics.sent);
+  std::string verdict = fmt::format("sent {} frames", statistics.sent);
+  if (acknowledges) verdict += fmt::format(", {} acknowledged", statistics.acknowledged);
+  if (!acknowledges) {
+    verdict += "; nothing answers on this way, so only what you felt counts\n";
+  } else if (good) {
+    verdict += fmt::format(", answers after {:.1f} ms (median): the vest hears everything\n",
+                           statistics.acknowledged_after.quantile_us(0.5) / 1e3);
+  } else {
+    verdict += ": THE VEST DOES NOT HEAR EVERYTHING\n";
+  }
+  print_summary(verdict + sink.describe_link(statistics.bytes), {options.common.json}, options.common);
+
+  nlohmann::ordered_json json = provenance(invocation.argv);
+  json["actuators"] = actuators;
+  json["sent"] = statistics.sent;
+  json["acknowledged"] = statistics.acknowledged;
+  json["receive_errors"] = statistics.receive_errors;
+  json["links_lost"] = statistics.links_lost;
+  json["link"] = sink.link_json();
+  json["link"]["bytes"] = statistics.bytes;
+  json["good"] = good;
+  write_json(options.common.json, json, options.common);
+  if (!good) invocation.exit_code = kCheckFailed;
+  if (interrupted()) invocation.exit_code = kDataLost;
+}
+
+void add_check(CLI::App& vest, Invocation& invocation) {
+  auto options = std::make_shared<CheckOptions>();
+  CLI::App* verb = add_verb(vest, "check", "Ask the board who it is, then run each actuator in turn",
+                            "  vestige vest check --port /dev/ttyUSB0\n"
+                            "  vestige vest check --port osc://127.0.0.1:9000 --actuators 40\n");
+  add_sink_options(*verb, options->sink);
+  verb->add_option("--actuators", options->actuators, "How many there are [default: what the board says, else 6]")
+      ->check(help::whole_number(1, kMaxActuators))
+      ->type_name("N");
+  verb->add_option("--level", options->level, "How strongly they run")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 255));
+  verb->add_option("--seconds", options->on_s, "How long each runs")
+      ->capture_default_str()
+      ->check(help::between(0.05, 60))
+      ->type_name("S");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_check(*options, invocation); });
+}
+
+}  // namespace
+
+void add_vest(CLI::App& program, Invocation& invocation) {
+  CLI::App* verb = add_verb(program, "vest", "Try a vest out",
+                            "  vestige vest check --port /dev/ttyUSB0\n"
+                            "  vestige vest check --port /dev/ttyUSB0 --level 128 --seconds 2\n");
+  verb->require_subcommand(1);
+  add_check(*verb, invocation);
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,77 @@
+#include "detector/actuator_map_watch.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <chrono>
+#include <filesystem>
+#include <utility>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::chrono::milliseconds kBetweenLooks(100);
+
+}  // namespace
+
+ActuatorMapWatch::ActuatorMapWatch(std::string file, std::size_t actuator_count,
+                                   std::function<void(const std::string&)> warn)
+    : file_(std::move(file)),
+      actuator_count_(actuator_count),
+      warn_(std::move(warn)),
+      read_stamp_(stamp()),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+ActuatorMapWatch::~ActuatorMapWatch() = default;
+
+std::optional<ActuatorMap> ActuatorMapWatch::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(map_, std::nullopt);
+}
+
+std::string ActuatorMapWatch::stamp() const {
+  std::string text;
+  const auto sidecar = std::filesystem::path(file_).replace_extension(".json").string();
+  for (const std::string& name : {file_, sidecar}) {
+    struct stat status = {};
+    if (::stat(name.c_str(), &status) == 0)
+      text +=
+          fmt::format("{}.{:09} {} {};", status.st_mtim.tv_sec, status.st_mtim.tv_nsec, status.st_size, status.st_ino);
+    else
+      text += "none;";
+  }
+  return text;
+}
+
+void ActuatorMapWatch::run(const std::stop_token& stop) {
+  std::string seen = read_stamp_;
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    stopped_.wait_for(lock, stop, kBetweenLooks, [] { return false; });
+    lock.unlock();
+    const std::string now = stamp();
+    if (now == seen && now != read_stamp_) {
+      read_stamp_ = now;
+      read();
+    }
+    seen = now;
+    lock.lock();
+  }
+}
+
+void ActuatorMapWatch::read() try {
+  const ActuatorMapFiles files = read_actuator_map_files(file_);
+  ActuatorMap map = parse_actuator_map(files.png, files.json, file_);
+  if (map.actuator_count != actuator_count_)
+    throw Error(file_, fmt::format("now names {} actuators, where {} are in use", map.actuator_count, actuator_count_),
+                "start again to use it");
+  const std::lock_guard lock(mutex_);
+  map_ = std::move(map);
+} catch (const Error& error) {
+  warn_(fmt::format("{}\n  The map before it stays in use.", error.what()));
+}
+
+}  // namespace vestige

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+
+#include "detector/actuator_map.hpp"
+
+namespace vestige {
+
+/// Reads an actuator map again when its PNG or its sidecar changes on disk, in a thread of its own, so that a map can
+/// be edited while it is felt (HAVE 2010 §III.B). A file is read once it has been left alone for 0.1 s.
+class ActuatorMapWatch {
+ public:
+  /// `file`: a PNG. Maps with another number of actuators than `actuator_count` are not taken, nor is what cannot be
+  /// read: `warn` is told, in the watch's thread, and the old one stays.
+  ActuatorMapWatch(std::string file, std::size_t actuator_count, std::function<void(const std::string&)> warn);
+  /// Waits for the thread.
+  ~ActuatorMapWatch();
+  ActuatorMapWatch(const ActuatorMapWatch&) = delete;
+  ActuatorMapWatch& operator=(const ActuatorMapWatch&) = delete;
+
+  /// The newest map that has been read since the last call, whole.
+  std::optional<ActuatorMap> take();
+
+ private:
+  /// What tells one state of the two files from another.
+  std::string stamp() const;
+  void run(const std::stop_token& stop);
+  void read();
+
+  std::string file_;
+  std::size_t actuator_count_;
+  std::function<void(const std::string&)> warn_;
+  std::string read_stamp_;
+  std::mutex mutex_;
+  std::condition_variable_any stopped_;
+  std::optional<ActuatorMap> map_;
+  std::jthread thread_;  // last: it uses all of the above
+};
+
+}  // namespace vestige

@@ -1,0 +1,248 @@
+#include "transport/sender.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace vestige {
+namespace {
+
+using namespace std::chrono_literals;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+using Duties = std::vector<std::uint8_t>;
+
+/// What a sink was told: the duties of a state, or nothing at all for "off".
+struct Told {
+  Duties duty;
+  bool off = false;
+  std::uint8_t sequence = 0;
+};
+
+/// A vest at hand: it can be busy, silent, unplugged or broken.
+class PretendedVest : public ActuatorSink {
+ public:
+  template <typename Function>
+  auto locked(Function function) {
+    const std::lock_guard lock(mutex_);
+    return function();
+  }
+  std::string name() const override { return "a vest"; }
+  bool ready() override {
+    return locked([&] { return !busy; });
+  }
+  void send(const ActuatorFrame& frame, std::uint8_t sequence) override { tell({frame.duty, false, sequence}); }
+  void send_off(std::uint8_t sequence) override { tell({{}, true, sequence}); }
+  bool acknowledges() const override { return true; }
+  std::vector<Acknowledgement> receive() override {
+    return locked([&] { return std::exchange(answers, {}); });
+  }
+  bool reconnect() override {
+    return locked([&] {
+      unplugged = tries_until_back-- > 0;
+      return !unplugged;
+    });
+  }
+  std::uint64_t bytes_sent() const override { return 0; }
+
+  std::vector<Told> told() {
+    return locked([&] { return told_; });
+  }
+
+  bool busy = false;
+  bool silent = false;
+  bool unplugged = false;
+  bool broken = false;
+  int tries_until_back = 0;
+  std::uint8_t receive_errors = 0;
+  std::vector<Acknowledgement> answers;
+
+ private:
+  void tell(const Told& told) {
+    locked([&] {
+      if (broken) throw Error("a vest", "burns", "use water");
+      if (unplugged) throw LinkLost("a vest", "is unplugged", "plug it in");
+      told_.push_back(told);
+      if (!silent) answers.push_back({told.sequence, false, false, receive_errors});
+    });
+  }
+
+  std::mutex mutex_;
+  std::vector<Told> told_;
+};
+
+class SenderTest : public ::testing::Test {
+ protected:
+  static SenderOptions options() { return {.floor = 5ms, .refresh = 20ms, .keep_log = true}; }
+
+  void post(Sender& sender, Duties duty) { sender.post({0, std::move(duty)}, Sender::Clock::now()); }
+
+  /// Waits for it as long as a slow machine may take.
+  static void until(const std::function<bool()>& holds) {
+    for (int i = 0; i < 5000 && !holds(); ++i) std::this_thread::sleep_for(1ms);
+    EXPECT_TRUE(holds());
+  }
+
+  /// What the vest was told, repetitions left out; "off" is {}.
+  std::vector<Duties> changes() {
+    std::vector<Duties> changes;
+    for (const Told& told : vest.told()) {
+      const Duties duty = told.off ? Duties() : told.duty;
+      if (changes.empty() || changes.back() != duty) changes.push_back(duty);
+    }
+    return changes;
+  }
+
+  PretendedVest vest;
+  std::mutex events_mutex;
+  std::vector<std::string> events;
+  std::function<void(const std::string&)> note = [this](const std::string& event) {
+    const std::lock_guard lock(events_mutex);
+    events.push_back(event);
+  };
+};
+
+TEST_F(SenderTest, AStateIsSentAndRefreshedUntilTheEndSwitchesItOff) {
+  Sender sender(vest, options(), note);
+  post(sender, {255, 0});
+  until([&] { return vest.told().size() >= 4; });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{255, 0}, Duties{}));
+  EXPECT_EQ(statistics.changes, 1U);
+  EXPECT_EQ(statistics.sent, vest.told().size());
+  EXPECT_EQ(statistics.acknowledged, statistics.sent);
+  EXPECT_EQ(statistics.superseded, 0U);
+  EXPECT_TRUE(statistics.off_acknowledged);
+}
+
+TEST_F(SenderTest, NothingIsSentBeforeThereIsAStateButTheOffAtTheEnd) {
+  Sender sender(vest, options(), note);
+  std::this_thread::sleep_for(60ms);
+  EXPECT_EQ(vest.told().size(), 0U);
+  sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{}));
+}
+
+TEST_F(SenderTest, ABusyLineGetsTheLatestStateAndTheOthersAreReported) {
+  vest.busy = true;
+  Sender sender(vest, options(), note);
+  for (const Duties& duty : {Duties{10}, Duties{20}, Duties{20}, Duties{30}}) post(sender, duty);
+  vest.locked([&] { vest.busy = false; });
+  until([&] { return !vest.told().empty(); });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{30}, Duties{}));
+  EXPECT_EQ(statistics.superseded, 2U);
+  const std::vector<SentState> log = sender.take_log();
+  ASSERT_EQ(log.size(), 3U);
+  EXPECT_EQ(log[0].frame.duty, Duties{10});
+  EXPECT_EQ(log[0].fate, SentState::Fate::kSuperseded);
+  EXPECT_EQ(log[1].fate, SentState::Fate::kSuperseded);
+  EXPECT_EQ(log[2].frame.duty, Duties{30});
+  EXPECT_EQ(log[2].fate, SentState::Fate::kSent);
+}
+
+TEST_F(SenderTest, TheLastStateIsStillSentBeforeTheOff) {
+  Sender sender(vest, options(), note);
+  post(sender, {1});
+  until([&] { return !vest.told().empty(); });
+  post(sender, {2});  // within the floor of the first
+  sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{1}, Duties{2}, Duties{}));
+}
+
+TEST_F(SenderTest, AnOffThatIsNotAnsweredIsRepeatedWithZeros) {
+  vest.silent = true;
+  Sender sender(vest, options(), note);
+  post(sender, {200});
+  until([&] { return !vest.told().empty(); });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}, Duties{0}, Duties{}));
+  EXPECT_FALSE(statistics.off_acknowledged);
+  EXPECT_EQ(statistics.acknowledged, 0U);
+}
+
+TEST_F(SenderTest, AVestThatWasUnpluggedGetsTheLatestStateWhenItIsBack) {
+  Sender sender(vest, options(), note);
+  post(sender, {1});
+  until([&] { return !vest.told().empty(); });
+  vest.locked([&] {
+    vest.unplugged = true;
+    vest.tries_until_back = 2;
+  });
+  until([&] {
+    const std::lock_guard lock(events_mutex);
+    return !events.empty();
+  });
+  post(sender, {2});
+  post(sender, {3});
+  until([&] { return changes().size() == 2; });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{1}, Duties{3}, Duties{}));
+  EXPECT_THAT(events, ElementsAre(HasSubstr("is unplugged"), HasSubstr("the link is back")));
+  EXPECT_EQ(statistics.links_lost, 1U);
+  EXPECT_EQ(statistics.superseded, 1U);
+}
+
+TEST_F(SenderTest, AVestThatStaysUnpluggedEndsWithoutAnError) {
+  vest.unplugged = true;
+  vest.tries_until_back = 1000;
+  Sender sender(vest, options(), note);
+  post(sender, {1});
+  EXPECT_NO_THROW(sender.finish());
+  EXPECT_TRUE(vest.told().empty());
+}
+
+TEST_F(SenderTest, WhatWillNotMendItselfIsThrownWhereStatesAreLeft) {
+  vest.broken = true;
+  Sender sender(vest, options(), note);
+  EXPECT_THROW(
+      for (std::uint8_t duty = 1; duty != 0; ++duty) {
+        post(sender, {duty});
+        std::this_thread::sleep_for(1ms);
+      },
+      Error);
+  EXPECT_THROW(sender.finish(), Error);
+}
+
+TEST_F(SenderTest, DamagedFramesAreCountedAsTheBoardCountsThemModulo256) {
+  vest.receive_errors = 254;
+  Sender sender(vest, options(), note);
+  post(sender, {1});
+  until([&] { return vest.told().size() >= 2; });
+  vest.locked([&] { vest.receive_errors = 3; });
+  const std::size_t before = vest.told().size();
+  until([&] { return vest.told().size() >= before + 2; });
+  EXPECT_EQ(sender.finish().receive_errors, 5U);
+}
+
+TEST(LatencyHistogram, QuantilesLieWithinAHundredthAboveWhatWasMeasured) {
+  LatencyHistogram histogram;
+  EXPECT_EQ(histogram.quantile_us(0.5), 0);
+  for (int ms = 1; ms <= 100; ++ms) histogram.add(ms * 1e-3);
+  EXPECT_EQ(histogram.count(), 100U);
+  EXPECT_GE(histogram.quantile_us(0.5), 50e3);
+  EXPECT_LE(histogram.quantile_us(0.5), 50.5e3);
+  EXPECT_GE(histogram.quantile_us(0.99), 99e3);
+  EXPECT_LE(histogram.quantile_us(0.99), 100e3);
+  EXPECT_EQ(histogram.quantile_us(1), 100e3);
+  EXPECT_EQ(histogram.max_us(), 100e3);
+}
+
+TEST(LatencyHistogram, WhatIsBelowOrBeyondItsClassesStaysInTheOutermost) {
+  LatencyHistogram histogram;
+  histogram.add(0);
+  histogram.add(-1);
+  histogram.add(1e6);
+  EXPECT_LE(histogram.quantile_us(0.5), 1);
+  EXPECT_EQ(histogram.max_us(), 1e12);
+}
+
+}  // namespace
+}  // namespace vestige

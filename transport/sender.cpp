@@ -1,0 +1,247 @@
+#include "transport/sender.hpp"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+#include "traces/output_file.hpp"
+
+namespace vestige {
+
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr auto kIdle = 100ms;
+constexpr auto kLineBusy = 500us;  ///< looked at again after this
+constexpr auto kBetweenTries = 250ms;
+constexpr auto kPatience = 100ms;  ///< for the answers to the last frames
+
+double seconds(Sender::Clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+Sender::Sender(ActuatorSink& sink, const SenderOptions& options, std::function<void(const std::string&)> on_event)
+    : sink_(sink),
+      options_(options),
+      on_event_(std::move(on_event)),
+      wake_descriptor_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
+  if (wake_descriptor_ < 0) throw system_error("event", "could not be made", errno);
+  thread_ = std::thread([this] { run(); });
+}
+
+Sender::~Sender() {
+  try {
+    if (thread_.joinable()) finish();
+  } catch (const std::exception&) {
+    // Whatever is being handled already says more.
+  }
+  ::close(wake_descriptor_);
+}
+
+void Sender::post(const ActuatorFrame& frame, Clock::time_point since) {
+  if (failed_) std::rethrow_exception(failure_);
+  if (posted_before_ == frame.duty) return;
+  posted_before_ = frame.duty;
+  {
+    const std::lock_guard lock(mutex_);
+    if (mailbox_) {
+      ++superseded_;
+      if (options_.keep_log) log_.push_back({mailbox_->frame, SentState::Fate::kSuperseded, 0});
+    }
+    mailbox_ = {frame, since};
+  }
+  wake();
+}
+
+std::vector<SentState> Sender::take_log() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(log_, {});
+}
+
+SenderStatistics Sender::finish() {
+  stopping_ = true;
+  wake();
+  thread_.join();
+  if (failed_) std::rethrow_exception(failure_);
+  statistics_.superseded = superseded_;
+  statistics_.bytes = sink_.bytes_sent();
+  return statistics_;
+}
+
+void Sender::wake() {
+  // Fails only when the counter is full, and then it wakes as well.
+  [[maybe_unused]] const int written = ::eventfd_write(wake_descriptor_, 1);
+}
+
+void Sender::run() {
+  try {
+    loop();
+    switch_off();
+  } catch (...) {
+    failure_ = std::current_exception();
+    failed_ = true;
+  }
+}
+
+void Sender::loop() {
+  while (!stopping_) {
+    const auto now = Clock::now();
+    try {
+      if (!linked_ && now >= next_try_) try_reconnecting();
+      if (may_send(now)) {
+        send_state();
+      } else {
+        wait(next_chance(now));
+      }
+      receive();
+    } catch (const LinkLost& lost) {
+      lose_link(lost);
+    }
+  }
+}
+
+bool Sender::has_changed() {
+  const std::lock_guard lock(mutex_);
+  return mailbox_.has_value();
+}
+
+bool Sender::may_send(Clock::time_point now) {
+  if (!linked_ || now < last_sent_ + options_.floor) return false;
+  const bool due = has_changed() || (has_state_ && now >= last_sent_ + options_.refresh);
+  return due && sink_.ready();
+}
+
+Sender::Clock::time_point Sender::next_chance(Clock::time_point now) {
+  if (!linked_) return next_try_;
+  Clock::time_point due = now + kIdle;
+  if (has_state_) due = last_sent_ + options_.refresh;
+  if (has_changed()) due = last_sent_ + options_.floor;
+  return std::max(due, now + kLineBusy);
+}
+
+void Sender::send_state() {
+  std::optional<Posted> changed;
+  {
+    const std::lock_guard lock(mutex_);
+    changed = std::exchange(mailbox_, std::nullopt);
+  }
+  if (changed) {
+    state_ = changed->frame;
+    has_state_ = true;
+  }
+  sink_.send(state_, next_sequence(changed ? &*changed : nullptr));
+  note_sent();
+  if (!changed) return;
+  const double written_s = seconds(Clock::now() - changed->since);
+  ++statistics_.changes;
+  statistics_.written.add(written_s);
+  if (!options_.keep_log) return;
+  const std::lock_guard lock(mutex_);
+  log_.push_back({state_, SentState::Fate::kSent, written_s});
+}
+
+std::uint8_t Sender::next_sequence(const Posted* changed) {
+  Outstanding& place = outstanding_[++sequence_];
+  if (!place.waiting) ++waiting_;
+  place = {true, changed != nullptr, changed != nullptr ? changed->since : Clock::time_point()};
+  if (sink_.acknowledges())
+    statistics_.most_unanswered = std::max<std::uint64_t>(statistics_.most_unanswered, waiting_);
+  return sequence_;
+}
+
+void Sender::note_sent() {
+  ++statistics_.sent;
+  last_sent_ = Clock::now();
+}
+
+void Sender::wait(Clock::time_point until) {
+  pollfd polled[2] = {{wake_descriptor_, POLLIN, 0}, {linked_ ? sink_.readable_descriptor() : -1, POLLIN, 0}};
+  const auto left = std::max<std::chrono::nanoseconds>(until - Clock::now(), 0ns);
+  const timespec timeout = {left / 1s, (left % 1s).count()};
+  ::ppoll(polled, 2, &timeout, nullptr);
+  eventfd_t ignored = 0;
+  [[maybe_unused]] const int read = ::eventfd_read(wake_descriptor_, &ignored);
+}
+
+void Sender::receive() {
+  if (!linked_) return;
+  for (const Acknowledgement& answer : sink_.receive()) {
+    if (answer.was_in_fail_safe) ++statistics_.fail_safes;
+    if (answer.overrun) ++statistics_.overruns;
+    if (receive_errors_before_)
+      statistics_.receive_errors += static_cast<std::uint8_t>(answer.receive_errors - *receive_errors_before_);
+    receive_errors_before_ = answer.receive_errors;
+    Outstanding& place = outstanding_[answer.sequence];
+    if (!place.waiting) continue;
+    place.waiting = false;
+    --waiting_;
+    ++statistics_.acknowledged;
+    if (place.changed) statistics_.acknowledged_after.add(seconds(Clock::now() - place.since));
+  }
+}
+
+void Sender::lose_link(const LinkLost& lost) {
+  linked_ = false;
+  outstanding_.fill({});
+  waiting_ = 0;
+  ++statistics_.links_lost;
+  next_try_ = Clock::now() + kBetweenTries;
+  on_event_(lost.what());
+}
+
+void Sender::try_reconnecting() {
+  next_try_ = Clock::now() + kBetweenTries;
+  if (!sink_.reconnect()) return;
+  linked_ = true;
+  last_sent_ = {};  // the board knows nothing: tell it at once
+  receive_errors_before_.reset();
+  on_event_(fmt::format("{}: the link is back", sink_.name()));
+}
+
+void Sender::wait_for_last_answer() {
+  const auto until = Clock::now() + kPatience;
+  while (sink_.acknowledges() && outstanding_[sequence_].waiting && Clock::now() < until) {
+    wait(until);
+    receive();
+  }
+}
+
+void Sender::switch_off() try {
+  if (!linked_ && !sink_.reconnect()) return;  // the board's ttl has switched it off
+  linked_ = true;
+  const auto until = Clock::now() + kPatience;
+  while (has_changed() && Clock::now() < until) {
+    if (may_send(Clock::now())) {
+      send_state();
+    } else {
+      wait(next_chance(Clock::now()));
+    }
+    receive();
+  }
+  wait_for_last_answer();
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    if (attempt != 0) {  // zeros, which every board understands
+      std::ranges::fill(state_.duty, std::uint8_t{0});
+      sink_.send(state_, next_sequence(nullptr));
+      note_sent();
+    }
+    sink_.send_off(next_sequence(nullptr));
+    note_sent();
+    if (!sink_.acknowledges()) return;
+    wait_for_last_answer();
+    statistics_.off_acknowledged = !outstanding_[sequence_].waiting;
+    if (statistics_.off_acknowledged) return;
+  }
+} catch (const LinkLost& lost) {
+  lose_link(lost);
+}
+
+}  // namespace vestige
