@@ -86,7 +86,7 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
       "Template of an actuator's OSC address: {n} is its number from 1, {i} from 0, {name} its name; bHaptics' bridge "
       "takes /avatar/parameters/bOSC/v2/VestFront/{i}/self [default: /avatar/parameters/vestige_{n}]")
       ->type_name("TEMPLATE");
-  verb.final_callback([&verb, &choice] { refuse_serial_flags(verb, choice); });
+  verb.parse_complete_callback([&verb, &choice] { refuse_serial_flags(verb, choice); });
 }
 
 OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names,

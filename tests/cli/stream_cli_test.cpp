@@ -1,0 +1,280 @@
+// Streams traces as a user does, to a simulated board: the vest's own program on a simulated ATmega1280, behind a pty.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/command_line.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::Each;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+using Levels = std::vector<int>;
+
+/// A row of a timeline, of a log, or of what the board's pins showed.
+struct Row {
+  double time_s = 0;
+  std::string state;
+  Levels level;
+};
+
+/// Skips the columns that are neither the time, nor the state, nor levels.
+std::vector<Row> read_rows(const std::filesystem::path& file, std::size_t level_column) {
+  std::ifstream stream(file);
+  std::vector<Row> rows;
+  std::string line;
+  std::getline(stream, line);
+  while (std::getline(stream, line)) {
+    std::istringstream cells(line);
+    Row row;
+    std::string cell;
+    for (std::size_t column = 0; std::getline(cells, cell, ','); ++column) {
+      if (column == 0) row.time_s = std::stod(cell);
+      if (column == 1 && level_column > 1) row.state = cell;
+      if (column >= level_column) row.level.push_back(std::stoi(cell));
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<Row> read_timeline(const std::filesystem::path& file) {
+  return read_rows(file, 1);
+}
+std::vector<Row> read_log(const std::filesystem::path& file) {
+  return read_rows(file, 3);
+}
+
+/// The rows whose levels are not those of the row before.
+std::vector<Row> changes(const std::vector<Row>& rows) {
+  std::vector<Row> changes;
+  for (const Row& row : rows)
+    if (changes.empty() || changes.back().level != row.level) changes.push_back(row);
+  return changes;
+}
+
+/// What one motor did, one after the other, from off to off.
+Levels steps_of(std::size_t motor, const std::vector<Row>& rows) {
+  Levels steps = {0};
+  for (const Row& row : rows)
+    if (row.level.at(motor) != steps.back()) steps.push_back(row.level[motor]);
+  if (steps.back() != 0) steps.push_back(0);
+  return steps;
+}
+
+class StreamCommand : public test::CommandLineTest {
+ protected:
+  void record(const std::string& flags) const {
+    ASSERT_EQ(run("vestige record -q -o trace.mcap " + flags).exit_code, 0);
+  }
+
+  /// Runs `command` beside a board whose pty is called 'vest' and whose pins end up in pins.csv.
+  test::Outcome run_with_board(const std::string& command) const {
+    return run("simulated_board '" VESTIGE_FIRMWARE
+               "' --link vest --duties pins.csv >board.txt 2>&1 & board=$!\n"
+               "for i in $(seq 200); do [ -e vest ] && break; sleep 0.05; done\n" +
+               command + "\ncode=$?; kill -INT $board; wait $board; exit $code");
+  }
+
+  nlohmann::json read_json(const std::string& name) const {
+    std::ifstream stream(folder_ / name);
+    return nlohmann::json::parse(stream, nullptr, false);
+  }
+
+  void expect_failure(const std::string& command, int exit_code, const std::vector<std::string>& words) const {
+    const test::Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exit_code, exit_code) << command << "\n" << outcome.standard_error;
+    EXPECT_THAT(outcome.standard_error, StartsWith("vestige: ")) << command;
+    for (const std::string& word : words) EXPECT_THAT(outcome.standard_error, HasSubstr(word)) << command;
+  }
+};
+
+TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
+  record("--count 60 --rate 500 --duration 3");
+  ASSERT_EQ(run("vestige replay -q trace.mcap --timeline timeline.csv").exit_code, 0);
+  const test::Outcome outcome =
+      run_with_board("vestige stream trace.mcap --port vest --log log.csv --json stream.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+
+  // Every change of the timeline was sent, or is said to have been superseded.
+  const std::vector<Row> expected = changes(read_timeline(folder_ / "timeline.csv"));
+  const std::vector<Row> log = read_log(folder_ / "log.csv");
+  ASSERT_EQ(log.size(), expected.size());
+  EXPECT_GT(log.size(), 20U);
+  for (std::size_t i = 0; i < log.size(); ++i) {
+    EXPECT_EQ(log[i].time_s, expected[i].time_s) << i;
+    EXPECT_EQ(log[i].level, expected[i].level) << i;
+  }
+
+  // And what was sent is what the pins did, motor by motor, in order.
+  std::vector<Row> sent = log;
+  std::erase_if(sent, [](const Row& row) { return row.state != "sent"; });
+  const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
+  for (std::size_t motor = 0; motor < 6; ++motor) {
+    const Levels commanded = steps_of(motor, sent);
+    const Levels measured = steps_of(motor, pins);
+    ASSERT_EQ(measured.size(), commanded.size()) << "motor " << motor + 1;
+    for (std::size_t i = 0; i < measured.size(); ++i) EXPECT_NEAR(measured[i], commanded[i], 1) << motor << " " << i;
+  }
+
+  const nlohmann::json json = read_json("stream.json");
+  EXPECT_EQ(json["frames"], 1500);
+  EXPECT_EQ(json["acknowledged"], json["sent"]);
+  EXPECT_EQ(json["changes"], sent.size());
+  EXPECT_EQ(json["superseded"], log.size() - sent.size());
+  EXPECT_TRUE(json["off_acknowledged"]);
+  EXPECT_EQ(json["receive_errors"], 0);
+  EXPECT_EQ(json["link"]["baud"], 57600);
+  EXPECT_EQ(json["link"]["frame_bytes"], 14);
+  EXPECT_EQ(json["link"]["board"]["actuators"], 6);
+  for (const char* key : {"p50", "p95", "p99", "max"}) {
+    EXPECT_GT(json["latency_us"]["written"][key], 0) << key;
+    EXPECT_GE(json["latency_us"]["acknowledged"][key], json["latency_us"]["written"][key]) << key;
+  }
+  EXPECT_THAT(outcome.standard_output, HasSubstr("0 changes superseded"));
+}
+
+TEST_F(StreamCommand, AnInterruptedStreamSwitchesTheVestOff) {
+  record("--colliders hug --rate 100 --duration 1");
+  for (const std::string signal : {"INT", "TERM"}) {
+    const test::Outcome outcome =
+        run_with_board("vestige stream trace.mcap --port vest --loop --hold 1e6 --json " + signal +
+                       ".json & stream=$!\nsleep 1.5; kill -" + signal + " $stream; wait $stream");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+    EXPECT_TRUE(read_json(signal + ".json")["off_acknowledged"]);
+    const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
+    ASSERT_FALSE(pins.empty());
+    EXPECT_THAT(pins.back().level, Each(0));
+    EXPECT_TRUE(std::ranges::any_of(pins, [](const Row& row) { return row.level != Levels(6); }));
+    ASSERT_EQ(run("rm pins.csv vest").exit_code, 0);
+  }
+}
+
+TEST_F(StreamCommand, AKilledStreamLeavesNoMotorRunning) {
+  record("--colliders hug --rate 100 --duration 1");
+  run_with_board(
+      "vestige stream -q trace.mcap --port vest --loop --hold 1e6 & stream=$!\nsleep 1.5; kill -KILL $stream\n"
+      "wait $stream; sleep 0.5");
+  const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
+  ASSERT_FALSE(pins.empty());
+  EXPECT_THAT(pins.back().level, Each(0));
+  EXPECT_TRUE(std::ranges::any_of(pins, [](const Row& row) { return row.level != Levels(6); }));
+}
+
+TEST_F(StreamCommand, AMapThatIsEditedWhileItIsFeltIsReadAgainAndABadOneIsNot) {
+  record("--colliders hug --rate 100 --duration 0.5");
+  // A map of one actuator everywhere, then of the second everywhere, then no map at all.
+  const std::string make =
+      "python3 -c \"import struct,zlib,sys\n"
+      "def png(grey):\n"
+      "  chunk=lambda n,d: struct.pack('>I',len(d))+n+d+struct.pack('>I',zlib.crc32(n+d))\n"
+      "  return b'\\x89PNG\\r\\n\\x1a\\n'+chunk(b'IHDR',struct.pack('>IIBBBBB',1,1,8,0,0,0,0))"
+      "+chunk(b'IDAT',zlib.compress(bytes([0,grey])))+chunk(b'IEND',b'')\n"
+      "open(sys.argv[2],'wb').write(png(int(sys.argv[1])))\" ";
+  ASSERT_EQ(
+      run("echo '{\"actuators\": [{\"grey\": 10, \"name\": \"a\"}, {\"grey\": 20, \"name\": \"b\"}]}' >map.json\n" +
+          make + "10 map.png")
+          .exit_code,
+      0);
+  const test::Outcome outcome =
+      run("vestige stream trace.mcap --port file:frames --map map.png --loop --log log.csv "
+          "--json stream.json & stream=$!\nsleep 1\n" +
+          make +
+          "20 new.png; mv new.png map.png\nsleep 1\necho nonsense >map.png\nsleep 1\n"
+          "kill -INT $stream; wait $stream");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_EQ(read_json("stream.json")["maps_reloaded"], 1);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("map.png"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("The map before it stays in use"));
+  const std::vector<Row> log = read_log(folder_ / "log.csv");
+  ASSERT_FALSE(log.empty());
+  EXPECT_EQ(log.front().level, (Levels{255, 0}));
+  EXPECT_EQ(log.back().level[0], 0);
+  EXPECT_TRUE(std::ranges::any_of(log, [](const Row& row) { return row.level == Levels{0, 255}; }));
+}
+
+TEST_F(StreamCommand, FramesGoToStandardOutputAsTheyWouldGoDownTheWire) {
+  record("--count 20 --rate 60 --duration 1");
+  ASSERT_EQ(run("vestige stream trace.mcap --port - --rate 10 --json stream.json >frames.bin").exit_code, 0);
+  std::ifstream stream(folder_ / "frames.bin", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  ASSERT_GE(bytes.size(), 14U + 8U);
+  EXPECT_EQ(bytes[1], 'S');
+  EXPECT_EQ(bytes[13], '\0');
+  EXPECT_EQ(bytes.back(), '\0');
+  EXPECT_EQ(bytes[bytes.size() - 7], 'X');
+  EXPECT_EQ(std::ranges::count(bytes, '\0'), read_json("stream.json")["sent"]);
+  EXPECT_EQ(bytes.size(), read_json("stream.json")["link"]["bytes"]);
+}
+
+TEST_F(StreamCommand, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame) {
+  record("--count 20 --rate 60 --duration 0.5");
+  const test::Outcome outcome =
+      run("python3 -c \"import os,pty,time,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'vest')\n"
+          "time.sleep(20)\" & pty=$!\nfor i in $(seq 100); do [ -e vest ] && break; sleep 0.05; done\n"
+          "vestige stream trace.mcap --port vest --json stream.json; code=$?; kill $pty; exit $code");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("no board answers"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("were not acknowledged"));
+  EXPECT_EQ(read_json("stream.json")["acknowledged"], 0);
+  EXPECT_FALSE(read_json("stream.json")["off_acknowledged"]);
+}
+
+TEST_F(StreamCommand, WhatCannotBeStreamedIsRefusedWithItsReason) {
+  record("--count 2 --rate 60 --duration 0.2");
+  expect_failure("vestige stream trace.mcap --port ./ttyUSB9", 1, {"ttyUSB9", "no such device"});
+  expect_failure("vestige stream trace.mcap --port trace.mcap", 1, {"trace.mcap", "file:"});
+  expect_failure("vestige stream trace.mcap --port ./x --baud 12345", 2, {"--baud", "57600"});
+  expect_failure("vestige stream trace.mcap --port osc://localhost", 2, {"--port", "osc://HOST:PORT"});
+  expect_failure("vestige stream trace.mcap --port osc://localhost:9000 --baud 9600", 2, {"--baud"});
+  expect_failure("vestige stream trace.mcap --port file:x --osc-address /a/{n}", 2, {"--osc-address"});
+  expect_failure("vestige stream trace.mcap", 2, {"--port"});
+  expect_failure("vestige stream nothing.mcap --port file:x", 1, {"nothing.mcap"});
+  expect_failure("vestige stream trace.mcap --port file:trace.mcap", 1, {"trace.mcap"});
+  expect_failure("vestige stream trace.mcap --port file:x --rate nan", 2, {"--rate"});
+  expect_failure("vestige stream trace.mcap --port file:x --map builtin --surface mapped", 2, {"--map", "--surface"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x"));
+  ASSERT_EQ(run("vestige record -q -o bare.mcap --map none --count 2 --rate 60 --duration 0.2").exit_code, 0);
+  expect_failure("vestige stream bare.mcap --port file:x", 1, {"no actuator map", "--map"});
+  EXPECT_EQ(run("vestige stream bare.mcap --port file:x --map builtin").exit_code, 0);
+}
+
+TEST_F(StreamCommand, VestCheckRunsEachMotorInTurn) {
+  const test::Outcome outcome =
+      run_with_board("vestige vest check --port vest --seconds 0.2 --level 100 --json check.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_output, HasSubstr("actuator 6 of 6"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("the vest hears everything"));
+  EXPECT_TRUE(read_json("check.json")["good"]);
+  const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
+  for (std::size_t motor = 0; motor < 6; ++motor) {
+    const Levels steps = steps_of(motor, pins);
+    ASSERT_EQ(steps.size(), 3U) << "motor " << motor + 1;
+    EXPECT_NEAR(steps[1], 100, 1);
+  }
+  for (const Row& row : pins) EXPECT_LE(6 - std::ranges::count(row.level, 0), 1) << row.time_s;
+}
+
+TEST_F(StreamCommand, VestCheckOfADeadLineFails) {
+  const test::Outcome outcome =
+      run("python3 -c \"import os,pty,time,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'vest')\n"
+          "time.sleep(20)\" & pty=$!\nfor i in $(seq 100); do [ -e vest ] && break; sleep 0.05; done\n"
+          "vestige vest check --port vest --seconds 0.05; code=$?; kill $pty; exit $code");
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.standard_output, HasSubstr("DOES NOT HEAR"));
+}
+
+}  // namespace
+}  // namespace vestige
