@@ -113,8 +113,8 @@ class GeometryDetector final : public Detector {
 
     for (const CapturedPair& pair : pairs_) {
       const Segment& segment = frame.segments[pair.segment];
-      skin_.skin_corners(avatar_, frame, method_, pair.triangle);
-      finder_.offer(frame, skin_, segment, pair.triangle, row[segment.column]);
+      const MovingCorners corners = skin_corners(avatar_, frame, method_, pair.triangle);
+      finder_.offer(frame, corners, segment, pair.triangle, row[segment.column]);
     }
     return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
             .triangles_tested = avatar_.triangles.size(),
@@ -213,7 +213,6 @@ class GeometryDetector final : public Detector {
   std::vector<SkinMatrix> gpu_palette_;
   std::vector<GpuSegment> gpu_segments_;
   std::vector<CapturedPair> pairs_;
-  SkinMotion skin_;
 };
 
 }  // namespace
