@@ -67,7 +67,7 @@ class GeometryDetector final : public Detector {
   GeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                    const DetectorOptions& options)
       : context_(std::move(context)),
-        gl_(current(*context_)),
+        gl_(current_gl(*context_)),
         avatar_(avatar),
         method_(options.method),
         finder_(avatar, map, options),
@@ -138,11 +138,6 @@ class GeometryDetector final : public Detector {
   }
 
  private:
-  static const GlFunctions& current(GlContext& context) {
-    context.make_current();
-    return context.gl();
-  }
-
   /// Entries that the shaders' palette has room for.
   std::size_t palette_entries() const {
     return avatar_.palette.size() * (method_ == Method::kStatic ? std::size_t{1} : std::size_t{2});

@@ -70,7 +70,7 @@ class SkippingGeometryDetector final : public Detector {
   SkippingGeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                            const DetectorOptions& options)
       : context_(std::move(context)),
-        gl_(current(*context_)),
+        gl_(current_gl(*context_)),
         avatar_(avatar),
         method_(options.method),
         finder_(avatar, map, options),
@@ -137,11 +137,6 @@ class SkippingGeometryDetector final : public Detector {
   }
 
  private:
-  static const GlFunctions& current(GlContext& context) {
-    context.make_current();
-    return context.gl();
-  }
-
   std::string head() const {
     return fmt::format(
         "#version 450 core\n{}#define METHOD {}\n#define BLOCK_SLOTS {}\n#define BLOCK_SEGMENTS {}\n"
