@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -56,9 +55,7 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
   sweep.seed = options.common.seed;
   check_contestant_choice(options.contestants);
   const std::string json_path = options.output + "/growth.json";
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  make_folder(options.output, "-o");
   const std::string new_trace = options.trace.empty() ? options.output + "/trace.mcap" : "";
   check_outputs({json_path, new_trace, options.common.json}, {options.trace}, options.common);
 

@@ -44,9 +44,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   check_contestant_choice(options.contestants);
   const std::string json_path = options.output + "/sweep.json";
   const std::string times_path = options.output + "/frame_times.csv.zst";
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  make_folder(options.output, "-o");
   const std::string new_trace = options.trace.empty() ? options.output + "/trace.mcap" : "";
   check_outputs({json_path, times_path, new_trace, options.common.json}, {options.trace}, options.common);
 
