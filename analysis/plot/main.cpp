@@ -409,8 +409,8 @@ int run(int argc, char** argv) {
     if (!std::cout) throw vestige::system_error("standard output", "could not write", errno);
     return shown;
   } catch (const CLI::ParseError& error) {
-    vestige::print_message(
-        fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n", error.what()));
+    vestige::print_message(fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n",
+                                       help::cause_of(app, error)));
     return kWrongUsage;
   }
   if (options.output == "-")

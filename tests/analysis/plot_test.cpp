@@ -276,6 +276,7 @@ TEST_F(PlotTest, WrongUsageExitsWith2) {
   EXPECT_EQ(run("sweep").exit_code, 2);
   EXPECT_EQ(run("timeline a.csv b.csv").exit_code, 2);
   EXPECT_EQ(run("sweep . --colour").exit_code, 2);
+  EXPECT_THAT(run("timeline --froce").standard_error, HasSubstr("--froce"));
   EXPECT_THAT(run("scen a.mcap").standard_error, HasSubstr("scen: there is no such figure\n  did you mean 'scene'?"));
   const Outcome standard_output = run("timeline a.csv -o -");
   EXPECT_EQ(standard_output.exit_code, 2);

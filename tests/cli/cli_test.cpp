@@ -279,6 +279,8 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige record -o x.mcap --seed -1", 2, {"--seed"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --origin 1e300,0,0", 2, {"--origin"}, "x.mcap");
   expect_failure("vestige record", 2, {"--output"});
+  expect_failure("vestige record --ouput x.mcap", 2, {"--ouput"}, "x.mcap");
+  expect_failure("vestige replay small.mcap --planes t --texture t.exr", 2, {"not expected", "--texture"}, "t.exr");
   expect_failure("vestige record -o x.mcap --count 0", 2, {"--count"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --rate 0", 2, {"--rate"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --rate nan", 2, {"--rate"}, "x.mcap");
