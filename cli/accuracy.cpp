@@ -184,9 +184,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   const std::vector<SceneChoice> choices = scene_choices(options);
   const std::string errors_path = options.output + "/accuracy.json";
   const std::string run_path = options.output + "/run.json";
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  make_folder(options.output, "-o");
   check_outputs({errors_path, run_path, options.common.json}, {options.scene.avatar, options.scene.map},
                 options.common);
 

@@ -87,7 +87,7 @@ int run(int argc, char** argv) {
     return shown;
   } catch (const CLI::ParseError& error) {
     const auto verbs = program.get_subcommands();
-    print_message(fmt::format("vestige: error: {}\n  {}\n", error.what(),
+    print_message(fmt::format("vestige: error: {}\n  {}\n", help::cause_of(program, error),
                               verbs.empty() ? "'vestige --help' lists the verbs"
                                             : fmt::format("'vestige {} --help' explains it", verbs[0]->get_name())));
     return kWrongUsage;

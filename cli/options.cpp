@@ -48,6 +48,12 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
   common(verb.set_help_flag("-h,--help", "Print this help"));
 }
 
+void make_folder(const std::string& path, const std::string& flag) {
+  std::error_code failure;
+  std::filesystem::create_directories(path, failure);
+  if (failure) throw Error(path, "the folder cannot be made: " + failure.message(), "choose another " + flag);
+}
+
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    const CommonOptions& options) {
   if (std::ranges::count_if(outputs, is_standard_output) > 1)

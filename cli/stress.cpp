@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <set>
 
@@ -89,9 +88,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   parse_names(options.detectors, detector_names(), "--detector");
   const std::string json_path = options.output + "/stress.json";
   const std::string run_path = options.output + "/run.json";
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  make_folder(options.output, "-o");
   check_outputs({json_path, run_path, options.common.json}, {}, options.common);
   catch_interrupts();
   const Contestants contestants = make_contestants(options, verbosity);

@@ -34,7 +34,7 @@ class PaperDetector final : public Detector {
   PaperDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                 const DetectorOptions& options)
       : context_(std::move(context)),
-        gl_(current(*context_)),
+        gl_(current_gl(*context_)),
         avatar_(avatar),
         options_(options),
         palette_(gl_),
@@ -107,11 +107,6 @@ class PaperDetector final : public Detector {
   }
 
  private:
-  static const GlFunctions& current(GlContext& context) {
-    context.make_current();
-    return context.gl();
-  }
-
   void upload_map(const ActuatorMap& map) {
     const auto side = static_cast<std::uint32_t>(gl_limit(gl_, GL_MAX_TEXTURE_SIZE));
     if (map.width > side || map.height > side)

@@ -11,6 +11,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analysis/plot/accuracy_figure.hpp"
@@ -146,8 +147,20 @@ int draw_stress(const Options& options) {
 }
 
 int draw_timeline(const Options& options) {
-  return write_figure(options, stem_of(options),
-                      [&] { return plot::timeline_figure(plot::read_timeline(options.inputs.front())); });
+  return write_figure(options, stem_of(options), [&] {
+    plot::Timeline timeline = plot::read_timeline(options.inputs.front());
+    if (!options.map.empty()) {
+      const vestige::ActuatorMap map = plot::read_map(options.map);
+      warn(options, map.warnings);
+      if (map.actuator_count != timeline.actuator_count)
+        throw vestige::Error(options.map,
+                             fmt::format("has {} actuators, and {} has {}", map.actuator_count,
+                                         options.inputs.front().string(), timeline.actuator_count),
+                             "name the map that the timeline was made with");
+      timeline.names = map.names;
+    }
+    return plot::timeline_figure(std::move(timeline));
+  });
 }
 
 int draw_textures(const Options& options) {
@@ -315,11 +328,13 @@ int run(int argc, char** argv) {
 
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
-                                   "  vestige plot timeline timeline.csv -o figures/timeline --force\n");
+                                   "  vestige plot timeline timeline.csv --map builtin -o figures/timeline\n");
   timeline.add_option("INPUT", options.inputs, "What 'vestige replay --timeline FILE.csv' wrote")
       ->type_name("CSV")
       ->expected(1)
       ->required();
+  timeline.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
+      ->type_name("builtin|FILE.png");
   add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
 
   CLI::App& textures =
@@ -409,8 +424,8 @@ int run(int argc, char** argv) {
     if (!std::cout) throw vestige::system_error("standard output", "could not write", errno);
     return shown;
   } catch (const CLI::ParseError& error) {
-    vestige::print_message(
-        fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n", error.what()));
+    vestige::print_message(fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n",
+                                       help::cause_of(app, error)));
     return kWrongUsage;
   }
   if (options.output == "-")
