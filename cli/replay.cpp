@@ -46,6 +46,7 @@ constexpr NamedPlane kPlaneNames[] = {
     {"position", Plane::kPosition},
     {"speed", Plane::kSpeed},
     {"side", Plane::kSide},
+    {"pressure", Plane::kPressure},
 };
 
 PlaneSet parse_planes(const std::string& text) {
@@ -310,7 +311,8 @@ void add_replay(CLI::App& program, Invocation& invocation) {
              "Write the collision textures as OpenEXR: a row a frame, a column a collider")
       ->type_name("OUT.exr|-");
   add_result("--planes", options->planes,
-             "What the textures hold, of: actuator, t, triangle, barycentric, texture, position, speed, side")
+             "What the textures hold, of: actuator, t, triangle, barycentric, texture, position, speed, side, "
+             "pressure")
       ->capture_default_str()
       ->type_name("LIST");
   add_result(
