@@ -29,6 +29,12 @@ struct GpuSegment {
 };
 static_assert(sizeof(GpuSegment) == 32);
 
+/// Pressure follows from the speed on the CPU; many drivers have no ninth texture to draw into.
+DetectorOptions with_sources(DetectorOptions options) {
+  if (options.planes.has(Plane::kPressure)) options.planes = options.planes | Plane::kSpeed;
+  return options;
+}
+
 class PaperDetector final : public Detector {
  public:
   PaperDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
@@ -36,11 +42,11 @@ class PaperDetector final : public Detector {
       : context_(std::move(context)),
         gl_(current_gl(*context_)),
         avatar_(avatar),
-        options_(options),
+        options_(with_sources(options)),
         palette_(gl_),
         segments_(gl_),
         mesh_(gl_, avatar),
-        texture_(gl_, options.planes) {
+        texture_(gl_, options_.planes) {
     std::size_t components = 4;  // gl_Position
     for (const GlPlane& plane : kGlPlanes)
       if (options_.planes.has(plane.plane)) components += plane.geometry_components;
@@ -201,6 +207,8 @@ class PaperDetector final : public Detector {
         return;
       case Plane::kSide:
         contact.side = static_cast<std::int8_t>(value(0));
+        return;
+      case Plane::kPressure:  // no texture has it
         return;
     }
   }

@@ -156,6 +156,38 @@ TEST_F(CommandLine, WritesContactsTexturesAndTimelineThatAgree) {
   EXPECT_EQ(std::ranges::count_if(triangle, [](std::uint32_t t) { return t != 0xFFFFFFFF; }), static_cast<long>(rows));
 }
 
+TEST_F(CommandLine, PressureIsTheShareOfAMetrePerSecondAndComesAlone) {
+  record_small();
+  for (const char* detector : {"cpu", "paper"}) {
+    const auto plane = [&](const std::string& name) {
+      EXPECT_EQ(run("vestige replay small.mcap --force --detector " + std::string(detector) + " --textures t.exr " +
+                    "--planes " + name)
+                    .exit_code,
+                0);
+      Imf::InputFile reader((folder_ / "t.exr").c_str());
+      std::vector<std::string> names;
+      for (auto channel = reader.header().channels().begin(); channel != reader.header().channels().end(); ++channel)
+        names.emplace_back(channel.name());
+      EXPECT_THAT(names, ::testing::UnorderedElementsAre("actuator", name));
+      std::vector<float> values(20 * 60);
+      Imf::FrameBuffer buffer;
+      buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), 4, 80));
+      reader.setFrameBuffer(buffer);
+      reader.readPixels(0, 59);
+      return values;
+    };
+    const std::vector<float> speed_m_per_s = plane("speed");
+    const std::vector<float> pressure = plane("pressure");
+    std::size_t gentle = 0;
+    for (std::size_t i = 0; i < pressure.size(); ++i) {
+      const bool hit = std::isfinite(speed_m_per_s[i]);
+      EXPECT_EQ(pressure[i], hit ? std::min(speed_m_per_s[i], 1.0F) : speed_m_per_s[i]);
+      gentle += hit && speed_m_per_s[i] < 1 ? 1U : 0U;
+    }
+    EXPECT_GT(gentle, 0U) << "the trace has no contact that tells";
+  }
+}
+
 TEST_F(CommandLine, HoldKeepsAnActuatorOnForThatLong) {
   record_small();
   const auto on_cells = [&](const std::string& hold) {
