@@ -34,7 +34,10 @@ std::optional<XbeeOptions> xbee_options(const SinkChoice& choice) {
                      parse_address(choice.xbee_address)};
 }
 
-void refuse_serial_flags(const CLI::App& verb, const SinkChoice& choice) {
+/// Refuses flags that would say nothing, or not what they seem to.
+void check_sink_flags(const CLI::App& verb, const SinkChoice& choice) {
+  if (choice.ttl_ms % kTtlUnit_ms != 0)
+    throw UsageError("--ttl", fmt::format("{} is no multiple of 10", choice.ttl_ms), "boards count it in 10 ms");
   if (!choice.is_osc() && !choice.osc_address.empty())
     throw UsageError("--osc-address", "says nothing where frames do not go out as OSC",
                      "send to osc://HOST:PORT, or leave it out");
@@ -86,7 +89,7 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
       "Template of an actuator's OSC address: {n} is its number from 1, {i} from 0, {name} its name; bHaptics' bridge "
       "takes /avatar/parameters/bOSC/v2/VestFront/{i}/self [default: /avatar/parameters/vestige_{n}]")
       ->type_name("TEMPLATE");
-  verb.parse_complete_callback([&verb, &choice] { refuse_serial_flags(verb, choice); });
+  verb.parse_complete_callback([&verb, &choice] { check_sink_flags(verb, choice); });
 }
 
 OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names,
@@ -104,7 +107,8 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
   if (choice.is_file()) {
     const std::string path = choice.output_path();
     if (path == "-") refuse_terminal("--port -");
-    auto file = std::make_unique<FrameFileSink>(path, options.overwrite(), choice.quantity(), choice.ttl_ms);
+    auto file = std::make_unique<FrameFileSink>(path, options.overwrite(), choice.quantity(),
+                                                static_cast<std::uint8_t>(choice.ttl_ms / kTtlUnit_ms));
     file_ = file.get();
     sink_ = std::move(file);
     return;
