@@ -20,6 +20,7 @@
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/growth_figure.hpp"
 #include "analysis/plot/headless_window.hpp"
+#include "analysis/plot/measured_figure.hpp"
 #include "analysis/plot/scene_figure.hpp"
 #include "analysis/plot/stress_figure.hpp"
 #include "analysis/plot/sweep_figure.hpp"
@@ -54,6 +55,7 @@ struct Options {
   std::string avatar;
   std::string map;
   std::filesystem::path contacts;
+  std::filesystem::path measured;
   std::string animation;
   std::size_t poses = 6;
   plot::MomentChoice moments;
@@ -159,6 +161,9 @@ int draw_timeline(const Options& options) {
                              "name the map that the timeline was made with");
       timeline.names = map.names;
     }
+    if (!options.measured.empty())
+      return plot::measured_figure(std::move(timeline), plot::read_timeline(options.measured),
+                                   options.measured.string());
     return plot::timeline_figure(std::move(timeline));
   });
 }
@@ -335,6 +340,8 @@ int run(int argc, char** argv) {
       ->required();
   timeline.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
       ->type_name("builtin|FILE.png");
+  timeline.add_option("--measured", options.measured, "What a board's pins did meanwhile, as CSV like a timeline")
+      ->type_name("CSV");
   add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
 
   CLI::App& textures =
