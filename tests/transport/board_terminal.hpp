@@ -9,7 +9,8 @@
 namespace vestige::test {
 
 /// The board's end of a pseudo terminal, whose other end a client opens as it would a serial port: raw, and there for
-/// clients that come, go, or are killed. What the board says while nobody listens is lost, as on a real line.
+/// clients that come, go, or are killed. As on a real line, what a client has not read is lost when it goes, so is what
+/// the board says while nobody listens, and a client's lock ends with it; within the time that `wait` is called again.
 class BoardTerminal {
  public:
   /// With a path, a symbolic link of that name leads to the terminal for as long as this lives; one that is there
@@ -28,10 +29,16 @@ class BoardTerminal {
   void write(std::span<const std::uint8_t> bytes);
 
  private:
-  int descriptor_ = -1;
+  void open();
+  void close();
+  void note_clients();
+
+  int board_end_ = -1;
+  int client_end_ = -1;  ///< kept open: what a client leaves behind can be undone only there
+  int watch_ = -1;       ///< tells of clients that open and close their end
+  int clients_ = 0;      ///< as far as one knows: of two that open at the same instant, one is told
   std::string name_;
   std::filesystem::path link_;
-  bool client_ = false;  ///< somebody has the other end open
 };
 
 }  // namespace vestige::test

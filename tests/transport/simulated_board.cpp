@@ -44,7 +44,9 @@ void stay_silent(avr_t*, const int level, const char* format, va_list arguments)
 
 void return_at_once(avr_t*, avr_cycle_count_t) {}
 
-avr_cycle_count_t wake(avr_t*, avr_cycle_count_t, void*) { return 0; }
+avr_cycle_count_t wake(avr_t*, avr_cycle_count_t, void*) {
+  return 0;
+}
 
 std::string microcontroller_of(const std::filesystem::path& firmware) {
   std::ifstream file(firmware, std::ios::binary);

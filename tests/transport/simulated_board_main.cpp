@@ -42,11 +42,13 @@ void simulate(const Options& options) {
   vestige::test::SimulatedBoard board(options.firmware, options.microcontroller, options.baud);
   vestige::test::BoardTerminal terminal(options.link);
   catch_signals();
+  board.run_for(0.01);  // whoever reads the name finds the board started
   fmt::print("{}\n", terminal.name());
   std::fflush(stdout);
 
   std::size_t bytes_in = 0;
   std::size_t bytes_out = 0;
+  const double start_s = board.time_s();
   const Clock::time_point start = Clock::now();
   while (stop == 0 && (options.duration_s <= 0 || board.time_s() < options.duration_s)) {
     terminal.wait(kStep_us);
@@ -54,7 +56,7 @@ void simulate(const Options& options) {
       power_cycle = 0;
       board.power_cycle();
     }
-    board.run_until(std::chrono::duration<double>(Clock::now() - start).count());
+    board.run_until(start_s + std::chrono::duration<double>(Clock::now() - start).count());
     if (board.waiting() < kAdapterBytes) {
       const auto bytes = terminal.read(kAdapterBytes - board.waiting());
       bytes_in += bytes.size();
