@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "traces/error.hpp"
-#include "traces/timeline.hpp"
+#include "traces/timeline_csv.hpp"
 
 namespace vestige::test {
 
