@@ -88,18 +88,22 @@ TEST(SerialPort, CarriesEveryByteUnchangedBothWays) {
   EXPECT_FALSE(port.wait_readable(std::chrono::milliseconds(1)));
 }
 
-TEST(SerialPort, SetsTheBaudAndKeepsTheBoardFromResettingAtTheNextOpening) {
+TEST(SerialPort, SetsTheLineAndKeepsTheBoardFromResettingAtTheNextOpening) {
   const PseudoTerminal line;
+  const int descriptor = ::open(line.path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  termios settings{};
+  ASSERT_EQ(::tcgetattr(descriptor, &settings), 0);
+  settings.c_cflag |= HUPCL | CSTOPB | CRTSCTS;
+  settings.c_cflag &= ~tcflag_t{CLOCAL};
+  ASSERT_EQ(::tcsetattr(descriptor, TCSANOW, &settings), 0);
   for (const auto& [baud, constant] : {std::pair(kDefaultBaud, B57600), std::pair(9600U, B9600)}) {
     { const SerialPort port(line.path(), baud); }
-    const int descriptor = ::open(line.path().c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
-    termios settings{};
     ASSERT_EQ(::tcgetattr(descriptor, &settings), 0);
     EXPECT_EQ(::cfgetospeed(&settings), constant);
     EXPECT_EQ(settings.c_cflag & (HUPCL | CRTSCTS | CSTOPB | PARENB), 0U);
-    EXPECT_EQ(settings.c_cflag & CSIZE, tcflag_t{CS8});
-    ::close(descriptor);
+    EXPECT_EQ(settings.c_cflag & (CSIZE | CLOCAL | CREAD), tcflag_t{CS8 | CLOCAL | CREAD});
   }
+  ::close(descriptor);
 }
 
 TEST(SerialPort, DropsWhatCameBeforeItWasOpened) {
@@ -206,6 +210,9 @@ TEST(SerialPort, AdvisesNobodyToJoinAGroupThatHelpsNothingOrIsRoots) {
     EXPECT_THAT(as_nobody([&] { return refusal(line.path()); }),
                 AllOf(HasSubstr("sudo chown $USER " + line.path()), ::testing::Not(HasSubstr("usermod"))));
   };
+  const group* dialout = ::getgrnam("dialout");
+  ASSERT_NE(dialout, nullptr);
+  ASSERT_EQ(::chown(line.path().c_str(), 0, dialout->gr_gid), 0);
   ASSERT_EQ(::chmod(line.path().c_str(), 0620), 0);
   expect_chown();
   ASSERT_EQ(::chown(line.path().c_str(), 0, 0), 0);

@@ -153,6 +153,15 @@ TEST(Xbee, RefusesWhatDoesNotFitAndNamesTheWayOut) {
   }
 }
 
+TEST(Xbee, HearsTheFrameAfterACutOneAtOnceWhereStartsAreUnmistakable) {
+  const Bytes whole = packet(XbeeEscaping::kEscaped, {1, 2, 3});
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    XbeeUnwrapper unwrapper(XbeeEscaping::kEscaped);
+    unwrapper.push(std::span(whole).first(length));
+    EXPECT_EQ(unwrapper.push(whole), Bytes({1, 2, 3})) << "length " << length;
+  }
+}
+
 RC_GTEST_PROP(Xbee, GivesBackWhatWasWrappedFromWhateverPieces, ()) {
   const auto escaping = *rc::gen::element(XbeeEscaping::kNone, XbeeEscaping::kEscaped);
   const auto payloads = *rc::gen::container<std::vector<Bytes>>(rc::gen::container<Bytes>(
