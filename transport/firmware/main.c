@@ -25,13 +25,6 @@ enum { kFlagFailedSafe = 1, kFlagOverran = 2 };
 
 static uint8_t receive_errors_;
 
-// A restart by the watchdog leaves it running, at its shortest time: it is stopped before anything else can take that long.
-void stop_watchdog(void) __attribute__((naked, used, section(".init3")));
-void stop_watchdog(void) {
-  MCUSR = 0;
-  wdt_disable();
-}
-
 // Flags say what happened since the last answer; one that finds no room on the line takes nothing with it.
 static uint8_t flags(void) {
   return (actuators_failed_safe() ? kFlagFailedSafe : 0) | (uart_overran() ? kFlagOverran : 0);
@@ -78,9 +71,9 @@ static void take(uint8_t byte) {
 }
 
 int main(void) {
+  wdt_enable(WDTO_250MS);  // first: where it has restarted the board, it runs already, with 16 ms
   actuators_start();
   uart_start();
-  wdt_enable(WDTO_250MS);
   set_sleep_mode(SLEEP_MODE_IDLE);
   sei();
   while (1) {
