@@ -1,5 +1,5 @@
-// The vest's own program, for an Arduino MEGA (ATmega1280 or ATmega2560) with six vibrators. README.md says how to wire and
-// flash it.
+// The vest's own program, for an Arduino MEGA (ATmega1280 or ATmega2560) with six vibrators. README.md says how to wire
+// and flash it.
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -10,7 +10,8 @@
 #include "uart.h"
 #include "wire.h"
 
-// A pressure is not a duty: a board obeys the one that its actuators understand, and takes the other for an unknown frame.
+// A pressure is not a duty: a board obeys the one that its actuators understand, and takes the other for an unknown
+// frame.
 #ifdef VALVES
 #if KICK_START_MS > 0
 #error "KICK_START_MS is for motors: a valve that is opened fully first gives too much"
