@@ -285,6 +285,20 @@ TEST_P(FirmwareTest, IsRestartedOffByItsWatchdogWhenTheProgramGoesAstray) {
   EXPECT_THAT(answers(hello_frame(4)), ElementsAre(Bytes{'H', 4, 1, 6, 1}));
 }
 
+TEST_P(FirmwareTest, IsRestartedOffByItsWatchdogWhenTheClockOfTheTimeToLiveStops) {
+  send(levels_frame('S', 1, 20, {255, 255, 255, 255, 255, 255}));
+  const double stopped_s = board.time_s();
+  constexpr std::uint16_t kTimer0Interrupts = 0x6E;
+  board.disturb(kTimer0Interrupts, 0);
+  for (int i = 0; i < 100; ++i) {
+    send(hello_frame(1));  // keeps the program busy
+    board.run_for(0.005);
+  }
+  EXPECT_EQ(board.starts(), 2U);
+  EXPECT_LE(last_high_s() - stopped_s, 0.26);
+  EXPECT_EQ(duties(), kOff);
+}
+
 TEST_P(FirmwareTest, MovesNoMotorForAMillionRandomBytesAndAnswersTheNextFrame) {
   std::mt19937 random(20100417);
   Bytes noise(1'000'000);
@@ -364,8 +378,14 @@ TEST_P(FirmwareTest, RefusesFramesThatAreTooLongAndHearsTheNext) {
     payload.resize(4 + length, 255);
     EXPECT_THAT(answers(wire_frame(payload)), IsEmpty()) << length;
   }
+  // One that would be right, were it not for what follows.
+  Bytes payload = {'S', 1, 20, 255};
+  payload.resize(4 + 255, 100);
+  const unsigned crc = crc_ccitt_false(payload);
+  for (const unsigned byte : {crc & 0xFF, crc >> 8, 1U, 2U}) payload.push_back(static_cast<std::uint8_t>(byte));
+  EXPECT_THAT(answers(wire_frame(payload)), IsEmpty());
   EXPECT_TRUE(no_motor_ever_moved());
-  EXPECT_EQ(receive_errors(), 4);
+  EXPECT_EQ(receive_errors(), 5);
 }
 
 TEST_P(FirmwareTest, SaysWhenBytesWereLost) {

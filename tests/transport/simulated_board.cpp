@@ -142,6 +142,10 @@ void SimulatedBoard::derail() {
   avr_->state = cpu_Running;
 }
 
+void SimulatedBoard::disturb(const std::uint16_t address, const std::uint8_t value) {
+  avr_->data[address] = value;
+}
+
 void SimulatedBoard::overrun(const std::span<const std::uint8_t> bytes) {
   for (const std::uint8_t byte : bytes) {
     avr_raise_irq(avr_io_getirq(avr_, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT), byte);

@@ -66,6 +66,8 @@ class SimulatedBoard {
   void power_cycle();
   /// The program goes astray: from now on it runs in circles, with interrupts off.
   void derail();
+  /// A register changes its value by itself, as in a strong disturbance. `address` as in the data sheet.
+  void disturb(std::uint16_t address, std::uint8_t value);
   /// Bytes that all come at once, faster than any receiver takes them: most are lost.
   void overrun(std::span<const std::uint8_t> bytes);
   /// How often the program has started: 1 after the first step, one more after each power cycle and watchdog restart.

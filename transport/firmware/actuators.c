@@ -30,7 +30,9 @@ static void end_kicks(void) {
   }
 }
 #else
-static void start_or_set(uint8_t actuator, uint8_t level) { pwm_set(actuator, level); }
+static void start_or_set(uint8_t actuator, uint8_t level) {
+  pwm_set(actuator, level);
+}
 static void end_kicks(void) {}
 #endif
 
@@ -66,12 +68,18 @@ void actuators_set(const uint8_t* levels, uint8_t count, uint8_t ttl_10ms) {
 }
 
 void actuators_off(void) {
-  ATOMIC_BLOCK(ATOMIC_FORCEON) { all_off(); }
+  ATOMIC_BLOCK(ATOMIC_FORCEON) {
+    all_off();
+  }
 }
 
-bool actuators_failed_safe(void) { return failed_safe; }
+bool actuators_failed_safe(void) {
+  return failed_safe;
+}
 
-void actuators_clear_fail_safe(void) { failed_safe = false; }
+void actuators_clear_fail_safe(void) {
+  failed_safe = false;
+}
 
 bool actuators_clock_ticked(void) {
   const bool since = ticked;

@@ -1,5 +1,5 @@
-// The vest's own program, for an Arduino MEGA (ATmega1280 or ATmega2560) with six vibrators. README.md says how to wire and
-// flash it.
+// The vest's own program, for an Arduino MEGA (ATmega1280 or ATmega2560) with six vibrators. README.md says how to wire
+// and flash it.
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -10,7 +10,8 @@
 #include "uart.h"
 #include "wire.h"
 
-// A pressure is not a duty: a board obeys the one that its actuators understand, and takes the other for an unknown frame.
+// A pressure is not a duty: a board obeys the one that its actuators understand, and takes the other for an unknown
+// frame.
 #ifdef VALVES
 #if KICK_START_MS > 0
 #error "KICK_START_MS is for motors: a valve that is opened fully first gives too much"
@@ -24,13 +25,6 @@ enum { kVersion = 1 };
 enum { kFlagFailedSafe = 1, kFlagOverran = 2 };
 
 static uint8_t receive_errors_;
-
-// A restart by the watchdog leaves it running, at its shortest time: it is stopped before anything else can take that long.
-void stop_watchdog(void) __attribute__((naked, used, section(".init3")));
-void stop_watchdog(void) {
-  MCUSR = 0;
-  wdt_disable();
-}
 
 // Flags say what happened since the last answer; one that finds no room on the line takes nothing with it.
 static uint8_t flags(void) {
@@ -78,9 +72,9 @@ static void take(uint8_t byte) {
 }
 
 int main(void) {
+  wdt_enable(WDTO_250MS);  // first: where it has restarted the board, it runs already, with 16 ms
   actuators_start();
   uart_start();
-  wdt_enable(WDTO_250MS);
   set_sleep_mode(SLEEP_MODE_IDLE);
   sei();
   while (1) {

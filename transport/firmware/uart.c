@@ -41,7 +41,9 @@ ISR(USART0_RX_vect) {
   received_end = next;
 }
 
-bool uart_has_byte(void) { return received_begin != received_end; }
+bool uart_has_byte(void) {
+  return received_begin != received_end;
+}
 
 uint8_t uart_take_byte(void) {
   const uint8_t byte = received[received_begin];
@@ -71,6 +73,10 @@ bool uart_send(const uint8_t* bytes, uint8_t count) {
   return true;
 }
 
-bool uart_overran(void) { return overran; }
+bool uart_overran(void) {
+  return overran;
+}
 
-void uart_clear_overrun(void) { overran = false; }
+void uart_clear_overrun(void) {
+  overran = false;
+}

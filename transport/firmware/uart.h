@@ -1,5 +1,5 @@
-// The serial line on USART0 (Arduino pins 0 and 1, and the USB socket), 8N1, both ways through rings that interrupts fill
-// and empty.
+// The serial line on USART0 (Arduino pins 0 and 1, and the USB socket), 8N1, both ways through rings that interrupts
+// fill and empty.
 #ifndef VESTIGE_FIRMWARE_UART_H
 #define VESTIGE_FIRMWARE_UART_H
 

@@ -56,9 +56,13 @@ Received receive(uint8_t byte) {
   return kNothing;
 }
 
-const uint8_t* payload(void) { return decoded; }
+const uint8_t* payload(void) {
+  return decoded;
+}
 
-uint16_t payload_length(void) { return decoded_length - 2; }
+uint16_t payload_length(void) {
+  return decoded_length - 2;
+}
 
 uint8_t encode(const uint8_t* bytes, uint8_t length, uint8_t* frame) {
   const uint16_t crc = checksum(bytes, length);
