@@ -75,7 +75,7 @@ void SerialSink::send(const ActuatorFrame& frame, std::uint8_t sequence) {
   if (ask_again_ && !greeting_) say_hello();
   ask_again_ = false;
   std::span<const std::uint8_t> level(frame.duty);
-  if (greeting_) level = level.first(std::min<std::size_t>(level.size(), greeting_->actuators));
+  if (greeting_) level = level.first(std::min<std::size_t>(level.size(), greeting_->actuator_count));
   write(encode_state(options_.quantity, level, sequence, ttl_));
 }
 

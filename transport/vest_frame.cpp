@@ -43,7 +43,7 @@ std::optional<VestAnswer> decode(std::span<const std::uint8_t> frame) {
   if (length == kGreeting_bytes && byte[0] == 'H')
     return Greeting{.sequence = byte[1],
                     .version = byte[2],
-                    .actuators = byte[3],
+                    .actuator_count = byte[3],
                     .was_in_fail_safe = (byte[4] & kInFailSafe) != 0,
                     .overrun = (byte[4] & kOverrun) != 0};
   return std::nullopt;

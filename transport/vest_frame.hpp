@@ -31,11 +31,11 @@ std::vector<std::uint8_t> encode_hello(std::uint8_t sequence);
 
 /// What a board says of itself when it is asked with a hello.
 struct Greeting {
-  std::uint8_t sequence = 0;      ///< of the hello
-  std::uint8_t version = 0;       ///< of the board's program, as its own documentation counts
-  std::uint8_t actuators = 0;     ///< how many it drives; further levels of a frame are ignored
-  bool was_in_fail_safe = false;  ///< as in `Acknowledgement`: also true after a start, until a frame sets it going
-  bool overrun = false;           ///< as in `Acknowledgement`
+  std::uint8_t sequence = 0;        ///< of the hello
+  std::uint8_t version = 0;         ///< of the board's program, as its own documentation counts
+  std::uint8_t actuator_count = 0;  ///< how many it drives; further levels of a frame are ignored
+  bool was_in_fail_safe = false;    ///< as in `Acknowledgement`: also true after a start, until a frame sets it going
+  bool overrun = false;             ///< as in `Acknowledgement`
 };
 
 using VestAnswer = std::variant<Acknowledgement, Greeting>;

@@ -76,7 +76,7 @@ TEST(SerialSink, LearnsWhoIsThere) {
   const std::optional<Greeting> greeting = sink.greet();
   ASSERT_TRUE(greeting.has_value());
   EXPECT_EQ(greeting->version, 3);
-  EXPECT_EQ(greeting->actuators, 6);
+  EXPECT_EQ(greeting->actuator_count, 6);
   EXPECT_TRUE(greeting->was_in_fail_safe);
 }
 
@@ -368,7 +368,7 @@ TEST(SerialSink, DrivesAVestThroughRadiosInApiMode) {
       SerialSink sink(options);
       const std::optional<Greeting> greeting = sink.greet();
       ASSERT_TRUE(greeting.has_value());
-      EXPECT_EQ(greeting->actuators, 6);
+      EXPECT_EQ(greeting->actuator_count, 6);
       for (std::uint8_t sequence = 1; sequence <= 130; ++sequence)
         sink.send(duties({0x7E, 0x7D, 0x11, 0x13, sequence, 255}), sequence);
       const std::vector<Acknowledgement> answers = receive_all(sink, 130);

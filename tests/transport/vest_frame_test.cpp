@@ -77,7 +77,7 @@ TEST(VestAnswer, IsAGreeting) {
   const auto& greeting = std::get<Greeting>(answers[0]);
   EXPECT_EQ(greeting.sequence, 0);
   EXPECT_EQ(greeting.version, 1);
-  EXPECT_EQ(greeting.actuators, 6);
+  EXPECT_EQ(greeting.actuator_count, 6);
   EXPECT_TRUE(greeting.was_in_fail_safe);
   EXPECT_FALSE(greeting.overrun);
 }
