@@ -161,7 +161,7 @@ void add_stress(CLI::App& program, Invocation& invocation) {
   verb->add_option("--device", options->device,
                    "EGL device, as 'vestige devices' counts them [default: the first GPU, else software]")
       ->group(kDetectorGroup)
-      ->check(CLI::NonNegativeNumber)
+      ->check(help::whole_number(0, 1023))
       ->type_name("K");
   verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
   verb->add_option("-o,--output", options->output, "Folder for stress.json, run.json and the figure")
