@@ -54,11 +54,10 @@ class FakeBoard {
   static std::vector<Bytes> payloads(const Bytes& line) {
     std::vector<Bytes> all;
     for (auto from = line.begin(), to = from; (to = std::find(from, line.end(), 0)) != line.end(); from = to + 1) {
-      std::optional<Bytes> payload = cobs_decode(Bytes(from, to));
-      if (!payload || payload->size() < 2 || sealed(Bytes(payload->begin(), payload->end() - 2)) != Bytes(from, to + 1))
-        continue;
-      payload->resize(payload->size() - 2);
-      all.push_back(*payload);
+      const std::optional<Bytes> payload = cobs_decode(Bytes(from, to));
+      if (!payload || payload->size() < 3) continue;
+      const Bytes content(payload->begin(), payload->end() - 2);
+      if (sealed(content) == Bytes(from, to + 1)) all.push_back(content);
     }
     return all;
   }
