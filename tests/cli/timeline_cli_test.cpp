@@ -35,7 +35,7 @@ class Timelines : public test::CommandLineTest {
     ASSERT_EQ(channels.size(), frames_[0].duty.size());
     for (const ActuatorFrame& frame : frames_)
       for (std::size_t i = 0; i < frame.duty.size(); ++i)
-        ASSERT_EQ(test::hjif_duty(hjif_, i, std::round((frame.time_s - start_s) * 1e3)), frame.duty[i])
+        ASSERT_NEAR(test::hjif_duty(hjif_, i, std::round((frame.time_s - start_s) * 1e3)), frame.duty[i], 1e-9)
             << frame.time_s << " s, actuator " << i + 1;
 
     const auto& feedback = tact_["feedback"];
