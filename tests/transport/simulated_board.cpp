@@ -194,7 +194,18 @@ void SimulatedBoard::register_written(avr_irq_t*, std::uint32_t, void* const wat
 void SimulatedBoard::byte_from_board(avr_irq_t*, const std::uint32_t value, void* const board) {
   auto& self = *static_cast<SimulatedBoard*>(board);
   self.match_line_speed();
+  if (self.answer_begins_) self.note_answer();
+  self.answer_begins_ = value == 0;
   self.line_out_.push_back({self.cycle() + self.byte_cycles_, static_cast<std::uint8_t>(value)});
+}
+
+void SimulatedBoard::note_answer() {
+  if (frame_end_cycle_ == 0 || frame_end_cycle_ > cycle()) return;
+  const double time_s = static_cast<double>(cycle() - frame_end_cycle_) / static_cast<double>(kClock_hz);
+  ++answer_times_.count;
+  answer_times_.total_s += time_s;
+  answer_times_.longest_s = std::max(answer_times_.longest_s, time_s);
+  frame_end_cycle_ = 0;
 }
 
 // The firmware sets its own speed, of which simavr makes bytes of eleven bits: they take the line's time instead.
@@ -212,6 +223,7 @@ std::uint64_t SimulatedBoard::feed(avr_t* const avr, const std::uint64_t when, v
   self.match_line_speed();
   // simavr itself takes a byte's time to pass it on.
   avr_raise_irq(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_INPUT), self.line_in_.front());
+  if (self.line_in_.front() == 0) self.frame_end_cycle_ = self.power_on_cycle_ + when + self.byte_cycles_;
   self.line_in_.pop_front();
   self.line_free_cycle_ = self.power_on_cycle_ + when + self.byte_cycles_;
   return when + self.byte_cycles_;

@@ -73,6 +73,14 @@ class SimulatedBoard {
   /// How often the program has started: 1 after the first step, one more after each power cycle and watchdog restart.
   unsigned starts() const { return starts_; }
 
+  /// The firmware's own share of the time: from a frame's last byte, when it has arrived, to the answer's first.
+  struct AnswerTimes {
+    std::uint64_t count = 0;
+    double total_s = 0;
+    double longest_s = 0;
+  };
+  const AnswerTimes& answer_times() const { return answer_times_; }
+
   const PinDuty& pin(std::size_t motor) const { return pins_[motor]; }
   /// The pins' duties so far, a row at each change; the first at 0 s.
   std::vector<DutyRow> duties();
@@ -92,6 +100,7 @@ class SimulatedBoard {
   void power_on();
   void power_off();
   void watch_pins();
+  void note_answer();
   void match_line_speed();
   void update_pins(std::size_t port);
   void start_feeding();
@@ -111,6 +120,9 @@ class SimulatedBoard {
   std::uint64_t line_free_cycle_ = 0;
   std::uint64_t wrong_byte_cycles_ = 0;  ///< the firmware's own, when it listens at another speed
   unsigned starts_ = 0;
+  std::uint64_t frame_end_cycle_ = 0;  ///< 0: it has been answered
+  bool answer_begins_ = true;
+  AnswerTimes answer_times_;
   std::deque<std::uint8_t> line_in_;
   std::deque<SentByte> line_out_;
   std::array<bool, kMotors> compare_output_{};

@@ -69,6 +69,11 @@ void simulate(const Options& options) {
   if (!options.duties.empty()) board.write_duties(options.duties);
   fmt::print(stderr, "simulated_board: {:.3f} s, {} bytes received, {} bytes sent, {} start{}\n", board.time_s(),
              bytes_in, bytes_out, board.starts(), board.starts() == 1 ? "" : "s");
+  const auto& answers = board.answer_times();
+  if (answers.count != 0)
+    fmt::print(stderr,
+               "simulated_board: {} answers, each {:.1f} us of virtual time after its frame, {:.1f} us at most\n",
+               answers.count, answers.total_s / static_cast<double>(answers.count) * 1e6, answers.longest_s * 1e6);
 }
 
 }  // namespace
