@@ -36,7 +36,8 @@ class ActuatorSink {
 
   /// For messages: "/dev/ttyUSB0", "osc://127.0.0.1:9000".
   virtual std::string name() const = 0;
-  /// Whether a frame sent now would have at most one other before it. No queue builds up behind a slow line.
+  /// Whether whatever was sent before has left: a frame sent now is the only one on its way, and no queue builds up
+  /// behind a slow line.
   virtual bool ready() { return true; }
   /// Returns when the last byte has been given to the system. `sequence` comes back in the acknowledgement.
   /// Throws `LinkLost`, or `Error` for what will not mend itself.

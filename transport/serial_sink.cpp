@@ -61,7 +61,7 @@ std::optional<Greeting> SerialSink::greet() {
 bool SerialSink::ready() {
   if (!port_) return true;
   if (Clock::now() < silent_until_) return false;
-  return pending_bytes() <= static_cast<double>(last_frame_bytes_);
+  return pending_bytes() <= 0;
 }
 
 double SerialSink::pending_bytes() const {
@@ -97,7 +97,6 @@ void SerialSink::write(std::span<const std::uint8_t> frame) {
     throw;
   }
   bytes_sent_ += frame.size();
-  last_frame_bytes_ = frame.size();
   const std::chrono::duration<double> on_line_s(static_cast<double>(frame.size()) * kBitsPerByte / options_.baud);
   line_is_free_ = std::max(line_is_free_, Clock::now()) + std::chrono::floor<Clock::duration>(on_line_s);
 }

@@ -77,7 +77,6 @@ class SerialSink final : public ActuatorSink {
   bool ask_again_ = false;          // a hello after a reconnection may have met a board that was starting
   Clock::time_point silent_until_;  // unless the board answers
   Clock::time_point line_is_free_;  // by the baud: when the last byte written will have left
-  std::size_t last_frame_bytes_ = 0;
   std::uint64_t bytes_sent_ = 0;
   std::uint8_t radio_frame_ = 0;
 };
