@@ -21,9 +21,9 @@ using ::testing::HasSubstr;
 class ActuatorMapWatchTest : public ::testing::Test {
  protected:
   void write_png(const std::string& name) const {
-    std::ofstream file(folder / name, std::ios::binary);
+    std::ofstream stream(folder / name, std::ios::binary);
     const std::vector<std::byte> png = builtin_actuator_map_png();
-    file.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+    stream.write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
   }
   void write_text(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
 
