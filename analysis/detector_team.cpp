@@ -1,6 +1,9 @@
 #include "analysis/detector_team.hpp"
 
+#include <system_error>
 #include <utility>
+
+#include "traces/error.hpp"
 
 namespace vestige {
 
@@ -20,7 +23,14 @@ DetectorTeam::DetectorTeam(std::size_t threads, Make make)
       begin_(static_cast<std::ptrdiff_t>(threads)),
       end_(static_cast<std::ptrdiff_t>(threads)) {
   helpers_.reserve(threads - 1);
-  for (std::size_t i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
+  try {
+    for (std::size_t i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
+  } catch (const std::system_error&) {
+    // For the calling thread and those that there are not; those that there are go home, since there is no batch.
+    static_cast<void>(begin_.arrive(static_cast<std::ptrdiff_t>(threads - helpers_.size())));
+    for (std::thread& helper : helpers_) helper.join();
+    throw Error("--threads", "the system starts no more threads", "use fewer");
+  }
 }
 
 DetectorTeam::~DetectorTeam() {

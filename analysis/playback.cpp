@@ -111,6 +111,8 @@ PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector
       ++result.frames;
       result.contacts += static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
     }
+    result.non_finite_frames += builder.non_finite_frames();
+    result.non_finite_segments += builder.non_finite_segments();
     if (going) ++result.loops;
     going = going && options.loop && run;
     if (!going) break;

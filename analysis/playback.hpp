@@ -18,9 +18,11 @@ struct PlaybackOptions {
 struct PlaybackResult {
   std::uint64_t frames = 0;
   std::uint64_t contacts = 0;
-  std::uint64_t loops = 0;             ///< complete runs through the trace
-  std::uint64_t missed_deadlines = 0;  ///< frames that were not done when the next one was due
-  double duration_s = 0;               ///< by the clock on the wall
+  std::uint64_t loops = 0;              ///< complete runs through the trace
+  std::uint64_t missed_deadlines = 0;   ///< frames that were not done when the next one was due
+  std::uint64_t non_finite_frames = 0;  ///< as `FrameBuilder` counts them
+  std::uint64_t non_finite_segments = 0;
+  double duration_s = 0;  ///< by the clock on the wall
 };
 
 /// What a playback tells and asks, in its own thread.

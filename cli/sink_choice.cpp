@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <utility>
 
@@ -16,7 +17,6 @@ namespace vestige::cli {
 namespace {
 
 constexpr const char* kVestGroup = "Vest";
-constexpr double kBitsOnTheLine = 10;  // of a byte, with start and stop bit
 
 std::uint64_t parse_address(const std::string& text) {
   std::uint64_t address = 0;
@@ -36,8 +36,9 @@ std::optional<XbeeOptions> xbee_options(const SinkChoice& choice) {
 
 /// Refuses flags that would say nothing, or not what they seem to.
 void check_sink_flags(const CLI::App& verb, const SinkChoice& choice) {
-  if (choice.ttl_ms % kTtlUnit_ms != 0)
-    throw UsageError("--ttl", fmt::format("{} is no multiple of 10", choice.ttl_ms), "boards count it in 10 ms");
+  static_cast<void>(ttl_units(choice.ttl_ms));
+  if (choice.port == SinkChoice::kFilePrefix) throw UsageError("--port", "names no file", "file:OUT");
+  if (choice.is_osc() && verb.count("--ttl") != 0) throw UsageError("--ttl", "OSC has no time to live", "leave it out");
   const bool is_serial = !choice.is_osc() && !choice.is_file();
   for (const char* flag : {"--baud", "--xbee-api"})
     if (!is_serial && verb.count(flag) != 0)
@@ -97,6 +98,17 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
   verb.parse_complete_callback([&verb, &choice] { check_sink_flags(verb, choice); });
 }
 
+namespace {
+
+/// Of a frame for so many actuators, wrapping and all.
+std::size_t state_bytes(const SinkChoice& choice, std::size_t actuators) {
+  const auto frame = encode_state(choice.quantity(), std::vector<std::uint8_t>(actuators), 0, 1);
+  const auto xbee = xbee_options(choice);
+  return xbee ? xbee_wrap(*xbee, 1, frame).size() : frame.size();
+}
+
+}  // namespace
+
 OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names,
                    const CommonOptions& options)
     : choice_(choice) {
@@ -109,13 +121,11 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
     sink_ = std::make_unique<OscSink>(osc, actuator_names);
     return;
   }
-  const std::vector<std::uint8_t> all_off(actuator_names.size());
-  frame_bytes_ = encode_state(choice.quantity(), all_off, 0, 1).size();
   if (choice.is_file()) {
     const std::string path = choice.output_path();
     if (path == "-") refuse_terminal("--port -");
-    auto file = std::make_unique<FrameFileSink>(path, options.overwrite(), choice.quantity(),
-                                                static_cast<std::uint8_t>(choice.ttl_ms / kTtlUnit_ms));
+    frame_bytes_ = state_bytes(choice, actuator_names.size());
+    auto file = std::make_unique<FrameFileSink>(path, options.overwrite(), choice.quantity(), ttl_units(choice.ttl_ms));
     file_ = file.get();
     sink_ = std::move(file);
     return;
@@ -133,12 +143,16 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
                      "own program on it?",
                      choice.port, choice.baud),
          verbosity);
-  } else if (greeting_->actuator_count < actuator_names.size()) {
-    warn(fmt::format("{}: the board drives {} actuators; those beyond, up to {}, will not be felt", choice.port,
-                     greeting_->actuator_count, actuator_names.size()),
-         verbosity);
   }
-  if (serial.xbee) frame_bytes_ = xbee_wrap(*serial.xbee, 1, encode_state(choice.quantity(), all_off, 0, 1)).size();
+  const std::size_t told = greeting_ ? greeting_->actuator_count : actuator_names.size();
+  frame_bytes_ = state_bytes(choice, std::min(told, actuator_names.size()));
+  // Two may be on their way when the next one is due.
+  if (2 * line_time_s() > choice.ttl_ms / 1e3)
+    warn(fmt::format("{}: a frame takes {:.0f} ms on the line: the board will switch itself off between frames\n  Use "
+                     "a faster --baud, or a longer --ttl.",
+                     choice.port, line_time_s() * 1e3),
+         verbosity);
+  serial_ = sink.get();
   sink_ = std::move(sink);
 }
 
@@ -148,8 +162,15 @@ void OpenSink::commit() {
   if (file_ != nullptr) file_->commit();
 }
 
+std::string OpenSink::radio_failure() const {
+  const XbeeUnwrapper* radio = serial_ == nullptr ? nullptr : serial_->radio();
+  if (radio == nullptr || radio->undelivered() == 0) return "";
+  return fmt::format("the radio could not deliver {} packets: {}", radio->undelivered(),
+                     xbee_failure(radio->last_failure()));
+}
+
 double OpenSink::line_time_s() const {
-  return static_cast<double>(frame_bytes_) * kBitsOnTheLine / static_cast<double>(choice_.baud);
+  return static_cast<double>(frame_bytes_) * kBitsPerByte / static_cast<double>(choice_.baud);
 }
 
 nlohmann::ordered_json OpenSink::link_json() const {

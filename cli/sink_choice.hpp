@@ -14,7 +14,8 @@
 
 namespace vestige {
 class FrameFileSink;
-}
+class SerialSink;
+}  // namespace vestige
 
 namespace vestige::cli {
 
@@ -59,6 +60,8 @@ class OpenSink {
   /// Finishes a file.
   void commit();
 
+  /// What an XBee in API mode says of packets that it could not deliver; empty: nothing.
+  std::string radio_failure() const;
   nlohmann::ordered_json link_json() const;
   /// A line or two for people, given the bytes that were sent.
   std::string describe_link(std::uint64_t bytes) const;
@@ -70,6 +73,7 @@ class OpenSink {
   SinkChoice choice_;
   std::unique_ptr<ActuatorSink> sink_;
   FrameFileSink* file_ = nullptr;
+  SerialSink* serial_ = nullptr;
   std::optional<Greeting> greeting_;
   std::size_t frame_bytes_ = 0;  ///< of a state, on the line
 };

@@ -97,6 +97,7 @@ nlohmann::ordered_json to_json(const Streamed& streamed, const StreamOptions& op
   json["maps_reloaded"] = streamed.maps_reloaded;
   json["floor_us"] = SenderOptions().floor.count();
   json["latency_us"] = {{"written", to_json(sender.written)}, {"acknowledged", to_json(sender.acknowledged_after)}};
+  json["complete"] = (!interrupted() || options.playback.loop) && sender.links_lost == 0;
   json["link"] = sink.link_json();
   json["link"]["bytes"] = sender.bytes;
   return json;
@@ -124,25 +125,29 @@ std::string summary(const Streamed& streamed, const OpenSink& sink) {
 /// What went wrong on the way, to standard error; returns the exit code.
 int report_losses(const Streamed& streamed, const OpenSink& sink, Verbosity verbosity) {
   const SenderStatistics& sender = streamed.sender;
+  const PlaybackResult& playback = streamed.playback;
   const std::string name = sink.sink().name();
+  int code = sender.links_lost == 0 ? kDone : kDataLost;
+  const auto say = [&](const std::string& text) {
+    warn(name + ": " + text, verbosity);
+    code = kDataLost;
+  };
+  if (playback.non_finite_frames + playback.non_finite_segments != 0)
+    say(fmt::format("{} poses and the ends of {} segments are not finite; they fired nothing",
+                    playback.non_finite_frames, playback.non_finite_segments));
   if (sender.receive_errors + sender.overruns != 0)
-    warn(fmt::format("{}: the board counted {} damaged frames and {} times lost bytes: a loose wire, or another baud?",
-                     name, sender.receive_errors, sender.overruns),
-         verbosity);
-  if (sender.fail_safes > sender.links_lost + 1)  // the first answer may tell of the time before
-    warn(fmt::format("{}: the board switched itself off {} times, since frames came too late", name,
-                     sender.fail_safes - 1),
-         verbosity);
-  if (!sink.sink().acknowledges() || sender.acknowledged == sender.sent)
-    return sender.links_lost == 0 ? kDone : kDataLost;
-  warn(fmt::format("{}: {} of {} frames were not acknowledged", name, sender.sent - sender.acknowledged, sender.sent),
-       verbosity);
-  if (!sender.off_acknowledged)
-    warn(fmt::format("{}: nothing confirms that the last frame switched everything off; the board's own time-out "
-                     "does, if it has one",
-                     name),
-         verbosity);
-  return kDataLost;
+    say(fmt::format("the board counted {} damaged frames and {} times lost bytes: a loose wire, or another baud?",
+                    sender.receive_errors, sender.overruns));
+  if (sender.fail_safes != 0)
+    say(fmt::format("the board had switched itself off or restarted {} times", sender.fail_safes));
+  if (const std::string radio = sink.radio_failure(); !radio.empty()) say(radio);
+  const bool acknowledges = sink.sink().acknowledges();
+  if (acknowledges && sender.acknowledged != sender.sent)
+    say(fmt::format("{} of {} frames were not acknowledged{}", sender.sent - sender.acknowledged, sender.sent,
+                    sink.greeting() && sender.acknowledged <= 2 ? "; is --levels what the board takes?" : ""));
+  if (!sender.off_sent || (acknowledges && !sender.off_acknowledged))
+    say("nothing confirms that everything is off at the end; a board's own time-out does it, if it has one");
+  return code;
 }
 
 PlaybackCalls::Law make_law(const SinkChoice& sink, std::size_t actuator_count, double hold_s) {
@@ -160,6 +165,11 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   if (!options.map.empty() && options.choice.surface == "mapped")
     throw UsageError("--map", "may change while it is felt, which --surface mapped cannot follow",
                      "leave one of the two out");
+  const bool watched = !options.map.empty() && options.map != "builtin";
+  if (watched && options.choice.detector == "paper")
+    throw UsageError("--map", "may change while it is felt, which --detector paper cannot follow",
+                     "choose another detector");
+  const std::string map_stamp = watched ? ActuatorMapWatch::stamp(options.map) : "";
 
   OpenTrace trace(options.trace, verbosity);
   if (!options.map.empty()) {
@@ -170,6 +180,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   const std::size_t actuator_count = trace.map.actuator_count;
   if (actuator_count == 0)
     throw Error(options.trace, "holds no actuator map, so that nothing would be felt", "name one: --map FILE.png");
+  if (trace.reader.frame_count() == 0) throw Error(options.trace, "holds no frame", "record it again");
   const std::size_t colliders = trace.reader.collider_ids().size();
   const std::string name =
       options.choice.detector == "auto"
@@ -183,21 +194,29 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   std::optional<StreamLog> log;
   if (!options.log.empty()) log.emplace(options.log, options.common.overwrite(), actuator_count);
   OpenSink sink(options.sink, trace.map.names, options.common);
+  if (sink.greeting() && sink.greeting()->actuator_count < actuator_count)
+    warn(fmt::format("{}: the board drives {} actuators; those beyond, up to {}, will not be felt", options.sink.port,
+                     sink.greeting()->actuator_count, actuator_count),
+         verbosity);
   const auto tell = [verbosity](const std::string& text) { warn(text, verbosity); };
   std::optional<ActuatorMapWatch> watch;
-  if (!options.map.empty() && options.map != "builtin") watch.emplace(options.map, actuator_count, tell);
+  if (watched) watch.emplace(options.map, map_stamp, actuator_count, tell);
 
   Streamed streamed;
   {
     Sender sender(sink.sink(), {.keep_log = log.has_value()}, tell);
     Progress progress("Streaming", verbosity);
     PlaybackCalls calls;
-    calls.make_law = [&] { return make_law(options.sink, actuator_count, options.hold_ms / 1e3); };
+    calls.make_law = [&] {
+      return make_law(options.sink, actuator_count, options.hold_ms / 1e3 * options.playback.rate);
+    };
     calls.go_on = [&](double share) {
       if (auto map = watch ? watch->take() : std::nullopt) {
         trace.map = std::move(*map);
         ++streamed.maps_reloaded;
+        for (const std::string& warning : trace.map.warnings) tell(warning);
       }
+      sender.still_here();
       return progress.update(share);
     };
     calls.take = [&](const ActuatorFrame& frame, Sender::Clock::time_point due) {
@@ -210,7 +229,6 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   }
   sink.commit();
   if (log) log->commit();
-  if (streamed.playback.frames == 0 && !interrupted()) throw Error(options.trace, "holds no frame", "record it again");
 
   print_summary(summary(streamed, sink), outputs, options.common);
   write_json(options.common.json, to_json(streamed, options, sink, *detector, invocation), options.common);
@@ -241,8 +259,9 @@ void add_stream(CLI::App& program, Invocation& invocation) {
   add_playing("--map", options->map,
               "Use this actuator map instead of the trace's, and read it again whenever it changes on disk")
       ->type_name("builtin|FILE.png");
-  add_playing("--hold", options->hold_ms,
-              "How long a contact keeps its actuator on, in ms: a coin motor cannot answer a single frame")
+  add_playing(
+      "--hold", options->hold_ms,
+      "How long a contact keeps its actuator on, in ms of the vest's time: a coin motor cannot answer a single frame")
       ->capture_default_str()
       ->check(help::kNotNegative)
       ->type_name("MS");

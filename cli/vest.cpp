@@ -27,9 +27,12 @@ struct CheckOptions {
 };
 
 /// Waits; false when the user pressed Ctrl-C.
-bool rest(std::chrono::duration<double> duration) {
+bool rest(Sender& sender, std::chrono::duration<double> duration) {
   const auto until = Sender::Clock::now() + duration;
-  while (Sender::Clock::now() < until && !interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  while (Sender::Clock::now() < until && !interrupted()) {
+    sender.still_here();
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
   return !interrupted();
 }
 
@@ -39,14 +42,15 @@ SenderStatistics run_in_turn(const OpenSink& sink, std::size_t actuators, const 
   ActuatorFrame frame;
   bool going = true;
   for (std::size_t i = 0; i < actuators && going; ++i) {
-    print_summary(fmt::format("actuator {} of {}\n", i + 1, actuators), {options.common.json}, options.common);
+    print_summary(fmt::format("actuator {} of {}\n", i + 1, actuators),
+                  {options.common.json, options.sink.output_path()}, options.common);
     frame.duty.assign(actuators, 0);
     frame.duty[i] = static_cast<std::uint8_t>(options.level);
     sender.post(frame, Sender::Clock::now());
-    going = rest(std::chrono::duration<double>(options.on_s));
+    going = rest(sender, std::chrono::duration<double>(options.on_s));
     frame.duty[i] = 0;
     sender.post(frame, Sender::Clock::now());
-    going = going && rest(kPause);
+    going = going && rest(sender, kPause);
   }
   return sender.finish();
 }
@@ -55,7 +59,9 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   check_outputs({options.common.json, options.sink.output_path()}, {}, options.common);
   catch_interrupts();
   std::size_t actuators = options.actuators == 0 ? kDefaultActuators : options.actuators;
-  OpenSink sink(options.sink, std::vector<std::string>(actuators), options.common);
+  std::vector<std::string> names;
+  for (std::size_t i = 1; i <= actuators; ++i) names.push_back(std::to_string(i));
+  OpenSink sink(options.sink, names, options.common);
   if (options.actuators == 0 && sink.greeting()) actuators = sink.greeting()->actuator_count;
   const SenderStatistics statistics = run_in_turn(sink, actuators, options);
   sink.commit();
@@ -72,7 +78,8 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   } else {
     verdict += ": THE VEST DOES NOT HEAR EVERYTHING\n";
   }
-  print_summary(verdict + sink.describe_link(statistics.bytes), {options.common.json}, options.common);
+  print_summary(verdict + sink.describe_link(statistics.bytes), {options.common.json, options.sink.output_path()},
+                options.common);
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["actuators"] = actuators;

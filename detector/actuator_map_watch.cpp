@@ -17,12 +17,12 @@ constexpr std::chrono::milliseconds kBetweenLooks(100);
 
 }  // namespace
 
-ActuatorMapWatch::ActuatorMapWatch(std::string file, std::size_t actuator_count,
+ActuatorMapWatch::ActuatorMapWatch(std::string file, std::string read_stamp, std::size_t actuator_count,
                                    std::function<void(const std::string&)> warn)
     : file_(std::move(file)),
       actuator_count_(actuator_count),
       warn_(std::move(warn)),
-      read_stamp_(stamp()),
+      read_stamp_(std::move(read_stamp)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 ActuatorMapWatch::~ActuatorMapWatch() = default;
@@ -32,10 +32,10 @@ std::optional<ActuatorMap> ActuatorMapWatch::take() {
   return std::exchange(map_, std::nullopt);
 }
 
-std::string ActuatorMapWatch::stamp() const {
+std::string ActuatorMapWatch::stamp(const std::string& file) {
   std::string text;
-  const auto sidecar = std::filesystem::path(file_).replace_extension(".json").string();
-  for (const std::string& name : {file_, sidecar}) {
+  const auto sidecar = std::filesystem::path(file).replace_extension(".json").string();
+  for (const std::string& name : {file, sidecar}) {
     struct stat status = {};
     if (::stat(name.c_str(), &status) == 0)
       text +=
@@ -52,7 +52,7 @@ void ActuatorMapWatch::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     stopped_.wait_for(lock, stop, kBetweenLooks, [] { return false; });
     lock.unlock();
-    const std::string now = stamp();
+    const std::string now = stamp(file_);
     if (now == seen && now != read_stamp_) {
       read_stamp_ = now;
       read();
@@ -70,7 +70,7 @@ void ActuatorMapWatch::read() try {
                 "start again to use it");
   const std::lock_guard lock(mutex_);
   map_ = std::move(map);
-} catch (const Error& error) {
+} catch (const std::exception& error) {
   warn_(fmt::format("{}\n  The map before it stays in use.", error.what()));
 }
 

@@ -16,9 +16,14 @@ namespace vestige {
 /// be edited while it is felt (HAVE 2010 §III.B). A file is read once it has been left alone for 0.1 s.
 class ActuatorMapWatch {
  public:
-  /// `file`: a PNG. Maps with another number of actuators than `actuator_count` are not taken, nor is what cannot be
-  /// read: `warn` is told, in the watch's thread, and the old one stays.
-  ActuatorMapWatch(std::string file, std::size_t actuator_count, std::function<void(const std::string&)> warn);
+  /// What tells one state of a map's two files from another.
+  static std::string stamp(const std::string& file);
+
+  /// `file`: a PNG; `read_stamp`: its stamp from before it was read. Maps with another number of actuators than
+  /// `actuator_count` are not taken, nor is what cannot be read: `warn` is told, in the watch's thread, and the old one
+  /// stays.
+  ActuatorMapWatch(std::string file, std::string read_stamp, std::size_t actuator_count,
+                   std::function<void(const std::string&)> warn);
   /// Waits for the thread.
   ~ActuatorMapWatch();
   ActuatorMapWatch(const ActuatorMapWatch&) = delete;
@@ -28,8 +33,6 @@ class ActuatorMapWatch {
   std::optional<ActuatorMap> take();
 
  private:
-  /// What tells one state of the two files from another.
-  std::string stamp() const;
   void run(const std::stop_token& stop);
   void read();
 

@@ -6,8 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <memory>
+#include <thread>
 #include <utility>
 
 namespace vestige {
@@ -83,7 +85,10 @@ void OscSink::send(const ActuatorFrame& frame, std::uint8_t) {
 }
 
 void OscSink::send_off(std::uint8_t) {
-  send_levels({});
+  for (int i = 0; i < 3; ++i) {  // no frame follows that would mend a lost one
+    if (i != 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    send_levels({});
+  }
 }
 
 void OscSink::send_levels(std::span<const std::uint8_t> level) {

@@ -21,6 +21,7 @@ constexpr auto kIdle = 100ms;
 constexpr auto kLineBusy = 500us;  ///< looked at again after this
 constexpr auto kBetweenTries = 250ms;
 constexpr auto kPatience = 100ms;  ///< for the answers to the last frames
+constexpr auto kDeserted = 1s;
 
 double seconds(Sender::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -48,6 +49,7 @@ Sender::~Sender() {
 
 void Sender::post(const ActuatorFrame& frame, Clock::time_point since) {
   if (failed_) std::rethrow_exception(failure_);
+  still_here();
   if (posted_before_ == frame.duty) return;
   posted_before_ = frame.duty;
   {
@@ -75,6 +77,11 @@ SenderStatistics Sender::finish() {
   stopping_ = true;
   wake();
   thread_.join();
+  if (mailbox_) {  // nothing but the off took its place
+    ++superseded_;
+    if (options_.keep_log) log_.push_back({mailbox_->frame, SentState::Fate::kSuperseded, 0});
+    mailbox_.reset();
+  }
   if (failed_) std::rethrow_exception(failure_);
   statistics_.superseded = superseded_;
   statistics_.bytes = sink_.bytes_sent();
@@ -92,6 +99,11 @@ void Sender::run() {
     switch_off();
   } catch (...) {
     failure_ = std::current_exception();
+    try {
+      sink_.send_off(next_sequence(nullptr));
+    } catch (const std::exception&) {
+      // The failure already says more.
+    }
     failed_ = true;
   }
 }
@@ -101,6 +113,7 @@ void Sender::loop() {
     const auto now = Clock::now();
     try {
       if (!linked_ && now >= next_try_) try_reconnecting();
+      look_for_life(now);
       if (may_send(now)) {
         send_state();
       } else {
@@ -118,16 +131,26 @@ bool Sender::has_changed() {
   return mailbox_.has_value();
 }
 
+void Sender::look_for_life(Clock::time_point now) {
+  const bool deserted = now > Clock::time_point(Clock::duration(alive_)) + kDeserted;
+  if (deserted && !deserted_ && linked_ && has_state_) {
+    on_event_(fmt::format("{}: the playback has stopped; switched off until it goes on", sink_.name()));
+    sink_.send_off(next_sequence(nullptr));
+    note_sent();
+  }
+  deserted_ = deserted;
+}
+
 bool Sender::may_send(Clock::time_point now) {
   if (!linked_ || now < last_sent_ + options_.floor) return false;
-  const bool due = has_changed() || (has_state_ && now >= last_sent_ + options_.refresh);
+  const bool due = has_changed() || (has_state_ && !deserted_ && now >= last_sent_ + options_.refresh);
   return due && sink_.ready();
 }
 
 Sender::Clock::time_point Sender::next_chance(Clock::time_point now) {
   if (!linked_) return next_try_;
   Clock::time_point due = now + kIdle;
-  if (has_state_) due = last_sent_ + options_.refresh;
+  if (has_state_ && !deserted_) due = last_sent_ + options_.refresh;
   if (has_changed()) due = last_sent_ + options_.floor;
   return std::max(due, now + kLineBusy);
 }
@@ -175,11 +198,10 @@ void Sender::give_back() {
 }
 
 std::uint8_t Sender::next_sequence(const Posted* changed) {
-  Outstanding& place = outstanding_[++sequence_];
-  if (!place.waiting) ++waiting_;
-  place = {true, changed != nullptr, changed != nullptr ? changed->since : Clock::time_point()};
-  if (sink_.acknowledges())
-    statistics_.most_unanswered = std::max<std::uint64_t>(statistics_.most_unanswered, waiting_);
+  outstanding_[++sequence_] = {true, changed != nullptr, changed != nullptr ? changed->since : Clock::time_point()};
+  if (statistics_.acknowledged != 0)
+    statistics_.most_unanswered =
+        std::max<std::uint64_t>(statistics_.most_unanswered, static_cast<std::uint8_t>(sequence_ - answered_));
   return sequence_;
 }
 
@@ -200,25 +222,33 @@ void Sender::wait(Clock::time_point until) {
 void Sender::receive() {
   if (!linked_) return;
   for (const Acknowledgement& answer : sink_.receive()) {
-    if (answer.was_in_fail_safe) ++statistics_.fail_safes;
-    if (answer.overrun) ++statistics_.overruns;
-    if (receive_errors_before_)
-      statistics_.receive_errors += static_cast<std::uint8_t>(answer.receive_errors - *receive_errors_before_);
-    receive_errors_before_ = answer.receive_errors;
+    count_faults(answer);
     Outstanding& place = outstanding_[answer.sequence];
     if (!place.waiting) continue;
     place.waiting = false;
-    --waiting_;
+    answered_ = answer.sequence;  // and with it all before it, since the line keeps their order
     ++statistics_.acknowledged;
     if (place.changed) statistics_.acknowledged_after.add(seconds(Clock::now() - place.since));
   }
+}
+
+void Sender::count_faults(const Acknowledgement& answer) {
+  if (answer.overrun) ++statistics_.overruns;
+  // The link's first answer tells of the time before it.
+  if (receive_errors_before_) {
+    const bool restarted = answer.was_in_fail_safe && answer.receive_errors < *receive_errors_before_;
+    const int before = restarted ? 0 : *receive_errors_before_;
+    statistics_.receive_errors += static_cast<std::uint8_t>(answer.receive_errors - before);
+    if (answer.was_in_fail_safe && !deserted_) ++statistics_.fail_safes;
+  }
+  receive_errors_before_ = answer.receive_errors;
 }
 
 void Sender::lose_link(const LinkLost& lost) {
   give_back();
   linked_ = false;
   outstanding_.fill({});
-  waiting_ = 0;
+  answered_ = sequence_;
   ++statistics_.links_lost;
   next_try_ = Clock::now() + kBetweenTries;
   on_event_(lost.what());
@@ -242,7 +272,7 @@ void Sender::wait_for_last_answer() {
 }
 
 void Sender::switch_off() try {
-  if (!linked_ && !sink_.reconnect()) return;  // the board's ttl has switched it off
+  if (!linked_ && !sink_.reconnect()) return;  // a board's ttl has switched it off
   linked_ = true;
   const auto until = Clock::now() + kPatience;
   while (has_changed() && Clock::now() < until) {
@@ -262,6 +292,7 @@ void Sender::switch_off() try {
     }
     sink_.send_off(next_sequence(nullptr));
     note_sent();
+    statistics_.off_sent = true;
     if (!sink_.acknowledges()) return;
     wait_for_last_answer();
     statistics_.off_acknowledged = !outstanding_[sequence_].waiting;

@@ -27,7 +27,7 @@ struct SenderOptions {
 struct SentState {
   enum class Fate : std::uint8_t {
     kSent,
-    kSuperseded,  ///< a newer one took its place before it could be sent
+    kSuperseded,  ///< a newer one, or the off at the end, took its place before it could be sent
   };
   ActuatorFrame frame;
   Fate fate = Fate::kSent;
@@ -39,15 +39,17 @@ struct SenderStatistics {
   std::uint64_t changes = 0;     ///< those of them that said something new
   std::uint64_t superseded = 0;  ///< changes that were never sent
   std::uint64_t acknowledged = 0;
-  std::uint64_t fail_safes = 0;         ///< answers that the board had switched itself off before
-  std::uint64_t overruns = 0;           ///< answers that the board had lost bytes
-  std::uint64_t receive_errors = 0;     ///< damaged frames, as the board counted them
-  std::uint64_t links_lost = 0;         ///< times that the other end had gone
-  std::uint64_t bytes = 0;              ///< handed to the system
-  std::uint64_t most_unanswered = 0;    ///< frames that were on their way at a time: no queue, so that it never grows
+  std::uint64_t fail_safes = 0;      ///< answers that the board had switched itself off before
+  std::uint64_t overruns = 0;        ///< answers that the board had lost bytes
+  std::uint64_t receive_errors = 0;  ///< damaged frames, as the board counted them
+  std::uint64_t links_lost = 0;      ///< times that the other end had gone
+  std::uint64_t bytes = 0;           ///< handed to the system
+  std::uint64_t most_unanswered =
+      0;  ///< frames that were on their way at a time: there is no queue, so it never grows; 0: no answers
   LatencyHistogram written;             ///< of changes: from `since` to the last byte written
   LatencyHistogram acknowledged_after;  ///< of changes: from `since` to their answer
-  bool off_acknowledged = false;        ///< the board answered that all is off; false where none ever answers
+  bool off_sent = false;
+  bool off_acknowledged = false;  ///< the board answered that all is off; false where none ever answers
 };
 
 /// Sends states to a sink from a thread of its own, at the sink's pace: a mailbox of one slot, in which the latest
@@ -67,6 +69,10 @@ class Sender {
   /// Leaves a state to be sent, unless it says what the one before said. `since`: from when latencies count. Throws
   /// what the sink threw.
   void post(const ActuatorFrame& frame, Clock::time_point since);
+
+  /// Says that whoever leaves states is alive. When neither this nor `post` has been called for a second, nothing is
+  /// refreshed any more, so that the board's ttl switches it off; what has no ttl is switched off.
+  void still_here() { alive_ = Clock::now().time_since_epoch().count(); }
 
   /// With `keep_log`: what became of states, in their order, as far as it is known and was not told before.
   std::vector<SentState> take_log();
@@ -97,6 +103,7 @@ class Sender {
   /// Waits until something is posted, an answer has come, or `until`.
   void wait(Clock::time_point until);
   bool has_changed();
+  void look_for_life(Clock::time_point now);
   bool may_send(Clock::time_point now);
   Clock::time_point next_chance(Clock::time_point now);
   void send_state();
@@ -108,6 +115,7 @@ class Sender {
   void note_sent();
   void wait_for_last_answer();
   void receive();
+  void count_faults(const Acknowledgement& answer);
   void lose_link(const LinkLost& lost);
   void try_reconnecting();
   void wake();
@@ -122,6 +130,7 @@ class Sender {
   std::optional<InFlight> in_flight_;
   std::vector<SentState> log_;
   std::uint64_t superseded_ = 0;
+  std::atomic<Clock::rep> alive_ = Clock::now().time_since_epoch().count();
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;
@@ -132,11 +141,12 @@ class Sender {
   ActuatorFrame state_;
   bool has_state_ = false;
   bool linked_ = true;
+  bool deserted_ = false;  ///< nobody has been there for a second
   Clock::time_point last_sent_;
   Clock::time_point next_try_;
   std::uint8_t sequence_ = 0;
   std::array<Outstanding, 256> outstanding_;
-  std::size_t waiting_ = 0;
+  std::uint8_t answered_ = 0;  ///< the newest
   std::optional<std::uint8_t> receive_errors_before_;
   SenderStatistics statistics_;
 

@@ -12,6 +12,9 @@ namespace vestige {
 /// 115200 is not the same to all: 111111 to an XBee, 117647 to an AVR at 16 MHz. At 57600 they agree.
 inline constexpr std::uint32_t kDefaultBaud = 57600;
 
+/// Of a byte on the line, with its start and stop bit.
+inline constexpr double kBitsPerByte = 10;
+
 /// Serial ports of this machine that a vest may hang on, by name. `devices`: the folder with their nodes.
 std::vector<std::string> serial_candidates(const std::filesystem::path& devices = "/dev");
 

@@ -7,20 +7,7 @@
 
 namespace vestige {
 
-namespace {
-
-/// With the start and stop bit of each.
-constexpr double kBitsPerByte = 10;
-
-std::uint8_t ttl_units(int ttl_ms) {
-  constexpr int kMost_ms = 255 * kTtlUnit_ms;
-  if (ttl_ms < kTtlUnit_ms || ttl_ms > kMost_ms || ttl_ms % kTtlUnit_ms != 0)
-    throw UsageError("--ttl", fmt::format("{} ms cannot be told to the vest", ttl_ms),
-                     fmt::format("choose a multiple of {} from {} to {}", kTtlUnit_ms, kTtlUnit_ms, kMost_ms));
-  return static_cast<std::uint8_t>(ttl_ms / kTtlUnit_ms);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 SerialSink::SerialSink(SerialSinkOptions options) : options_(std::move(options)), ttl_(ttl_units(options_.ttl_ms)) {
   if (options_.xbee) unwrapper_.emplace(options_.xbee->escaping);

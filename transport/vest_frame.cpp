@@ -51,6 +51,14 @@ std::optional<VestAnswer> decode(std::span<const std::uint8_t> frame) {
 
 }  // namespace
 
+std::uint8_t ttl_units(int ttl_ms) {
+  constexpr int kMost_ms = 255 * kTtlUnit_ms;
+  if (ttl_ms < kTtlUnit_ms || ttl_ms > kMost_ms || ttl_ms % kTtlUnit_ms != 0)
+    throw UsageError("--ttl", fmt::format("{} ms cannot be told to the vest", ttl_ms),
+                     fmt::format("choose a multiple of {} from {} to {}", kTtlUnit_ms, kTtlUnit_ms, kMost_ms));
+  return static_cast<std::uint8_t>(ttl_ms / kTtlUnit_ms);
+}
+
 std::vector<std::uint8_t> encode_state(Quantity quantity, std::span<const std::uint8_t> level, std::uint8_t sequence,
                                        std::uint8_t ttl) {
   if (level.size() > kMaxActuators)

@@ -19,6 +19,8 @@ namespace vestige {
 /// n is one byte.
 inline constexpr std::size_t kMaxActuators = 255;
 inline constexpr int kTtlUnit_ms = 10;
+/// What `encode_state` takes. Throws `UsageError` naming --ttl for what is no multiple of 10 from 10 to 2550.
+std::uint8_t ttl_units(int ttl_ms);
 /// A zero alone ends whatever stood half-sent on the line before, and is no frame.
 inline constexpr std::uint8_t kFrameEnd = 0;
 

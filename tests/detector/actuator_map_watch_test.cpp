@@ -56,14 +56,14 @@ class ActuatorMapWatchTest : public ::testing::Test {
 
 TEST_F(ActuatorMapWatchTest, AMapThatStaysAsItIsIsNotReadAgain) {
   write_png("map.png");
-  ActuatorMapWatch watch(file, 6, warn);
+  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, warn);
   std::this_thread::sleep_for(std::chrono::milliseconds(400));
   EXPECT_FALSE(watch.take());
 }
 
 TEST_F(ActuatorMapWatchTest, AnotherFileInItsPlaceAndAnotherSidecarAreRead) {
   write_png("map.png");
-  ActuatorMapWatch watch(file, 6, warn);
+  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, warn);
   write_png("new.png");
   std::filesystem::rename(folder / "new.png", file);
   ASSERT_TRUE(wait_for_map(watch));
@@ -77,7 +77,7 @@ TEST_F(ActuatorMapWatchTest, AnotherFileInItsPlaceAndAnotherSidecarAreRead) {
 
 TEST_F(ActuatorMapWatchTest, WhatCannotBeReadAndAnotherNumberOfActuatorsIsSaidOnceAndTheOldMapStays) {
   write_png("map.png");
-  ActuatorMapWatch watch(file, 6, warn);
+  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, warn);
   write_text("map.png", "not a picture");
   wait_for_warnings(1);
   std::filesystem::remove(file);
@@ -87,7 +87,7 @@ TEST_F(ActuatorMapWatchTest, WhatCannotBeReadAndAnotherNumberOfActuatorsIsSaidOn
   EXPECT_THAT(warnings_so_far(), ElementsAre(HasSubstr("is not a PNG file"), HasSubstr("map.png")));
   EXPECT_FALSE(watch.take());
 
-  ActuatorMapWatch other(file, 5, warn);
+  ActuatorMapWatch other(file, ActuatorMapWatch::stamp(file), 5, warn);
   write_png("new.png");
   std::filesystem::rename(folder / "new.png", file);
   wait_for_warnings(3);

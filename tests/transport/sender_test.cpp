@@ -60,6 +60,8 @@ class PretendedVest : public ActuatorSink {
   bool silent = false;
   bool unplugged = false;
   bool broken = false;
+  bool breaks_once = false;
+  bool restarted = false;
   int tries_until_back = 0;
   std::uint8_t receive_errors = 0;
   std::vector<Acknowledgement> answers;
@@ -67,10 +69,10 @@ class PretendedVest : public ActuatorSink {
  private:
   void tell(const Told& told) {
     locked([&] {
-      if (broken) throw Error("a vest", "burns", "use water");
+      if (broken || std::exchange(breaks_once, false)) throw Error("a vest", "burns", "use water");
       if (unplugged) throw LinkLost("a vest", "is unplugged", "plug it in");
       told_.push_back(told);
-      if (!silent) answers.push_back({told.sequence, false, false, receive_errors});
+      if (!silent) answers.push_back({told.sequence, std::exchange(restarted, false), false, receive_errors});
     });
   }
 
@@ -224,7 +226,55 @@ TEST_F(SenderTest, WhatWillNotMendItselfIsThrownWhereStatesAreLeft) {
         std::this_thread::sleep_for(1ms);
       },
       Error);
+  vest.locked([&] { vest.broken = false; });
   EXPECT_THROW(sender.finish(), Error);
+}
+
+TEST_F(SenderTest, AfterAnErrorTheVestIsSwitchedOffIfItStillListens) {
+  vest.breaks_once = true;
+  Sender sender(vest, options(), note);
+  post(sender, {200});
+  until([&] { return !vest.told().empty(); });
+  EXPECT_THROW(sender.finish(), Error);
+  EXPECT_THAT(changes(), ElementsAre(Duties{}));
+}
+
+TEST_F(SenderTest, AVestWhosePlaybackHasStoppedIsSwitchedOffUntilItGoesOn) {
+  Sender sender(vest, options(), note);
+  post(sender, {200});
+  until([&] { return changes().size() == 2; });
+  std::this_thread::sleep_for(100ms);
+  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}));
+  sender.still_here();
+  until([&] { return changes().size() == 3; });
+  sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}, Duties{200}, Duties{}));
+  EXPECT_THAT(events, ElementsAre(HasSubstr("the playback has stopped")));
+}
+
+TEST_F(SenderTest, AStateThatOnlyTheOffReplacesIsReported) {
+  vest.busy = true;
+  Sender sender(vest, options(), note);
+  post(sender, {1});
+  EXPECT_EQ(sender.finish().superseded, 1U);
+  ASSERT_EQ(sender.take_log().size(), 1U);
+  EXPECT_THAT(changes(), ElementsAre(Duties{}));
+}
+
+TEST_F(SenderTest, ABoardThatRestartsIsReportedAndItsNewCountIsNotTakenForDamage) {
+  vest.receive_errors = 3;
+  Sender sender(vest, options(), note);
+  post(sender, {1});
+  until([&] { return vest.told().size() >= 2; });
+  vest.locked([&] {
+    vest.receive_errors = 0;
+    vest.restarted = true;
+  });
+  const std::size_t before = vest.told().size();
+  until([&] { return vest.told().size() >= before + 3; });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_EQ(statistics.fail_safes, 1U);
+  EXPECT_EQ(statistics.receive_errors, 0U);
 }
 
 TEST_F(SenderTest, DamagedFramesAreCountedAsTheBoardCountsThemModulo256) {

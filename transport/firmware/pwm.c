@@ -47,7 +47,3 @@ void pwm_set(uint8_t actuator, uint8_t level) {
     *output->control |= output->connected;
   }
 }
-
-void pwm_all_off(void) {
-  for (uint8_t i = 0; i < kActuators; ++i) pwm_set(i, 0);
-}

@@ -11,6 +11,5 @@ void pwm_start(void);
 
 // Only while interrupts are off, or from one: the clock's interrupt switches outputs too.
 void pwm_set(uint8_t actuator, uint8_t level);
-void pwm_all_off(void);
 
 #endif

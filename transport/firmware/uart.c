@@ -8,7 +8,8 @@
 #include <avr/io.h>
 #include <util/setbaud.h>
 
-// Indices of the receive ring wrap with their type; it holds nine frames for six motors, or one of the longest.
+// Indices of the receive ring wrap with their type; it holds eighteen frames for six motors; a longer one is taken
+// out while it comes.
 static volatile uint8_t received[256];
 static volatile uint8_t received_begin, received_end;
 static volatile bool overran;
