@@ -1,8 +1,14 @@
 #pragma once
 
+#include <cfloat>
 #include <cmath>
 
 namespace vestige {
+
+static_assert(FLT_EVAL_METHOD == 0, "the bounds need every operation rounded to its type");
+#ifdef __FAST_MATH__
+#error "fast-math breaks the bounds"
+#endif
 
 /// Half the distance from 1 to the next double: what one rounded operation errs at most, relative.
 inline constexpr double kUnit = 0x1p-53;

@@ -81,7 +81,9 @@ Decision decide_static(const Way& way, const Corners& triangle) {
     right = right || edge.surely_negative();
     sure = sure && edge.sure();
   }
-  // In a plane with the triangle, or with a triangle without area, no volume has a sign. So two signs prove a miss.
+  // Two signs prove a miss: the way's line passes beside the triangle. Seen from the way's start, a triangle without
+  // area is a line, whose volumes differ from 0 only if the start is not on it and the way leaves their common plane:
+  // then they never meet.
   if (left && right) return {};
   const double sum = (edges[0].value + edges[1].value) + edges[2].value;
   const double sum_error =

@@ -69,7 +69,9 @@ const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
 /// Whether no sum of a skinned vertex, over any influences, can leave fp32: weights sum to 1, rounding adds a little.
 bool FrameBuilder::skins_to_finite(std::span<const SkinMatrix> palette) const {
   return std::ranges::all_of(palette, [this](const SkinMatrix& matrix) {
-    const glm::dvec3 reach = skin_reach_m(matrix, bind_extent_m_);
+    glm::dvec3 reach = skin_reach_m(matrix, bind_extent_m_);
+    // A blended column must not overflow either where the bind pose is flat: infinity times 0 is no number.
+    for (const auto& column : matrix.column) reach = glm::max(reach, glm::abs(glm::dvec3(column)));
     return reach.x < kLargestSkin_m && reach.y < kLargestSkin_m && reach.z < kLargestSkin_m;
   });
 }

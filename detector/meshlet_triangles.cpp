@@ -127,6 +127,7 @@ void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Me
         slab_low_start = hn::Min(hn::Min(before_a, before_b), before_c);
         slab_high_start = hn::Max(hn::Max(before_a, before_b), before_c);
       } else {
+        largest = greatest(largest, everywhere(glm::vec3(0x1p-90F)));  // the start's rounding may be denormal
         const Vector moved = ((a - a_before) + (b - b_before) + (c - c_before)) * (1.0F / 3.0F);
         const Vector nothing = everywhere(glm::vec3(0));
         const Vector margin = margin_of(largest);
@@ -137,7 +138,8 @@ void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Me
         slab_high_start = hn::Sub(slab_high_start, along_moved);
       }
     }
-    const V margin = margin_of(dot(magnitude(normal), largest));
+    // For `carried`, larger than whatever is added above, so that where that overflows, so does the margin.
+    const V margin = margin_of(dot(magnitude(normal), method == Method::kCarried ? largest * 4.0F : largest));
     store(low, out.low, i);
     store(high, out.high, i);
     store(normal, out.normal, i);

@@ -185,10 +185,11 @@ void main() {
 #endif
   }
 #if METHOD == VESTIGE_METHOD_CARRIED
-  vec3 moved = vec3(0.0);
+  // As written: the sum of differences, whose error their own size bounds, not the difference of sums.
+  precise vec3 moved = vec3(0.0);
   vec3 moved_radius = vec3(0.0);
   for (int i = 0; i < 3; ++i) {
-    vec3 displacement = skinned[i].position - skinned[i].position_before;
+    precise vec3 displacement = skinned[i].position - skinned[i].position_before;
     moved += displacement;
     moved_radius += skinned[i].radius + skinned[i].radius_before + kFourUlps * abs(displacement);
   }

@@ -39,6 +39,8 @@ Influences mean_of(const Influences& a, const Influences& b) {
   std::ranges::sort(all, {}, &Weighted::palette);
   double sum = 0;
   for (const Weighted& one : all) sum += one.weight;
+  // A weight that rounds to 0 would stand before others that do not, and be counted in their place.
+  std::erase_if(all, [sum](const Weighted& one) { return static_cast<float>(one.weight / sum) == 0; });
   Influences mean;
   for (std::size_t k = 0; k < all.size(); ++k) {
     mean.palette[k] = all[k].palette;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -78,9 +79,9 @@ class StreamCommand : public test::CommandLineTest {
   }
 
   /// Runs `command` beside a board whose pty is called 'vest' and whose pins end up in pins.csv.
-  test::Outcome run_with_board(const std::string& command) const {
-    return run("simulated_board '" VESTIGE_FIRMWARE
-               "' --link vest --duties pins.csv >board.txt 2>&1 & board=$!\n"
+  test::Outcome run_with_board(const std::string& command, const std::string& firmware = "vest-atmega1280") const {
+    return run("simulated_board '" VESTIGE_FIRMWARE_DIR "/" + firmware +
+               ".elf' --link vest --duties pins.csv >board.txt 2>&1 & board=$!\n"
                "for i in $(seq 200); do [ -e vest ] && break; sleep 0.05; done\n" +
                command + "\ncode=$?; kill -INT $board; wait $board; exit $code");
   }
@@ -134,6 +135,45 @@ TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
     EXPECT_GE(json["latency_us"]["acknowledged"][key], json["latency_us"]["written"][key]) << key;
   }
   EXPECT_THAT(outcome.standard_output, HasSubstr("of them changes"));
+}
+
+TEST_F(StreamCommand, PressuresArriveAtTheValvesInAllTheirLevels) {
+  record("--count 60 --rate 500 --duration 2");
+  const test::Outcome outcome = run_with_board(
+      "vestige stream trace.mcap --port vest --levels pressure --log log.csv --json stream.json", "vest-valves");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  std::vector<Row> sent = read_log(folder_ / "log.csv");
+  std::erase_if(sent, [](const Row& row) { return row.state != "sent"; });
+  const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
+  std::set<int> levels;
+  for (std::size_t valve = 0; valve < 6; ++valve) {
+    const Levels commanded = steps_of(valve, sent);
+    const Levels measured = steps_of(valve, pins);
+    levels.insert(commanded.begin(), commanded.end());
+    ASSERT_EQ(measured.size(), commanded.size()) << "valve " << valve + 1;
+    for (std::size_t i = 0; i < measured.size(); ++i) EXPECT_NEAR(measured[i], commanded[i], 1) << valve << " " << i;
+  }
+  EXPECT_GT(levels.size(), 10U);
+}
+
+TEST_F(StreamCommand, AVestThatIsUnpluggedWhileItIsDrivenIsFoundAgain) {
+  record("--colliders hug --rate 100 --duration 1");
+  const std::string board = "simulated_board '" VESTIGE_FIRMWARE_DIR "/vest-atmega1280.elf' --link vest --duties ";
+  const test::Outcome outcome =
+      run(board +
+          "before.csv >/dev/null 2>&1 & first=$!\nfor i in $(seq 200); do [ -e vest ] && break; sleep 0.05; done\n"
+          "vestige stream trace.mcap --port vest --loop --hold 1e6 --json stream.json & stream=$!\n"
+          "sleep 1; kill -INT $first; wait $first; sleep 0.5\n" +
+          board +
+          "after.csv >/dev/null 2>&1 & second=$!\n"
+          "sleep 3; kill -INT $stream; wait $stream; code=$?; kill -INT $second; wait $second; exit $code");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("the link is back"));
+  EXPECT_EQ(read_json("stream.json")["links_lost"], 1);
+  const std::vector<Row> after = read_timeline(folder_ / "after.csv");
+  ASSERT_FALSE(after.empty());
+  EXPECT_TRUE(std::ranges::any_of(after, [](const Row& row) { return row.level != Levels(6); }));
+  EXPECT_THAT(after.back().level, Each(0));
 }
 
 TEST_F(StreamCommand, AnInterruptedStreamSwitchesTheVestOff) {

@@ -202,6 +202,8 @@ const Hostility kFinitePoses[] = {
     {"mirrored_bone", [](TraceFrame& frame) { some_joint_of(frame).scale *= -1.0F; }},
     {"denormal_scale", [](TraceFrame& frame) { root_of(frame).scale *= 1e-41F; }},
     {"tiny_scale", [](TraceFrame& frame) { root_of(frame).scale *= 1e-20F; }},
+    {"large_scale", [](TraceFrame& frame) { root_of(frame).scale *= 1e12F; }},
+    {"larger_scale", [](TraceFrame& frame) { root_of(frame).scale *= 3e12F; }},
     {"huge_scale", [](TraceFrame& frame) { root_of(frame).scale *= 1e15F; }},
     {"denormal_translation", [](TraceFrame& frame) { some_joint_of(frame).translation *= 1e-43F; }},
     {"no_rotation", [](TraceFrame& frame) { some_joint_of(frame).rotation = glm::quat(0, 0, 0, 0); }},
@@ -255,6 +257,26 @@ TEST_P(ScaledTriangle, WithoutAnySizeIsAPoint) {
 TEST_P(ScaledTriangle, ThatIsMirroredShowsItsBack) {
   EXPECT_EQ(contact_at({1, 1, 1}, {0.25, 0, 1}, {0.25, 0, -1}).side, 1);
   EXPECT_EQ(contact_at({-1, 1, 1}, {0.25, 0, 1}, {0.25, 0, -1}).side, -1);
+}
+
+/// The start is carried so far that the slabs' fp32 overflows where their margin alone would not.
+TEST(FarCarriedTriangle, IsNotSkipped) {
+  constexpr float kSize_m = 3.5e12F;
+  const Avatar avatar = test::rigid_avatar({{1, -1, -1}, {1, 1, -1}, {1, 0, 1}}, {{0, 1, 2}});
+  std::vector<TraceFrame> scene(2);
+  for (std::size_t k = 0; k < scene.size(); ++k) {
+    scene[k].index = k;
+    scene[k].time_ns = static_cast<std::int64_t>(k) * 10'000'000;
+    scene[k].pose = rest_pose(avatar);
+    scene[k].pose.nodes[0].scale = glm::vec3(k == 0 ? -kSize_m : kSize_m, kSize_m, kSize_m);
+    scene[k].colliders = {{0, glm::dvec3(k == 0 ? -1.5 : 1.5, 0, 0) * static_cast<double>(kSize_m)}};
+  }
+  for (const Skip skip : {Skip::kOff, Skip::kOn}) {
+    const auto cpu = make_cpu_detector(avatar, no_map(), {Surface::kAll, PlaneSet::all(), Method::kCarried, skip});
+    const Contact contact = test::run_scene(scene, avatar, 1, *cpu).rows[1][0];
+    EXPECT_TRUE(contact.hit());
+    EXPECT_EQ(contact.t, 0.5F);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, ScaledTriangle, kEveryMethod, [](const auto& test) { return name_of(test.param); });
