@@ -60,6 +60,7 @@ int run(int argc, char** argv) {
   add_stress(program, invocation);
   add_accuracy(program, invocation);
   add_inspect(program, invocation);
+  add_doctor(program, invocation);
   add_avatar(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);

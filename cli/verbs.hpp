@@ -15,6 +15,7 @@ void add_query(CLI::App& program, Invocation& invocation);
 void add_stress(CLI::App& program, Invocation& invocation);
 void add_accuracy(CLI::App& program, Invocation& invocation);
 void add_inspect(CLI::App& program, Invocation& invocation);
+void add_doctor(CLI::App& program, Invocation& invocation);
 void add_stream(CLI::App& program, Invocation& invocation);
 void add_vest(CLI::App& program, Invocation& invocation);
 void add_avatar(CLI::App& program, Invocation& invocation);

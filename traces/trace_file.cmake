@@ -22,7 +22,9 @@ target_sources(vestige_traces PRIVATE
   append_file.cpp
   mcap/byte_source.cpp
   mcap/chunk_expander.cpp
+  mcap/chunk_check.cpp
   mcap/compression.cpp
+  mcap/container_check.cpp
   mcap/crc32.cpp
   mcap/decode.cpp
   mcap/encode.cpp
@@ -30,9 +32,12 @@ target_sources(vestige_traces PRIVATE
   mcap/record_walker.cpp
   mcap/stream_reader.cpp
   mcap/summary.cpp
+  mcap/summary_check.cpp
   mcap/writer.cpp
+  trace_check.cpp
   trace_format.cpp
   trace_messages.cpp
+  trace_nodes.cpp
   message_stream.cpp
   trace_index.cpp
   trace_reader.cpp

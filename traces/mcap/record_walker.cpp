@@ -28,21 +28,47 @@ bool belongs_in_chunks(Opcode opcode) {
   return opcode == Opcode::kSchema || opcode == Opcode::kChannel || opcode == Opcode::kMessage;
 }
 
+/// Whether the source begins with the magic bytes, or with as many of them as it has bytes.
+bool begins_with_magic(const ByteSource& source) {
+  std::array<std::byte, kMagicBytes> magic = {};
+  const auto begin =
+      std::span(magic).first(static_cast<std::size_t>(std::min<std::uint64_t>(source.size(), kMagicBytes)));
+  source.read_at(0, begin);
+  return is_magic(begin);
+}
+
+void require_content(const ByteSource& source) {
+  if (source.size() == 0)
+    throw Error(source.name(), "is empty", "was its recording started, and did the disk have room?");
+}
+
 }  // namespace
 
 void require_mcap(const ByteSource& source) {
-  std::array<std::byte, kMagicBytes> magic = {};
-  if (source.size() == 0)
-    throw Error(source.name(), "is empty", "was its recording started, and did the disk have room?");
-  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(source.size(), kMagicBytes));
-  source.read_at(0, std::span(magic).first(count));
-  if (!is_magic(std::span(magic).first(count)))
+  require_content(source);
+  if (!begins_with_magic(source))
     throw Error(source.name(), "is no MCAP file: it does not begin with MCAP's magic bytes", "name a recorded trace");
-  if (count < kMagicBytes) throw Error(source.name(), "ends within its first bytes", "record it again");
+  if (source.size() < kMagicBytes) throw Error(source.name(), "ends within its first bytes", "record it again");
 }
 
-RecordWalker::RecordWalker(const ByteSource& source) : source_(source), here_(source), ahead_(source) {
-  require_mcap(source);
+RecordWalker::RecordWalker(const ByteSource& source, MagicBytes magic)
+    : source_(source), here_(source), ahead_(source) {
+  if (magic == MagicBytes::kRequired) {
+    require_mcap(source);
+    return;
+  }
+  require_content(source);
+  if (source.size() < kMagicBytes || !begins_with_magic(source)) begin_without_magic();
+}
+
+void RecordWalker::begin_without_magic() {
+  const auto header = head_at(here_, kMagicBytes);
+  if (header && header->opcode == Opcode::kHeader && may_resume_at(*header, false)) {
+    damages_.push_back({0, kMagicBytes, "the magic bytes that begin the file are broken"});
+  } else {
+    damages_.push_back({0, 0, "the file does not begin with MCAP's magic bytes"});
+    position_ = 0;
+  }
 }
 
 std::optional<RecordPlace> RecordWalker::head_at(ReadWindow& window, std::uint64_t offset) const {

@@ -25,6 +25,9 @@ struct RecordPlace {
   std::uint64_t end() const { return content_offset() + content_bytes; }
 };
 
+/// Whether a file must begin with MCAP's magic bytes; where they may be broken, what follows is looked for.
+enum class MagicBytes { kRequired, kMayBeBroken };
+
 /// Steps from record to record in the order of the file, without looking into chunks, and finds its way back when a
 /// length or opcode is broken.
 ///
@@ -34,8 +37,8 @@ struct RecordPlace {
 /// chunks: inside a broken chunk no CRC would vouch for them. Takes linear time and 8 KiB whatever the bytes.
 class RecordWalker {
  public:
-  /// Throws `Error` when the source does not begin with MCAP's magic bytes. `source` must stay.
-  explicit RecordWalker(const ByteSource& source);
+  /// Throws `Error` when the source is empty or does not begin with the magic bytes that it needs. `source` must stay.
+  explicit RecordWalker(const ByteSource& source, MagicBytes magic = MagicBytes::kRequired);
 
   /// False at the end: after a footer, or where the file was cut.
   bool next(RecordPlace& place);
@@ -43,6 +46,8 @@ class RecordWalker {
   Bytes content(const RecordPlace& place, RawBuffer& buffer) const;
 
   bool footer_seen() const { return footer_seen_; }
+  /// Where the next record is expected.
+  std::uint64_t position() const { return position_; }
   const std::vector<Damage>& damages() const { return damages_; }
 
  private:
@@ -51,6 +56,7 @@ class RecordWalker {
   bool fills_itself(const RecordPlace& place);
   bool may_resume_at(const RecordPlace& place, bool messages_too);
   bool resynchronise();
+  void begin_without_magic();
   void finish(std::uint64_t end);
 
   const ByteSource& source_;
