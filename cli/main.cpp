@@ -61,6 +61,10 @@ int run(int argc, char** argv) {
   add_accuracy(program, invocation);
   add_inspect(program, invocation);
   add_doctor(program, invocation);
+  add_recover(program, invocation);
+  add_recompress(program, invocation);
+  add_trim(program, invocation);
+  add_merge(program, invocation);
   add_avatar(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);

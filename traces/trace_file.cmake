@@ -20,9 +20,12 @@ endforeach()
 target_sources(vestige_traces PRIVATE
   ${schema_headers}
   append_file.cpp
+  definitions.cpp
+  frame_gate.cpp
   mcap/byte_source.cpp
   mcap/chunk_expander.cpp
   mcap/chunk_check.cpp
+  mcap/chunk_salvage.cpp
   mcap/compression.cpp
   mcap/container_check.cpp
   mcap/crc32.cpp
@@ -34,6 +37,10 @@ target_sources(vestige_traces PRIVATE
   mcap/summary.cpp
   mcap/summary_check.cpp
   mcap/writer.cpp
+  mcap_output.cpp
+  merge.cpp
+  recover.cpp
+  rewrite.cpp
   trace_check.cpp
   trace_format.cpp
   trace_messages.cpp

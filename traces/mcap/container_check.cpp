@@ -21,6 +21,11 @@ namespace {
 
 constexpr std::uint8_t kFirstPrivateOpcode = 0x80;  // MCAP specification, "Opcodes"
 
+bool belongs_behind_data(Opcode opcode) {
+  return opcode == Opcode::kChunkIndex || opcode == Opcode::kAttachmentIndex || opcode == Opcode::kStatistics ||
+         opcode == Opcode::kMetadataIndex || opcode == Opcode::kSummaryOffset || opcode == Opcode::kFooter;
+}
+
 class Check {
  public:
   Check(const ByteSource& source, ProblemList& problems, const std::function<void(const CheckedRecord&)>& visit)
@@ -64,6 +69,7 @@ class Check {
   RawBuffer content_;
   RawBuffer expanded_;
   Section section_ = Section::kData;
+  std::uint64_t data_end_ = kMagicBytes;  ///< of the last record that surely belongs to the data section
   std::size_t damages_noted_ = 0;
   std::uint32_t data_crc_ = crc32(std::as_bytes(std::span(kMagic)));
   std::uint64_t crc_end_ = kMagicBytes;  ///< up to where data_crc_ reaches
@@ -86,6 +92,8 @@ void Check::report(const RecordPlace& place, std::string what, std::string conse
 std::string Check::consequence_of(const Damage& damage) const {
   if (damage.offset < kMagicBytes) return "no reader opens the file; `vestige recover` writes one that they do";
   if (facts_.has_footer) return "readers may refuse the file";
+  if (damage.effect == DamageEffect::kMended)
+    return "it is read all the same, but other readers lose what follows; `vestige recover` mends it";
   if (damage.bytes == 0)
     return "there is no index: the file is read by scanning it; readers that need an index refuse it; `vestige "
            "recover` "
@@ -107,7 +115,7 @@ void Check::note_framing() {
       facts_.begins_as_mcap = false;
       if (damage.bytes == kMagicBytes) continue;
     }
-    if (!facts_.has_footer && damage.bytes > 0) {
+    if (!facts_.has_footer && damage.bytes > 0 && damage.effect == DamageEffect::kLost) {
       data_.whole = crc_whole_ = false;
       message_indexes_.begin_unknown();
     }
@@ -153,15 +161,19 @@ void Check::add_to_crc(const RecordPlace& place, Bytes content) {
 }
 
 void Check::take(const RecordPlace& place, Bytes content) {
+  if (section_ == Section::kData && belongs_behind_data(place.opcode)) {
+    section_ = Section::kSummary;
+    summary_.begin_unknown();
+    problems_.add({.offset = data_end_,
+                   .bytes = place.offset - data_end_,
+                   .what = fmt::format("no DataEnd stands between the data section and the {}", name_of(place.opcode)),
+                   .consequence = "nothing vouches for the data section as a whole"});
+  }
   if (place.opcode == Opcode::kDataEnd && section_ == Section::kData) {
     take_data_end(place, content);
   } else if (place.opcode == Opcode::kFooter) {
     facts_.has_footer = true;
-    if (section_ == Section::kData) {
-      report(place, "no DataEnd comes before it", "nothing vouches for the data section as a whole");
-    } else {
-      summary_.finish(place, content, source_);
-    }
+    summary_.finish(place, content, source_);
   } else if (section_ == Section::kSummary) {
     summary_.take(place, content);
   } else {
@@ -170,6 +182,10 @@ void Check::take(const RecordPlace& place, Bytes content) {
 }
 
 void Check::take_data(const RecordPlace& place, Bytes content) {
+  // A summary has schemas and channels too, and private records stand anywhere.
+  const bool anywhere = place.opcode == Opcode::kSchema || place.opcode == Opcode::kChannel ||
+                        static_cast<std::uint8_t>(place.opcode) >= kFirstPrivateOpcode;
+  if (!anywhere) data_end_ = place.end();
   const CheckedRecord record{
       .opcode = place.opcode, .content = content, .offset = place.offset, .bytes = place.end() - place.offset};
   switch (place.opcode) {
@@ -205,9 +221,6 @@ void Check::take_data(const RecordPlace& place, Bytes content) {
     case Opcode::kStatistics:
     case Opcode::kMetadataIndex:
     case Opcode::kSummaryOffset:
-      report(place, "stands before the data section's end", "it is skipped");
-      data_.whole = false;
-      break;
     case Opcode::kDataEnd:
     case Opcode::kFooter:
       break;

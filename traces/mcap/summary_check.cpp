@@ -204,7 +204,7 @@ void SummaryCheck::take(const RecordPlace& place, const SummaryOffset& offset) {
     return group.opcode == offset.group_opcode && group.start == offset.group_start &&
            group.end - group.start == offset.group_length;
   });
-  if (found == groups_.end())
+  if (found == groups_.end() && begin_known_)
     contradiction(place, fmt::format("says that records of kind {} fill {} bytes from byte {}, which they do not",
                                      name_of(offset.group_opcode), offset.group_length, offset.group_start));
 }
@@ -230,8 +230,9 @@ void SummaryCheck::finish(const RecordPlace& place, Bytes content, const ByteSou
   report_unlisted();
   const Footer footer = decode_footer(content);
   const bool only_offsets = !groups_.empty() && groups_.front().opcode == Opcode::kSummaryOffset;
-  compare(place, "summary_start", footer.summary_start,
-          groups_.empty() || only_offsets ? std::uint64_t{0} : groups_.front().start);
+  if (begin_known_)
+    compare(place, "summary_start", footer.summary_start,
+            groups_.empty() || only_offsets ? std::uint64_t{0} : groups_.front().start);
   const auto offsets = std::find_if(groups_.begin(), groups_.end(),
                                     [](const Group& group) { return group.opcode == Opcode::kSummaryOffset; });
   compare(place, "summary_offset_start", footer.summary_offset_start,

@@ -33,6 +33,8 @@ class SummaryCheck {
   /// Both must stay.
   SummaryCheck(const DataFacts& facts, ProblemList& problems) : facts_(facts), problems_(problems) {}
 
+  /// There is no DataEnd, so that nothing tells where the summary begins.
+  void begin_unknown() { begin_known_ = false; }
   /// A record between DataEnd and Footer whose fields fit.
   void take(const RecordPlace& place, Bytes content);
   /// The footer, after everything else.
@@ -58,6 +60,7 @@ class SummaryCheck {
 
   const DataFacts& facts_;
   ProblemList& problems_;
+  bool begin_known_ = true;
   std::vector<Group> groups_;
   std::vector<std::uint64_t> listed_chunks_;
   std::vector<std::uint64_t> listed_attachments_;
