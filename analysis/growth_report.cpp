@@ -127,7 +127,8 @@ nlohmann::ordered_json to_json(const Growth& growth, std::uint64_t seed) {
 std::string growth_table(const Growth& growth, std::uint32_t colliders) {
   std::string text = text_of(table_by_colliders(growth));
   if (!growth.by_triangles.empty())
-    text += fmt::format("\nWith {} colliders:\n", colliders) + text_of(table_by_triangles(growth));
+    text += fmt::format("\nWith {} collider{}:\n", colliders, colliders == 1 ? "" : "s") +
+            text_of(table_by_triangles(growth));
   text += fmt::format("Above {} pairs of collider and triangle: the mean of 3 frames, measured again and again.\n",
                       kManyPairs);
   return text + text_of(ablations(growth.by_colliders));

@@ -21,7 +21,7 @@ namespace vestige {
 struct ReplayOutputs {
   ContactsCsv* contacts = nullptr;
   TextureExr* textures = nullptr;
-  TimelineCsv* timeline = nullptr;
+  TimelineFile* timeline = nullptr;
 };
 
 /// What a replay is compared with, at most one of the two.

@@ -201,11 +201,7 @@ class Sweep {
         ++point.skipped_timed;
         point.skipped_us += point.frame_us.back();
       }
-      work.pairs_tested += done.pairs_tested;
-      work.pairs_meeting += done.pairs_meeting;
-      work.triangles_tested += done.triangles_tested;
-      work.meshlets_skinned += done.meshlets_skinned;
-      work.frames_skipped += done.frames_skipped;
+      work += done;
       const ContactRow& expected = references_[series].rows[place_number][i - 1];
       if (!std::equal(row.begin(), row.end(), expected.begin(), same))
         throw Error(series_[series].detector,
@@ -215,11 +211,7 @@ class Sweep {
     }
     if (point.repetitions.size() < places_.size()) {
       point.pass_frames += repetition.frames;
-      point.pairs_tested += work.pairs_tested;
-      point.pairs_meeting += work.pairs_meeting;
-      point.triangles_tested += work.triangles_tested;
-      point.meshlets_skinned += work.meshlets_skinned;
-      point.frames_skipped += work.frames_skipped;
+      point.work += work;
     }
     point.repetitions.push_back(repetition);
     return repetition.seconds;

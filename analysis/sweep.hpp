@@ -37,15 +37,11 @@ struct SweepSettings {
 struct SweepPoint {
   std::uint32_t colliders = 0;
   std::vector<Repetition> repetitions;
-  std::vector<double> frame_us;        ///< duration of every frame timed
-  std::uint64_t pass_frames = 0;       ///< frames in one pass over the measured places
-  std::uint64_t contacts = 0;          ///< in one such pass
-  std::uint64_t frames_skipped = 0;    ///< likewise
-  std::uint64_t pairs_tested = 0;      ///< likewise
-  std::uint64_t pairs_meeting = 0;     ///< likewise; only `cpu` and `geometry` count them
-  std::uint64_t triangles_tested = 0;  ///< likewise
-  std::uint64_t meshlets_skinned = 0;  ///< likewise
-  std::string texture_hash;            ///< likewise
+  std::vector<double> frame_us;   ///< duration of every frame timed
+  std::uint64_t pass_frames = 0;  ///< frames in one pass over the measured places
+  std::uint64_t contacts = 0;     ///< in one such pass
+  DetectorWork work;              ///< likewise
+  std::string texture_hash;       ///< likewise
 
   std::uint64_t skipped_timed = 0;    ///< of `frame_us`, those that bounds alone told to be without contact
   double skipped_us = 0;              ///< how long they took altogether

@@ -73,7 +73,7 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
   return {{"colliders", point.colliders},
           {"frames", point.frame_us.size()},
           {"pass_frames", point.pass_frames},
-          {"frames_skipped", point.frames_skipped},
+          {"frames_skipped", point.work.frames_skipped},
           {"hz", point.hz()},
           {"hz_low", interval.low},
           {"hz_high", interval.high},
@@ -85,10 +85,10 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"noise", relative_noise(point.repetitions)},
           {"repetitions", point.repetitions.size()},
           {"contacts", point.contacts},
-          {"pairs_tested", point.pairs_tested},
-          {"pairs_meeting", point.pairs_meeting},
-          {"triangles_tested", point.triangles_tested},
-          {"meshlets_skinned", point.meshlets_skinned},
+          {"pairs_tested", point.work.pairs_tested},
+          {"pairs_meeting", point.work.pairs_meeting},
+          {"triangles_tested", point.work.triangles_tested},
+          {"meshlets_skinned", point.work.meshlets_skinned},
           {"texture_hash", point.texture_hash}};
 }
 

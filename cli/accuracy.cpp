@@ -37,6 +37,7 @@ struct AccuracyOptions {
   std::string truth = "cpu";
   double truth_rate_hz = 30720;
   bool no_figure = false;
+  bool chosen = false;  ///< --detector or --method was given
   std::string output;
 };
 
@@ -62,8 +63,9 @@ std::vector<double> parse_rates(const AccuracyOptions& options) {
   return {rates_hz.begin(), rates_hz.end()};
 }
 
-/// Every detector with every method that it has; what cannot run is said.
+/// Every detector with every method that it has; what cannot run is said, unless nobody asked for it.
 std::vector<AccuracyContestant> make_contestants(const AccuracyOptions& options, const Scene& scene) {
+  const Verbosity verbosity = options.common.verbosity();
   std::vector<AccuracyContestant> contestants;
   for (const std::string& detector : parse_list(options.detectors))
     for (const std::string& method : parse_list(options.methods)) {
@@ -72,8 +74,10 @@ std::vector<AccuracyContestant> make_contestants(const AccuracyOptions& options,
       try {
         contestants.push_back({detector, method_named(method),
                                make_detector(detector, choice.context, choice, scene.avatar, scene.map, Plane::kTime)});
+      } catch (const UsageError& error) {
+        if (options.chosen) warn(fmt::format("no '{}' with {}: {}", detector, method, error.what()), verbosity);
       } catch (const Error& error) {
-        warn(fmt::format("no '{}' with {}: {}", detector, method, error.what()), options.common.verbosity());
+        warn(fmt::format("no '{}' with {}: {}", detector, method, error.what()), verbosity);
       }
     }
   if (contestants.empty())
@@ -184,9 +188,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   const std::vector<SceneChoice> choices = scene_choices(options);
   const std::string errors_path = options.output + "/accuracy.json";
   const std::string run_path = options.output + "/run.json";
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  make_folder(options.output, "-o");
   check_outputs({errors_path, run_path, options.common.json}, {options.scene.avatar, options.scene.map},
                 options.common);
 
@@ -274,7 +276,10 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
       ->required()
       ->type_name("DIR");
   add_common_options(*verb, options->common);
-  verb->callback([options, &invocation] { run_accuracy_verb(*options, invocation); });
+  verb->callback([verb, options, &invocation] {
+    options->chosen = verb->count("--detector") + verb->count("--method") != 0;
+    run_accuracy_verb(*options, invocation);
+  });
 }
 
 }  // namespace vestige::cli

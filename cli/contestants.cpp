@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cli/options.hpp"
+#include "detector/embree_detector.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::cli {
@@ -64,9 +65,7 @@ std::vector<Contestant> make_contestants(const ContestantChoice& choice, const A
          needs_opengl(detector) ? parse_list(choice.contexts) : std::vector<std::string>{""}) {
       try {
         if (needs_opengl(detector)) make_gl_context(context_kind(context), choice.choice.device);
-        if (is_embree(detector)) make_detector(detector, context, choice.choice, avatar, map, PlaneSet());
-      } catch (const UsageError&) {
-        throw;
+        if (is_embree(detector)) require_embree();
       } catch (const Error& error) {
         warn(fmt::format("no series '{}'{}: {}", detector, context.empty() ? "" : " on " + context, error.what()),
              verbosity);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cli/help/validators.hpp"
 #include "detector/embree_detector.hpp"
 #include "detector/mapped_skin.hpp"
 #include "traces/error.hpp"
@@ -21,7 +22,7 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
     return verb.add_option(name, value, description)->group(kDetectorGroup);
   };
   add("--device", choice.device, "EGL device, as 'vestige devices' counts them [default: the first GPU, else software]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(help::whole_number(0, 1023))
       ->type_name("K");
   add("--method", choice.method,
       "static: each segment against the triangle as it is now, as the paper does; carried: its start moves along with "

@@ -80,6 +80,7 @@ int run(int argc, char** argv) {
     if (*argv[i] == '\0')
       throw UsageError(fmt::format("argument {}", i), "is empty",
                        "an unset variable? Leave the flag out, or give it a value");
+  if (argc == 1) throw UsageError("vestige", "no verb was named", "'vestige --help' lists the verbs");
   if (argc > 1 && *argv[1] != '-')
     if (const auto remedy = help::unknown_verb_remedy(program, argv[1]))
       throw UsageError(argv[1], "there is no such verb", *remedy);
@@ -92,7 +93,7 @@ int run(int argc, char** argv) {
     return shown;
   } catch (const CLI::ParseError& error) {
     const auto verbs = program.get_subcommands();
-    print_message(fmt::format("vestige: error: {}\n  {}\n", error.what(),
+    print_message(fmt::format("vestige: error: {}\n  {}\n", help::cause_of(program, error),
                               verbs.empty() ? "'vestige --help' lists the verbs"
                                             : fmt::format("'vestige {} --help' explains it", verbs[0]->get_name())));
     return kWrongUsage;

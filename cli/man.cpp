@@ -26,10 +26,8 @@ std::string page(const help::CommandTable& command) {
 
 /// Every page but that of `plot`, which vestige-plot prints.
 void write_pages(const help::CommandTable& program, const ManOptions& options) {
+  make_folder(options.folder, "--pages");
   const std::filesystem::path folder = options.folder;
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) throw Error(options.folder, "the folder cannot be made: " + failure.message(), "choose another --pages");
   const auto write = [&](const help::CommandTable& command) {
     OutputFile file(folder / (help::page_name(command) + ".1"), options.force ? Overwrite::kAllow : Overwrite::kRefuse);
     file.write(page(command));

@@ -48,6 +48,36 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
   common(verb.set_help_flag("-h,--help", "Print this help"));
 }
 
+namespace {
+
+/// Folders that this run made. At its end, those in which nothing was put go again.
+class MadeFolders {
+ public:
+  ~MadeFolders() {
+    std::error_code not_empty;
+    for (const std::filesystem::path& folder : folders_) std::filesystem::remove(folder, not_empty);
+  }
+  /// To be called before `folder` is made.
+  void expect(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    for (auto path = folder; !path.empty() && !std::filesystem::exists(path, ignored); path = path.parent_path())
+      folders_.push_back(std::filesystem::absolute(path, ignored));
+  }
+
+ private:
+  std::vector<std::filesystem::path> folders_;  // inner ones first
+};
+
+}  // namespace
+
+void make_folder(const std::string& path, const std::string& flag) {
+  static MadeFolders made;
+  made.expect(path);
+  std::error_code failure;
+  std::filesystem::create_directories(path, failure);
+  if (failure) throw Error(path, "the folder cannot be made: " + failure.message(), "choose another " + flag);
+}
+
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    const CommonOptions& options) {
   if (std::ranges::count_if(outputs, is_standard_output) > 1)

@@ -24,22 +24,44 @@ std::string plot_program() {
   return std::filesystem::exists(beside, ignored) ? beside.string() : "vestige-plot";
 }
 
+/// The program and its arguments, as exec takes them.
+class PlotCommand {
+ public:
+  explicit PlotCommand(const std::vector<std::string>& arguments) : words_{plot_program()} {
+    words_.insert(words_.end(), arguments.begin(), arguments.end());
+    argv_.reserve(words_.size() + 1);
+    for (std::string& word : words_) argv_.push_back(word.data());
+    argv_.push_back(nullptr);
+  }
+  char* const* argv() const { return argv_.data(); }
+
+ private:
+  std::vector<std::string> words_;
+  std::vector<char*> argv_;
+};
+
+Error cannot_run(int failure) {
+  return Error(
+      "vestige-plot", fmt::format("cannot be run: {}", std::strerror(failure)),
+      "it draws with VTK: install the package vestige-plot, or libvtk9-dev and build again, or put vestige-plot on "
+      "the PATH");
+}
+
+/// Instead of this program, so that a signal reaches the one that draws.
+[[noreturn]] void become_plot(const std::vector<std::string>& arguments) {
+  const PlotCommand command(arguments);
+  std::fflush(stdout);
+  ::execvp(command.argv()[0], command.argv());
+  throw cannot_run(errno);
+}
+
 }  // namespace
 
 int run_plot(const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {plot_program()};
-  words.insert(words.end(), arguments.begin(), arguments.end());
-  std::vector<char*> argv;
-  argv.reserve(words.size() + 1);
-  for (std::string& word : words) argv.push_back(word.data());
-  argv.push_back(nullptr);
+  const PlotCommand command(arguments);
   pid_t child = 0;
-  const int failure = ::posix_spawnp(&child, argv[0], nullptr, nullptr, argv.data(), environ);
-  if (failure != 0)
-    throw Error(
-        "vestige-plot", fmt::format("cannot be run: {}", std::strerror(failure)),
-        "it draws with VTK: install the package vestige-plot, or libvtk9-dev and build again, or put vestige-plot on "
-        "the PATH");
+  const int failure = ::posix_spawnp(&child, command.argv()[0], nullptr, nullptr, command.argv(), environ);
+  if (failure != 0) throw cannot_run(failure);
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -58,14 +80,14 @@ void draw_figure(const std::string& kind, const std::string& folder, const Commo
   }
 }
 
-void add_plot(CLI::App& program, Invocation& invocation) {
+void add_plot(CLI::App& program, Invocation&) {
   CLI::App* verb = program.add_subcommand(
       "plot", "Draw results, traces and avatars as figures (runs vestige-plot, which links VTK)");
   verb->group("Verbs");
   // Everything behind the verb, --help included, is vestige-plot's business.
   verb->set_help_flag();
   verb->prefix_command();
-  verb->callback([verb, &invocation] { invocation.exit_code = run_plot(verb->remaining()); });
+  verb->callback([verb] { become_plot(verb->remaining()); });
 }
 
 }  // namespace vestige::cli

@@ -47,6 +47,7 @@ constexpr NamedPlane kPlaneNames[] = {
     {"position", Plane::kPosition},
     {"speed", Plane::kSpeed},
     {"side", Plane::kSide},
+    {"pressure", Plane::kPressure},
 };
 
 PlaneSet parse_planes(const std::string& text) {
@@ -252,10 +253,10 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   std::optional<ContactsCsv> contacts;
   std::optional<TextureExr> textures;
   std::optional<OutputFile> texture_file;
-  std::optional<TimelineCsv> timeline;
+  std::unique_ptr<TimelineFile> timeline;
   if (!options.contacts.empty()) contacts.emplace(options.contacts, options.common.overwrite());
   if (!options.timeline.empty())
-    timeline.emplace(options.timeline, options.common.overwrite(), trace.map.actuator_count);
+    timeline = make_timeline(options.timeline, options.common.overwrite(), trace.map.names);
   if (!options.textures.empty()) {
     texture_file.emplace(options.textures, options.common.overwrite());
     std::map<std::string, std::string> attributes = {
@@ -269,7 +270,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   {
     Progress progress("Replaying", verbosity);
     result = replay(trace.reader, trace.avatar, trace.map.actuator_count, detectors, options.hold_ms / 1e3,
-                    {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline ? &*timeline : nullptr},
+                    {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get()},
                     verification.expectation(), [&](double share) { return progress.update(share); });
   }
   if (result.frames == 0) throw Error(options.trace, "holds no frame", "record it again");
@@ -315,11 +316,15 @@ void add_replay(CLI::App& program, Invocation& invocation) {
              "Write the collision textures as OpenEXR: a row a frame, a column a collider")
       ->type_name("OUT.exr|-");
   add_result("--planes", options->planes,
-             "What the textures hold, of: actuator, t, triangle, barycentric, texture, position, speed, side")
+             "What the textures hold, of: actuator, t, triangle, barycentric, texture, position, speed, side, "
+             "pressure")
       ->capture_default_str()
       ->type_name("LIST");
-  add_result("--timeline", options->timeline, "Write the actuators' duties, 0 to 255, one row a frame")
-      ->type_name("OUT.csv|-");
+  add_result(
+      "--timeline", options->timeline,
+      "Write the actuators' duties: a row a frame, 0 to 255; or as MPEG haptics (.hjif); or for bHaptics (.tact, "
+      "at most 40 actuators)")
+      ->type_name("OUT.csv|OUT.hjif|OUT.tact|-");
   add_result("--hold", options->hold_ms,
              "How long a contact keeps its actuator on, in ms: a coin motor cannot answer a single frame; 0 gives the "
              "raw frames")

@@ -34,14 +34,18 @@ std::optional<XbeeOptions> xbee_options(const SinkChoice& choice) {
                      parse_address(choice.xbee_address)};
 }
 
-void refuse_serial_flags(const CLI::App& verb, const SinkChoice& choice) {
-  if (!choice.is_osc() && !choice.osc_address.empty())
-    throw UsageError("--osc-address", "says nothing where frames do not go out as OSC",
-                     "send to osc://HOST:PORT, or leave it out");
-  if (!choice.is_osc() && !choice.is_file()) return;
+/// Refuses flags that would say nothing, or not what they seem to.
+void check_sink_flags(const CLI::App& verb, const SinkChoice& choice) {
+  if (choice.ttl_ms % kTtlUnit_ms != 0)
+    throw UsageError("--ttl", fmt::format("{} is no multiple of 10", choice.ttl_ms), "boards count it in 10 ms");
+  const bool is_serial = !choice.is_osc() && !choice.is_file();
   for (const char* flag : {"--baud", "--xbee-api"})
-    if (verb.count(flag) != 0)
+    if (!is_serial && verb.count(flag) != 0)
       throw UsageError(flag, fmt::format("says nothing of '{}', which is no serial port", choice.port), "leave it out");
+  for (const char* flag : {"--osc-address", "--osc-value"})
+    if (!choice.is_osc() && verb.count(flag) != 0)
+      throw UsageError(flag, fmt::format("says nothing of '{}', which is no OSC", choice.port),
+                       "send to osc://HOST:PORT, or leave it out");
 }
 
 }  // namespace
@@ -57,9 +61,10 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
     return verb.add_option(name, value, description)->group(kVestGroup);
   };
   add("--port", choice.port,
-      "Where frames go: a serial device (an XBee, or the board's USB), OSC over UDP, a file, or standard output")
+      "Where frames go: a serial device (/dev/ttyUSB0: an XBee, or the board's USB); osc://HOST:PORT, parameters over "
+      "UDP; file:OUT, a file of frames as on the wire; '-', the same on standard output")
       ->required()
-      ->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
+      ->type_name("DEVICE|URL|-");
   add("--baud", choice.baud, "Of the serial line, as the board was built for")->capture_default_str()->type_name("N");
   add("--ttl", choice.ttl_ms, "The board switches all off when it hears nothing newer for so long, in ms")
       ->capture_default_str()
@@ -86,7 +91,10 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
       "Template of an actuator's OSC address: {n} is its number from 1, {i} from 0, {name} its name; bHaptics' bridge "
       "takes /avatar/parameters/bOSC/v2/VestFront/{i}/self [default: /avatar/parameters/vestige_{n}]")
       ->type_name("TEMPLATE");
-  verb.parse_complete_callback([&verb, &choice] { refuse_serial_flags(verb, choice); });
+  add("--osc-value", choice.osc_value, "float: level / 255; integer: 0 to 255; boolean: on and off")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"float", "integer", "boolean"}));
+  verb.parse_complete_callback([&verb, &choice] { check_sink_flags(verb, choice); });
 }
 
 OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names,
@@ -96,6 +104,8 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
   if (choice.is_osc()) {
     OscOptions osc = parse_osc_url(choice.port);
     if (!choice.osc_address.empty()) osc.address_template = choice.osc_address;
+    if (choice.osc_value == "integer") osc.value = OscValue::kInteger;
+    if (choice.osc_value == "boolean") osc.value = OscValue::kBoolean;
     sink_ = std::make_unique<OscSink>(osc, actuator_names);
     return;
   }
@@ -104,7 +114,8 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
   if (choice.is_file()) {
     const std::string path = choice.output_path();
     if (path == "-") refuse_terminal("--port -");
-    auto file = std::make_unique<FrameFileSink>(path, options.overwrite(), choice.quantity(), choice.ttl_ms);
+    auto file = std::make_unique<FrameFileSink>(path, options.overwrite(), choice.quantity(),
+                                                static_cast<std::uint8_t>(choice.ttl_ms / kTtlUnit_ms));
     file_ = file.get();
     sink_ = std::move(file);
     return;
@@ -122,9 +133,9 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
                      "own program on it?",
                      choice.port, choice.baud),
          verbosity);
-  } else if (greeting_->actuators < actuator_names.size()) {
+  } else if (greeting_->actuator_count < actuator_names.size()) {
     warn(fmt::format("{}: the board drives {} actuators; those beyond, up to {}, will not be felt", choice.port,
-                     greeting_->actuators, actuator_names.size()),
+                     greeting_->actuator_count, actuator_names.size()),
          verbosity);
   }
   if (serial.xbee) frame_bytes_ = xbee_wrap(*serial.xbee, 1, encode_state(choice.quantity(), all_off, 0, 1)).size();
@@ -150,14 +161,14 @@ nlohmann::ordered_json OpenSink::link_json() const {
   json["line_time_us"] = line_time_s() * 1e6;
   json["ttl_ms"] = choice_.ttl_ms;
   json["xbee_api"] = choice_.xbee_api;
-  if (greeting_) json["board"] = {{"version", greeting_->version}, {"actuators", greeting_->actuators}};
+  if (greeting_) json["board"] = {{"version", greeting_->version}, {"actuators", greeting_->actuator_count}};
   return json;
 }
 
 std::string OpenSink::describe_link(std::uint64_t bytes) const {
   if (choice_.is_osc() || choice_.is_file()) return fmt::format("{}: {} bytes\n", sink_->name(), bytes);
   const std::string board =
-      greeting_ ? fmt::format("board version {}, {} actuators", greeting_->version, greeting_->actuators)
+      greeting_ ? fmt::format("board version {}, {} actuators", greeting_->version, greeting_->actuator_count)
                 : "no board answered";
   return fmt::format("{}: {}; {} bytes at {} baud, a frame of {} bytes takes {:.2f} ms on the line\n", choice_.port,
                      board, bytes, choice_.baud, frame_bytes_, line_time_s() * 1e3);

@@ -29,6 +29,7 @@ struct SinkChoice {
   std::string xbee_address = "FFFF";
   bool xbee_escaped = false;
   std::string osc_address;
+  std::string osc_value = "float";
 
   Quantity quantity() const { return levels == "pressure" ? Quantity::kPressure : Quantity::kDuty; }
   bool is_osc() const { return port.starts_with("osc:"); }
@@ -39,7 +40,8 @@ struct SinkChoice {
   static constexpr std::string_view kFilePrefix = "file:";
 };
 
-/// Adds --port, --baud, --ttl, --levels, --xbee-api, --xbee-request, --xbee-address, --xbee-escaped and --osc-address.
+/// Adds --port, --baud, --ttl, --levels, --xbee-api, --xbee-request, --xbee-address, --xbee-escaped, --osc-address and
+/// --osc-value.
 void add_sink_options(CLI::App& verb, SinkChoice& choice);
 
 /// A sink that is open, and what is known of the other end.

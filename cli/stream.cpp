@@ -14,6 +14,7 @@
 #include "detector/actuator_map_watch.hpp"
 #include "detector/intensity.hpp"
 #include "detector/path_choice.hpp"
+#include "detector/pressure.hpp"
 #include "traces/error.hpp"
 #include "transport/sender.hpp"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <set>
 
@@ -89,9 +88,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   parse_names(options.detectors, detector_names(), "--detector");
   const std::string json_path = options.output + "/stress.json";
   const std::string run_path = options.output + "/run.json";
-  std::error_code failure;
-  std::filesystem::create_directories(options.output, failure);
-  if (failure) throw Error(options.output, "the folder cannot be made: " + failure.message(), "choose another -o");
+  make_folder(options.output, "-o");
   check_outputs({json_path, run_path, options.common.json}, {}, options.common);
   catch_interrupts();
   const Contestants contestants = make_contestants(options, verbosity);
@@ -164,7 +161,7 @@ void add_stress(CLI::App& program, Invocation& invocation) {
   verb->add_option("--device", options->device,
                    "EGL device, as 'vestige devices' counts them [default: the first GPU, else software]")
       ->group(kDetectorGroup)
-      ->check(CLI::NonNegativeNumber)
+      ->check(help::whole_number(0, 1023))
       ->type_name("K");
   verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
   verb->add_option("-o,--output", options->output, "Folder for stress.json, run.json and the figure")

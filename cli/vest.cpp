@@ -56,7 +56,7 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   catch_interrupts();
   std::size_t actuators = options.actuators == 0 ? kDefaultActuators : options.actuators;
   OpenSink sink(options.sink, std::vector<std::string>(actuators), options.common);
-  if (options.actuators == 0 && sink.greeting()) actuators = sink.greeting()->actuators;
+  if (options.actuators == 0 && sink.greeting()) actuators = sink.greeting()->actuator_count;
   const SenderStatistics statistics = run_in_turn(sink, actuators, options);
   sink.commit();
 

@@ -100,7 +100,7 @@ done
 if [ -n "$sweep_on" ]; then
   # One command measures all contexts, taking turns.
   # shellcheck disable=SC2086  # a list of words
-  step sweep vestige sweep "$sweep_on" --counts "$counts" $sweep_flags --no-figure -o "$out/sweep"
+  step sweep vestige sweep "$sweep_on" --detector paper,geometry,cpu,embree --counts "$counts" $sweep_flags --no-figure -o "$out/sweep"
 else
   failed="$failed sweep(no trace)"
 fi

@@ -216,7 +216,13 @@ ActuatorMapFiles read_actuator_map_files(const std::string& map) {
   if (map == "none") return {};
   if (map == "builtin") return {builtin_actuator_map_png(), builtin_actuator_map_json()};
   const auto sidecar = std::filesystem::path(map).replace_extension(".json");
-  return {read_file(map), std::filesystem::exists(sidecar) ? read_text_file(sidecar) : ""};
+  ActuatorMapFiles files = {read_file(map), ""};
+  if (files.png.empty()) throw Error(map, "is empty", "export the actuator map as a greyscale PNG");
+  if (!std::filesystem::exists(sidecar)) return files;
+  files.json = read_text_file(sidecar);
+  if (files.json.empty())
+    throw Error(sidecar.string(), "is empty", "list the actuators in it, or remove it: then each grey level is one");
+  return files;
 }
 
 }  // namespace vestige

@@ -38,6 +38,7 @@ enum class Plane : unsigned {
   kPosition = 1U << 5,
   kSpeed = 1U << 6,
   kSide = 1U << 7,
+  kPressure = 1U << 8,  ///< what a pneumatic cell is asked for, which follows from the speed (`pressure_of`)
 };
 
 class PlaneSet {
@@ -53,7 +54,7 @@ class PlaneSet {
   }
   static constexpr PlaneSet all() {
     PlaneSet set;
-    set.bits_ = 0xFF;
+    set.bits_ = 0x1FF;
     return set;
   }
   friend constexpr bool operator==(PlaneSet, PlaneSet) = default;

@@ -7,12 +7,10 @@
 
 namespace vestige {
 
-void ContactFinder::offer(const Frame& frame, const SkinMotion& skin, const Segment& segment, std::uint32_t triangle,
-                          Contact& winner) {
-  const Corners now = corners_of(avatar_, skin.now, triangle);
-  Corners before = now;
+void ContactFinder::offer(const Frame& frame, const MovingCorners& corners, const Segment& segment,
+                          std::uint32_t triangle, Contact& winner) {
+  const auto& [before, now] = corners;
   Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
-  if (method_ != Method::kStatic) before = corners_of(avatar_, skin.before, triangle);
   if (method_ == Method::kCarried) way.start = glm::dvec3(carried_start(segment.start, before, now));
 
   const Decision decision = method_ == Method::kCcd ? decide_ccd(way, before, now) : decide_static(way, now);

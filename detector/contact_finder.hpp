@@ -18,8 +18,9 @@ class ContactFinder {
   ContactFinder(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
       : avatar_(avatar), map_(map), surface_(options.surface), method_(options.method) {}
 
-  /// Decides the pair on `skin` and replaces `winner`, the best contact of this segment so far, if this one is better.
-  void offer(const Frame& frame, const SkinMotion& skin, const Segment& segment, std::uint32_t triangle,
+  /// Decides the pair, the triangle's corners given, and replaces `winner`, the best contact of this segment so far, if
+  /// this one is better.
+  void offer(const Frame& frame, const MovingCorners& corners, const Segment& segment, std::uint32_t triangle,
              Contact& winner);
 
   /// Pairs offered since the last call that truly meet.

@@ -31,8 +31,9 @@ class CpuDetector final : public Detector {
     skin_.skin(avatar_, frame, method_);
     boxes_.build(avatar_, skin_, method_);
     for (const Segment& segment : frame.segments)
-      boxes_.meet(segment,
-                  [&](std::uint32_t triangle) { finder_.offer(frame, skin_, segment, triangle, row[segment.column]); });
+      boxes_.meet(segment, [&](std::uint32_t triangle) {
+        finder_.offer(frame, moving_corners(avatar_, skin_, method_, triangle), segment, triangle, row[segment.column]);
+      });
     return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
             .triangles_tested = avatar_.triangles.size(),
             .pairs_meeting = finder_.take_meeting(),
@@ -60,10 +61,7 @@ class SkippingCpuDetector final : public Detector {
         finder_(avatar, map, options),
         meshlets_(avatar),
         candidates_(avatar, meshlets_),
-        meshlet_skin_(avatar, meshlets_) {
-    skin_.now.resize(avatar.position_bind.size());
-    if (method_ != Method::kStatic) skin_.before.resize(avatar.position_bind.size());
-  }
+        meshlet_skin_(avatar, meshlets_) {}
 
   const char* name() const override { return "cpu"; }
   Method method() const override { return method_; }
@@ -104,18 +102,10 @@ class SkippingCpuDetector final : public Detector {
       for (std::uint32_t bits = meets_[k]; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(bits));
         if (i >= triangles.size()) break;
-        set_corners(triangles[i], i);
-        finder_.offer(frame, skin_, segment, triangles[i], row[segment.column]);
+        const Corners now = now_.corners(i);
+        const Corners before = method_ == Method::kStatic ? now : before_.corners(i);
+        finder_.offer(frame, {before, now}, segment, triangles[i], row[segment.column]);
       }
-    }
-  }
-
-  /// Puts the corners of triangle i of the meshlet where ContactFinder looks for them.
-  void set_corners(std::uint32_t triangle, std::size_t i) {
-    const glm::uvec3& corners = avatar_.triangles[triangle];
-    for (int corner = 0; corner < 3; ++corner) {
-      skin_.now[corners[corner]] = now_.at(static_cast<std::size_t>(corner), i);
-      if (method_ != Method::kStatic) skin_.before[corners[corner]] = before_.at(static_cast<std::size_t>(corner), i);
     }
   }
 
@@ -129,7 +119,6 @@ class SkippingCpuDetector final : public Detector {
   MeshletCorners before_ = {};
   MeshletTriangles triangles_;
   std::vector<std::uint32_t> meets_;  ///< of each segment that may meet a meshlet, which triangles
-  SkinMotion skin_;                   ///< only the corners of triangles that are being decided
 };
 
 }  // namespace

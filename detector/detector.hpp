@@ -30,7 +30,7 @@ struct DetectorOptions {
   Skip skip = Skip::kOff;
 };
 
-/// Work done by one call of `detect`, for reports.
+/// Work done by one call of `detect`, for reports; or by several, summed.
 struct DetectorWork {
   std::uint64_t pairs_tested = 0;      ///< (segment, triangle) pairs
   std::uint64_t triangles_tested = 0;  ///< triangles that met at least one test

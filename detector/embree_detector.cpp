@@ -199,6 +199,10 @@ class EmbreeDetector final : public Detector {
 
 }  // namespace
 
+void require_embree() {
+  embree();
+}
+
 std::unique_ptr<Detector> make_embree_detector(EmbreeMode mode, const Avatar& avatar, const ActuatorMap& map,
                                                const DetectorOptions& options) {
   if (options.method != Method::kStatic)

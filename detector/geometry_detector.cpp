@@ -67,7 +67,7 @@ class GeometryDetector final : public Detector {
   GeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                    const DetectorOptions& options)
       : context_(std::move(context)),
-        gl_(current(*context_)),
+        gl_(current_gl(*context_)),
         avatar_(avatar),
         method_(options.method),
         finder_(avatar, map, options),
@@ -113,8 +113,8 @@ class GeometryDetector final : public Detector {
 
     for (const CapturedPair& pair : pairs_) {
       const Segment& segment = frame.segments[pair.segment];
-      skin_.skin_corners(avatar_, frame, method_, pair.triangle);
-      finder_.offer(frame, skin_, segment, pair.triangle, row[segment.column]);
+      const MovingCorners corners = skin_corners(avatar_, frame, method_, pair.triangle);
+      finder_.offer(frame, corners, segment, pair.triangle, row[segment.column]);
     }
     return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
             .triangles_tested = avatar_.triangles.size(),
@@ -138,11 +138,6 @@ class GeometryDetector final : public Detector {
   }
 
  private:
-  static const GlFunctions& current(GlContext& context) {
-    context.make_current();
-    return context.gl();
-  }
-
   /// Entries that the shaders' palette has room for.
   std::size_t palette_entries() const {
     return avatar_.palette.size() * (method_ == Method::kStatic ? std::size_t{1} : std::size_t{2});
@@ -213,7 +208,6 @@ class GeometryDetector final : public Detector {
   std::vector<SkinMatrix> gpu_palette_;
   std::vector<GpuSegment> gpu_segments_;
   std::vector<CapturedPair> pairs_;
-  SkinMotion skin_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "detector/decision.hpp"
 #include "detector/meshlets.hpp"
 #include "detector/skinning.hpp"
 #include "traces/avatar.hpp"
@@ -19,6 +20,9 @@ struct MeshletCorners {
 
   glm::vec3 at(std::size_t corner, std::size_t triangle) const {
     return {position[0][corner][triangle], position[1][corner][triangle], position[2][corner][triangle]};
+  }
+  Corners corners(std::size_t triangle) const {
+    return {glm::dvec3(at(0, triangle)), glm::dvec3(at(1, triangle)), glm::dvec3(at(2, triangle))};
   }
 };
 

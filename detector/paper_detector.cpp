@@ -29,18 +29,24 @@ struct GpuSegment {
 };
 static_assert(sizeof(GpuSegment) == 32);
 
+/// Pressure follows from the speed on the CPU; many drivers have no ninth texture to draw into.
+DetectorOptions with_sources(DetectorOptions options) {
+  if (options.planes.has(Plane::kPressure)) options.planes = options.planes | Plane::kSpeed;
+  return options;
+}
+
 class PaperDetector final : public Detector {
  public:
   PaperDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                 const DetectorOptions& options)
       : context_(std::move(context)),
-        gl_(current(*context_)),
+        gl_(current_gl(*context_)),
         avatar_(avatar),
-        options_(options),
+        options_(with_sources(options)),
         palette_(gl_),
         segments_(gl_),
         mesh_(gl_, avatar),
-        texture_(gl_, options.planes) {
+        texture_(gl_, options_.planes) {
     std::size_t components = 4;  // gl_Position
     for (const GlPlane& plane : kGlPlanes)
       if (options_.planes.has(plane.plane)) components += plane.geometry_components;
@@ -107,11 +113,6 @@ class PaperDetector final : public Detector {
   }
 
  private:
-  static const GlFunctions& current(GlContext& context) {
-    context.make_current();
-    return context.gl();
-  }
-
   void upload_map(const ActuatorMap& map) {
     const auto side = static_cast<std::uint32_t>(gl_limit(gl_, GL_MAX_TEXTURE_SIZE));
     if (map.width > side || map.height > side)
@@ -206,6 +207,8 @@ class PaperDetector final : public Detector {
         return;
       case Plane::kSide:
         contact.side = static_cast<std::int8_t>(value(0));
+        return;
+      case Plane::kPressure:  // no texture has it
         return;
     }
   }

@@ -9,19 +9,24 @@ void SkinMotion::skin(const Avatar& avatar, const Frame& frame, Method method) {
   if (method != Method::kStatic) skin_vertices(avatar, frame.palette_before, before);
 }
 
-void SkinMotion::skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle) {
-  const glm::uvec3& corner = avatar.triangles[triangle];
-  now.resize(avatar.position_bind.size());
-  if (method != Method::kStatic) before.resize(now.size());
-  for (const std::uint32_t vertex : {corner.x, corner.y, corner.z}) {
-    now[vertex] = skin_vertex(avatar, frame.palette, vertex);
-    if (method != Method::kStatic) before[vertex] = skin_vertex(avatar, frame.palette_before, vertex);
-  }
-}
-
 Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices, std::uint32_t triangle) {
   const glm::uvec3& corner = avatar.triangles[triangle];
   return {glm::dvec3(vertices[corner.x]), glm::dvec3(vertices[corner.y]), glm::dvec3(vertices[corner.z])};
+}
+
+MovingCorners moving_corners(const Avatar& avatar, const SkinMotion& skin, Method method, std::uint32_t triangle) {
+  const Corners now = corners_of(avatar, skin.now, triangle);
+  return {method == Method::kStatic ? now : corners_of(avatar, skin.before, triangle), now};
+}
+
+MovingCorners skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle) {
+  const glm::uvec3& corner = avatar.triangles[triangle];
+  const auto skinned = [&](const std::vector<SkinMatrix>& palette) -> Corners {
+    return {glm::dvec3(skin_vertex(avatar, palette, corner.x)), glm::dvec3(skin_vertex(avatar, palette, corner.y)),
+            glm::dvec3(skin_vertex(avatar, palette, corner.z))};
+  };
+  const Corners now = skinned(frame.palette);
+  return {method == Method::kStatic ? now : skinned(frame.palette_before), now};
 }
 
 Corners corners_at(const Corners& before, const Corners& now, float t) {

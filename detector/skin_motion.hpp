@@ -18,12 +18,22 @@ struct SkinMotion {
   std::vector<glm::vec3> now;
 
   void skin(const Avatar& avatar, const Frame& frame, Method method);
+};
 
-  /// Only the corners of one triangle, the same bits; all other vertices keep what they were, or are 0.
-  void skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle);
+/// The corners of one triangle of that skin, in the frame before and now. `kStatic` looks at no frame before: both are
+/// the same then.
+struct MovingCorners {
+  Corners before;
+  Corners now;
 };
 
 Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices, std::uint32_t triangle);
+
+/// `skin` as `SkinMotion::skin` made it with the same method.
+MovingCorners moving_corners(const Avatar& avatar, const SkinMotion& skin, Method method, std::uint32_t triangle);
+
+/// The same bits, where nothing but this triangle is skinned.
+MovingCorners skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle);
 
 /// The triangle at time t of a frame in which its corners move linearly; in fp64.
 Corners corners_at(const Corners& before, const Corners& now, float t);

@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "detector/contact_finder.hpp"
+#include "detector/decision.hpp"
 #include "detector/gl/captured_pairs.hpp"
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_objects.hpp"
 #include "detector/meshlet_candidates.hpp"
 #include "detector/meshlet_skin.hpp"
 #include "detector/meshlets.hpp"
-#include "detector/skin_motion.hpp"
 #include "detector/skinning.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
@@ -70,7 +70,7 @@ class SkippingGeometryDetector final : public Detector {
   SkippingGeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                            const DetectorOptions& options)
       : context_(std::move(context)),
-        gl_(current(*context_)),
+        gl_(current_gl(*context_)),
         avatar_(avatar),
         method_(options.method),
         finder_(avatar, map, options),
@@ -84,8 +84,6 @@ class SkippingGeometryDetector final : public Detector {
         program_(gl_, head(),
                  {{GL_VERTEX_SHADER, "candidates.vert", shaders::kCandidatesVert},
                   {GL_GEOMETRY_SHADER, "candidates.geom", shaders::kCandidatesGeom}}) {
-    skin_.now.resize(avatar.position_bind.size());
-    if (method_ != Method::kStatic) skin_.before.resize(avatar.position_bind.size());
     gl_.CreateVertexArrays(1, &vertex_array_);
     gl_.VertexArrayVertexBuffer(vertex_array_, 0, corners_.name(), 0,
                                 static_cast<GLsizei>(corners_per_triangle() * sizeof(glm::vec3)));
@@ -139,11 +137,6 @@ class SkippingGeometryDetector final : public Detector {
   }
 
  private:
-  static const GlFunctions& current(GlContext& context) {
-    context.make_current();
-    return context.gl();
-  }
-
   std::string head() const {
     return fmt::format(
         "#version 450 core\n{}#define METHOD {}\n#define BLOCK_SLOTS {}\n#define BLOCK_SEGMENTS {}\n"
@@ -241,14 +234,10 @@ class SkippingGeometryDetector final : public Detector {
     const TouchedMeshlet& meshlet = candidates_.touched()[touched];
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(meshlet.meshlet);
     if (i >= triangles.size()) return 0;
-    const glm::uvec3& corners = avatar_.triangles[triangles[i]];
-    for (int corner = 0; corner < 3; ++corner) {
-      const auto place = static_cast<std::size_t>(corner);
-      skin_.now[corners[corner]] = now_[touched].at(place, i);
-      if (method_ != Method::kStatic) skin_.before[corners[corner]] = before_[touched].at(place, i);
-    }
+    const Corners now = now_[touched].corners(i);
+    const Corners before = method_ == Method::kStatic ? now : before_[touched].corners(i);
     const Segment& segment = frame.segments[candidates_.segments(meshlet)[pair.segment]];
-    finder_.offer(frame, skin_, segment, triangles[i], row[segment.column]);
+    finder_.offer(frame, {before, now}, segment, triangles[i], row[segment.column]);
     return 1;
   }
 
@@ -272,7 +261,6 @@ class SkippingGeometryDetector final : public Detector {
   std::vector<Block> gpu_blocks_;       ///< one for each draw
   std::vector<glm::vec3> gpu_corners_;  ///< of the triangles of each slot
   std::vector<CapturedPair> pairs_;
-  SkinMotion skin_;  ///< only the corners of triangles that are being decided
 };
 
 }  // namespace

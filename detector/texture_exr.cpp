@@ -13,6 +13,7 @@
 #include <limits>
 #include <utility>
 
+#include "detector/pressure.hpp"
 #include "traces/error.hpp"
 
 namespace vestige {
@@ -30,7 +31,7 @@ std::uint32_t float_bits(double value) {
   return std::bit_cast<std::uint32_t>(static_cast<float>(value));
 }
 
-constexpr std::array<ChannelFormat, 12> kChannels = {{
+constexpr std::array<ChannelFormat, 13> kChannels = {{
     {"actuator", Plane::kActuator, Imf::FLOAT, [](const Contact& c) { return float_bits(c.actuator); }},
     {"t", Plane::kTime, Imf::FLOAT, [](const Contact& c) { return std::bit_cast<std::uint32_t>(c.t); }},
     {"triangle", Plane::kTriangle, Imf::UINT, [](const Contact& c) { return c.triangle; }},
@@ -45,6 +46,7 @@ constexpr std::array<ChannelFormat, 12> kChannels = {{
     {"z", Plane::kPosition, Imf::FLOAT, [](const Contact& c) { return float_bits(c.position.z); }},
     {"speed", Plane::kSpeed, Imf::FLOAT, [](const Contact& c) { return float_bits(c.speed_m_per_s); }},
     {"side", Plane::kSide, Imf::FLOAT, [](const Contact& c) { return float_bits(c.side); }},
+    {"pressure", Plane::kPressure, Imf::FLOAT, [](const Contact& c) { return float_bits(pressure_of(c)); }},
 }};
 
 /// OpenEXR writes into memory, and `OutputFile` onto the disk, so that a full disk is reported in one way everywhere.

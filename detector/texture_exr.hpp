@@ -16,7 +16,7 @@ namespace vestige {
 /// channels 0xFFFFFFFF.
 ///
 /// Channels: actuator, t, triangle (uint), u, v, texture_u, texture_v, x, y, z (world metres, rounded to float), speed
-/// (m/s), side.
+/// (m/s), side, pressure (0 … 1, `pressure_of`).
 class TextureExr {
  public:
   /// `attributes` go into the file's header as strings.

@@ -17,6 +17,8 @@ namespace {
 constexpr std::string_view kHeader = "time_s,id,x,y,z";
 constexpr std::string_view kRemedy = "each row is time_s,id,x,y,z: seconds, a whole number, metres";
 
+constexpr double kFarthest_m = 1e9;  // an astronomical unit is a mistake
+
 struct Sample {
   double time_s = 0;
   glm::dvec3 position_m = glm::dvec3(0);
@@ -32,12 +34,15 @@ Samples parse(std::string_view text, const std::string& name) {
     Sample sample;
     std::uint32_t id = 0;
     glm::dvec3& position = sample.position_m;
-    if (!lines.take(sample.time_s) || !lines.take(id) || !lines.take(position.x) || !lines.take(position.y) ||
-        !lines.take(position.z) || !lines.at_end())
+    if (!lines.take(sample.time_s)) throw lines.error("time_s is no number");
+    if (!lines.take(id)) throw lines.error("id is no whole number from 0 to 4294967295");
+    if (!lines.take(position.x) || !lines.take(position.y) || !lines.take(position.z) || !lines.at_end())
       throw lines.error("is not five numbers");
     if (!std::isfinite(sample.time_s) || !std::isfinite(position.x) || !std::isfinite(position.y) ||
         !std::isfinite(position.z))
       throw lines.error("a number is not finite");
+    if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) > kFarthest_m)
+      throw lines.error("a position is farther away than 1e9 m");
     if (!samples.empty() && sample.time_s < latest_s)
       throw lines.error(fmt::format("time runs backwards, from {} s to {} s", latest_s, sample.time_s),
                         "sort the rows by time");

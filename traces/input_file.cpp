@@ -36,6 +36,7 @@ Container read_all(const std::filesystem::path& path, std::uint64_t limit_bytes)
   const Descriptor descriptor(path);
   if (descriptor.value() < 0) {
     if (errno == ENOENT) throw Error(path.string(), "there is no such file", "check the name");
+    if (errno == EACCES) throw Error(path.string(), "may not be read", "ask its owner, or change its permissions");
     throw system_error(path, "could not open", errno);
   }
   struct stat status = {};

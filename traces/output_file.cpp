@@ -30,6 +30,8 @@ std::string_view remedy_for(int error_number) {
       return "check the name; create the folder first";
     case EISDIR:
       return "name a file, not a folder";
+    case EPIPE:
+      return "whoever read it has stopped";
     default:
       return "";
   }
@@ -51,7 +53,8 @@ void sync_folder(const std::filesystem::path& path) {
 }  // namespace
 
 Error system_error(const std::filesystem::path& path, std::string_view doing, int error_number) {
-  return Error(path.string(), fmt::format("{}: {}", doing, std::strerror(error_number)), remedy_for(error_number));
+  const std::string name = is_standard_output(path) ? "standard output" : path.string();
+  return Error(name, fmt::format("{}: {}", doing, std::strerror(error_number)), remedy_for(error_number));
 }
 
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path) {

@@ -27,13 +27,13 @@ class OutputFile {
 
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
+  /// Hands what was written so far to the system: for readers of standard output, a device or a pipe.
+  void flush();
   void commit();
 
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  void flush();
-
   std::filesystem::path path_;
   std::filesystem::path temporary_path_;
   Overwrite overwrite_;

@@ -2,24 +2,29 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
+#include "traces/timeline_csv.hpp"
+#include "traces/timeline_hjif.hpp"
+#include "traces/timeline_tact.hpp"
 
 namespace vestige {
 
-TimelineCsv::TimelineCsv(const std::filesystem::path& path, Overwrite overwrite, std::size_t actuator_count)
-    : file_(path, overwrite) {
-  line_ = "time_s";
-  for (std::size_t i = 1; i <= actuator_count; ++i) fmt::format_to(std::back_inserter(line_), ",actuator_{}", i);
-  line_ += '\n';
-  file_.write(line_);
-}
-
-void TimelineCsv::write(const ActuatorFrame& frame) {
-  line_.clear();
-  fmt::format_to(std::back_inserter(line_), "{}", frame.time_s);
-  for (const std::uint8_t duty : frame.duty) fmt::format_to(std::back_inserter(line_), ",{}", duty);
-  line_ += '\n';
-  file_.write(line_);
+std::unique_ptr<TimelineFile> make_timeline(const std::filesystem::path& path, Overwrite overwrite,
+                                            const std::vector<std::string>& actuator_names) {
+  const std::string end = path.extension().string();
+  std::error_code ignored;
+  const auto status = std::filesystem::status(path, ignored);
+  const bool is_device = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+                         !std::filesystem::is_directory(status);
+  if (path == "-" || end == ".csv" || is_device)
+    return std::make_unique<TimelineCsv>(path, overwrite, actuator_names.size());
+  if (end != ".hjif" && end != ".tact")
+    throw UsageError(path.string(), "a timeline's kind shows in the end of its name",
+                     "name it .csv (a row a frame), .hjif (MPEG haptics) or .tact (bHaptics)");
+  if (actuator_names.empty())
+    throw UsageError(path.string(), fmt::format("there is no actuator, and a {} file needs one", end),
+                     "give the trace an actuator map with 'vestige record --map', or write a .csv");
+  if (end == ".hjif") return std::make_unique<TimelineHjif>(path, overwrite, actuator_names);
+  return std::make_unique<TimelineTact>(path, overwrite, actuator_names.size());
 }
 
 }  // namespace vestige

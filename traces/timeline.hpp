@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,16 +16,23 @@ struct ActuatorFrame {
   std::vector<std::uint8_t> duty;  ///< 0 off … 255 full, one for each actuator
 };
 
-/// Writes `time_s,actuator_1,…,actuator_n`, one row a frame.
-class TimelineCsv {
+/// A file of duties over time. Complete or absent: without `commit` it leaves nothing behind.
+class TimelineFile {
  public:
-  TimelineCsv(const std::filesystem::path& path, Overwrite overwrite, std::size_t actuator_count);
-  void write(const ActuatorFrame& frame);
-  void commit() { file_.commit(); }
+  TimelineFile() = default;
+  virtual ~TimelineFile() = default;
+  TimelineFile(const TimelineFile&) = delete;
+  TimelineFile& operator=(const TimelineFile&) = delete;
 
- private:
-  OutputFile file_;
-  std::string line_;
+  /// A frame holds until the next one. Times must not decrease; each frame has a duty for every actuator.
+  virtual void write(const ActuatorFrame& frame) = 0;
+  virtual void commit() = 0;
 };
+
+/// Opens the kind of file that the name's end asks for: .csv (also "-", and what is no regular file: a device, a pipe),
+/// .hjif or .tact. Throws `UsageError` for any other end, and for actuators that the format cannot hold; `Error` as
+/// `OutputFile` does.
+std::unique_ptr<TimelineFile> make_timeline(const std::filesystem::path& path, Overwrite overwrite,
+                                            const std::vector<std::string>& actuator_names);
 
 }  // namespace vestige

@@ -104,6 +104,8 @@ void TraceReader::Implementation::require_trace() {
   while (index_.streams.find(Stream::kPose) == nullptr && frames_.skip_message()) continue;
   frames_.rewind();
   const mcap::Channel* pose = index_.streams.find(Stream::kPose);
+  if (pose == nullptr && index_.profile_is_ours && !warnings_.empty())
+    throw Error(warnings_.front(), "so that it holds no frame", "record it again");
   if (pose == nullptr) {
     throw Error(file,
                 index_.profile_is_ours ? "is a trace without the channel /pose"

@@ -63,7 +63,12 @@ void Sender::post(const ActuatorFrame& frame, Clock::time_point since) {
 
 std::vector<SentState> Sender::take_log() {
   const std::lock_guard lock(mutex_);
-  return std::exchange(log_, {});
+  if (!in_flight_) return std::exchange(log_, {});
+  const auto known = log_.begin() + static_cast<std::ptrdiff_t>(in_flight_->place);
+  std::vector<SentState> told(log_.begin(), known);
+  log_.erase(log_.begin(), known);
+  in_flight_->place = 0;
+  return told;
 }
 
 SenderStatistics Sender::finish() {
@@ -128,24 +133,45 @@ Sender::Clock::time_point Sender::next_chance(Clock::time_point now) {
 }
 
 void Sender::send_state() {
-  std::optional<Posted> changed;
-  {
-    const std::lock_guard lock(mutex_);
-    changed = std::exchange(mailbox_, std::nullopt);
-  }
-  if (changed) {
+  const Posted* changed = take_posted();
+  if (changed != nullptr) {
     state_ = changed->frame;
     has_state_ = true;
   }
-  sink_.send(state_, next_sequence(changed ? &*changed : nullptr));
+  sink_.send(state_, next_sequence(changed));
   note_sent();
-  if (!changed) return;
-  const double written_s = seconds(Clock::now() - changed->since);
+  if (changed != nullptr) note_written();
+}
+
+const Sender::Posted* Sender::take_posted() {
+  const std::lock_guard lock(mutex_);
+  if (!mailbox_) return nullptr;
+  in_flight_ = {*std::exchange(mailbox_, std::nullopt), log_.size()};
+  if (options_.keep_log) log_.push_back({in_flight_->posted.frame, SentState::Fate::kSent, 0});
+  return &in_flight_->posted;
+}
+
+void Sender::note_written() {
+  const double written_s = seconds(last_sent_ - in_flight_->posted.since);
   ++statistics_.changes;
   statistics_.written.add(written_s);
-  if (!options_.keep_log) return;
   const std::lock_guard lock(mutex_);
-  log_.push_back({state_, SentState::Fate::kSent, written_s});
+  if (options_.keep_log) log_[in_flight_->place].written_s = written_s;
+  in_flight_.reset();
+}
+
+/// What could not be written is sent when the link is back, unless there is something newer.
+void Sender::give_back() {
+  const std::lock_guard lock(mutex_);
+  if (!in_flight_) return;
+  if (mailbox_) {
+    ++superseded_;
+    if (options_.keep_log) log_[in_flight_->place].fate = SentState::Fate::kSuperseded;
+  } else {
+    mailbox_ = in_flight_->posted;
+    if (options_.keep_log) log_.pop_back();
+  }
+  in_flight_.reset();
 }
 
 std::uint8_t Sender::next_sequence(const Posted* changed) {
@@ -189,6 +215,7 @@ void Sender::receive() {
 }
 
 void Sender::lose_link(const LinkLost& lost) {
+  give_back();
   linked_ = false;
   outstanding_.fill({});
   waiting_ = 0;

@@ -68,7 +68,7 @@ class Sender {
   /// what the sink threw.
   void post(const ActuatorFrame& frame, Clock::time_point since);
 
-  /// With `keep_log`: what became of states since the last call, in their order.
+  /// With `keep_log`: what became of states, in their order, as far as it is known and was not told before.
   std::vector<SentState> take_log();
 
   /// Sends the last state, waits for its answer, switches everything off and waits for that one's answer, 0.1 s at
@@ -79,6 +79,11 @@ class Sender {
   struct Posted {
     ActuatorFrame frame;
     Clock::time_point since;
+  };
+  /// A change that is being written.
+  struct InFlight {
+    Posted posted;
+    std::size_t place = 0;  ///< in the log
   };
   struct Outstanding {
     bool waiting = false;
@@ -95,6 +100,10 @@ class Sender {
   bool may_send(Clock::time_point now);
   Clock::time_point next_chance(Clock::time_point now);
   void send_state();
+  /// Takes what is in the mailbox; null: nothing.
+  const Posted* take_posted();
+  void note_written();
+  void give_back();
   std::uint8_t next_sequence(const Posted* changed);
   void note_sent();
   void wait_for_last_answer();
@@ -110,6 +119,7 @@ class Sender {
 
   std::mutex mutex_;
   std::optional<Posted> mailbox_;
+  std::optional<InFlight> in_flight_;
   std::vector<SentState> log_;
   std::uint64_t superseded_ = 0;
   std::atomic<bool> stopping_ = false;

@@ -16,7 +16,6 @@ namespace {
 constexpr Pen kAxisPen = {kInk, 0.6, Dash::kSolid};
 constexpr double kTickPt = 3;
 constexpr double kShortTickPt = 1.8;
-constexpr int kTickTypePt = 7;
 constexpr int kTitleTypePt = 8;
 /// Adds of floating-point steps land a hair beside the round number.
 constexpr double kSlack = 1e-9;

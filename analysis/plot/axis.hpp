@@ -38,6 +38,9 @@ std::vector<Tick> log_ticks(double low, double high);
 /// 12345 as "12 345", with narrow spaces.
 std::string grouped(double value);
 
+/// What their labels are set in.
+inline constexpr int kTickTypePt = 7;
+
 /// The lower and left axis of `box` with their ticks and titles; `x` and `y` must map to `box`.
 void draw_x_axis(Canvas& canvas, const Box& box, const Axis& x, const std::vector<Tick>& ticks, std::string_view title);
 void draw_y_axis(Canvas& canvas, const Box& box, const Axis& y, const std::vector<Tick>& ticks, std::string_view title);

@@ -73,18 +73,6 @@ struct Picture {
   std::vector<RegionLabel> labels;
 };
 
-/// As much of `text` as fits.
-std::string shortened(std::string text, double room_pt) {
-  const TextStyle style = {7, kInk};
-  if (text_width_pt(text, style) <= room_pt) return text;
-  while (!text.empty() && text_width_pt(text + "…", style) > room_pt) {
-    // A whole character, which may be several bytes.
-    while (text.size() > 1 && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
-    text.pop_back();
-  }
-  return text + "…";
-}
-
 /// Two significant digits, without an exponent.
 std::string two_digits(double value) {
   const double decimals = std::clamp(1 - std::floor(std::log10(value)), 0.0, 9.0);
@@ -286,7 +274,7 @@ class BodyFigure : public Figure {
               : fmt::format(": {} contact{}", grouped(static_cast<double>(contacts)), contacts == 1 ? "" : "s");
       const double room_pt = column_pt - 20 - text_width_pt(behind, {7, kInk});
       canvas.text({swatch.right_pt + 4, y_pt},
-                  shortened(actuator == 0 ? "no actuator" : name_of(actuator), room_pt) + behind, {7, kInk});
+                  shortened(actuator == 0 ? "no actuator" : name_of(actuator), {7, kInk}, room_pt) + behind, {7, kInk});
     }
   }
 

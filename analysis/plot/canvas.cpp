@@ -223,6 +223,16 @@ void Canvas::image(const Box& box, const Raster& raster) {
                      pixels);
 }
 
+std::string shortened(std::string text, const TextStyle& style, double width_pt) {
+  if (text_width_pt(text, style) <= width_pt) return text;
+  while (!text.empty() && text_width_pt(text + "…", style) > width_pt) {
+    // A whole character, which may be several bytes.
+    while (text.size() > 1 && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+    text.pop_back();
+  }
+  return text + "…";
+}
+
 std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_pt) {
   std::vector<std::string> lines;
   std::string line;

@@ -97,6 +97,9 @@ double text_width_pt(std::string_view text, const TextStyle& style);
 /// Its words in lines that are no wider than that, unless a word alone is.
 std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_pt);
 
+/// As much of it as fits, with an ellipsis where something is left out.
+std::string shortened(std::string text, const TextStyle& style, double width_pt);
+
 /// What a figure is drawn with: lengths in points, text in Liberation Sans. Draws through VTK, into a window (PNG) or
 /// an SVG document alike.
 class Canvas {

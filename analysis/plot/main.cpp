@@ -11,6 +11,7 @@
 #include <new>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "analysis/plot/accuracy_figure.hpp"
@@ -19,6 +20,7 @@
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/growth_figure.hpp"
 #include "analysis/plot/headless_window.hpp"
+#include "analysis/plot/measured_figure.hpp"
 #include "analysis/plot/scene_figure.hpp"
 #include "analysis/plot/stress_figure.hpp"
 #include "analysis/plot/sweep_figure.hpp"
@@ -53,6 +55,7 @@ struct Options {
   std::string avatar;
   std::string map;
   std::filesystem::path contacts;
+  std::filesystem::path measured;
   std::string animation;
   std::size_t poses = 6;
   plot::MomentChoice moments;
@@ -146,8 +149,23 @@ int draw_stress(const Options& options) {
 }
 
 int draw_timeline(const Options& options) {
-  return write_figure(options, stem_of(options),
-                      [&] { return plot::timeline_figure(plot::read_timeline(options.inputs.front())); });
+  return write_figure(options, stem_of(options), [&] {
+    plot::Timeline timeline = plot::read_timeline(options.inputs.front());
+    if (!options.map.empty()) {
+      const vestige::ActuatorMap map = plot::read_map(options.map);
+      warn(options, map.warnings);
+      if (map.actuator_count != timeline.actuator_count)
+        throw vestige::Error(options.map,
+                             fmt::format("has {} actuators, and {} has {}", map.actuator_count,
+                                         options.inputs.front().string(), timeline.actuator_count),
+                             "name the map that the timeline was made with");
+      timeline.names = map.names;
+    }
+    if (!options.measured.empty())
+      return plot::measured_figure(std::move(timeline), plot::read_timeline(options.measured),
+                                   options.measured.string());
+    return plot::timeline_figure(std::move(timeline));
+  });
 }
 
 int draw_textures(const Options& options) {
@@ -315,11 +333,15 @@ int run(int argc, char** argv) {
 
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
-                                   "  vestige plot timeline timeline.csv -o figures/timeline --force\n");
+                                   "  vestige plot timeline timeline.csv --map builtin -o figures/timeline\n");
   timeline.add_option("INPUT", options.inputs, "What 'vestige replay --timeline FILE.csv' wrote")
       ->type_name("CSV")
       ->expected(1)
       ->required();
+  timeline.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
+      ->type_name("builtin|FILE.png");
+  timeline.add_option("--measured", options.measured, "What a board's pins did meanwhile, as CSV like a timeline")
+      ->type_name("CSV");
   add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
 
   CLI::App& textures =
@@ -409,8 +431,8 @@ int run(int argc, char** argv) {
     if (!std::cout) throw vestige::system_error("standard output", "could not write", errno);
     return shown;
   } catch (const CLI::ParseError& error) {
-    vestige::print_message(
-        fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n", error.what()));
+    vestige::print_message(fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n",
+                                       help::cause_of(app, error)));
     return kWrongUsage;
   }
   if (options.output == "-")

@@ -8,14 +8,10 @@
 
 namespace vestige::plot {
 
-namespace {
-
 ActuatorMap read_map(const std::string& map) {
   const ActuatorMapFiles files = read_actuator_map_files(map);
   return files.png.empty() ? ActuatorMap() : parse_actuator_map(files.png, files.json, map);
 }
-
-}  // namespace
 
 std::uint16_t Subject::actuator_at(std::uint32_t triangle, double u, double v) const {
   const glm::uvec3& corner = avatar.triangles[triangle];

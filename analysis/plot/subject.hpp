@@ -21,8 +21,11 @@ struct Subject {
   std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const;
 };
 
-/// `avatar`: "builtin" or a glTF file. `map`: "builtin", "none" or a PNG file, whose sidecar is the .json of the same
-/// name, if there is one; empty: "builtin" for the built-in avatar, else "none". Throws `Error`.
+/// "builtin", "none" or a PNG file, whose sidecar is the .json of the same name, if there is one. Throws `Error`.
+ActuatorMap read_map(const std::string& map);
+
+/// `avatar`: "builtin" or a glTF file. `map`: as for `read_map`; empty: "builtin" for the built-in avatar, else "none".
+/// Throws `Error`.
 Subject read_subject(const std::string& avatar, const std::string& map);
 
 /// The avatar of a trace, with the trace's map or, unless it is empty, with `map`. Throws `Error`.

@@ -42,6 +42,7 @@ SweepSeries read_series(const JsonField& field) {
   if (series.context == "none") series.context.clear();
   if (field.has("skip")) series.skip = setting(field.at("skip"));
   if (field.has("method")) series.method = field.at("method").text();
+  if (field.has("renderer")) series.renderer = setting(field.at("renderer"));
   const JsonField points = field.at("points");
   for (std::size_t i = 0; i < points.count(); ++i) series.points.push_back(read_point(points.at(i)));
   std::ranges::sort(series.points, {}, &SweepPoint::colliders);

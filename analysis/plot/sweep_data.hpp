@@ -22,6 +22,7 @@ struct SweepSeries {
   std::string context;  ///< empty without OpenGL
   std::string skip;
   std::string method;
+  std::string renderer;   ///< "on": measured beside one
   std::size_t sweep = 0;  ///< which file it came from
   std::vector<SweepPoint> points;
 };

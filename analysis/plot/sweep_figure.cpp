@@ -55,12 +55,20 @@ Colour darkened(Colour colour) {
   return {part(colour.red), part(colour.green), part(colour.blue), colour.alpha};
 }
 
-/// Whether the same was also measured with the other setting of skipping, from which a line must be told.
-bool has_twin(const Sweeps& sweeps, const SweepSeries& series) {
+/// Whether the same was also measured with another value of `setting`, from which a line must be told.
+bool has_twin(const Sweeps& sweeps, const SweepSeries& series, std::string SweepSeries::*setting) {
   return std::ranges::any_of(sweeps.series, [&](const SweepSeries& one) {
     return one.detector == series.detector && one.context == series.context && one.method == series.method &&
-           one.sweep == series.sweep && one.skip != series.skip;
+           one.sweep == series.sweep && one.*setting != series.*setting;
   });
+}
+
+bool is_without_skipping(const Sweeps& sweeps, const SweepSeries& series) {
+  return series.skip == "off" && has_twin(sweeps, series, &SweepSeries::skip);
+}
+
+bool is_beside_renderer(const Sweeps& sweeps, const SweepSeries& series) {
+  return series.renderer == "on" && has_twin(sweeps, series, &SweepSeries::renderer);
 }
 
 /// Names each series by its detector and by whatever else tells it from the others.
@@ -76,7 +84,8 @@ std::vector<std::string> series_names(const Sweeps& sweeps) {
     std::string name = series.detector;
     if (contexts.size() > 1 && !series.context.empty()) name.append(", ").append(shown_context(series.context));
     if (methods.size() > 1) name.append(", ").append(series.method);
-    if (series.skip == "off" && has_twin(sweeps, series)) name += ", no skipping";
+    if (is_without_skipping(sweeps, series)) name += ", no skipping";
+    if (is_beside_renderer(sweeps, series)) name += ", rendering";
     if (sweeps.sources.size() > 1) name += fmt::format(" [{}]", series.sweep + 1);
     names.push_back(name);
   }
@@ -158,8 +167,8 @@ class SweepFigure : public Figure {
     return std::max(kPlotHeightPt, static_cast<double>(names_.size() + 1) * kLabelGapPt);
   }
 
-  /// Colour tells detectors and contexts apart, dashes say that nothing was skipped, marks tell files apart: what
-  /// belongs together looks alike.
+  /// Colour tells detectors and contexts apart, dashes say that nothing was skipped, dots that a renderer ran beside
+  /// it, marks tell files apart: what belongs together looks alike.
   Colour colour(std::size_t index) const {
     std::vector<std::array<std::string, 3>> kinds;
     const auto kind = [](const SweepSeries& series) {
@@ -231,7 +240,8 @@ class SweepFigure : public Figure {
     const SweepSeries& series = sweeps_.series[index];
     std::vector<Place> line;
     for (const SweepPoint& point : series.points) line.push_back(place(point, x, y));
-    const Dash dash = series.skip == "off" && has_twin(sweeps_, series) ? Dash::kDashed : Dash::kSolid;
+    Dash dash = is_without_skipping(sweeps_, series) ? Dash::kDashed : Dash::kSolid;
+    if (is_beside_renderer(sweeps_, series)) dash = Dash::kDotted;
     canvas.polyline(line, {colour(index), 1.2, dash});
     const std::size_t step = (line.size() + kMarkedPoints - 1) / kMarkedPoints;
     for (std::size_t i = line.size(); i > 0; i -= std::min(step, i))

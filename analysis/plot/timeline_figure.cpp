@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/colour_bar.hpp"
@@ -23,12 +24,15 @@ constexpr double kFarthestS = 1e12;
 constexpr int kFullDuty = 255;
 
 constexpr double kWidthPt = 468;
-constexpr double kLeftPt = 48;
+constexpr double kLeastLeftPt = 48;
+constexpr double kMostLabelPt = 150;
 constexpr double kRightPt = 408;
 constexpr double kAxisRoomPt = 36;
 constexpr double kTopPt = 20;
 constexpr double kLeastHeightPt = 60;
 constexpr double kMostHeightPt = 480;
+
+constexpr TextStyle kLabelStyle = {.size_pt = kTickTypePt};
 
 class TimelineFigure : public Figure {
  public:
@@ -42,7 +46,8 @@ class TimelineFigure : public Figure {
   }
 
   void draw(Canvas& canvas) const override {
-    const Box plot = {kLeftPt, kAxisRoomPt, kRightPt, kAxisRoomPt + plot_height_pt()};
+    const std::vector<Tick> actuators = actuator_ticks();
+    const Box plot = {left_pt(actuators), kAxisRoomPt, kRightPt, kAxisRoomPt + plot_height_pt()};
     canvas.image(plot, raster(plot));
     // A clock's time is long and says little: count from the first frame then.
     const double begin_s = timeline_.time_s.front();
@@ -54,7 +59,7 @@ class TimelineFigure : public Figure {
                 is_clock ? fmt::format("Time (s) after {} s", begin_s) : "Time (s)");
     const auto count = static_cast<double>(timeline_.actuator_count);
     const Axis y = {Scale::kLinear, 0.5, count + 0.5, plot.top_pt, plot.bottom_pt};
-    draw_y_axis(canvas, plot, y, actuator_ticks(plot), "Actuator");
+    draw_y_axis(canvas, plot, y, actuators, "Actuator");
     const Box bar = {kRightPt + 18, std::max(plot.bottom_pt, plot.top_pt - 96), kRightPt + 24, plot.top_pt};
     draw_colour_bar(canvas, bar, amount_ramp, 0, kFullDuty, "Duty");
   }
@@ -73,14 +78,24 @@ class TimelineFigure : public Figure {
     return 2 * time_s.back() - time_s[time_s.size() - 2];
   }
 
-  std::vector<Tick> actuator_ticks(const Box& plot) const {
+  /// Room for the labels, and for the axis' title beside them; a multiple of 6 pt.
+  static double left_pt(const std::vector<Tick>& actuators) {
+    double widest_pt = 0;
+    for (const Tick& tick : actuators) widest_pt = std::max(widest_pt, text_width_pt(tick.label, kLabelStyle));
+    return std::max(kLeastLeftPt, std::ceil((widest_pt + 20) / 6) * 6);
+  }
+
+  std::vector<Tick> actuator_ticks() const {
     constexpr double kLabelHeightPt = 9;
-    const double row_pt = plot.height_pt() / static_cast<double>(timeline_.actuator_count);
+    const double row_pt = plot_height_pt() / static_cast<double>(timeline_.actuator_count);
     const auto step = static_cast<std::size_t>(row_pt >= kLabelHeightPt ? 1 : round_up_125(kLabelHeightPt / row_pt));
     std::vector<Tick> ticks;
     for (std::size_t actuator = 1; actuator <= timeline_.actuator_count; ++actuator) {
       const auto number = static_cast<double>(actuator);
-      if (actuator == 1 || actuator % step == 0) ticks.push_back({number, grouped(number)});
+      if (actuator != 1 && actuator % step != 0) continue;
+      std::string label = grouped(number);
+      if (!timeline_.names.empty()) label += " " + timeline_.names[actuator - 1];
+      ticks.push_back({number, shortened(std::move(label), kLabelStyle, kMostLabelPt)});
     }
     return ticks;
   }

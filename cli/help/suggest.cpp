@@ -55,4 +55,10 @@ std::optional<std::string> unknown_verb_remedy(const CLI::App& program, const st
                      did_you_mean(word, std::vector<std::string_view>(names.begin(), names.end())), program.get_name());
 }
 
+std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
+  const bool is_missing = error.get_name() == "RequiredError" || error.get_name() == "RequiresError";
+  if (!is_missing || program.remaining_size(true) == 0) return error.what();
+  return CLI::ExtrasError(program.remaining(true)).what();
+}
+
 }  // namespace vestige::help

@@ -18,4 +18,8 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
 /// What to do about a `word` that is none of the program's verbs; nothing where it is one.
 std::optional<std::string> unknown_verb_remedy(const CLI::App& program, const std::string& word);
 
+/// What is wrong with the command line. CLI11 would speak of a flag that is missing before one that it does not know,
+/// although they may be the same, misspelt.
+std::string cause_of(const CLI::App& program, const CLI::ParseError& error);
+
 }  // namespace vestige::help

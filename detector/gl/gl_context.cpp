@@ -72,6 +72,11 @@ std::unique_ptr<GlContext> GlContext::loaded(std::unique_ptr<GlContext> context,
   return context;
 }
 
+const GlFunctions& current_gl(GlContext& context) {
+  context.make_current();
+  return context.gl();
+}
+
 bool is_software_renderer(std::string_view renderer) {
   std::string name(renderer);
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });

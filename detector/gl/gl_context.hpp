@@ -39,6 +39,9 @@ class GlContext {
   GlInfo info_;
 };
 
+/// The functions of a context that it makes current: for members that are made with them.
+const GlFunctions& current_gl(GlContext& context);
+
 enum class ContextKind {
   kAuto,  ///< the first that works of: EGL device with hardware, EGL surfaceless, EGL software device, OSMesa
   kEgl,   ///< the same without OSMesa

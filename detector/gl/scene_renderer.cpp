@@ -33,7 +33,7 @@ constexpr std::array<float, 4> kBackground = {0.93F, 0.94F, 0.95F, 1.0F};
 
 SceneRenderer::SceneRenderer(std::unique_ptr<GlContext> context, const Avatar& avatar)
     : context_(std::move(context)),
-      gl_(current(*context_)),
+      gl_(current_gl(*context_)),
       avatar_(avatar),
       mesh_(gl_, avatar),
       palette_(gl_),
@@ -105,11 +105,6 @@ std::vector<std::uint8_t> SceneRenderer::pixels() {
   gl_.ReadPixels(0, 0, kWidth, kHeight, GL_RGBA, GL_UNSIGNED_BYTE, pixels.data());
   check_gl(gl_, "reading the scene back");
   return pixels;
-}
-
-const GlFunctions& SceneRenderer::current(GlContext& context) {
-  context.make_current();
-  return context.gl();
 }
 
 /// From the front (glTF avatars face +z), far enough to see the rest pose and a moving limb beside it.

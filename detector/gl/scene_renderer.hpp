@@ -37,7 +37,6 @@ class SceneRenderer {
   std::vector<std::uint8_t> pixels();
 
  private:
-  static const GlFunctions& current(GlContext& context);
   void aim_camera();
   void make_framebuffer();
   void make_collider_points();

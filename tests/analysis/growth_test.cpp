@@ -33,7 +33,7 @@ SweepPoint point(double us, std::uint64_t frames, std::uint64_t pairs) {
   point.repetitions = {{frames, static_cast<double>(frames) * us / 1e6}};
   point.frame_us.assign(frames, us);
   point.pass_frames = frames;
-  point.pairs_tested = pairs;
+  point.work.pairs_tested = pairs;
   return point;
 }
 
@@ -47,8 +47,8 @@ TEST(Ablations, TellWhatWholeFramesSavedFromWhatMeshletsDid) {
   on.points[0].repetitions = {{10, (4 * 2 + 6 * 20) / 1e6}};
   on.points[0].skipped_timed = 4;
   on.points[0].skipped_us = 8;
-  on.points[0].frames_skipped = 4;
-  on.points[0].pairs_tested = 30;
+  on.points[0].work.frames_skipped = 4;
+  on.points[0].work.pairs_tested = 30;
   const std::vector<SweepSeries> series = {off, on};
   const std::vector<Ablation> found = ablations(series);
   ASSERT_EQ(found.size(), 1U);

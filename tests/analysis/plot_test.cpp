@@ -166,6 +166,20 @@ TEST_F(PlotTest, ASinglePulseAmongManyFramesStaysVisible) {
   EXPECT_LT(std::filesystem::file_size(folder_ / "timeline.svg"), 100000U);
 }
 
+TEST_F(PlotTest, ATimelineNamesItsActuatorsAsTheMapDoes) {
+  write_text(folder_ / "six.csv",
+             "time_s,actuator_1,actuator_2,actuator_3,actuator_4,actuator_5,actuator_6\n0,255,0,0,0,0,0\n");
+  ASSERT_EQ(run("timeline six.csv --map builtin").exit_code, 0);
+  const std::string words = words_of(folder_ / "six.svg");
+  EXPECT_THAT(words, HasSubstr("1 upper torso, right"));
+  EXPECT_THAT(words, HasSubstr("2 upper torso, left"));
+  write_text(folder_ / "one.csv", "time_s,actuator_1\n0,255\n");
+  const Outcome other = run("timeline one.csv --map builtin");
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_THAT(other.standard_error, HasSubstr("builtin: has 6 actuators, and one.csv has 1"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "one.svg"));
+}
+
 TEST_F(PlotTest, ASingleContactAmongManyTexelsStaysVisible) {
   write_textures(folder_ / "textures.exr", 2000, 4000, 1);
   const Outcome outcome = run("textures textures.exr -o picture.png");
@@ -276,6 +290,7 @@ TEST_F(PlotTest, WrongUsageExitsWith2) {
   EXPECT_EQ(run("sweep").exit_code, 2);
   EXPECT_EQ(run("timeline a.csv b.csv").exit_code, 2);
   EXPECT_EQ(run("sweep . --colour").exit_code, 2);
+  EXPECT_THAT(run("timeline --froce").standard_error, HasSubstr("--froce"));
   EXPECT_THAT(run("scen a.mcap").standard_error, HasSubstr("scen: there is no such figure\n  did you mean 'scene'?"));
   const Outcome standard_output = run("timeline a.csv -o -");
   EXPECT_EQ(standard_output.exit_code, 2);

@@ -6,18 +6,14 @@
 #include <thread>
 
 #include "detector/gl/scene_renderer.hpp"
+#include "tests/support/builtin_avatar.hpp"
 #include "tests/support/scene_run.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 #include "traces/error.hpp"
 
 namespace vestige {
 namespace {
 
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
+using test::builtin_avatar;
 
 const std::vector<TraceFrame>& orbit() {
   static const std::vector<TraceFrame> frames = test::scene("orbit", builtin_avatar(), 20, 20, 5, {1000, 0, -7});

@@ -15,6 +15,7 @@
 #include "analysis/winding_number.hpp"
 #include "detector/embree_detector.hpp"
 #include "detector/skinning.hpp"
+#include "tests/support/skin_geometry.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "traces/error.hpp"
 
@@ -166,19 +167,7 @@ TEST(WindingNumber, CountsTheShellsAroundAPointAndRefusesTheSurface) {
     for (const float x : {-size, size})
       for (const float y : {-size, size})
         for (const float z : {-size, size}) vertices.emplace_back(x, y, z);
-    for (const glm::uvec3& face : std::array<glm::uvec3, 12>{{{0, 1, 3},
-                                                              {0, 3, 2},
-                                                              {4, 6, 7},
-                                                              {4, 7, 5},
-                                                              {0, 4, 5},
-                                                              {0, 5, 1},
-                                                              {2, 3, 7},
-                                                              {2, 7, 6},
-                                                              {0, 2, 6},
-                                                              {0, 6, 4},
-                                                              {1, 5, 7},
-                                                              {1, 7, 3}}})
-      triangles.push_back(face + first);
+    for (const glm::uvec3& face : test::box_faces()) triangles.push_back(face + first);
   }
   EXPECT_EQ(winding_number(vertices, triangles, {0.25F, 0.5F, 0.125F}), 2);
   EXPECT_EQ(winding_number(vertices, triangles, {0, 0, 0}), 2);  // its half-line runs along a diagonal of a face

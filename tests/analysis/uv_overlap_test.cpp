@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "detector/actuator_map.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/builtin_map.hpp"
 
 namespace vestige {
 namespace {
@@ -60,14 +59,14 @@ TEST(UvCoverage, ManyLargeTrianglesAreCountedToTheEnd) {
 }
 
 TEST(UvCoverage, TheMannequinIsCutWithoutAnyOverlap) {
-  const Avatar mannequin = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  const Avatar& mannequin = test::builtin_avatar();
   for (const std::uint32_t side : {512U, 1024U, 4096U})
     EXPECT_EQ(uv_coverage(mannequin, side).overlap_texels, 0U) << side;
 }
 
 TEST(MannequinMap, HasSixTorsoRegionsEachOnItsSideAndHeight) {
-  const Avatar mannequin = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
+  const Avatar& mannequin = test::builtin_avatar();
+  const ActuatorMap& map = test::builtin_map();
   ASSERT_EQ(map.actuator_count, 6U);
   std::vector<std::size_t> hits(7, 0);
   for (const glm::uvec3& t : mannequin.triangles) {

@@ -11,8 +11,7 @@
 #include <vector>
 
 #include "detector/skinning.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "tests/support/builtin_avatar.hpp"
 #include "traces/pose.hpp"
 #include "traces/sha256.hpp"
 
@@ -24,7 +23,7 @@ glm::vec3 skin_vertex_contracted(const Avatar& avatar, std::span<const SkinMatri
 namespace {
 
 TEST(Contraction, IsForbiddenWhereVerticesAreSkinned) {
-  const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  const Avatar& avatar = test::builtin_avatar();
   std::vector<glm::dmat4> world;
   std::vector<SkinMatrix> palette;
   const Pose pose = sample_animation(avatar, avatar.animations.front(), 0.7);

@@ -9,24 +9,18 @@
 #include "analysis/comparison.hpp"
 #include "analysis/skinning_error.hpp"
 #include "detector/gl/gl_context.hpp"
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/builtin_map.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 #include "traces/colliders.hpp"
 
 namespace vestige {
 namespace {
 
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
-
-const ActuatorMap& builtin_map() {
-  static const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
-  return map;
-}
+using test::builtin_avatar;
+using test::builtin_map;
 
 /// A map of 2 x 1 texels: nothing left of u = 0.5, actuator 1 right of it.
 ActuatorMap half_map() {

@@ -13,24 +13,18 @@
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/adversarial_pairs.hpp"
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/builtin_map.hpp"
+#include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
-#include "traces/colliders.hpp"
 
 namespace vestige {
 namespace {
 
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
-
-const ActuatorMap& builtin_map() {
-  static const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
-  return map;
-}
+using test::builtin_avatar;
+using test::builtin_map;
 
 DetectorOptions options(Method method, Skip skip = Skip::kOff) {
   return {Surface::kAll, PlaneSet::all(), method, skip};
@@ -40,25 +34,6 @@ bool same(const Contact& a, const Contact& b) {
   return a.triangle == b.triangle && std::bit_cast<std::uint32_t>(a.t) == std::bit_cast<std::uint32_t>(b.t) &&
          a.actuator == b.actuator && a.side == b.side && a.barycentric == b.barycentric &&
          a.texture_coordinate == b.texture_coordinate && a.position == b.position && a.speed_m_per_s == b.speed_m_per_s;
-}
-
-/// Runs frames of a built-in scenario over an avatar, at `rate_hz`, and hands each to `visit`.
-template <typename Visit>
-void play(const Avatar& avatar, const std::string& scenario, std::uint32_t colliders, int frames, double rate_hz,
-          Method method, Visit visit) {
-  const Animation* animation = avatar.animations.empty() ? nullptr : &avatar.animations.front();
-  const auto source = find_scenario(scenario)->make(avatar, animation, {colliders, 1});
-  std::vector<std::uint32_t> ids;
-  for (std::uint32_t i = 0; i < colliders; ++i) ids.push_back(i);
-  FrameBuilder builder(avatar, ids, method);
-  TraceFrame trace_frame;
-  for (int k = 0; k < frames; ++k) {
-    trace_frame.index = static_cast<std::uint64_t>(k);
-    trace_frame.time_ns = std::llround(k / rate_hz * 1e9);
-    trace_frame.pose = looped_pose(avatar, animation, k / rate_hz);
-    source->sample(k / rate_hz, trace_frame.colliders);
-    visit(builder.next(trace_frame));
-  }
 }
 
 std::unique_ptr<GlContext> context_named(const std::string& name) {
@@ -91,7 +66,9 @@ TEST_P(GeometryDetector, GivesTheBitsOfTheCpuInEveryScenario) {
   for (const Scenario& scenario : scenarios()) {
     std::uint64_t contacts = 0;
     const std::uint32_t colliders = std::min(scenario.default_count, 40U);
-    play(builtin_avatar(), std::string(scenario.name), colliders, 12, 15, method(), [&](const Frame& frame) {
+    FrameBuilder builder = test::frame_builder(builtin_avatar(), colliders, method());
+    for (const TraceFrame& trace_frame : test::scene(scenario.name, builtin_avatar(), colliders, 12, 15)) {
+      const Frame& frame = builder.next(trace_frame);
       const DetectorWork work = geometry->detect(frame, row);
       const DetectorWork expected_work = cpu->detect(frame, expected);
       EXPECT_EQ(work.pairs_meeting, expected_work.pairs_meeting);
@@ -105,7 +82,7 @@ TEST_P(GeometryDetector, GivesTheBitsOfTheCpuInEveryScenario) {
         ASSERT_TRUE(same(row[i], expected[i])) << scenario.name << ", frame " << frame.index << ", column " << i;
         if (row[i].hit()) ++contacts;
       }
-    });
+    }
     const bool moves = scenario.name != "still" || method() != Method::kStatic;  // a point rarely rests on the skin
     EXPECT_EQ(contacts > 0, moves) << scenario.name;
   }
@@ -228,16 +205,13 @@ TEST(GeometryDetectorAtRecordingRate, CapturesHardlyMoreThanWhatMeets) {
     DetectorOptions each = options(Method::kStatic);
     each.skip = skip;
     const auto geometry = make_geometry_detector(make_osmesa_context(), builtin_avatar(), builtin_map(), each);
-    std::uint64_t captured = 0;
-    std::uint64_t meeting = 0;
+    DetectorWork work;
     ContactRow row;
-    play(builtin_avatar(), "hug", 100, 200, 1000, Method::kStatic, [&](const Frame& frame) {
-      const DetectorWork work = geometry->detect(frame, row);
-      captured += work.pairs_captured;
-      meeting += work.pairs_meeting;
-    });
-    EXPECT_GT(meeting, 100U);
-    EXPECT_LE(captured - meeting, 2 + meeting / 100);
+    FrameBuilder builder = test::frame_builder(builtin_avatar(), 100, Method::kStatic);
+    for (const TraceFrame& frame : test::scene("hug", builtin_avatar(), 100, 200, 1000))
+      work += geometry->detect(builder.next(frame), row);
+    EXPECT_GT(work.pairs_meeting, 100U);
+    EXPECT_LE(work.pairs_captured - work.pairs_meeting, 2 + work.pairs_meeting / 100);
   }
 }
 
@@ -328,7 +302,9 @@ TEST(GeometryDetectorSkinning, LiesWithinItsBoundOfTheCpusAndTheBoundIsMicrometr
     std::vector<glm::vec3> expected;
     double largest = 0;
     glm::dvec3 extent(0);
-    play(avatar, "swarm", 1, 5, 3, Method::kStatic, [&](const Frame& frame) {
+    FrameBuilder builder = test::frame_builder(avatar, 1, Method::kStatic);
+    for (const TraceFrame& trace_frame : test::scene("swarm", avatar, 1, 5, 3)) {
+      const Frame& frame = builder.next(trace_frame);
       geometry->skinned_vertices(frame, vertices);
       skin_vertices(avatar, frame.palette, expected);
       const std::vector<glm::dvec3> radius = skinning_radius(avatar, frame);
@@ -340,7 +316,7 @@ TEST(GeometryDetectorSkinning, LiesWithinItsBoundOfTheCpusAndTheBoundIsMicrometr
           largest = std::max(largest, radius[i][axis]);
           extent[axis] = std::max(extent[axis], std::abs(static_cast<double>(expected[i][axis])));
         }
-    });
+    }
     EXPECT_LT(largest, 4e-6 * std::max({extent.x, extent.y, extent.z})) << named.first;
   }
 }

@@ -9,15 +9,16 @@
 
 #include "detector/contact_description.hpp"
 #include "detector/gl/gl_context.hpp"
-#include "detector/texture_hash.hpp"
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/builtin_map.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {
 
+using test::builtin_avatar;
+using test::builtin_map;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
@@ -109,26 +110,10 @@ TEST(MappedTriangles, LeaveOutNoneThatCanFireAnywhere) {
   EXPECT_GT(left_out, 100U);
 }
 
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
-
-const ActuatorMap& builtin_map() {
-  static const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
-  return map;
-}
-
 TEST(MappedTriangles, LeaveOutMostOfTheBuiltinAvatarWhoseVestCoversItsTorso) {
   const std::size_t kept = mapped_triangles(builtin_avatar(), builtin_map()).size();
   EXPECT_GT(kept, 100U);
   EXPECT_LT(kept, builtin_avatar().triangles.size() / 2);
-}
-
-std::string hash_of(const test::SceneRun& run) {
-  TextureHash hash;
-  for (const ContactRow& row : run.rows) hash.add(row);
-  return hash.hex();
 }
 
 struct Kind {

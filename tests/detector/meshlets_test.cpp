@@ -12,7 +12,6 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -24,22 +23,18 @@
 #include "detector/meshlet_triangles.hpp"
 #include "detector/skin_motion.hpp"
 #include "detector/triangle_boxes.hpp"
+#include "tests/support/builtin_avatar.hpp"
 #include "tests/support/random_rig.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/simd_targets.hpp"
 #include "tests/support/small_avatar.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {
 
-constexpr Method kMethods[] = {Method::kStatic, Method::kCarried, Method::kCcd};
+using test::builtin_avatar;
 
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
+constexpr Method kMethods[] = {Method::kStatic, Method::kCarried, Method::kCcd};
 
 /// The meshlet of each triangle. Fails where one has none, or several.
 std::vector<std::size_t> meshlet_of_triangle(const Avatar& avatar, const Meshlets& meshlets) {
@@ -120,31 +115,43 @@ test::RigShape any_rig() {
   return shape;
 }
 
-/// Calls visit(box of a node, triangle of it) for all triangles and all nodes that they are in.
-template <typename Visit>
-void visit_boxes(const Meshlets& meshlets, const MeshletBounds& bounds, Visit&& visit) {
-  std::size_t meshlets_a_node = 1;
-  for (std::size_t level = 0; level < meshlets.levels(); ++level, meshlets_a_node *= kMeshletFanout) {
-    std::vector<SkinBox> boxes(meshlets.nodes(level));
-    bounds.boxes(level, 0, boxes);
-    for (std::size_t m = 0; m < meshlets.size(); ++m)
-      for (const std::uint32_t triangle : meshlets.triangles(m)) visit(boxes[m / meshlets_a_node], triangle);
+/// Any rig within a frame: its skin, and where its meshlets are said to be.
+class BoundedRig {
+ public:
+  BoundedRig() {
+    frame_.palette = rig_.palette();
+    frame_.palette_before = rig_.palette();
   }
-}
+
+  const Avatar& avatar() const { return rig_.avatar; }
+
+  /// Calls visit(box of a node, triangle of it, skin) for all triangles and all nodes that they are in.
+  template <typename Visit>
+  void visit_boxes(Method method, Visit&& visit) {
+    bounds_.begin(frame_, method);
+    SkinMotion skin;
+    skin.skin(rig_.avatar, frame_, method);
+    std::size_t meshlets_a_node = 1;
+    for (std::size_t level = 0; level < meshlets_.levels(); ++level, meshlets_a_node *= kMeshletFanout) {
+      std::vector<SkinBox> boxes(meshlets_.nodes(level));
+      bounds_.boxes(level, 0, boxes);
+      for (std::size_t m = 0; m < meshlets_.size(); ++m)
+        for (const std::uint32_t triangle : meshlets_.triangles(m)) visit(boxes[m / meshlets_a_node], triangle, skin);
+    }
+  }
+
+ private:
+  test::RandomRig rig_{any_rig()};
+  Meshlets meshlets_{rig_.avatar};
+  MeshletBounds bounds_{rig_.avatar, meshlets_};
+  Frame frame_;
+};
 
 RC_GTEST_PROP(MeshletBounds, HoldEverySkinnedVertexOfAnyRig, ()) {
-  test::RandomRig rig(any_rig());
-  const Meshlets meshlets(rig.avatar);
-  MeshletBounds bounds(rig.avatar, meshlets);
-  Frame frame;
-  frame.palette = rig.palette();
-  frame.palette_before = rig.palette();
+  BoundedRig rig;
   for (const Method method : {Method::kStatic, Method::kCcd}) {
-    bounds.begin(frame, method);
-    SkinMotion skin;
-    skin.skin(rig.avatar, frame, method);
-    visit_boxes(meshlets, bounds, [&](const SkinBox& box, std::uint32_t triangle) {
-      const glm::uvec3& corners = rig.avatar.triangles[triangle];
+    rig.visit_boxes(method, [&](const SkinBox& box, std::uint32_t triangle, const SkinMotion& skin) {
+      const glm::uvec3& corners = rig.avatar().triangles[triangle];
       for (int corner = 0; corner < 3; ++corner) {
         RC_ASSERT(inside(skin.now[corners[corner]], box));
         if (method == Method::kCcd) RC_ASSERT(inside(skin.before[corners[corner]], box));
@@ -154,18 +161,9 @@ RC_GTEST_PROP(MeshletBounds, HoldEverySkinnedVertexOfAnyRig, ()) {
 }
 
 RC_GTEST_PROP(MeshletBounds, HoldEveryStartThatIsCarriedIntoATriangle, ()) {
-  test::RandomRig rig(any_rig());
-  const Meshlets meshlets(rig.avatar);
-  MeshletBounds bounds(rig.avatar, meshlets);
-  Frame frame;
-  frame.palette = rig.palette();
-  frame.palette_before = rig.palette();
-  bounds.begin(frame, Method::kCarried);
-  SkinMotion skin;
-  skin.skin(rig.avatar, frame, Method::kCarried);
-  visit_boxes(meshlets, bounds, [&](const SkinBox& box, std::uint32_t triangle) {
-    const Corners now = corners_of(rig.avatar, skin.now, triangle);
-    const Corners before = corners_of(rig.avatar, skin.before, triangle);
+  BoundedRig rig;
+  rig.visit_boxes(Method::kCarried, [&](const SkinBox& box, std::uint32_t triangle, const SkinMotion& skin) {
+    const auto [before, now] = moving_corners(rig.avatar(), skin, Method::kCarried, triangle);
     const glm::dvec3 low = glm::min(glm::min(now.a, now.b), now.c);
     const glm::dvec3 high = glm::max(glm::max(now.a, now.b), now.c);
     for (const glm::dvec3& corner : {low, high}) {
@@ -315,8 +313,8 @@ RC_GTEST_PROP(MeshletTriangles, RejectNoPairThatMeets, ()) {
       MeshletTriangles triangles;
       triangles.bound(now, before, method);
       for (std::size_t i = 0; i < meshlets.triangles(m).size(); ++i) {
-        const Corners corners = {now.at(0, i), now.at(1, i), now.at(2, i)};
-        const Corners corners_before = {before.at(0, i), before.at(1, i), before.at(2, i)};
+        const Corners corners = now.corners(i);
+        const Corners corners_before = before.corners(i);
         for (const Segment& segment : segments_around(rig, corners_before, corners, reach)) {
           Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
           if (method == Method::kCarried) way.start = glm::dvec3(carried_start(segment.start, corners_before, corners));
@@ -355,10 +353,8 @@ TEST(MeshletCandidates, AreTheSameOnEveryInstructionSetAndLeaveOutNoPairWhoseBox
   const Meshlets meshlets(builtin_avatar());
   const std::vector<std::size_t> meshlet_of = meshlet_of_triangle(builtin_avatar(), meshlets);
   MeshletCandidates candidates(builtin_avatar(), meshlets);
-  std::vector<std::uint32_t> ids(100);
-  std::iota(ids.begin(), ids.end(), 0U);
   for (const Method method : kMethods) {
-    FrameBuilder builder(builtin_avatar(), ids, method);
+    FrameBuilder builder = test::frame_builder(builtin_avatar(), 100, method);
     std::size_t pairs = 0;
     std::size_t meshlet_pairs = 0;
     for (const TraceFrame& trace_frame : scene) {

@@ -7,29 +7,15 @@
 
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
-#include "detector/texture_hash.hpp"
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/builtin_map.hpp"
 #include "tests/support/scene_run.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {
 
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
-
-const ActuatorMap& builtin_map() {
-  static const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
-  return map;
-}
-
-std::string hash_of(const test::SceneRun& run) {
-  TextureHash hash;
-  for (const ContactRow& row : run.rows) hash.add(row);
-  return hash.hex();
-}
+using test::builtin_avatar;
+using test::builtin_map;
 
 using Question = std::tuple<std::string_view, Method>;
 

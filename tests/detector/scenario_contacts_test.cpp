@@ -11,13 +11,14 @@
 #include <set>
 
 #include "detector/detector.hpp"
+#include "tests/support/builtin_avatar.hpp"
 #include "tests/support/skin_geometry.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 #include "traces/colliders.hpp"
 
 namespace vestige {
 namespace {
+
+using test::builtin_avatar;
 
 struct Counts {
   const char* scenario;
@@ -66,11 +67,6 @@ std::vector<Touch> touches_of(std::string_view name, const Avatar& avatar, const
       if (row[column].hit()) touches.push_back({k, column, frame.origin_m + row[column].position, row[column].side});
   }
   return touches;
-}
-
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
 }
 
 class ScenarioContacts : public ::testing::TestWithParam<Counts> {};

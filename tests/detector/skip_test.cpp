@@ -2,41 +2,27 @@
 
 #include <gtest/gtest.h>
 
-#include <numeric>
 #include <ostream>
 #include <string>
 
 #include "detector/detector.hpp"
-#include "detector/texture_hash.hpp"
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/builtin_map.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/simd_targets.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {
 
-const ActuatorMap& builtin_map() {
-  static const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
-  return map;
-}
-
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
+using test::builtin_avatar;
+using test::builtin_map;
 
 test::SceneRun run(const std::vector<TraceFrame>& scene, const Avatar& avatar, std::uint32_t colliders,
                    const DetectorOptions& options) {
   return test::run_scene(scene, avatar, colliders, *make_cpu_detector(avatar, builtin_map(), options));
-}
-
-std::string hash_of(const test::SceneRun& run) {
-  TextureHash hash;
-  for (const ContactRow& row : run.rows) hash.add(row);
-  return hash.hex();
 }
 
 using Question = std::tuple<std::string_view, Method>;
@@ -130,22 +116,15 @@ TEST(Skipping, CountsWhatItLeavesOut) {
 
 TEST(Skipping, SkinsFewMeshletsAndFindsAsManyPairs) {
   const auto scene = test::scene("swarm", builtin_avatar(), 40, 20, 1000);
-  std::vector<std::uint32_t> ids(40);
-  std::iota(ids.begin(), ids.end(), 0U);
   DetectorWork all;
   DetectorWork some;
   for (const Skip skip : {Skip::kOff, Skip::kOn}) {
     const auto cpu =
         make_cpu_detector(builtin_avatar(), builtin_map(), {Surface::kAll, kHashedPlanes, Method::kStatic, skip});
     DetectorWork& sum = skip == Skip::kOn ? some : all;
-    FrameBuilder builder(builtin_avatar(), ids);
+    FrameBuilder builder = test::frame_builder(builtin_avatar(), 40, Method::kStatic);
     ContactRow row;
-    for (const TraceFrame& frame : scene) {
-      const DetectorWork work = cpu->detect(builder.next(frame), row);
-      sum.pairs_tested += work.pairs_tested;
-      sum.pairs_meeting += work.pairs_meeting;
-      sum.meshlets_skinned += work.meshlets_skinned;
-    }
+    for (const TraceFrame& frame : scene) sum += cpu->detect(builder.next(frame), row);
   }
   EXPECT_EQ(all.meshlets_skinned, 0U);
   EXPECT_GT(some.meshlets_skinned, 0U);

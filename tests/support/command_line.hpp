@@ -1,9 +1,12 @@
 #pragma once
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "tests/support/process.hpp"
 #include "tests/support/test_data.hpp"
@@ -20,6 +23,22 @@ class CommandLineTest : public ::testing::Test {
     const Outcome outcome = run(command);
     EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
     return nlohmann::json::parse(outcome.standard_output, nullptr, false);
+  }
+
+  /// The command fails with this exit code, says each of these words, and leaves no file named `absent`.
+  void expect_failure(const std::string& command, int exit_code, const std::vector<std::string>& words,
+                      const std::string& absent = "") const {
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.exit_code, exit_code) << command << "\n" << outcome.standard_error;
+    EXPECT_THAT(outcome.standard_error, ::testing::StartsWith("vestige: ")) << command;
+    for (const std::string& word : words) EXPECT_THAT(outcome.standard_error, ::testing::HasSubstr(word)) << command;
+    if (absent.empty()) return;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / absent)) << command;
+  }
+
+  /// A trace of 20 colliders and 60 frames.
+  void record_small(const std::string& name = "small.mcap") const {
+    ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 -o " + name).exit_code, 0);
   }
 
   const TemporaryFolder folder_;

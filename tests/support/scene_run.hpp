@@ -5,11 +5,13 @@
 #include <cstdint>
 #include <numeric>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
+#include "detector/texture_hash.hpp"
 #include "traces/avatar.hpp"
 #include "traces/colliders.hpp"
 #include "traces/trace.hpp"
@@ -53,11 +55,22 @@ struct SceneRun {
   }
 };
 
-inline SceneRun run_scene(const std::vector<TraceFrame>& scene, const Avatar& avatar, std::uint32_t colliders,
-                          Detector& detector) {
+inline std::string hash_of(const SceneRun& run) {
+  TextureHash hash;
+  for (const ContactRow& row : run.rows) hash.add(row);
+  return hash.hex();
+}
+
+/// For a scene of so many colliders.
+inline FrameBuilder frame_builder(const Avatar& avatar, std::uint32_t colliders, Method method) {
   std::vector<std::uint32_t> ids(colliders);
   std::iota(ids.begin(), ids.end(), 0U);
-  FrameBuilder builder(avatar, ids, detector.method());
+  return {avatar, ids, method};
+}
+
+inline SceneRun run_scene(const std::vector<TraceFrame>& scene, const Avatar& avatar, std::uint32_t colliders,
+                          Detector& detector) {
+  FrameBuilder builder = frame_builder(avatar, colliders, detector.method());
   SceneRun run;
   run.rows.resize(scene.size());
   for (std::size_t k = 0; k < scene.size(); ++k) detector.detect(builder.next(scene[k]), run.rows[k]);

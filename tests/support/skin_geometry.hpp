@@ -12,24 +12,20 @@
 
 namespace vestige::test {
 
+/// The faces, outwards, of a box whose corners are numbered by x, then y, then z, each low before high.
+inline const std::vector<glm::uvec3>& box_faces() {
+  static const std::vector<glm::uvec3> faces = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
+                                                {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
+  return faces;
+}
+
 /// A closed box of a person's size, its feet at the origin, facing +z.
 inline Avatar box_person(float scale = 1) {
   std::vector<glm::vec3> vertices;
   for (const float x : {-0.25F, 0.25F})
     for (const float y : {0.0F, 1.75F})
       for (const float z : {-0.125F, 0.125F}) vertices.push_back(scale * glm::vec3(x, y, z));
-  return rigid_avatar(vertices, {{0, 1, 3},
-                                 {0, 3, 2},
-                                 {4, 6, 7},
-                                 {4, 7, 5},
-                                 {0, 4, 5},
-                                 {0, 5, 1},
-                                 {2, 3, 7},
-                                 {2, 7, 6},
-                                 {0, 2, 6},
-                                 {0, 6, 4},
-                                 {1, 5, 7},
-                                 {1, 7, 3}});
+  return rigid_avatar(vertices, box_faces());
 }
 
 /// Its only animation, 2 s: to its left and forwards, and back.

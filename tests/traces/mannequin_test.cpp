@@ -10,38 +10,34 @@
 #include <set>
 #include <tuple>
 
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "tests/support/builtin_avatar.hpp"
 #include "traces/reference_skinning.hpp"
 
 namespace vestige {
 namespace {
 
-const Avatar& mannequin() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
+using test::builtin_avatar;
 
 /// Triangles with one number for each place: vertices that only texture seams split are one.
 std::vector<glm::uvec3> welded_triangles() {
   std::map<std::tuple<float, float, float>, unsigned> places;
   std::vector<unsigned> place;
-  for (const glm::vec3& p : mannequin().position_bind)
+  for (const glm::vec3& p : builtin_avatar().position_bind)
     place.push_back(places.try_emplace({p.x, p.y, p.z}, static_cast<unsigned>(places.size())).first->second);
   std::vector<glm::uvec3> triangles;
-  for (const glm::uvec3& t : mannequin().triangles) triangles.emplace_back(place[t.x], place[t.y], place[t.z]);
+  for (const glm::uvec3& t : builtin_avatar().triangles) triangles.emplace_back(place[t.x], place[t.y], place[t.z]);
   return triangles;
 }
 
 std::vector<glm::dvec3> skinned(const Pose& pose) {
   std::vector<glm::dvec3> positions;
-  skin_reference(mannequin(), pose, glm::dvec3(0), positions);
+  skin_reference(builtin_avatar(), pose, glm::dvec3(0), positions);
   return positions;
 }
 
 double volume_m3(const std::vector<glm::dvec3>& positions) {
   double volume = 0;
-  for (const glm::uvec3& t : mannequin().triangles)
+  for (const glm::uvec3& t : builtin_avatar().triangles)
     volume += glm::dot(positions[t.x], glm::cross(positions[t.y], positions[t.z])) / 6;
   return volume;
 }
@@ -72,12 +68,12 @@ TEST(Mannequin, IsOneClosedManifoldWithoutHandles) {
 }
 
 TEST(Mannequin, HasThePapersSizeAndAPersonsHeight) {
-  EXPECT_NEAR(static_cast<double>(mannequin().triangles.size()), 5000, 250);
-  EXPECT_NEAR(static_cast<double>(mannequin().position_bind.size()), 3000, 150);
-  EXPECT_THAT(mannequin().joint_count, testing::AllOf(testing::Ge(18U), testing::Le(22U)));
-  EXPECT_LE(mannequin().influence_count, 4U);
-  EXPECT_TRUE(mannequin().warnings.empty());
-  const auto positions = skinned(rest_pose(mannequin()));
+  EXPECT_NEAR(static_cast<double>(builtin_avatar().triangles.size()), 5000, 250);
+  EXPECT_NEAR(static_cast<double>(builtin_avatar().position_bind.size()), 3000, 150);
+  EXPECT_THAT(builtin_avatar().joint_count, testing::AllOf(testing::Ge(18U), testing::Le(22U)));
+  EXPECT_LE(builtin_avatar().influence_count, 4U);
+  EXPECT_TRUE(builtin_avatar().warnings.empty());
+  const auto positions = skinned(rest_pose(builtin_avatar()));
   const auto [low, high] = std::ranges::minmax(positions, {}, &glm::dvec3::y);
   EXPECT_NEAR(low.y, 0, 0.002);
   EXPECT_NEAR(high.y, 1.75, 0.01);
@@ -86,7 +82,7 @@ TEST(Mannequin, HasThePapersSizeAndAPersonsHeight) {
 
 TEST(Mannequin, NamesItsJointsAsAnatomyDoes) {
   std::set<std::string> names;
-  for (const Node& node : mannequin().nodes) names.insert(node.name);
+  for (const Node& node : builtin_avatar().nodes) names.insert(node.name);
   for (const char* name :
        {"pelvis", "lumbar_spine", "thoracic_spine", "neck", "head", "clavicle_left", "upper_arm_right", "forearm_left",
         "hand_right", "thigh_left", "shin_right", "foot_left", "toes_right"})
@@ -95,7 +91,7 @@ TEST(Mannequin, NamesItsJointsAsAnatomyDoes) {
 
 TEST(Mannequin, IsItsOwnMirrorImage) {
   std::map<std::tuple<float, float, float>, int> places;
-  for (const glm::vec3& p : mannequin().position_bind) ++places[{p.x, p.y, p.z}];
+  for (const glm::vec3& p : builtin_avatar().position_bind) ++places[{p.x, p.y, p.z}];
   for (const auto& [place, count] : places) {
     const auto& [x, y, z] = place;
     EXPECT_TRUE(places.contains({-x, y, z})) << x << " " << y << " " << z;
@@ -105,7 +101,7 @@ TEST(Mannequin, IsItsOwnMirrorImage) {
 class MannequinMoves : public testing::TestWithParam<const char*> {
  protected:
   const Animation& animation() const {
-    return *std::ranges::find(mannequin().animations, GetParam(), &Animation::name);
+    return *std::ranges::find(builtin_avatar().animations, GetParam(), &Animation::name);
   }
 };
 
@@ -114,38 +110,41 @@ INSTANTIATE_TEST_SUITE_P(Animations, MannequinMoves, testing::Values("idle", "wa
 
 /// What a twisted or folded joint does wrong: it loses volume, or pulls its surface together into a point.
 TEST_P(MannequinMoves, WithoutCollapse) {
-  const auto rest = skinned(rest_pose(mannequin()));
+  const auto rest = skinned(rest_pose(builtin_avatar()));
   const double rest_volume_m3 = volume_m3(rest);
   constexpr int kPoses = 60;
   for (int k = 0; k < kPoses; ++k) {
-    const auto positions = skinned(sample_animation(mannequin(), animation(), animation().duration_s * k / kPoses));
+    const auto positions =
+        skinned(sample_animation(builtin_avatar(), animation(), animation().duration_s * k / kPoses));
     EXPECT_NEAR(volume_m3(positions) / rest_volume_m3, 1, 0.05) << k;
     std::size_t collapsed = 0;
-    for (const glm::uvec3& t : mannequin().triangles)
+    for (const glm::uvec3& t : builtin_avatar().triangles)
       for (int i = 0; i < 3; ++i) {
         const double before_m = glm::distance(rest[t[i]], rest[t[(i + 1) % 3]]);
         const double now_m = glm::distance(positions[t[i]], positions[t[(i + 1) % 3]]);
         collapsed += now_m < 0.25 * before_m ? 1U : 0U;
         EXPECT_LT(now_m, 4 * before_m + 0.005) << "triangle at edge " << i << ", pose " << k;
       }
-    EXPECT_LT(collapsed, 3 * mannequin().triangles.size() / 200) << "edges under a quarter of their length, pose " << k;
+    EXPECT_LT(collapsed, 3 * builtin_avatar().triangles.size() / 200)
+        << "edges under a quarter of their length, pose " << k;
   }
 }
 
 TEST_P(MannequinMoves, OnTheGround) {
   constexpr int kPoses = 60;
   for (int k = 0; k < kPoses; ++k) {
-    const auto positions = skinned(sample_animation(mannequin(), animation(), animation().duration_s * k / kPoses));
+    const auto positions =
+        skinned(sample_animation(builtin_avatar(), animation(), animation().duration_s * k / kPoses));
     const double lowest_m = std::ranges::min(positions, {}, &glm::dvec3::y).y;
     EXPECT_NEAR(lowest_m, 0, 0.015) << "pose " << k;
   }
 }
 
 TEST_P(MannequinMoves, InALoop) {
-  const auto first = skinned(sample_animation(mannequin(), animation(), 0));
-  const auto last = skinned(sample_animation(mannequin(), animation(), animation().duration_s));
+  const auto first = skinned(sample_animation(builtin_avatar(), animation(), 0));
+  const auto last = skinned(sample_animation(builtin_avatar(), animation(), animation().duration_s));
   double moved_m = 0;
-  const auto middle = skinned(sample_animation(mannequin(), animation(), animation().duration_s * 0.3));
+  const auto middle = skinned(sample_animation(builtin_avatar(), animation(), animation().duration_s * 0.3));
   for (std::size_t i = 0; i < first.size(); ++i) {
     EXPECT_LT(glm::distance(first[i], last[i]), 1e-6);
     moved_m = std::max(moved_m, glm::distance(first[i], middle[i]));

@@ -4,20 +4,16 @@
 #include <glm/common.hpp>
 #include <set>
 
+#include "tests/support/builtin_avatar.hpp"
 #include "tests/support/skin_geometry.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 #include "traces/colliders.hpp"
 
 namespace vestige {
 namespace {
 
-constexpr double kGridStep_m = 0x1p-20;
+using test::builtin_avatar;
 
-const Avatar& builtin_avatar() {
-  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  return avatar;
-}
+constexpr double kGridStep_m = 0x1p-20;
 
 std::unique_ptr<ColliderSource> make(std::string_view name, const Avatar& avatar, const Animation* animation,
                                      std::uint32_t count = 100, std::uint64_t seed = 1) {

@@ -7,9 +7,8 @@
 #include <set>
 #include <tuple>
 
+#include "tests/support/builtin_avatar.hpp"
 #include "tests/support/small_avatar.hpp"
-#include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {
@@ -57,7 +56,7 @@ TEST(Subdivision, HalvesEveryEdgeOnceAndKeepsTheTrianglesOrder) {
 TEST(Subdivision, LeavesAClosedSurfaceClosedAlsoAcrossTheSeamsOfItsTexture) {
   Avatar avatar = tetrahedron();
   EXPECT_EQ(open_edges(subdivided(subdivided(avatar))), 0U);
-  avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  avatar = test::builtin_avatar();
   ASSERT_EQ(open_edges(avatar), 0U);
   EXPECT_EQ(open_edges(subdivided(avatar)), 0U);
   avatar.triangles.pop_back();
@@ -65,7 +64,7 @@ TEST(Subdivision, LeavesAClosedSurfaceClosedAlsoAcrossTheSeamsOfItsTexture) {
 }
 
 TEST(Subdivision, MovesTheTwoSidesOfASeamAlike) {
-  const Avatar fine = subdivided(parse_avatar_glb(builtin_avatar_glb(), "builtin"));
+  const Avatar fine = subdivided(test::builtin_avatar());
   std::map<Point, std::pair<std::array<std::uint16_t, kMaxInfluences>, std::array<float, kMaxInfluences>>> moved_by;
   for (std::uint32_t i = 0; i < fine.position_bind.size(); ++i) {
     const std::pair influences = {fine.influences[i].palette, fine.influences[i].weight};

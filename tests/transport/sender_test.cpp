@@ -190,6 +190,22 @@ TEST_F(SenderTest, AVestThatWasUnpluggedGetsTheLatestStateWhenItIsBack) {
   EXPECT_EQ(statistics.superseded, 1U);
 }
 
+TEST_F(SenderTest, AStateThatCouldNotBeWrittenIsSentWhenTheLinkIsBackAndLoggedOnce) {
+  vest.unplugged = true;
+  vest.tries_until_back = 1;
+  Sender sender(vest, options(), note);
+  post(sender, {7});
+  until([&] { return !vest.told().empty(); });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{7}, Duties{}));
+  EXPECT_EQ(statistics.changes, 1U);
+  EXPECT_EQ(statistics.superseded, 0U);
+  const std::vector<SentState> log = sender.take_log();
+  ASSERT_EQ(log.size(), 1U);
+  EXPECT_EQ(log[0].fate, SentState::Fate::kSent);
+  EXPECT_GT(log[0].written_s, 0);
+}
+
 TEST_F(SenderTest, AVestThatStaysUnpluggedEndsWithoutAnError) {
   vest.unplugged = true;
   vest.tries_until_back = 1000;

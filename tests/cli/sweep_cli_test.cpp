@@ -1,0 +1,136 @@
+// Sweep and growth as a user asks for them: small ones.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command_line.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class SweepCommandLine : public test::CommandLineTest {};
+class GrowthCommandLine : public test::CommandLineTest {};
+
+TEST_F(SweepCommandLine, MeasuresEverySeriesAndKeepsEveryFrame) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --counts 1,5:20:5 --min-time 0.01 --runs 2 --run-frames 10 --skip off --no-figure "
+          "-o s");
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("HAVE 2010"), HasSubstr("paper, osmesa"), HasSubstr("cpu")));
+  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  EXPECT_EQ(json["schema_version"], 1);
+  EXPECT_EQ(json["avatar"]["joints"], 21);
+  ASSERT_EQ(json["series"].size(), 3U);
+  for (const auto& series : json["series"]) {
+    EXPECT_EQ(series["points"].size(), 5U);
+    for (const auto& point : series["points"]) {
+      EXPECT_GE(point["frames"], 20);
+      EXPECT_GT(point["hz"], 0);
+      EXPECT_LE(point["hz_low"], point["hz"]);
+      EXPECT_GE(point["hz_high"], point["hz"]);
+      EXPECT_LE(point["us_median"], point["us_p99"]);
+      EXPECT_EQ(point["pairs_tested"], 4998 * 20 * point["colliders"].get<int>());
+    }
+  }
+  EXPECT_EQ(json["series"][0]["points"][4]["texture_hash"], json["series"][1]["points"][4]["texture_hash"]);
+  EXPECT_EQ(run("zstd -qdc s/frame_times.csv.zst | head -1").standard_output,
+            "detector,context,skip,renderer,colliders,repetition,frame,us\n");
+}
+
+TEST_F(SweepCommandLine, MeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --detector paper,cpu,embree --context osmesa --skip off,on --method static "
+          "--counts 1,20 --min-time 0.01 --runs 2 --run-frames 10 --no-figure -o s");
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("cpu, skip on"), HasSubstr("Times as fast as the fastest paper"),
+                                           HasSubstr("Times as fast as the fastest Embree")));
+  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  std::vector<std::string> names;
+  for (const auto& series : json["series"])
+    names.push_back(series["detector"].get<std::string>() + " " + series["skip"].get<std::string>());
+  EXPECT_THAT(names, testing::ElementsAre("paper off", "cpu off", "cpu on", "embree off"));
+  for (const std::size_t p : {0U, 1U}) {
+    const auto point = [&](std::size_t series) { return json["series"][series]["points"][p]; };
+    EXPECT_EQ(point(1)["texture_hash"], point(2)["texture_hash"]);
+    EXPECT_DOUBLE_EQ(point(0)["times_paper"], 1);
+    EXPECT_DOUBLE_EQ(point(2)["times_paper"].get<double>(),
+                     point(2)["hz"].get<double>() / point(0)["hz"].get<double>());
+    EXPECT_DOUBLE_EQ(point(1)["times_embree"].get<double>(),
+                     point(1)["hz"].get<double>() / point(3)["hz"].get<double>());
+    EXPECT_EQ(point(1)["pass_frames"], 20);
+  }
+  EXPECT_EQ(json_of("vestige sweep small.mcap --detector cpu --method ccd --counts 1 --min-time 0.01 --runs 1 "
+                    "--no-figure -o ccd --json -")["series"][0]["method"],
+            "ccd");
+  expect_failure("vestige sweep small.mcap -o t --skip maybe", 2, {"--skip", "maybe", "off"}, "t/sweep.json");
+  expect_failure("vestige sweep small.mcap -o t --skip on,on", 2, {"--skip", "twice"}, "t/sweep.json");
+}
+
+TEST_F(SweepCommandLine, MeasuresBesideARendererInAThreadOfItsOwn) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --detector paper,cpu --context osmesa --renderer on --counts 20 --min-time 0.01 "
+          "--runs 2 --run-frames 10 --no-figure -o s");
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("paper, osmesa, rendering"), HasSubstr("90 asked for")));
+  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  ASSERT_EQ(json["series"].size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto& series = json["series"][i];
+    EXPECT_EQ(series["renderer"], i % 2 == 0 ? "off" : "on");
+    EXPECT_EQ(series["renderer_gl"].is_null(), i % 2 == 0);
+    EXPECT_EQ(series["points"][0].contains("rendered_hz"), i % 2 == 1);
+    EXPECT_EQ(series["points"][0]["texture_hash"], json["series"][i / 2 * 2]["points"][0]["texture_hash"]);
+  }
+  EXPECT_GT(json["series"][1]["points"][0]["rendered_hz"], 0);
+  EXPECT_LE(json["series"][1]["points"][0]["rendered_hz"], 91);
+}
+
+TEST_F(SweepCommandLine, GoesOnWithoutEmbree) {
+  record_small();
+  ASSERT_EQ(run("mkdir none && echo > none/libembree3.so.3").exit_code, 0);
+  const test::Outcome sweep =
+      run("LD_LIBRARY_PATH=\"$PWD/none\" vestige sweep small.mcap --detector cpu,embree --counts 1 --min-time 0.01 "
+          "--runs 1 "
+          "--no-figure -o s");
+  EXPECT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_error, AllOf(HasSubstr("no series 'embree'"), HasSubstr("libembree3-3")));
+  EXPECT_THAT(sweep.standard_output, HasSubstr("cpu"));
+}
+
+TEST_F(GrowthCommandLine, MeasuresCollidersAndTrianglesAndWhatSkippingSaves) {
+  record_small();
+  const test::Outcome growth =
+      run("vestige growth small.mcap --detector paper,cpu --context osmesa --counts 1,20 --count 5 --subdivisions 1 "
+          "--min-time 0.01 --runs 2 --run-frames 3 --no-figure -o g");
+  ASSERT_EQ(growth.exit_code, 0) << growth.standard_error;
+  EXPECT_THAT(growth.standard_output, AllOf(HasSubstr("cpu, skip on"), HasSubstr("With 5 colliders"),
+                                            HasSubstr("19992"), HasSubstr("What skipping saves")));
+  const auto json = nlohmann::json::parse(read_text_file(folder_ / "g/growth.json"));
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["by_colliders"]["series"].size(), 3U);
+  EXPECT_EQ(json["by_colliders"]["series"][0]["points"].size(), 2U);
+  ASSERT_EQ(json["by_triangles"].size(), 2U);
+  EXPECT_EQ(json["by_triangles"][1]["triangles"], 4 * 4998);
+  EXPECT_EQ(json["by_triangles"][1]["series"][1]["points"][0]["colliders"], 5);
+  ASSERT_EQ(json["ablation"].size(), 3U);  // two counts, and the larger avatar
+  for (const auto& one : json["ablation"]) {
+    EXPECT_EQ(one["pairs"], one["triangles"].get<double>() * one["colliders"].get<double>());
+    EXPECT_LE(one["pairs_tested"], one["pairs"]);
+    EXPECT_NEAR(one["us_off"].get<double>() - one["us_on"].get<double>(),
+                one["us_saved_by_frames"].get<double>() + one["us_saved_by_meshlets"].get<double>(), 1e-6);
+  }
+  expect_failure("vestige growth small.mcap --count 21 --counts 1 --subdivisions 0 -o h", 1, {"21", "20"});
+  expect_failure("vestige growth small.mcap --subdivisions 9 -o h", 2, {"--subdivisions"});
+}
+
+}  // namespace
+}  // namespace vestige

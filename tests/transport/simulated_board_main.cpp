@@ -1,0 +1,102 @@
+// The vest's board without the board: runs the firmware in step with the clock, behind a pseudo terminal that a client
+// opens as it would /dev/ttyUSB0, and measures at the pins what the motors would get.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <string>
+
+#include "tests/transport/board_terminal.hpp"
+#include "tests/transport/simulated_board.hpp"
+#include "traces/error.hpp"
+
+namespace {
+
+volatile std::sig_atomic_t stop = 0;
+volatile std::sig_atomic_t power_cycle = 0;
+
+void catch_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { stop = 1; };
+  ::sigaction(SIGINT, &action, nullptr);
+  ::sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = [](int) { power_cycle = 1; };
+  ::sigaction(SIGUSR1, &action, nullptr);
+}
+
+struct Options {
+  std::string firmware, microcontroller, link, duties;
+  std::uint32_t baud = 57600;
+  double duration_s = 0;
+};
+
+void simulate(const Options& options) {
+  using Clock = std::chrono::steady_clock;
+  // What a USB adapter would hold: the rest waits in the terminal, where a client sees it.
+  constexpr std::size_t kAdapterBytes = 64;
+  constexpr std::int64_t kStep_us = 500;
+
+  vestige::test::SimulatedBoard board(options.firmware, options.microcontroller, options.baud);
+  vestige::test::BoardTerminal terminal(options.link);
+  catch_signals();
+  board.run_for(0.01);  // whoever reads the name finds the board started
+  fmt::print("{}\n", terminal.name());
+  std::fflush(stdout);
+
+  std::size_t bytes_in = 0;
+  std::size_t bytes_out = 0;
+  const double start_s = board.time_s();
+  const Clock::time_point start = Clock::now();
+  while (stop == 0 && (options.duration_s <= 0 || board.time_s() < options.duration_s)) {
+    terminal.wait(kStep_us);
+    if (power_cycle != 0) {
+      power_cycle = 0;
+      board.power_cycle();
+    }
+    board.run_until(start_s + std::chrono::duration<double>(Clock::now() - start).count());
+    if (board.waiting() < kAdapterBytes) {
+      const auto bytes = terminal.read(kAdapterBytes - board.waiting());
+      bytes_in += bytes.size();
+      board.send(bytes);
+    }
+    const auto bytes = board.take_received();
+    bytes_out += bytes.size();
+    terminal.write(bytes);
+  }
+  if (!options.duties.empty()) board.write_duties(options.duties);
+  fmt::print(stderr, "simulated_board: {:.3f} s, {} bytes received, {} bytes sent, {} start{}\n", board.time_s(),
+             bytes_in, bytes_out, board.starts(), board.starts() == 1 ? "" : "s");
+  const auto& answers = board.answer_times();
+  if (answers.count != 0)
+    fmt::print(stderr,
+               "simulated_board: {} answers, each {:.1f} us of virtual time after its frame, {:.1f} us at most\n",
+               answers.count, answers.total_s / static_cast<double>(answers.count) * 1e6, answers.longest_s * 1e6);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app(
+      "Runs the vest's firmware on a simulated microcontroller. The first line printed is the terminal to connect to.\n"
+      "SIGUSR1 interrupts the board's power; SIGINT and SIGTERM end the simulation.\n",
+      "simulated_board");
+  app.add_option("firmware", options.firmware, "The firmware: build/release/firmware/vest-atmega1280.elf")->required();
+  app.add_option("--mcu", options.microcontroller, "atmega1280 or atmega2560; else what the firmware was linked for");
+  app.add_option("--link", options.link, "Make a symbolic link of this name to the terminal");
+  app.add_option("--duties", options.duties, "At the end, write the duties measured at the pins to this CSV file");
+  app.add_option("--baud", options.baud, "Speed of the line")->capture_default_str()->check(CLI::Range(300, 2'000'000));
+  app.add_option("--duration", options.duration_s, "Seconds until the end; else until a signal")
+      ->check(CLI::NonNegativeNumber);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    simulate(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "simulated_board: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

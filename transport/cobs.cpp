@@ -1,0 +1,47 @@
+#include "transport/cobs.hpp"
+
+#include <algorithm>
+
+namespace vestige {
+
+namespace {
+/// A block of 254 bytes without a zero after it: the longest there is.
+constexpr std::uint8_t kFullBlock = 0xFF;
+}  // namespace
+
+std::vector<std::uint8_t> cobs_encode(std::span<const std::uint8_t> payload) {
+  std::vector<std::uint8_t> frame{1};
+  frame.reserve(payload.size() + payload.size() / 254 + 1);
+  std::size_t block = 0;  // where the length of the block stands that is being written
+  for (const std::uint8_t byte : payload) {
+    // Begun only when a byte follows: a payload that ends with a full block has nothing after it.
+    if (frame[block] == kFullBlock) {
+      block = frame.size();
+      frame.push_back(1);
+    }
+    if (byte == 0) {
+      block = frame.size();
+      frame.push_back(1);
+    } else {
+      frame.push_back(byte);
+      ++frame[block];
+    }
+  }
+  return frame;
+}
+
+std::optional<std::vector<std::uint8_t>> cobs_decode(std::span<const std::uint8_t> frame) {
+  if (frame.empty() || std::find(frame.begin(), frame.end(), 0) != frame.end()) return std::nullopt;
+  std::vector<std::uint8_t> payload;
+  payload.reserve(frame.size());
+  while (true) {
+    const std::uint8_t block = frame.front();
+    if (block > frame.size()) return std::nullopt;
+    payload.insert(payload.end(), frame.begin() + 1, frame.begin() + block);
+    frame = frame.subspan(block);
+    if (frame.empty()) return payload;
+    if (block != kFullBlock) payload.push_back(0);
+  }
+}
+
+}  // namespace vestige

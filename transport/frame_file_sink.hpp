@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "traces/output_file.hpp"
+#include "transport/actuator_sink.hpp"
+
+namespace vestige {
+
+/// Writes frames as they go to a board over the wire (`transport/vest_frame.hpp`), one after another, without times.
+///
+/// A file is complete or absent: it is there after `commit`. "-" (standard output), a device or a pipe gets each frame
+/// at once, so that another program can pass it on.
+class FrameFileSink final : public ActuatorSink {
+ public:
+  /// What the levels are, and how long a board obeys one: `ttl`, in 10 ms. The errors of `OutputFile`.
+  FrameFileSink(const std::filesystem::path& path, Overwrite overwrite, Quantity quantity, std::uint8_t ttl);
+
+  std::string name() const override { return file_.path().string(); }
+  void send(const ActuatorFrame& frame, std::uint8_t sequence) override;
+  void send_off(std::uint8_t sequence) override;
+  std::uint64_t bytes_sent() const override { return bytes_sent_; }
+
+  /// To be called when the stream has ended, by itself or by the user.
+  void commit() { file_.commit(); }
+
+ private:
+  void write(std::span<const std::uint8_t> bytes);
+
+  OutputFile file_;
+  Quantity quantity_;
+  std::uint8_t ttl_;
+  std::uint64_t bytes_sent_ = 0;
+};
+
+}  // namespace vestige

@@ -1,0 +1,129 @@
+#include "transport/osc_address.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// Whether a character may stand in a part of an address between slashes (OSC 1.0, "OSC Messages").
+bool may_stand_in_part(char c) {
+  constexpr std::string_view kForbidden = " #*,/?[]{}";
+  return c > ' ' && c <= '~' && kForbidden.find(c) == std::string_view::npos;
+}
+
+bool may_stand_in_address(char c) {
+  return c == '/' || may_stand_in_part(c);
+}
+
+std::string part_of(const std::string& name) {
+  std::string part;
+  for (const char c : name) {
+    const bool continues_a_character = (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;  // UTF-8
+    if (!continues_a_character) part += may_stand_in_part(c) ? c : '_';
+  }
+  return part;
+}
+
+std::string expand(std::string_view address_template, std::size_t index, const std::string& name) {
+  std::string address;
+  while (!address_template.empty()) {
+    const std::size_t open = std::min(address_template.find('{'), address_template.size());
+    address += address_template.substr(0, open);
+    address_template.remove_prefix(open);
+    if (address_template.empty()) break;
+    const std::size_t length = std::min(address_template.find('}'), address_template.size() - 1) + 1;
+    const std::string_view placeholder = address_template.substr(0, length);
+    if (placeholder == "{n}") {
+      address += std::to_string(index + 1);
+    } else if (placeholder == "{i}") {
+      address += std::to_string(index);
+    } else if (placeholder == "{name}") {
+      address += part_of(name);
+    } else {
+      throw UsageError("--osc-address", fmt::format("there is no placeholder '{}'", placeholder),
+                       "choose of {n} (from 1), {i} (from 0) and {name}");
+    }
+    address_template.remove_prefix(length);
+  }
+  return address;
+}
+
+void check_address(const std::string& address) {
+  constexpr std::size_t kMostBytes = 1000;  // one must fit into a datagram
+  const auto refuse = [&](const char* cause) {
+    throw UsageError("--osc-address", fmt::format("'{}' {}", address, cause),
+                     fmt::format("it looks like '{}'", kOscAddressTemplate));
+  };
+  if (!address.starts_with('/') || address.size() == 1) refuse("is no OSC address: it begins with a slash and goes on");
+  if (address.size() > kMostBytes) refuse("is too long");
+  if (!std::ranges::all_of(address, may_stand_in_address))
+    refuse("holds what an OSC address must not: blanks, # * , ? [ ] or what is not ASCII");
+}
+
+}  // namespace
+
+OscOptions parse_osc_url(std::string_view url) {
+  const auto refuse = [&](const std::string& cause) {
+    return UsageError("--port", fmt::format("'{}' {}", url, cause),
+                      "name a host and a port: osc://127.0.0.1:9000, osc://[::1]:9000");
+  };
+  constexpr std::string_view kScheme = "osc://";
+  if (!url.starts_with(kScheme)) throw refuse("does not begin with osc://");
+  std::string_view rest = url.substr(kScheme.size());
+  if (rest.ends_with('/')) rest.remove_suffix(1);
+  if (rest.find('/') != std::string_view::npos)
+    throw refuse("goes on after the port; what the parameters are called is set by --osc-address");
+  std::string_view host;
+  if (rest.starts_with('[')) {
+    const std::size_t close = rest.find(']');
+    if (close == std::string_view::npos) throw refuse("has a bracket that does not close");
+    host = rest.substr(1, close - 1);
+    rest.remove_prefix(close + 1);
+  } else {
+    const std::size_t colon = std::min(rest.find(':'), rest.size());
+    host = rest.substr(0, colon);
+    rest.remove_prefix(colon);
+    if (rest.find(':', 1) != std::string_view::npos)
+      throw refuse("has more than one colon; an IPv6 address stands in brackets");
+  }
+  if (host.empty()) throw refuse("has no host");
+  if (!rest.starts_with(':')) throw refuse("has no port");
+  rest.remove_prefix(1);
+  OscOptions options;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), options.port);
+  if (error != std::errc() || end != rest.data() + rest.size() || options.port == 0)
+    throw refuse(fmt::format("has the port '{}', which is no number from 1 to 65535", rest));
+  options.host = host;
+  return options;
+}
+
+std::string osc_url(const OscOptions& options) {
+  const bool is_ipv6 = options.host.find(':') != std::string::npos;
+  return fmt::format("osc://{}:{}", is_ipv6 ? "[" + options.host + "]" : options.host, options.port);
+}
+
+std::vector<std::string> osc_addresses(std::string_view address_template,
+                                       const std::vector<std::string>& actuator_names) {
+  std::vector<std::string> addresses;
+  addresses.reserve(actuator_names.size());
+  std::map<std::string, std::size_t> number_of;
+  for (std::size_t i = 0; i < actuator_names.size(); ++i) {
+    const std::string& address = addresses.emplace_back(expand(address_template, i, actuator_names[i]));
+    check_address(address);
+    const auto [other, is_new] = number_of.emplace(address, i + 1);
+    if (!is_new)
+      throw UsageError("--osc-address",
+                       fmt::format("actuators {} and {} would both be '{}'", other->second, i + 1, address),
+                       "put {n} or {i} into it, which differ for each actuator");
+  }
+  return addresses;
+}
+
+}  // namespace vestige

@@ -1,0 +1,131 @@
+#include "transport/osc_sink.hpp"
+
+#include <fmt/format.h>
+#include <lo/lo.h>
+#include <netdb.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+namespace vestige {
+
+namespace {
+
+/// An Ethernet packet of 1500 bytes, less what IPv6, UDP and a tunnel add.
+constexpr std::size_t kMostDatagramBytes = 1400;
+
+struct FreeBundle {
+  void operator()(void* bundle) const { lo_bundle_free_recursive(bundle); }
+};
+using Bundle = std::unique_ptr<void, FreeBundle>;
+
+Bundle new_bundle() {
+  constexpr lo_timetag kImmediately = {0, 1};
+  return Bundle(lo_bundle_new(kImmediately));
+}
+
+lo_message new_message(OscValue value, std::uint8_t level) {
+  const lo_message message = lo_message_new();
+  switch (value) {
+    case OscValue::kFloat:
+      lo_message_add_float(message, static_cast<float>(level) / 255.0F);
+      break;
+    case OscValue::kInteger:
+      lo_message_add_int32(message, level);
+      break;
+    case OscValue::kBoolean:
+      level != 0 ? lo_message_add_true(message) : lo_message_add_false(message);
+      break;
+  }
+  return message;
+}
+
+/// Errors that say that there is no way to the host now, and there may be one later.
+bool is_passing(int error_number) {
+  return error_number == ENETUNREACH || error_number == EHOSTUNREACH || error_number == ENETDOWN ||
+         error_number == ENOBUFS;
+}
+
+}  // namespace
+
+OscSink::OscSink(OscOptions options, const std::vector<std::string>& actuator_names)
+    : options_(std::move(options)), addresses_(osc_addresses(options_.address_template, actuator_names)) {
+  addrinfo hints = {};
+  hints.ai_socktype = SOCK_DGRAM;
+  hints.ai_flags = AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  if (const int error = ::getaddrinfo(options_.host.c_str(), std::to_string(options_.port).c_str(), &hints, &found);
+      error != 0)
+    throw Error(name(), fmt::format("'{}' is not known: {}", options_.host, ::gai_strerror(error)),
+                "check its name, or give its address: osc://192.168.1.20:9000");
+  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
+  const addrinfo* chosen = found;
+  while (chosen != nullptr && chosen->ai_family != AF_INET) chosen = chosen->ai_next;
+  if (chosen == nullptr) chosen = found;
+  std::memcpy(&host_, chosen->ai_addr, chosen->ai_addrlen);
+  host_bytes_ = chosen->ai_addrlen;
+  // Never connected: so nobody's absence comes back as an error of the next frame.
+  socket_ = ::socket(chosen->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (socket_ < 0) throw Error(name(), fmt::format("could not open a socket: {}", std::strerror(errno)), "");
+  const int allowed = 1;
+  ::setsockopt(socket_, SOL_SOCKET, SO_BROADCAST, &allowed, sizeof(allowed));
+}
+
+OscSink::~OscSink() {
+  if (socket_ >= 0) ::close(socket_);
+}
+
+void OscSink::send(const ActuatorFrame& frame, std::uint8_t) {
+  send_levels(frame.duty);
+}
+
+void OscSink::send_off(std::uint8_t) {
+  send_levels({});
+}
+
+void OscSink::send_levels(std::span<const std::uint8_t> level) {
+  Bundle bundle = new_bundle();
+  const auto send_bundle = [&] {
+    std::size_t size = lo_bundle_length(bundle.get());
+    std::vector<std::byte> bytes(size);
+    lo_bundle_serialise(bundle.get(), bytes.data(), &size);
+    send_datagram(bytes);
+  };
+  for (std::size_t i = 0; i < addresses_.size(); ++i) {
+    const char* const address = addresses_[i].c_str();
+    const lo_message message = new_message(options_.value, i < level.size() ? level[i] : std::uint8_t{0});
+    const std::size_t more = sizeof(std::uint32_t) + lo_message_length(message, address);
+    if (lo_bundle_count(bundle.get()) > 0 && lo_bundle_length(bundle.get()) + more > kMostDatagramBytes) {
+      send_bundle();
+      bundle = new_bundle();
+    }
+    lo_bundle_add_message(bundle.get(), address, message);
+  }
+  if (lo_bundle_count(bundle.get()) > 0) send_bundle();
+}
+
+void OscSink::send_datagram(std::span<const std::byte> bytes) {
+  // liblo encodes; its own sending knows no IPv6, and takes whichever address of a name comes first.
+  const auto* const host = reinterpret_cast<const sockaddr*>(&host_);
+  while (::sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, host, host_bytes_) < 0) {
+    const int error = errno;
+    if (error == EINTR) continue;
+    const std::string cause = fmt::format("could not send: {}", std::strerror(error));
+    if (is_passing(error)) throw LinkLost(name(), cause, "check the network");
+    throw Error(name(), cause, "check the address, and that no firewall forbids it");
+  }
+  bytes_sent_ += bytes.size();
+}
+
+bool OscSink::reconnect() {
+  // Connecting a datagram socket sends nothing: it looks for a way to the host.
+  const int probe = ::socket(host_.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const bool has_way = probe >= 0 && ::connect(probe, reinterpret_cast<const sockaddr*>(&host_), host_bytes_) == 0;
+  if (probe >= 0) ::close(probe);
+  return has_way;
+}
+
+}  // namespace vestige
