@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   add_recompress(program, invocation);
   add_trim(program, invocation);
   add_merge(program, invocation);
+  add_cat(program, invocation);
   add_avatar(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);

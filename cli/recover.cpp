@@ -54,7 +54,7 @@ void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
   for (const std::string& name : recovery.damaged_attachments)
     say(fmt::format("the attachment {0} is damaged; it is kept as {0}.damaged", name));
   if (recovery.unexplained_change)
-    say("a byte of its header, definitions or metadata has changed; which one, nothing tells");
+    say("a byte of its header, definitions, metadata or indexes has changed; which one, nothing tells");
 }
 
 void run_recover(const RecoverOptions& options, Invocation& invocation) {

@@ -39,6 +39,7 @@ target_sources(vestige_traces PRIVATE
   mcap/writer.cpp
   mcap_output.cpp
   merge.cpp
+  message_text.cpp
   recover.cpp
   rewrite.cpp
   trace_check.cpp
