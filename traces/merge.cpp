@@ -30,7 +30,10 @@ constexpr const char* kOneRecording = "merge only parts of one recording, such a
 struct Moment {
   std::uint64_t time_ns = 0;
   std::uint32_t sequence = 0;
-  auto operator<=>(const Moment&) const = default;
+  bool operator==(const Moment&) const = default;
+  bool operator<(const Moment& other) const {
+    return time_ns != other.time_ns ? time_ns < other.time_ns : sequence < other.sequence;
+  }
 };
 
 Moment moment_of(const mcap::Message& message) {

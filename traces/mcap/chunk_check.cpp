@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace vestige::mcap {
@@ -11,7 +10,7 @@ namespace vestige::mcap {
 namespace {
 
 bool before(const MessageIndexEntry& a, const MessageIndexEntry& b) {
-  return std::tie(a.offset, a.log_time) < std::tie(b.offset, b.log_time);
+  return a.offset != b.offset ? a.offset < b.offset : a.log_time < b.log_time;
 }
 
 bool same(const MessageIndexEntry& a, const MessageIndexEntry& b) {
