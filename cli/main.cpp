@@ -60,6 +60,12 @@ int run(int argc, char** argv) {
   add_stress(program, invocation);
   add_accuracy(program, invocation);
   add_inspect(program, invocation);
+  add_doctor(program, invocation);
+  add_recover(program, invocation);
+  add_recompress(program, invocation);
+  add_trim(program, invocation);
+  add_merge(program, invocation);
+  add_cat(program, invocation);
   add_avatar(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);

@@ -20,9 +20,14 @@ endforeach()
 target_sources(vestige_traces PRIVATE
   ${schema_headers}
   append_file.cpp
+  definitions.cpp
+  frame_gate.cpp
   mcap/byte_source.cpp
   mcap/chunk_expander.cpp
+  mcap/chunk_check.cpp
+  mcap/chunk_salvage.cpp
   mcap/compression.cpp
+  mcap/container_check.cpp
   mcap/crc32.cpp
   mcap/decode.cpp
   mcap/encode.cpp
@@ -30,9 +35,17 @@ target_sources(vestige_traces PRIVATE
   mcap/record_walker.cpp
   mcap/stream_reader.cpp
   mcap/summary.cpp
+  mcap/summary_check.cpp
   mcap/writer.cpp
+  mcap_output.cpp
+  merge.cpp
+  message_text.cpp
+  recover.cpp
+  rewrite.cpp
+  trace_check.cpp
   trace_format.cpp
   trace_messages.cpp
+  trace_nodes.cpp
   message_stream.cpp
   trace_index.cpp
   trace_reader.cpp

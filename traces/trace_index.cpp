@@ -134,7 +134,8 @@ TraceIndex index_trace(const mcap::ByteSource& source) {
 
 std::string describe(const mcap::Damage& damage, std::string_view file) {
   std::string text = fmt::format("{}: at byte {}: {}", file, damage.offset, damage.what);
-  if (damage.bytes > 0) text += fmt::format("; {} bytes are lost", damage.bytes);
+  if (damage.bytes > 0 && damage.effect == mcap::DamageEffect::kLost)
+    text += fmt::format("; {} bytes are lost", damage.bytes);
   return text;
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "traces/message_stream.hpp"
 #include "traces/trace_index.hpp"
 #include "traces/trace_messages.hpp"
+#include "traces/trace_nodes.hpp"
 
 namespace vestige {
 
@@ -22,37 +22,6 @@ using mcap::Malformed;
 using trace_format::Stream;
 
 enum class PoseDecoding { kFull, kNodeCount };
-
-std::vector<std::string> parse_node_names(const mcap::Channel& pose_channel, const std::string& file) {
-  const auto entry = pose_channel.metadata.find(std::string(trace_format::kNodesKey));
-  const auto names =
-      entry == pose_channel.metadata.end() ? nlohmann::json() : nlohmann::json::parse(entry->second, nullptr, false);
-  const auto is_text = [](const nlohmann::json& name) { return name.is_string(); };
-  if (!names.is_array() || !std::all_of(names.begin(), names.end(), is_text))
-    throw Error(file, "its channel /pose does not say which nodes the poses have", "record it again");
-  return names.get<std::vector<std::string>>();
-}
-
-/// How many nodes a binary glTF file has (glTF 2.0 §4.4: 12 bytes of header, then a JSON chunk); nothing when it is
-/// none, which whoever parses the avatar explains better.
-std::optional<std::size_t> glb_node_count(std::span<const std::byte> glb) {
-  constexpr std::size_t kHeaderBytes = 12;
-  try {
-    mcap::Cursor cursor(glb);
-    cursor.bytes(kHeaderBytes);
-    const auto length = cursor.number<std::uint32_t>();
-    cursor.number<std::uint32_t>();
-    const mcap::Bytes text = cursor.bytes(length);
-    const auto* begin = reinterpret_cast<const char*>(text.data());
-    const auto document = nlohmann::json::parse(begin, begin + text.size(), nullptr, false);
-    if (!document.is_object()) return {};
-    const auto nodes = document.find("nodes");
-    if (nodes == document.end() || !nodes->is_array()) return 0;
-    return nodes->size();
-  } catch (const Malformed&) {
-    return {};
-  }
-}
 
 }  // namespace
 
@@ -143,7 +112,9 @@ void TraceReader::Implementation::require_trace() {
                                        : "is an MCAP file, but no trace of an avatar: it has no channel /pose of ours",
                 "record one with `vestige record`; `vestige inspect` shows what is in this file");
   }
-  node_names_ = parse_node_names(*pose, file);
+  auto names = parse_node_names(*pose);
+  if (!names) throw Error(file, "its channel /pose does not say which nodes the poses have", "record it again");
+  node_names_ = std::move(*names);
   if (index_.avatar_glb.empty()) {
     throw Error(file, warnings_.empty() ? "has no attachment avatar.glb" : "has no undamaged attachment avatar.glb",
                 "record it again, or attach the avatar it was recorded with");

@@ -7,7 +7,9 @@
 
 #include "tests/support/npm.hpp"
 #include "tests/support/test_data.hpp"
+#include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
+#include "traces/recover.hpp"
 
 namespace vestige {
 namespace {
@@ -48,6 +50,23 @@ TEST(ReferenceReader, SeesAllThatIsInATrace) {
     EXPECT_EQ(seen["attachments"]["actuator_map.json"], 2);
     EXPECT_EQ(seen["metadata"]["session"]["argv"], "vestige record");
   }
+}
+
+TEST(ReferenceReader, OpensWhatIsRecoveredFromACutTrace) {
+  VESTIGE_REQUIRE_DATA(test::npm_package("@mcap/core"));
+  const test::TemporaryFolder folder;
+  const test::SmallTrace trace = test::small_trace(folder, Compression::kZstd);
+  const mcap::MemorySource source(std::span(trace.bytes).first(static_cast<std::size_t>(trace.chunks[2].end() + 5)));
+  OutputFile file(folder / "mended.mcap", Overwrite::kRefuse);
+  recover_mcap(
+      source, [&](mcap::Bytes bytes) { file.write(bytes); }, [](double) { return true; });
+  file.commit();
+  const nlohmann::json seen = seen_by_reference_reader(folder / "mended.mcap");
+  EXPECT_EQ(seen["done"], true);
+  EXPECT_EQ(seen["profile"], "vestige");
+  EXPECT_EQ(seen["streamed"], seen["indexed"]);
+  EXPECT_EQ(seen["indexed"]["/pose"], 3 * test::kFramesInAChunk);
+  EXPECT_EQ(seen["attachments"].size(), 2U);
 }
 
 }  // namespace

@@ -3,15 +3,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/mman.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
 #include <optional>
 
 #include "tests/support/test_data.hpp"
+#include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
@@ -23,59 +22,18 @@
 namespace vestige {
 namespace {
 
-using mcap::Opcode;
 using test::kColliders;
+using test::kFrames;
+using test::kFramesInAChunk;
 using test::kNodes;
+using test::MemoryFile;
+using test::small_trace;
+using test::SmallTrace;
 using ::testing::HasSubstr;
-
-constexpr std::uint64_t kFrames = 16;
-constexpr std::uint64_t kFramesInAChunk = 4;
-
-/// A file that is never on disk: thousands of small ones would wait for it.
-class MemoryFile {
- public:
-  MemoryFile() : descriptor_(::memfd_create("damaged.mcap", MFD_CLOEXEC)) {}
-  ~MemoryFile() { ::close(descriptor_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  std::filesystem::path path() const { return fmt::format("/proc/self/fd/{}", descriptor_); }
-  void assign(std::span<const std::byte> bytes) const {
-    ASSERT_EQ(::ftruncate(descriptor_, 0), 0);
-    ASSERT_EQ(::pwrite(descriptor_, bytes.data(), bytes.size(), 0), static_cast<ssize_t>(bytes.size()));
-  }
-
- private:
-  int descriptor_;
-};
 
 void write_bytes(const std::filesystem::path& path, std::span<const std::byte> bytes) {
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-}
-
-/// A small trace in memory, and where its parts are.
-struct SmallTrace {
-  std::vector<std::byte> bytes;
-  std::vector<mcap::RecordPlace> chunks;
-  std::uint64_t head_end = 0;  ///< of schemas and channels, before the first chunk
-  std::uint64_t data_end = 0;
-};
-
-SmallTrace small_trace(const test::TemporaryFolder& folder, Compression compression) {
-  SmallTrace trace;
-  TraceWriterOptions options = test::steady_options(1200);
-  options.compression = compression;
-  test::write_trace(folder / "whole.mcap", kFrames, options);
-  trace.bytes = read_file(folder / "whole.mcap");
-  const mcap::MemorySource source(trace.bytes);
-  mcap::RecordWalker walker(source);
-  mcap::RecordPlace place;
-  while (walker.next(place)) {
-    if (place.opcode == Opcode::kChunk) trace.chunks.push_back(place);
-    if (place.opcode == Opcode::kDataEnd) trace.data_end = place.offset;
-  }
-  trace.head_end = trace.chunks.front().offset;
-  return trace;
 }
 
 std::uint64_t frames_in(std::size_t chunks) {

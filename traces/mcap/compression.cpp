@@ -63,6 +63,40 @@ void expand_lz4(std::span<const std::byte> bytes, std::span<std::byte> out) {
   if (!out.empty()) throw Malformed("it expands to fewer bytes than it claims");
 }
 
+// Both libraries forget what a call has expanded when it ends in an error, so they are fed a block at a time: what they
+// ask for next is as much as completes one.
+
+std::size_t expand_zstd_beginning(std::span<const std::byte> bytes, std::span<std::byte> out) {
+  ZSTD_DCtx& context = zstd_decompressor();
+  std::size_t wanted = ZSTD_initDStream(&context);
+  ZSTD_outBuffer target = {out.data(), out.size(), 0};
+  while (!bytes.empty() && target.pos < target.size && wanted != 0 && ZSTD_isError(wanted) == 0) {
+    ZSTD_inBuffer block = {bytes.data(), std::min(wanted, bytes.size()), 0};
+    const std::size_t before = target.pos;
+    wanted = ZSTD_decompressStream(&context, &target, &block);
+    if (block.pos == 0 && target.pos == before) break;
+    bytes = bytes.subspan(block.pos);
+  }
+  return target.pos;
+}
+
+std::size_t expand_lz4_beginning(std::span<const std::byte> bytes, std::span<std::byte> out) {
+  LZ4F_dctx* raw = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&raw, LZ4F_VERSION)) != 0) throw std::bad_alloc();
+  const std::unique_ptr<LZ4F_dctx, FreeLz4> context(raw);
+  std::size_t written = 0;
+  std::size_t wanted = LZ4F_MIN_SIZE_TO_KNOW_HEADER_LENGTH;
+  while (!bytes.empty() && written < out.size() && wanted != 0) {
+    std::size_t produced = out.size() - written;
+    std::size_t consumed = std::min(wanted, bytes.size());
+    wanted = LZ4F_decompress(context.get(), out.data() + written, &produced, bytes.data(), &consumed, nullptr);
+    if (LZ4F_isError(wanted) != 0 || (produced == 0 && consumed == 0)) break;
+    written += produced;
+    bytes = bytes.subspan(consumed);
+  }
+  return written;
+}
+
 }  // namespace
 
 std::string_view name_of(Compression compression) {
@@ -127,6 +161,21 @@ void decompress(std::string_view compression, std::span<const std::byte> bytes, 
   } else {
     throw Malformed(fmt::format("its compression '{}' is none of \"\", lz4 and zstd", compression));
   }
+}
+
+std::span<const std::byte> decompress_beginning(std::string_view compression, std::span<const std::byte> bytes,
+                                                std::size_t limit, RawBuffer& out) {
+  const std::span<std::byte> target = out.reset(limit);
+  std::size_t written = 0;
+  if (compression.empty()) {
+    written = std::min(bytes.size(), limit);
+    if (written > 0) std::memcpy(target.data(), bytes.data(), written);
+  } else if (compression == name_of(Compression::kZstd)) {
+    written = expand_zstd_beginning(bytes, target);
+  } else if (compression == name_of(Compression::kLz4)) {
+    written = expand_lz4_beginning(bytes, target);
+  }
+  return target.first(written);
 }
 
 }  // namespace vestige::mcap

@@ -35,4 +35,9 @@ void compress(Compression compression, std::span<const std::byte> bytes, std::ve
 /// kMaxChunkBytes, content that is damaged or expands to another size.
 void decompress(std::string_view compression, std::span<const std::byte> bytes, std::uint64_t size, RawBuffer& out);
 
+/// Expands as much of `bytes` as can be expanded, block by block, to at most `limit` bytes, which are returned in
+/// `out`: for content that is cut or damaged. An unknown compression gives nothing.
+std::span<const std::byte> decompress_beginning(std::string_view compression, std::span<const std::byte> bytes,
+                                                std::size_t limit, RawBuffer& out);
+
 }  // namespace vestige::mcap

@@ -13,8 +13,9 @@ namespace vestige::mcap {
 
 namespace {
 
-/// Larger than every record of ours that is neither a chunk nor an attachment.
-constexpr std::uint64_t kMaxCheckedBytes = 16ULL << 20;
+constexpr std::uint64_t kFieldBytes = 1 << 16;             ///< hardly a record but chunks and attachments is larger
+constexpr std::uint64_t kHeadBytes = 1 << 12;              ///< nor is what those have before their data
+constexpr std::uint64_t kMostLookedAtBytes = 64ULL << 20;  ///< and as many as the file has up to here
 
 bool is_known(Opcode opcode) {
   return least_content_bytes(opcode).has_value();
@@ -28,21 +29,47 @@ bool belongs_in_chunks(Opcode opcode) {
   return opcode == Opcode::kSchema || opcode == Opcode::kChannel || opcode == Opcode::kMessage;
 }
 
+/// Whether the source begins with the magic bytes, or with as many of them as it has bytes.
+bool begins_with_magic(const ByteSource& source) {
+  std::array<std::byte, kMagicBytes> magic = {};
+  const auto begin =
+      std::span(magic).first(static_cast<std::size_t>(std::min<std::uint64_t>(source.size(), kMagicBytes)));
+  source.read_at(0, begin);
+  return is_magic(begin);
+}
+
+void require_content(const ByteSource& source) {
+  if (source.size() == 0)
+    throw Error(source.name(), "is empty", "was its recording started, and did the disk have room?");
+}
+
 }  // namespace
 
 void require_mcap(const ByteSource& source) {
-  std::array<std::byte, kMagicBytes> magic = {};
-  if (source.size() == 0)
-    throw Error(source.name(), "is empty", "was its recording started, and did the disk have room?");
-  const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(source.size(), kMagicBytes));
-  source.read_at(0, std::span(magic).first(count));
-  if (!is_magic(std::span(magic).first(count)))
+  require_content(source);
+  if (!begins_with_magic(source))
     throw Error(source.name(), "is no MCAP file: it does not begin with MCAP's magic bytes", "name a recorded trace");
-  if (count < kMagicBytes) throw Error(source.name(), "ends within its first bytes", "record it again");
+  if (source.size() < kMagicBytes) throw Error(source.name(), "ends within its first bytes", "record it again");
 }
 
-RecordWalker::RecordWalker(const ByteSource& source) : source_(source), here_(source), ahead_(source) {
-  require_mcap(source);
+RecordWalker::RecordWalker(const ByteSource& source, MagicBytes magic)
+    : source_(source), here_(source), ahead_(source) {
+  if (magic == MagicBytes::kRequired) {
+    require_mcap(source);
+    return;
+  }
+  require_content(source);
+  if (source.size() < kMagicBytes || !begins_with_magic(source)) begin_without_magic();
+}
+
+void RecordWalker::begin_without_magic() {
+  const auto header = head_at(here_, kMagicBytes);
+  if (header && header->opcode == Opcode::kHeader && may_resume_at(*header, false)) {
+    damages_.push_back({0, kMagicBytes, "the magic bytes that begin the file are broken"});
+  } else {
+    damages_.push_back({0, 0, "the file does not begin with MCAP's magic bytes"});
+    position_ = 0;
+  }
 }
 
 std::optional<RecordPlace> RecordWalker::head_at(ReadWindow& window, std::uint64_t offset) const {
@@ -58,6 +85,10 @@ std::optional<RecordPlace> RecordWalker::head_at(ReadWindow& window, std::uint64
   return place;
 }
 
+Opcode RecordWalker::opcode_at(std::uint64_t offset) {
+  return static_cast<Opcode>(here_.at(offset, 1)[0]);
+}
+
 /// Whether a record may begin at `offset`; the file's end is as good, since a file can be cut anywhere.
 bool RecordWalker::could_follow(std::uint64_t offset, Opcode before) {
   const std::uint64_t rest = source_.size() - offset;
@@ -69,18 +100,79 @@ bool RecordWalker::could_follow(std::uint64_t offset, Opcode before) {
   return head && (is_known(head->opcode) || head->end() <= source_.size());
 }
 
-bool RecordWalker::fills_itself(const RecordPlace& place) {
-  const bool large = place.opcode == Opcode::kChunk || place.opcode == Opcode::kAttachment;
-  if (!large && place.content_bytes > kMaxCheckedBytes) return false;
-  return natural_content_bytes(place.opcode, content(place, scratch_)) == place.content_bytes;
+/// How many bytes the fields of a record fill, if it has `limit` bytes at most; nothing where they do not tell.
+std::optional<std::uint64_t> RecordWalker::natural_bytes(Opcode opcode, std::uint64_t content_offset,
+                                                         std::uint64_t limit) {
+  const bool large = opcode == Opcode::kChunk || opcode == Opcode::kAttachment;
+  const std::uint64_t rest = std::min(limit, source_.size() - content_offset);
+  const std::uint64_t count = std::min(rest, large ? kHeadBytes : kFieldBytes);
+  if (looked_at_bytes_ + count > kMostLookedAtBytes + content_offset) return {};
+  looked_at_bytes_ += count;
+  source_.read_at(content_offset, scratch_.reset(static_cast<std::size_t>(count)));
+  const Bytes content = scratch_.bytes();
+  try {
+    Cursor cursor(content);
+    std::uint64_t behind_data = 0;
+    if (opcode == Opcode::kChunk) {
+      cursor.bytes(8 + 8 + 8 + 4);  // times, size, CRC
+      cursor.string();              // compression
+    } else if (opcode == Opcode::kAttachment) {
+      cursor.bytes(8 + 8);  // times
+      cursor.string();      // name
+      cursor.string();      // media type
+      behind_data = 4;      // CRC
+    } else {
+      return natural_content_bytes(opcode, content);
+    }
+    const auto data_bytes = cursor.number<std::uint64_t>();
+    const std::uint64_t before_data = count - cursor.remaining();
+    if (data_bytes > rest || before_data + behind_data > rest - data_bytes) return {};
+    return before_data + data_bytes + behind_data;
+  } catch (const Malformed&) {
+    return {};
+  }
 }
 
-/// Decided on a few heads only, so that resynchronising takes linear time even in a file made of lies.
+bool RecordWalker::fills_itself(const RecordPlace& place) {
+  return natural_bytes(place.opcode, place.content_offset(), place.content_bytes) == place.content_bytes;
+}
+
+/// Whether a record stands at `offset` that needs no more proof: of a kind that the specification knows, and as long as
+/// its fields say or, where they do not, followed by another.
+bool RecordWalker::stands_at(std::uint64_t offset) {
+  const auto head = head_at(ahead_, offset);
+  if (!head || !is_known(head->opcode) || head->end() > source_.size()) return false;
+  if (head->opcode == Opcode::kMessage || head->opcode == Opcode::kFooter)
+    return could_follow(head->end(), head->opcode);
+  return fills_itself(*head);
+}
+
+/// Where the record's own fields end elsewhere, just before another record, that is where it ends.
+bool RecordWalker::mend(RecordPlace& place) {
+  const bool tells = is_known(place.opcode) && place.opcode != Opcode::kMessage && place.opcode != Opcode::kFooter;
+  if (!tells || source_.size() - place.offset < kRecordHeadBytes || fills_itself(place)) return false;
+  const auto natural = natural_bytes(place.opcode, place.content_offset(), source_.size());
+  if (!natural || *natural == place.content_bytes) return false;
+  const std::uint64_t end = place.content_offset() + *natural;
+  if (!stands_at(end)) return false;
+  damages_.push_back(
+      {place.offset + 1, kRecordHeadBytes - 1,
+       fmt::format("the length of a {} is broken; its fields tell where it ends", mcap::name_of(place.opcode)),
+       DamageEffect::kMended});
+  place.content_bytes = *natural;
+  return true;
+}
+
+/// Decided on a few heads and a limited number of looks at fields, so that resynchronising takes linear time even in a
+/// file made of lies.
 bool RecordWalker::may_resume_at(const RecordPlace& place, bool messages_too) {
   if (!is_known(place.opcode) || place.end() > source_.size()) return false;
   if (belongs_in_chunks(place.opcode) && !messages_too) return false;
   if (place.opcode == Opcode::kDataEnd && place.content_bytes > 4096) return false;
   if (!could_follow(place.end(), place.opcode)) return false;
+  const bool tells = place.opcode != Opcode::kMessage && place.content_bytes <= kFieldBytes &&
+                     looked_at_bytes_ + kFieldBytes <= kMostLookedAtBytes + place.offset;
+  if (tells && !fills_itself(place)) return false;
   if (place.end() == source_.size() || place.opcode == Opcode::kFooter) return true;
   const auto second = head_at(ahead_, place.end());
   if (!second) return true;
@@ -128,11 +220,12 @@ bool RecordWalker::next(RecordPlace& place) {
     }
     const auto head = head_at(here_, position_);
     const bool fits = head && head->end() <= source_.size();
-    if (!fits || !(could_follow(head->end(), head->opcode) || fills_itself(*head))) {
+    const bool believable = fits && (could_follow(head->end(), head->opcode) || fills_itself(*head));
+    place = head.value_or(RecordPlace{.opcode = opcode_at(position_), .offset = position_});
+    if (!mend(place) && !believable) {
       if (!resynchronise()) break;
       continue;
     }
-    place = *head;
     position_ = place.end();
     if (place.opcode == Opcode::kChunk) chunk_seen_ = true;
     if (place.opcode == Opcode::kFooter) finish(position_);

@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+#include "traces/trace_check.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct DoctorOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+};
+
+std::vector<mcap::Problem> by_offset(const mcap::ProblemList& problems) {
+  std::vector<mcap::Problem> sorted = problems.kept();
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const mcap::Problem& a, const mcap::Problem& b) { return a.offset < b.offset; });
+  return sorted;
+}
+
+int exit_code_of(const TraceCheck& check) {
+  if (check.problems.count() == 0) return kDone;
+  return check.readable() ? kDataLost : kFailed;
+}
+
+/// The worst of several: nothing can be read, then problems, then none.
+int worse(int a, int b) {
+  if (a == kFailed || b == kFailed) return kFailed;
+  return std::max(a, b);
+}
+
+nlohmann::ordered_json to_json(const TraceCheck& check, const std::string& file) {
+  nlohmann::ordered_json problems = nlohmann::ordered_json::array();
+  for (const mcap::Problem& problem : by_offset(check.problems)) {
+    nlohmann::ordered_json shown = {{"offset", problem.offset}, {"bytes", problem.bytes}};
+    if (problem.offset_in_chunk) shown["offset_in_chunk"] = *problem.offset_in_chunk;
+    shown["problem"] = problem.what;
+    shown["consequence"] = problem.consequence;
+    problems.push_back(std::move(shown));
+  }
+  nlohmann::ordered_json json = {{"file", file},
+                                 {"trace", check.is_trace},
+                                 {"readable", check.readable()},
+                                 {"has_footer", check.container.has_footer},
+                                 {"messages", check.container.messages},
+                                 {"chunks", check.container.chunks},
+                                 {"damaged_chunks", check.container.damaged_chunks},
+                                 {"attachments", check.container.attachments}};
+  if (check.is_trace) {
+    json["frames"] = check.frames;
+    json["dropped"] = check.dropped;
+  }
+  json["problem_count"] = check.problems.count();
+  json["problems"] = std::move(problems);
+  return json;
+}
+
+std::string describe(const TraceCheck& check, const std::string& file) {
+  std::string text;
+  for (const mcap::Problem& problem : by_offset(check.problems)) {
+    text += fmt::format("{}: at byte {}", file, problem.offset);
+    if (problem.offset_in_chunk) text += fmt::format(", {} bytes into its chunk", *problem.offset_in_chunk);
+    text += fmt::format(": {}\n  {}\n", problem.what, problem.consequence);
+  }
+  const std::uint64_t shown = check.problems.kept().size();
+  if (check.problems.count() > shown) text += fmt::format("{}: and {} more\n", file, check.problems.count() - shown);
+  const std::string content =
+      check.is_trace ? fmt::format("{} frames can be read", check.frames)
+                     : fmt::format("{} messages, {} attachments; no trace of ours, so only its framing was checked",
+                                   check.container.messages, check.container.attachments);
+  const std::uint64_t count = check.problems.count();
+  text += fmt::format("{}: {}; {}\n", file,
+                      count == 0 ? "no problem" : fmt::format("{} problem{}", count, count == 1 ? "" : "s"),
+                      check.readable() || count == 0 ? content : "nothing in it can be read");
+  return text;
+}
+
+void run_doctor(const DoctorOptions& options, Invocation& invocation) {
+  check_outputs({options.common.json}, options.files, options.common);
+  if (std::count(options.files.begin(), options.files.end(), "-") > 1)
+    throw UsageError("-", "standard input can be read once", "name it once");
+  catch_interrupts();
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const std::string& file : options.files) {
+    const mcap::FileSource source(file);
+    Progress progress("Checking", options.common.verbosity());
+    const TraceCheck check = check_trace(source, [&](double share) { return progress.update(share); });
+    invocation.exit_code = worse(invocation.exit_code, exit_code_of(check));
+    json.push_back(to_json(check, file));
+    print_summary(describe(check, file), {options.common.json}, options.common);
+  }
+  write_json(options.common.json, {{"files", json}}, options.common);
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<DoctorOptions>();
+  CLI::App* verb = add_verb(program, "doctor", "Say what is wrong with a trace, or any MCAP file, byte by byte",
+                            "  vestige doctor man.mcap\n"
+                            "  vestige doctor man.mcap --json doctor.json\n");
+  verb->add_option("FILE", options->files,
+                   "Files to check, or '-' for standard input. Exit code 0: no problem; 3: problems, but something can "
+                   "be read; 1: nothing can be read")
+      ->required();
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_doctor(*options, invocation); });
+}
+
+}  // namespace vestige::cli

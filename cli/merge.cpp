@@ -1,0 +1,79 @@
+#include "traces/merge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+
+#include "cli/rewriting.hpp"
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct MergeOptions {
+  CommonOptions common;
+  std::vector<std::string> files;
+  std::string output;
+};
+
+void run_merge(const MergeOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  check_outputs({options.output, options.common.json}, options.files, options.common);
+  if (options.output == "-") refuse_terminal("-o -");
+  if (std::count(options.files.begin(), options.files.end(), "-") > 1)
+    throw UsageError("-", "standard input can be read once", "name it once");
+  std::vector<std::unique_ptr<mcap::ByteSource>> sources;
+  sources.reserve(options.files.size());
+  for (const std::string& file : options.files) sources.push_back(std::make_unique<mcap::FileSource>(file));
+  catch_interrupts();
+  OutputFile written(options.output, options.common.overwrite());
+  Merged merged;
+  {
+    Progress progress("Merging", verbosity);
+    merged = merge_traces(
+        sources, [&](mcap::Bytes bytes) { written.write(bytes); },
+        [&](double share) { return progress.update(share); });
+  }
+  written.commit();
+  std::map<std::string, std::vector<mcap::Damage>> damages;
+  for (const Merged::Damage& damage : merged.damages) damages[damage.file].push_back(damage.damage);
+  for (const auto& [file, list] : damages) warn_of_damage(file, list, verbosity);
+  if (merged.missing_frames > 0)
+    warn(fmt::format("{}: {} frames between its first and its last were in none of the files", options.output,
+                     merged.missing_frames),
+         verbosity);
+  write_json(options.common.json,
+             {{"files", options.files},
+              {"output", options.output},
+              {"messages", merged.messages},
+              {"frames", merged.frames},
+              {"duplicates", merged.duplicates},
+              {"missing_frames", merged.missing_frames},
+              {"complete", merged.damages.empty()}},
+             options.common);
+  print_summary(fmt::format("{}: {} frames of {} files\n", options.output, merged.frames, options.files.size()),
+                {options.output, options.common.json}, options.common);
+  if (!merged.damages.empty()) invocation.exit_code = kDataLost;
+}
+
+}  // namespace
+
+void add_merge(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<MergeOptions>();
+  CLI::App* verb = add_verb(program, "merge", "Put parts of one recording together, in order of time",
+                            "  vestige merge beginning.mcap end.mcap -o man.mcap\n"
+                            "  vestige merge part-*.mcap -o man.mcap --json merge.json\n");
+  verb->add_option("FILE", options->files, "The parts, in any order; frames that several have must be the same in all")
+      ->required();
+  verb->add_option("-o,--output", options->output, "The trace to write, or '-' for standard output")
+      ->required()
+      ->type_name("OUT.mcap|-");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_merge(*options, invocation); });
+}
+
+}  // namespace vestige::cli

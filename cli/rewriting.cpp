@@ -1,0 +1,53 @@
+#include "cli/rewriting.hpp"
+
+#include <fmt/format.h>
+
+#include "traces/mcap/byte_source.hpp"
+#include "traces/trace_index.hpp"
+
+namespace vestige::cli {
+
+void warn_of_damage(const std::string& file, const std::vector<mcap::Damage>& damages, Verbosity verbosity) {
+  constexpr std::size_t kMostTold = 20;
+  for (std::size_t i = 0; i < damages.size() && i < kMostTold; ++i) warn(describe(damages[i], file), verbosity);
+  if (damages.size() > kMostTold) warn(fmt::format("{}: and {} more", file, damages.size() - kMostTold), verbosity);
+  if (!damages.empty()) warn(fmt::format("{}: 'vestige recover' keeps more of it", file), verbosity);
+}
+
+void run_rewrite(const std::string& file, const std::string& output, const RewriteOptions& how,
+                 const std::string& doing, const CommonOptions& common, Invocation& invocation) {
+  constexpr double kNanosecondsPerSecond = 1e9;
+  check_outputs({output, common.json}, {file}, common);
+  if (output == "-") refuse_terminal("-o -");
+  const mcap::FileSource source(file);
+  catch_interrupts();
+  OutputFile written(output, common.overwrite());
+  Rewritten result;
+  {
+    Progress progress(doing, common.verbosity());
+    result = rewrite_mcap(
+        source, [&](mcap::Bytes bytes) { written.write(bytes); }, how,
+        [&](double share) { return progress.update(share); });
+  }
+  written.commit();
+  warn_of_damage(file, result.damages, common.verbosity());
+  const double start_s = static_cast<double>(result.start_ns) / kNanosecondsPerSecond;
+  const double end_s = static_cast<double>(result.end_ns) / kNanosecondsPerSecond;
+  write_json(common.json,
+             {{"file", file},
+              {"output", output},
+              {"messages", result.messages},
+              {"left_out", result.left_out},
+              {"start_s", start_s},
+              {"end_s", end_s},
+              {"bytes_before", source.size()},
+              {"bytes", result.bytes},
+              {"complete", result.damages.empty()}},
+             common);
+  print_summary(fmt::format("{}: {} messages from {} to {} s, {} bytes ({} before)\n", output, result.messages, start_s,
+                            end_s, result.bytes, source.size()),
+                {output, common.json}, common);
+  if (!result.damages.empty()) invocation.exit_code = kDataLost;
+}
+
+}  // namespace vestige::cli

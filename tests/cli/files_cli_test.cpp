@@ -1,0 +1,122 @@
+// What happens to trace files, as a user sees it: doctor, recover, recompress, trim, merge, cat.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/command_line.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Files : public test::CommandLineTest {
+ protected:
+  void SetUp() override { ASSERT_EQ(run("vestige record --count 20 --rate 100 --duration 1 -o a.mcap").exit_code, 0); }
+  std::string hash_of(const std::string& trace) const {
+    return json_of("vestige replay " + trace + " --json -")["texture_hash"];
+  }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+  std::size_t file_count() const {
+    std::size_t count = 0;
+    for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder_.path())) ++count;
+    return count;
+  }
+};
+
+TEST_F(Files, DoctorFindsNothingInARecordingAndReadsStandardInput) {
+  const auto report = json_of("vestige doctor a.mcap --json -");
+  EXPECT_EQ(report["files"][0]["problem_count"], 0);
+  EXPECT_EQ(report["files"][0]["frames"], 100);
+  EXPECT_EQ(run("vestige doctor - < a.mcap").exit_code, 0);
+}
+
+TEST_F(Files, DoctorNamesWhereAFileIsCutAndRecoverMakesItWhole) {
+  ASSERT_EQ(run("head -c -3000 a.mcap > cut.mcap").exit_code, 0);
+  const auto size = std::filesystem::file_size(folder_ / "cut.mcap");
+  const test::Outcome doctor = run("vestige doctor a.mcap cut.mcap --json doctor.json");
+  EXPECT_EQ(doctor.exit_code, 3);
+  EXPECT_THAT(doctor.standard_output, HasSubstr("cut.mcap: at byte "));
+  const auto problem = nlohmann::json::parse(run("cat doctor.json").standard_output)["files"][1]["problems"].back();
+  EXPECT_EQ(problem["offset"].get<std::uint64_t>() + problem["bytes"].get<std::uint64_t>(), size);
+
+  const test::Outcome recover = run("vestige recover cut.mcap -o mended.mcap --json recovery.json");
+  EXPECT_TRUE(recover.exit_code == 0 || recover.exit_code == 3) << recover.standard_error;
+  EXPECT_EQ(run("vestige doctor mended.mcap").exit_code, 0);
+  EXPECT_EQ(run("vestige replay mended.mcap").exit_code, 0);
+}
+
+TEST_F(Files, DoctorSaysWhenNothingCanBeRead) {
+  EXPECT_EQ(run("head -c 200 a.mcap > head.mcap; vestige doctor head.mcap").exit_code, 1);
+  EXPECT_EQ(run("vestige doctor a.mcap head.mcap").exit_code, 1);
+  EXPECT_EQ(run("vestige doctor missing.mcap").exit_code, 1);
+  const test::Outcome text = run("echo nothing > text; vestige recover text -o out.mcap");
+  EXPECT_EQ(text.exit_code, 1);
+  EXPECT_THAT(text.standard_error, HasSubstr("nothing in it can be recovered"));
+  EXPECT_FALSE(exists("out.mcap"));
+}
+
+TEST_F(Files, TheTextureHashSurvivesRecompressTrimAndMerge) {
+  const std::string hash = hash_of("a.mcap");
+  for (const char* compression : {"lz4", "none", "zstd"}) {
+    const std::string name = std::string(compression) + ".mcap";
+    ASSERT_EQ(run("vestige recompress a.mcap -o " + name + " --compression " + compression).exit_code, 0);
+    EXPECT_EQ(hash_of(name), hash) << compression;
+  }
+  EXPECT_EQ(json_of("vestige inspect none.mcap --json -")["compression"], "none");
+  ASSERT_EQ(run("vestige trim a.mcap --to 0.31 -o 1.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige trim a.mcap --from 0.31 --to 0.77 -o 2.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige trim a.mcap --from 0.77 -o 3.mcap").exit_code, 0);
+  EXPECT_EQ(json_of("vestige replay 2.mcap --json -")["frames"], 46);
+  EXPECT_NE(hash_of("2.mcap"), hash);
+  ASSERT_EQ(run("vestige merge 3.mcap 1.mcap 2.mcap -o whole.mcap").exit_code, 0);
+  EXPECT_EQ(hash_of("whole.mcap"), hash);
+}
+
+TEST_F(Files, MergeRefusesAnotherRecordingWithTheReason) {
+  ASSERT_EQ(run("vestige record --count 20 --rate 100 --duration 1 --seed 2 -o b.mcap").exit_code, 0);
+  const test::Outcome merge = run("vestige merge a.mcap b.mcap -o c.mcap");
+  EXPECT_EQ(merge.exit_code, 1);
+  EXPECT_THAT(merge.standard_error, HasSubstr("b.mcap: its frame 0 (at 0 ns) is not that of a.mcap"));
+  EXPECT_FALSE(exists("c.mcap"));
+}
+
+TEST_F(Files, NoOutputReplacesWhatIsThereOrWhatIsRead) {
+  ASSERT_EQ(run("cp a.mcap b.mcap").exit_code, 0);
+  for (const char* verb : {"recover a.mcap", "recompress a.mcap", "trim a.mcap --to 0.5", "merge a.mcap a.mcap"}) {
+    const std::string command = std::string("vestige ") + verb;
+    EXPECT_EQ(run(command + " -o b.mcap").exit_code, 1) << verb;
+    EXPECT_EQ(run(command + " -o a.mcap --force").exit_code, 2) << verb;
+    EXPECT_EQ(run(command + " -o b.mcap --force").exit_code, 0) << verb;
+  }
+  EXPECT_EQ(file_count(), 2U) << "and nothing else is left behind";
+}
+
+TEST_F(Files, TrimSaysWhatIsWrongWithItsTimes) {
+  EXPECT_EQ(run("vestige trim a.mcap -o b.mcap").exit_code, 2);
+  EXPECT_EQ(run("vestige trim a.mcap --from 2 --to 1 -o b.mcap").exit_code, 2);
+  EXPECT_EQ(run("vestige trim a.mcap --from -1 -o b.mcap").exit_code, 2);
+  const test::Outcome late = run("vestige trim a.mcap --from 5 -o b.mcap");
+  EXPECT_EQ(late.exit_code, 1);
+  EXPECT_THAT(late.standard_error, HasSubstr("they are of 0 to 0.99 s"));
+  EXPECT_FALSE(exists("b.mcap"));
+}
+
+TEST_F(Files, CatPrintsALineOfJsonForEachMessageOfATopic) {
+  EXPECT_EQ(run("vestige cat a.mcap --topic /colliders | wc -l").standard_output, "100\n");
+  EXPECT_EQ(run("vestige cat a.mcap | wc -l").standard_output, "200\n");
+  const auto last = nlohmann::json::parse(run("vestige cat a.mcap --topic /colliders | tail -1").standard_output);
+  EXPECT_EQ(last["sequence"], 99);
+  EXPECT_EQ(last["data"].size(), 20U);
+  const test::Outcome head = run("vestige cat a.mcap | head -1 | wc -l");
+  EXPECT_EQ(head.standard_output, "1\n");
+  EXPECT_EQ(head.standard_error, "");
+  const test::Outcome wrong = run("vestige cat a.mcap --topic /posse");
+  EXPECT_EQ(wrong.exit_code, 1);
+  EXPECT_THAT(wrong.standard_error, HasSubstr("it has: /colliders, /pose"));
+}
+
+}  // namespace
+}  // namespace vestige

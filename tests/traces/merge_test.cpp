@@ -1,0 +1,116 @@
+// `vestige merge`: parts of one recording become the whole again.
+
+#include "traces/merge.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/traces/mcap_files.hpp"
+#include "tests/traces/small_trace.hpp"
+#include "traces/error.hpp"
+#include "traces/rewrite.hpp"
+
+namespace vestige {
+namespace {
+
+using test::kFrames;
+using test::small_trace;
+using ::testing::HasSubstr;
+
+using Bytes = std::vector<std::byte>;
+
+std::uint64_t time_of(std::uint64_t index) {
+  return static_cast<std::uint64_t>(test::frame(index, 1, 0).time_ns);
+}
+
+/// Frames first … last - 1.
+Bytes part(const Bytes& whole, std::uint64_t first, std::uint64_t last) {
+  const mcap::MemorySource source(whole);
+  Bytes written;
+  rewrite_mcap(source, test::into(written), {.range = {.from_ns = time_of(first), .to_ns = time_of(last)}},
+               test::go_on);
+  return written;
+}
+
+struct Merge {
+  Merged merged;
+  Bytes bytes;
+};
+
+Merge merge(const std::vector<Bytes>& parts) {
+  std::vector<std::unique_ptr<mcap::ByteSource>> sources;
+  for (const Bytes& bytes : parts) sources.push_back(std::make_unique<mcap::MemorySource>(bytes));
+  Merge result;
+  result.merged = merge_traces(sources, test::into(result.bytes), test::go_on);
+  return result;
+}
+
+std::string refusal(const std::vector<Bytes>& parts) {
+  try {
+    merge(parts);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "merged";
+}
+
+Bytes recording(const test::TemporaryFolder& folder, std::uint64_t frames, std::size_t nodes, const std::string& map,
+                double shift = 0) {
+  const std::vector<std::byte> glb = test::skeleton_glb(nodes);
+  TraceWriterOptions options = test::steady_options(1200);
+  options.overwrite = Overwrite::kAllow;
+  TraceWriter writer(folder / "other.mcap", {{"argv", "test"}}, test::skeleton(nodes),
+                     {.avatar_glb = glb, .actuator_map_json = map}, options);
+  for (std::uint64_t i = 0; i < frames; ++i) {
+    TraceFrame frame = test::frame(i, nodes, test::kColliders);
+    frame.colliders[0].position_m.x += shift;
+    writer.write(frame);
+  }
+  writer.note_marker("end");
+  writer.finish();
+  return read_file(folder / "other.mcap");
+}
+
+TEST(Merge, MakesTheWholeOfItsPartsInAnyOrder) {
+  const test::TemporaryFolder folder;
+  const Bytes whole = small_trace(folder, Compression::kZstd).bytes;
+  const Merge result = merge({part(whole, 11, 99), part(whole, 0, 5), part(whole, 5, 11)});
+  EXPECT_EQ(test::content_sha256(result.bytes), test::content_sha256(whole));
+  EXPECT_EQ(result.merged.frames, kFrames);
+  EXPECT_EQ(result.merged.duplicates, 0U);
+  EXPECT_EQ(result.merged.missing_frames, 0U);
+}
+
+TEST(Merge, WritesFramesThatSeveralPartsHaveOnce) {
+  const test::TemporaryFolder folder;
+  const Bytes whole = recording(folder, kFrames, test::kNodes, "{}");
+  const Merge result = merge({part(whole, 0, 9), part(whole, 4, 99), whole});
+  EXPECT_EQ(test::content_sha256(result.bytes), test::content_sha256(whole));
+  EXPECT_EQ(result.merged.duplicates, 2 * 5 + 2 * kFrames + 1);
+}
+
+TEST(Merge, CountsFramesThatNoPartHas) {
+  const test::TemporaryFolder folder;
+  const Bytes whole = small_trace(folder, Compression::kZstd).bytes;
+  EXPECT_EQ(merge({part(whole, 0, 4), part(whole, 10, 99)}).merged.missing_frames, 6U);
+}
+
+TEST(Merge, RefusesWhatIsNoPartOfTheSameRecordingAndSaysWhy) {
+  const test::TemporaryFolder folder;
+  const Bytes whole = recording(folder, kFrames, test::kNodes, "{}");
+  EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes + 1, "{}")}), HasSubstr("its avatar is not that of"));
+  EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes, "{\"a\":1}")}),
+              HasSubstr("its actuator map's description is not that of"));
+  EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes, "{}", 1)}), HasSubstr("its frame 0 (at 0 ns) is not"));
+}
+
+TEST(Merge, RefusesFilesOfOthers) {
+  VESTIGE_REQUIRE_DATA(test::data("mcap"));
+  const auto foreign = read_file(test::data("mcap/compressed/multi-zstd.mcap"));
+  EXPECT_THAT(refusal({foreign, foreign}), HasSubstr("is no trace of ours"));
+}
+
+}  // namespace
+}  // namespace vestige

@@ -1,0 +1,236 @@
+// What `vestige recover` makes of damaged files.
+
+#include "traces/recover.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "tests/traces/mcap_files.hpp"
+#include "tests/traces/small_trace.hpp"
+#include "traces/error.hpp"
+#include "traces/trace_check.hpp"
+
+namespace vestige {
+namespace {
+
+using test::kColliders;
+using test::kFrames;
+using test::kFramesInAChunk;
+using test::kNodes;
+using test::small_trace;
+using test::SmallTrace;
+using ::testing::HasSubstr;
+
+struct Outcome {
+  Recovery recovery;
+  std::vector<std::byte> bytes;
+  std::vector<TraceFrame> frames;
+};
+
+/// Recovers, and reads what was written, which must be sound and complete. Nothing when nothing could be recovered.
+std::optional<Outcome> recover(std::span<const std::byte> bytes) {
+  Outcome outcome;
+  try {
+    const mcap::MemorySource source(bytes);
+    outcome.recovery = recover_mcap(source, test::into(outcome.bytes), test::go_on);
+  } catch (const Error&) {
+    return {};
+  }
+  const mcap::MemorySource written(outcome.bytes);
+  const TraceCheck check = check_trace(written, test::go_on);
+  EXPECT_EQ(check.container.damaged_chunks, 0U);
+  EXPECT_TRUE(check.container.has_footer);
+  return outcome;
+}
+
+void read_frames(Outcome& outcome) {
+  static const test::MemoryFile file;
+  file.assign(outcome.bytes);
+  TraceReader reader(file.path());
+  outcome.frames = test::read_frames(reader);
+  EXPECT_TRUE(reader.complete()) << ::testing::PrintToString(reader.warnings());
+}
+
+bool is_as_written(const TraceFrame& frame) {
+  return test::same_bits(frame, test::frame(frame.index, kNodes, kColliders));
+}
+
+std::size_t intact(const std::vector<TraceFrame>& frames) {
+  return static_cast<std::size_t>(std::count_if(frames.begin(), frames.end(), is_as_written));
+}
+
+class RecoverCompressed : public ::testing::TestWithParam<Compression> {
+ protected:
+  const test::TemporaryFolder folder_;
+  const SmallTrace trace_ = small_trace(folder_, GetParam());
+};
+
+TEST_P(RecoverCompressed, WritesASoundTraceAsItWas) {
+  auto outcome = recover(trace_.bytes);
+  ASSERT_TRUE(outcome);
+  read_frames(*outcome);
+  EXPECT_FALSE(outcome->recovery.lost_something());
+  EXPECT_EQ(intact(outcome->frames), kFrames);
+  EXPECT_EQ(outcome->recovery.chunks_whole, trace_.chunks.size());
+  EXPECT_EQ(test::content_sha256(outcome->bytes), test::content_sha256(trace_.bytes));
+}
+
+TEST_P(RecoverCompressed, KeepsEveryWholeChunkOfAFileThatIsCutAnywhere) {
+  for (std::size_t length = 1; length < trace_.bytes.size(); ++length) {
+    auto outcome = recover(std::span(trace_.bytes).first(length));
+    if (length < trace_.head_end) continue;
+    ASSERT_TRUE(outcome) << length;
+    read_frames(*outcome);
+    const auto whole = static_cast<std::size_t>(std::count_if(
+        trace_.chunks.begin(), trace_.chunks.end(), [&](const auto& chunk) { return chunk.end() <= length; }));
+    EXPECT_GE(intact(outcome->frames), whole * kFramesInAChunk) << length;
+    EXPECT_EQ(intact(outcome->frames), outcome->frames.size()) << length << ": nothing is made up";
+    const auto begun = static_cast<std::size_t>(std::count_if(
+        trace_.chunks.begin(), trace_.chunks.end(), [&](const auto& chunk) { return chunk.offset < length; }));
+    EXPECT_EQ(outcome->recovery.lost_something(), outcome->frames.size() < begun * kFramesInAChunk) << length;
+  }
+}
+
+TEST_P(RecoverCompressed, KeepsEveryIntactChunkWhateverByteIsFlipped) {
+  rusage before = {};
+  ::getrusage(RUSAGE_SELF, &before);
+  std::size_t kept_of_damaged_chunks = 0;
+  std::size_t damaged_chunks = 0;
+  for (std::size_t at = 0; at < trace_.bytes.size(); ++at) {
+    for (const int flip : {0x01, 0xFF}) {
+      std::vector<std::byte> damaged = trace_.bytes;
+      damaged[at] ^= static_cast<std::byte>(flip);
+      auto outcome = recover(damaged);
+      ASSERT_TRUE(outcome) << at;
+      const bool has_avatar = outcome->recovery.attachments == 2;
+      EXPECT_TRUE(has_avatar || at < trace_.head_end) << at;
+      if (!has_avatar) {
+        EXPECT_TRUE(outcome->recovery.lost_something()) << at;
+        EXPECT_EQ(outcome->recovery.messages, 2 * kFrames) << at;
+        continue;
+      }
+      read_frames(*outcome);
+      const bool in_chunk = std::any_of(trace_.chunks.begin(), trace_.chunks.end(),
+                                        [&](const auto& chunk) { return at >= chunk.offset && at < chunk.end(); });
+      const std::size_t sound = intact(outcome->frames);
+      EXPECT_GE(sound, kFrames - (in_chunk ? kFramesInAChunk : 0)) << at;
+      // What is not as it was recorded is said to be unverified.
+      if (sound < outcome->frames.size()) {
+        EXPECT_GT(outcome->recovery.messages_unverified, 0U) << at;
+      }
+      if (sound < kFrames) {
+        EXPECT_TRUE(outcome->recovery.lost_something()) << at;
+      }
+      if (in_chunk) {
+        ++damaged_chunks;
+        kept_of_damaged_chunks += sound - (kFrames - kFramesInAChunk);
+      }
+    }
+  }
+  if (GetParam() == Compression::kNone) {
+    EXPECT_GT(kept_of_damaged_chunks, 2 * damaged_chunks) << "most frames of a damaged chunk are still there";
+  }
+  rusage after = {};
+  ::getrusage(RUSAGE_SELF, &after);
+  constexpr long kKibibytes = 64 << 10;
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kKibibytes);
+}
+
+INSTANTIATE_TEST_SUITE_P(Compressions, RecoverCompressed,
+                         ::testing::Values(Compression::kNone, Compression::kLz4, Compression::kZstd));
+
+TEST(Recover, FindsChunksAgainBehindGarbageAndWithoutTheirBeginning) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  std::vector<std::byte> bytes = trace.bytes;
+  const auto at = [&](std::uint64_t offset) { return bytes.begin() + static_cast<std::ptrdiff_t>(offset); };
+  std::fill(at(trace.chunks[1].offset - 3), at(trace.chunks[1].end() - 3), std::byte{0xAA});
+  auto outcome = recover(bytes);
+  ASSERT_TRUE(outcome);
+  read_frames(*outcome);
+  EXPECT_EQ(intact(outcome->frames), kFrames - kFramesInAChunk);
+  EXPECT_GT(outcome->recovery.bytes_lost, trace.chunks[1].content_bytes);
+  EXPECT_EQ(outcome->recovery.messages_lost, 2 * kFramesInAChunk);
+
+  // Only the end of a file: what is left says itself what it is, but has no avatar.
+  const auto tail = std::span(trace.bytes).subspan(static_cast<std::size_t>(trace.chunks[2].offset));
+  const auto rest = recover(tail);
+  ASSERT_TRUE(rest);
+  EXPECT_EQ(rest->recovery.messages, 2 * 2 * kFramesInAChunk);
+}
+
+TEST(Recover, KeepsADamagedAttachmentUnderANameThatNobodyTakesForTheRealOne) {
+  const test::TemporaryFolder folder;
+  SmallTrace trace = small_trace(folder, Compression::kZstd);
+  const auto glb = test::skeleton_glb(kNodes);
+  const auto place = std::search(trace.bytes.begin(), trace.bytes.end(), glb.begin(), glb.end());
+  *(place + 30) ^= std::byte{1};
+  const auto outcome = recover(trace.bytes);
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->recovery.damaged_attachments, std::vector<std::string>{"avatar.glb"});
+  EXPECT_TRUE(outcome->recovery.lost_something());
+  const std::string text(reinterpret_cast<const char*>(outcome->bytes.data()), outcome->bytes.size());
+  EXPECT_THAT(text, HasSubstr("avatar.glb.damaged"));
+}
+
+TEST(Recover, LeavesOutFramesThatComeTwice) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  std::vector<std::byte> bytes(trace.bytes.begin(), trace.bytes.begin() + static_cast<std::ptrdiff_t>(trace.data_end));
+  const mcap::RecordPlace& chunk = trace.chunks.front();
+  bytes.insert(bytes.end(), trace.bytes.begin() + static_cast<std::ptrdiff_t>(chunk.offset),
+               trace.bytes.begin() + static_cast<std::ptrdiff_t>(chunk.end()));
+  auto outcome = recover(bytes);
+  ASSERT_TRUE(outcome);
+  read_frames(*outcome);
+  EXPECT_EQ(intact(outcome->frames), kFrames);
+  EXPECT_EQ(outcome->recovery.messages_left_out, 2 * kFramesInAChunk);
+}
+
+TEST(Recover, WritesSoundFilesOfOthersAsTheyWere) {
+  VESTIGE_REQUIRE_DATA(test::data("mcap"));
+  for (const auto& file : test::foreign_mcaps()) {
+    const auto bytes = read_file(file);
+    const auto outcome = recover(bytes);
+    ASSERT_TRUE(outcome) << file;
+    EXPECT_FALSE(outcome->recovery.lost_something()) << file;
+    EXPECT_EQ(test::content_sha256(outcome->bytes), test::content_sha256(bytes)) << file;
+  }
+}
+
+TEST(Recover, KeepsWhatItCanOfFilesOfOthersThatAreCut) {
+  VESTIGE_REQUIRE_DATA(test::data("mcap"));
+  for (const char* name : {"multi-zstd", "multi-lz4", "multi-none", "multi-none-unchunked"}) {
+    const auto bytes = read_file(test::data(fmt::format("mcap/compressed/{}.mcap", name)));
+    std::uint64_t last = 0;
+    for (std::size_t length = 64; length < bytes.size(); length += bytes.size() / 40) {
+      const auto outcome = recover(std::span(bytes).first(length));
+      const std::uint64_t messages = outcome ? outcome->recovery.messages : 0;
+      EXPECT_GE(messages, last) << name << " cut at " << length;
+      last = messages;
+    }
+    EXPECT_GT(last, 500U) << name;
+  }
+}
+
+TEST(Recover, RefusesWhatHoldsNothing) {
+  const std::string text = "time_s,id,x,y,z\n0,1,2,3,4\n";
+  const mcap::MemorySource source(std::as_bytes(std::span(text)));
+  std::vector<std::byte> out;
+  EXPECT_THROW(recover_mcap(source, test::into(out), test::go_on), Error);
+}
+
+TEST(Recover, StopsWhenAsked) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  const mcap::MemorySource source(trace.bytes);
+  std::vector<std::byte> out;
+  EXPECT_THROW(recover_mcap(source, test::into(out), [](double) { return false; }), Error);
+}
+
+}  // namespace
+}  // namespace vestige

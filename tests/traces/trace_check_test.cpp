@@ -1,0 +1,264 @@
+// What `vestige doctor` finds: nothing in sound files, and in broken ones what is wrong, where.
+
+#include "traces/trace_check.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "tests/traces/mcap_files.hpp"
+#include "tests/traces/small_trace.hpp"
+#include "traces/error.hpp"
+#include "traces/mcap/encode.hpp"
+#include "traces/mcap/summary.hpp"
+#include "traces/trace_format.hpp"
+#include "traces/trace_messages.hpp"
+
+namespace vestige {
+namespace {
+
+using mcap::Problem;
+using test::kFrames;
+using test::small_trace;
+using test::SmallTrace;
+using ::testing::HasSubstr;
+using trace_format::Stream;
+
+TraceCheck check(std::span<const std::byte> bytes) {
+  const mcap::MemorySource source(bytes);
+  return check_trace(source, test::go_on);
+}
+
+std::string text_of(const TraceCheck& check) {
+  std::string text;
+  for (const Problem& problem : check.problems.kept())
+    text += fmt::format("{}+{}: {}; {}\n", problem.offset, problem.bytes, problem.what, problem.consequence);
+  return text;
+}
+
+bool any(const TraceCheck& check, const std::function<bool(const Problem&)>& predicate) {
+  return std::any_of(check.problems.kept().begin(), check.problems.kept().end(), predicate);
+}
+
+bool covers(const Problem& problem, std::uint64_t at) {
+  return problem.offset <= at && at < problem.offset + problem.bytes;
+}
+
+class TraceCheckCompressed : public ::testing::TestWithParam<Compression> {
+ protected:
+  const test::TemporaryFolder folder_;
+  const SmallTrace trace_ = small_trace(folder_, GetParam());
+};
+
+TEST_P(TraceCheckCompressed, FindsNothingInASoundTrace) {
+  const TraceCheck result = check(trace_.bytes);
+  EXPECT_EQ(result.problems.count(), 0U) << text_of(result);
+  EXPECT_TRUE(result.is_trace);
+  EXPECT_TRUE(result.readable());
+  EXPECT_EQ(result.frames, kFrames);
+  EXPECT_EQ(result.container.chunks, trace_.chunks.size());
+}
+
+TEST_P(TraceCheckCompressed, NamesWhereAFileIsCut) {
+  for (std::size_t length = 1; length < trace_.bytes.size(); ++length) {
+    const TraceCheck result = check(std::span(trace_.bytes).first(length));
+    // The last problem that leads to the end, or stands at it.
+    EXPECT_TRUE(any(result, [&](const Problem& problem) { return problem.offset + problem.bytes == length; }))
+        << length << "\n"
+        << text_of(result);
+    EXPECT_EQ(result.readable(), length >= trace_.chunks.front().end()) << length << "\n" << text_of(result);
+  }
+}
+
+TEST_P(TraceCheckCompressed, NamesEveryFlippedByte) {
+  rusage before = {};
+  ::getrusage(RUSAGE_SELF, &before);
+  for (std::size_t at = 0; at < trace_.bytes.size(); ++at) {
+    for (const int flip : {0x01, 0xFF}) {
+      std::vector<std::byte> damaged = trace_.bytes;
+      damaged[at] ^= static_cast<std::byte>(flip);
+      const TraceCheck result = check(damaged);
+      ASSERT_TRUE(any(result, [&](const Problem& problem) { return covers(problem, at); })) << at << "\n"
+                                                                                            << text_of(result);
+      EXPECT_TRUE(result.readable()) << at;
+      for (const mcap::RecordPlace& chunk : trace_.chunks) {
+        if (at <= chunk.offset || at >= chunk.end()) continue;
+        // Compressed data has bits that mean nothing.
+        if (GetParam() != Compression::kNone && result.container.damaged_chunks == 0 && result.frames == kFrames)
+          continue;
+        EXPECT_TRUE(any(result,
+                        [&](const Problem& problem) {
+                          return problem.offset == chunk.offset || problem.offset == chunk.offset + 1;
+                        }))
+            << at << "\n"
+            << text_of(result);
+      }
+    }
+  }
+  rusage after = {};
+  ::getrusage(RUSAGE_SELF, &after);
+  constexpr long kKibibytes = 64 << 10;
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kKibibytes);
+}
+
+INSTANTIATE_TEST_SUITE_P(Compressions, TraceCheckCompressed,
+                         ::testing::Values(Compression::kNone, Compression::kLz4, Compression::kZstd));
+
+TEST(TraceCheck, FindsNothingInSoundFilesOfOthers) {
+  VESTIGE_REQUIRE_DATA(test::data("mcap"));
+  int count = 0;
+  for (const auto& file : test::foreign_mcaps()) {
+    const TraceCheck result = check(read_file(file));
+    EXPECT_EQ(result.problems.count(), 0U) << file << "\n" << text_of(result);
+    EXPECT_FALSE(result.is_trace) << file;
+    ++count;
+  }
+  EXPECT_EQ(count, 420);
+}
+
+TEST(TraceCheck, SaysThatNothingCanBeReadInWhatIsNoMcapFile) {
+  const std::string text = "time_s,id,x,y,z\n0,1,2,3,4\n";
+  const TraceCheck result = check(std::as_bytes(std::span(text)));
+  EXPECT_GT(result.problems.count(), 0U);
+  EXPECT_FALSE(result.readable());
+  EXPECT_FALSE(result.container.begins_as_mcap);
+}
+
+/// A trace written record by record, so that it may say what no recorder of ours would.
+class Forged {
+ public:
+  Forged() : writer_(test::into(bytes_), {.profile = "vestige", .library = "forged"}, {}) {
+    const std::vector<std::byte> glb = test::skeleton_glb(test::kNodes);
+    writer_.write(mcap::Metadata{.name = "session", .metadata = {{"format_version", "1"}}});
+    writer_.write(mcap::Attachment{.name = "avatar.glb", .media_type = "", .data = glb});
+    for (const Stream stream : {Stream::kPose, Stream::kColliders, Stream::kEvents}) {
+      mcap::Channel channel = trace_format::channel_of(stream);
+      if (stream == Stream::kPose) channel.metadata["nodes"] = R"(["a","b","c"])";
+      writer_.write(trace_format::schema_of(stream));
+      writer_.write(channel);
+    }
+  }
+
+  void pose(std::uint32_t sequence, std::uint64_t time_ns, std::size_t nodes = test::kNodes) {
+    message(1, sequence, time_ns, encoder_.pose(static_cast<std::int64_t>(time_ns), test::frame(0, nodes, 0).pose));
+  }
+  void colliders(std::uint32_t sequence, std::uint64_t time_ns, const std::vector<ColliderSample>& colliders) {
+    message(2, sequence, time_ns, encoder_.colliders(static_cast<std::int64_t>(time_ns), colliders));
+  }
+  void dropped(std::uint32_t sequence, std::uint64_t count) {
+    message(3, sequence, sequence, encoder_.event({.kind = "dropped", .count = count, .text = "/pose"}));
+  }
+  void message(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns, mcap::Bytes data) {
+    writer_.write(mcap::Message{
+        .channel_id = channel, .sequence = sequence, .log_time = time_ns, .publish_time = time_ns, .data = data});
+  }
+  void end_chunk() { writer_.close_chunk(); }
+  TraceCheck check() {
+    writer_.finish();
+    return vestige::check(bytes_);
+  }
+
+ private:
+  std::vector<std::byte> bytes_;
+  mcap::Writer writer_;
+  MessageEncoder encoder_;
+};
+
+TEST(TraceCheck, NamesAMessageOfAnUnknownChannelWithItsPlaceInTheChunk) {
+  Forged trace;
+  trace.pose(0, 0);
+  trace.message(9, 0, 0, {});
+  const TraceCheck result = trace.check();
+  ASSERT_EQ(result.problems.count(), 1U) << text_of(result);
+  const Problem& problem = result.problems.kept().front();
+  EXPECT_THAT(problem.what, HasSubstr("channel 9 is not defined"));
+  EXPECT_GT(problem.offset, 0U);
+  ASSERT_TRUE(problem.offset_in_chunk);
+  EXPECT_GT(*problem.offset_in_chunk, 0U);
+  EXPECT_EQ(result.frames, 1U);
+}
+
+TEST(TraceCheck, NamesFramesThatContradictAvatarAndEachOther) {
+  const auto only = [](const std::function<void(Forged&)>& forge) {
+    Forged trace;
+    trace.pose(0, 0);
+    trace.pose(1, 10);
+    forge(trace);
+    const TraceCheck result = trace.check();
+    EXPECT_EQ(result.problems.count(), 1U) << text_of(result);
+    EXPECT_TRUE(result.readable());
+    return result.problems.count() == 0 ? std::string() : result.problems.kept().front().what;
+  };
+  EXPECT_THAT(only([](Forged& trace) { trace.pose(2, 20, 4); }), HasSubstr("its pose has 4 nodes, the avatar 3"));
+  EXPECT_THAT(only([](Forged& trace) { trace.pose(2, 9); }), HasSubstr("its time, 9 ns, is before the frame before"));
+  EXPECT_THAT(only([](Forged& trace) { trace.pose(0, 20); }), HasSubstr("frame 0 comes after frame 1"));
+  EXPECT_THAT(only([](Forged& trace) { trace.pose(1, 10); }), HasSubstr("frame 1 has two poses"));
+  EXPECT_THAT(only([](Forged& trace) { trace.pose(5, 20); }), HasSubstr("frames 2 to 4 are missing"));
+  EXPECT_THAT(only([](Forged& trace) { trace.colliders(2, 20, {}); }), HasSubstr("frame 2 has no pose"));
+  EXPECT_THAT(only([](Forged& trace) {
+                trace.colliders(1, 10, {{.id = 7}, {.id = 8}, {.id = 7}});
+              }),
+              HasSubstr("collider 7 is in it twice"));
+  EXPECT_THAT(only([](Forged& trace) { trace.message(1, 2, 20, {}); }), HasSubstr("no valid FlatBuffer"));
+  EXPECT_THAT(only([](Forged& trace) { trace.dropped(1, 12); }), HasSubstr("12 messages of /pose were dropped"));
+}
+
+TEST(TraceCheck, CountsProblemsWithoutEndAndKeepsTheFirst) {
+  Forged trace;
+  trace.pose(0, 0);
+  for (std::uint32_t i = 0; i < 3000; ++i) trace.message(9, i, i, {});
+  const TraceCheck result = trace.check();
+  EXPECT_EQ(result.problems.count(), 3000U);
+  EXPECT_EQ(result.problems.kept().size(), mcap::ProblemList::kMostKept);
+}
+
+/// A sound file whose summary is written anew, with one record changed and a CRC that holds.
+std::vector<std::byte> with_other_summary(const SmallTrace& trace, const std::function<void(mcap::Summary&)>& change) {
+  const mcap::MemorySource source(trace.bytes);
+  mcap::Summary summary = *mcap::read_summary(source).summary;
+  change(summary);
+  mcap::ByteBuffer bytes(trace.bytes.begin(),
+                         trace.bytes.begin() + static_cast<std::ptrdiff_t>(summary.data_section_end));
+  for (const mcap::ChunkIndex& index : summary.chunk_indexes) append_record(bytes, index);
+  append_record(bytes, *summary.statistics);
+  append_record(bytes, mcap::Footer{.summary_start = summary.data_section_end});
+  mcap::append_magic(bytes);
+  return bytes;
+}
+
+TEST(TraceCheck, NamesAnIndexThatContradictsTheData) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  const auto finding = [&](const std::function<void(mcap::Summary&)>& change) {
+    const TraceCheck result = check(with_other_summary(trace, change));
+    EXPECT_EQ(result.frames, kFrames);
+    return text_of(result);
+  };
+  EXPECT_EQ(finding([](mcap::Summary&) {}), "");
+  EXPECT_THAT(finding([](mcap::Summary& summary) { ++summary.chunk_indexes[1].message_end_time; }),
+              HasSubstr("ChunkIndex: says that message_end_time is"));
+  EXPECT_THAT(finding([](mcap::Summary& summary) { summary.chunk_indexes[1].chunk_start_offset += 1; }),
+              HasSubstr("where no Chunk begins"));
+  EXPECT_THAT(finding([](mcap::Summary& summary) { summary.chunk_indexes.pop_back(); }),
+              HasSubstr(fmt::format("{}+{}: Chunk: no index lists it", trace.chunks.back().offset,
+                                    trace.chunks.back().end() - trace.chunks.back().offset)));
+  EXPECT_THAT(finding([](mcap::Summary& summary) { ++summary.statistics->message_count; }),
+              HasSubstr("Statistics: says that message_count is 33, but it is 32"));
+}
+
+TEST(TraceCheck, NamesAMessageIndexThatContradictsItsChunk) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  std::vector<std::byte> bytes = trace.bytes;
+  // The first entry's time: behind head, channel and length of the list.
+  const std::uint64_t index = trace.chunks.front().end();
+  bytes[index + mcap::kRecordHeadBytes + 2 + 4] ^= std::byte{1};
+  EXPECT_THAT(text_of(check(bytes)), HasSubstr(fmt::format("{}+", index)));
+  EXPECT_THAT(text_of(check(bytes)), HasSubstr("MessageIndex: lists a message at time 1 and offset 0"));
+}
+
+}  // namespace
+}  // namespace vestige

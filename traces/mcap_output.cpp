@@ -1,0 +1,70 @@
+#include "traces/mcap_output.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <version.hpp>
+
+namespace vestige {
+
+namespace {
+
+constexpr std::size_t kLargestChunkBytes = std::size_t{16} << 20;
+constexpr std::size_t kFullChunkBytes = std::size_t{1} << 20;
+
+}  // namespace
+
+McapOutput::McapOutput(mcap::Writer::Sink sink, const std::string& profile, mcap::Compression compression,
+                       Definitions definitions)
+    : writer_(std::move(sink), {.profile = profile, .library = fmt::format("vestige {}", kVersion)},
+              {.compression = compression, .definitions = mcap::DefinitionPlace::kBeforeChunks}),
+      definitions_(std::move(definitions)) {
+  for (const auto& [id, schema] : definitions_.schemas) streams_.add(schema);
+  for (const auto& [id, channel] : definitions_.channels) streams_.add(channel);
+}
+
+void McapOutput::write_definitions() {
+  for (const auto& [id, schema] : definitions_.schemas) write_schema(id);
+  for (const auto& [id, channel] : definitions_.channels) define(id);
+}
+
+void McapOutput::add(mcap::Schema schema) {
+  if (schema.id == 0) return;
+  const auto [known, is_new] = definitions_.schemas.try_emplace(schema.id, std::move(schema));
+  if (is_new) streams_.add(known->second);
+}
+
+void McapOutput::add(mcap::Channel channel) {
+  const auto [known, is_new] = definitions_.channels.try_emplace(channel.id, std::move(channel));
+  if (!is_new) return;
+  streams_.add(known->second);
+  define(known->first);
+}
+
+void McapOutput::write_schema(std::uint16_t id) {
+  const auto schema = definitions_.schemas.find(id);
+  if (schema != definitions_.schemas.end() && schemas_written_.insert(id).second) writer_.write(schema->second);
+}
+
+bool McapOutput::define(std::uint16_t channel_id) {
+  const auto channel = definitions_.channels.find(channel_id);
+  if (channel == definitions_.channels.end()) return false;
+  if (!channels_written_.insert(channel_id).second) return true;
+  write_schema(channel->second.schema_id);
+  writer_.write(channel->second);
+  return true;
+}
+
+bool McapOutput::write(const mcap::Message& message) {
+  if (!define(message.channel_id)) return false;
+  if (chunk_ended_ || writer_.open_chunk_bytes() >= kLargestChunkBytes) writer_.close_chunk();
+  chunk_ended_ = false;
+  writer_.write(message);
+  return true;
+}
+
+void McapOutput::end_full_chunk() {
+  if (writer_.open_chunk_bytes() >= kFullChunkBytes) end_chunk();
+}
+
+}  // namespace vestige

@@ -1,0 +1,279 @@
+#include "traces/merge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "traces/definitions.hpp"
+#include "traces/error.hpp"
+#include "traces/mcap/encode.hpp"
+#include "traces/mcap/stream_reader.hpp"
+#include "traces/mcap/summary_check.hpp"
+#include "traces/mcap_output.hpp"
+#include "traces/sha256.hpp"
+#include "traces/trace_index.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::ByteSource;
+using mcap::Malformed;
+using mcap::Opcode;
+using trace_format::Stream;
+
+constexpr const char* kOneRecording = "merge only parts of one recording, such as `vestige trim` makes";
+
+/// By which messages are put in order.
+struct Moment {
+  std::uint64_t time_ns = 0;
+  std::uint32_t sequence = 0;
+  bool operator==(const Moment&) const = default;
+  bool operator<(const Moment& other) const {
+    return time_ns != other.time_ns ? time_ns < other.time_ns : sequence < other.sequence;
+  }
+};
+
+Moment moment_of(const mcap::Message& message) {
+  return {.time_ns = message.log_time, .sequence = message.sequence};
+}
+
+/// What must be the same in all parts.
+struct Identity {
+  std::string avatar;
+  std::string map_image;
+  std::string map_text;
+};
+
+Identity identity_of(const ByteSource& source) {
+  const TraceIndex index = index_trace(source);
+  return {.avatar = sha256_hex(index.avatar_glb),
+          .map_image = sha256_hex(index.actuator_map_png),
+          .map_text = sha256_hex(index.actuator_map_json)};
+}
+
+bool is_trace(const Definitions& definitions) {
+  return std::any_of(definitions.channels.begin(), definitions.channels.end(), [&](const auto& entry) {
+    const auto schema = definitions.schemas.find(entry.second.schema_id);
+    return trace_format::recognise(entry.second, schema == definitions.schemas.end() ? nullptr : &schema->second) ==
+           Stream::kPose;
+  });
+}
+
+template <typename Map>
+void require_same(const Map& known, const Map& added, std::string_view kind, const ByteSource& first,
+                  const ByteSource& other) {
+  for (const auto& [id, record] : added) {
+    const auto found = known.find(id);
+    if (found == known.end() || mcap::same_record(found->second, record)) continue;
+    throw Error(other.name(), fmt::format("its {} {} is not what it is in {}", kind, id, first.name()), kOneRecording);
+  }
+}
+
+void require_same(const Identity& known, const Identity& added, const ByteSource& first, const ByteSource& other) {
+  const auto refuse = [&](std::string_view what) {
+    throw Error(other.name(), fmt::format("its {} is not that of {}", what, first.name()), kOneRecording);
+  };
+  if (added.avatar != known.avatar) refuse("avatar");
+  if (added.map_image != known.map_image) refuse("actuator map");
+  if (added.map_text != known.map_text) refuse("actuator map's description");
+}
+
+/// All that the parts define; checks that they are parts of one recording.
+Definitions common_definitions(const std::vector<std::unique_ptr<ByteSource>>& sources) {
+  const ByteSource& first = *sources.front();
+  std::optional<Identity> identity;
+  Definitions all;
+  for (const auto& source : sources) {
+    mcap::require_mcap(*source);
+    Definitions definitions = gather_definitions(*source);
+    if (!is_trace(definitions))
+      throw Error(source->name(), "is no trace of ours: it has no channel /pose", "only traces can be merged");
+    const Identity own = identity_of(*source);
+    if (!identity) {
+      identity = own;
+      all = std::move(definitions);
+      continue;
+    }
+    require_same(*identity, own, first, *source);
+    require_same(all.schemas, definitions.schemas, "schema", first, *source);
+    require_same(all.channels, definitions.channels, "channel", first, *source);
+    all.schemas.merge(definitions.schemas);
+    all.channels.merge(definitions.channels);
+  }
+  return all;
+}
+
+/// A message that outlives its reader's next step.
+struct Held {
+  mcap::Message message;
+  std::vector<std::byte> data;
+};
+
+bool same(const Held& a, const Held& b) {
+  return a.message.channel_id == b.message.channel_id && a.message.publish_time == b.message.publish_time &&
+         a.data == b.data;
+}
+
+/// One of the files, read message by message; what else is in it goes to `take_other`.
+class Part {
+ public:
+  explicit Part(const ByteSource& source) : source_(source), reader_(source) {}
+
+  template <typename TakeOther>
+  void advance(TakeOther take_other) {
+    mcap::StreamRecord record;
+    head_.reset();
+    while (reader_.next(record)) {
+      share_ = static_cast<double>(record.offset) / static_cast<double>(source_.size());
+      if (record.opcode == Opcode::kMessage) {
+        head_ = mcap::decode_message(record.content);
+        return;
+      }
+      take_other(record);
+    }
+    share_ = 1;
+  }
+
+  const std::optional<mcap::Message>& head() const { return head_; }
+  const ByteSource& source() const { return source_; }
+  double share() const { return share_; }
+  std::vector<mcap::Damage> damages() const { return reader_.damages(); }
+
+ private:
+  const ByteSource& source_;
+  mcap::StreamReader reader_;
+  std::optional<mcap::Message> head_;  ///< its data belongs to the reader
+  double share_ = 0;
+};
+
+class Merger {
+ public:
+  Merger(const std::vector<std::unique_ptr<ByteSource>>& sources, const mcap::Writer::Sink& sink,
+         const Definitions& definitions)
+      : output_(sink, std::string(trace_format::kProfile), definitions.compression.value_or(mcap::Compression::kZstd),
+                definitions) {
+    for (const auto& source : sources) parts_.push_back(std::make_unique<Part>(*source));
+  }
+
+  Merged run(const std::function<bool(double)>& progress);
+
+ private:
+  void advance(Part& part);
+  void take_other(const mcap::StreamRecord& record);
+  void take_group(Part& part, const Moment& moment, std::vector<Held>& group);
+  void write(const std::vector<Held>& group, const Part& part);
+  void require_next_frame(std::uint32_t sequence, const Part& part);
+  double share() const;
+
+  McapOutput output_;
+  std::vector<std::unique_ptr<Part>> parts_;
+  std::set<std::string> written_;  ///< SHA-256 of attachments and metadata
+  std::optional<std::uint32_t> last_frame_;
+  Merged result_;
+};
+
+Merged Merger::run(const std::function<bool(double)>& progress) {
+  for (const auto& part : parts_) advance(*part);
+  std::vector<Held> group;
+  std::vector<Held> twin;
+  for (;;) {
+    const Part* from = nullptr;
+    std::optional<Moment> next;
+    for (const auto& part : parts_)
+      if (part->head() && (!next || moment_of(*part->head()) < *next)) next = moment_of(*part->head());
+    if (!next) break;
+    for (const auto& part : parts_) {
+      if (!part->head() || moment_of(*part->head()) != *next) continue;
+      take_group(*part, *next, from == nullptr ? group : twin);
+      if (from == nullptr) {
+        from = part.get();
+      } else if (std::equal(group.begin(), group.end(), twin.begin(), twin.end(), same)) {
+        result_.duplicates += twin.size();
+      } else {
+        throw Error(part->source().name(),
+                    fmt::format("its frame {} (at {} ns) is not that of {}", next->sequence, next->time_ns,
+                                from->source().name()),
+                    kOneRecording);
+      }
+    }
+    write(group, *from);
+    if (!progress(share())) throw Error(from->source().name(), "merging was stopped; nothing was written", "");
+  }
+  output_.write_definitions();
+  output_.finish();
+  result_.messages = output_.statistics().message_count;
+  for (const auto& part : parts_)
+    for (mcap::Damage& damage : part->damages())
+      result_.damages.push_back({.file = part->source().name(), .damage = std::move(damage)});
+  return std::move(result_);
+}
+
+double Merger::share() const {
+  double sum = 0;
+  for (const auto& part : parts_) sum += part->share();
+  return sum / static_cast<double>(parts_.size());
+}
+
+void Merger::advance(Part& part) {
+  part.advance([this](const mcap::StreamRecord& record) { take_other(record); });
+}
+
+void Merger::take_other(const mcap::StreamRecord& record) {
+  try {
+    if (record.opcode == Opcode::kSchema) output_.add(mcap::decode_schema(record.content));
+    if (record.opcode == Opcode::kChannel) output_.add(mcap::decode_channel(record.content));
+    if (record.opcode == Opcode::kMetadata && written_.insert(sha256_hex(record.content)).second)
+      output_.write(mcap::decode_metadata(record.content));
+    if (record.opcode != Opcode::kAttachment) return;
+    const mcap::Attachment attachment = mcap::decode_attachment(record.content);
+    if (mcap::attachment_crc_holds(record.content, attachment) && written_.insert(sha256_hex(record.content)).second)
+      output_.write(attachment);
+  } catch (const Malformed&) {
+    return;  // the reader notes records whose fields do not fit
+  }
+}
+
+/// All messages of one moment, which stand together in a file.
+void Merger::take_group(Part& part, const Moment& moment, std::vector<Held>& group) {
+  group.clear();
+  while (part.head() && moment_of(*part.head()) == moment) {
+    Held& held = group.emplace_back();
+    held.message = *part.head();
+    held.data.assign(held.message.data.begin(), held.message.data.end());
+    advance(part);
+  }
+}
+
+void Merger::require_next_frame(std::uint32_t sequence, const Part& part) {
+  if (last_frame_ && sequence <= *last_frame_)
+    throw Error(part.source().name(),
+                fmt::format("by its time, its frame {} comes after frame {}", sequence, *last_frame_), kOneRecording);
+  if (last_frame_) result_.missing_frames += sequence - *last_frame_ - 1;
+  last_frame_ = sequence;
+  ++result_.frames;
+}
+
+void Merger::write(const std::vector<Held>& group, const Part& part) {
+  for (const Held& held : group) {
+    if (output_.streams().stream_of(held.message.channel_id) == Stream::kPose)
+      require_next_frame(held.message.sequence, part);
+    mcap::Message message = held.message;
+    message.data = held.data;
+    if (!output_.write(message))
+      throw Error(part.source().name(), fmt::format("nothing defines channel {} of its messages", message.channel_id),
+                  "recover it first");
+  }
+  output_.end_full_chunk();
+}
+
+}  // namespace
+
+Merged merge_traces(const std::vector<std::unique_ptr<ByteSource>>& sources, const mcap::Writer::Sink& sink,
+                    const std::function<bool(double)>& progress) {
+  return Merger(sources, sink, common_definitions(sources)).run(progress);
+}
+
+}  // namespace vestige

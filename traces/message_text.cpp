@@ -1,0 +1,134 @@
+#include "traces/message_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "traces/input_file.hpp"
+
+namespace vestige {
+
+namespace {
+
+using trace_format::Stream;
+
+std::string json_text(std::string_view text) {
+  return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+template <typename Number>
+void append_number(std::string& out, Number value) {
+  if (!std::isfinite(value)) {
+    out += std::isnan(value) ? "\"nan\"" : value > 0 ? "\"inf\"" : "\"-inf\"";
+  } else if (value == 0 && std::signbit(value)) {
+    out += "-0.0";  // -0 would be read as a whole number, which has no sign
+  } else {
+    fmt::format_to(std::back_inserter(out), "{}", value);
+  }
+}
+
+void append_vector(std::string& out, const glm::dvec3& vector) {
+  out += '[';
+  append_number(out, vector.x);
+  out += ',';
+  append_number(out, vector.y);
+  out += ',';
+  append_number(out, vector.z);
+  out += ']';
+}
+
+/// RFC 4648, section 4.
+void append_base64(std::string& out, mcap::Bytes bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      group = group << 8U | (k < count ? std::to_integer<std::uint32_t>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k) out += k <= count ? kDigits[group >> (18 - 6 * k) & 63U] : '=';
+  }
+}
+
+}  // namespace
+
+std::string MessageText::line(const mcap::Message& message, const mcap::Channel& channel, Stream stream) {
+  text_ = fmt::format(R"({{"topic":{},"sequence":{},"log_time":{},"publish_time":{},)", json_text(channel.topic),
+                      message.sequence, message.log_time, message.publish_time);
+  append_data(message, channel, stream);
+  text_ += '}';
+  return std::move(text_);
+}
+
+void MessageText::append_data(const mcap::Message& message, const mcap::Channel& channel, Stream stream) {
+  switch (stream) {
+    case Stream::kPose:
+      append_pose(message.data);
+      break;
+    case Stream::kColliders:
+      append_colliders(message.data);
+      break;
+    case Stream::kEvents:
+      append_event(message.data);
+      break;
+    case Stream::kForeign:
+      append_foreign(message.data, channel);
+      break;
+  }
+}
+
+void MessageText::append_pose(mcap::Bytes data) {
+  decoder_.pose(data, pose_);
+  text_ += R"("data":{"origin":)";
+  append_vector(text_, pose_.origin_m);
+  text_ += R"(,"nodes":[)";
+  for (std::size_t i = 0; i < pose_.nodes.size(); ++i) {
+    const NodeLocal& node = pose_.nodes[i];
+    const float numbers[] = {node.translation.x, node.translation.y, node.translation.z, node.rotation.x,
+                             node.rotation.y,    node.rotation.z,    node.rotation.w,    node.scale.x,
+                             node.scale.y,       node.scale.z};
+    text_ += i == 0 ? "[" : ",[";
+    for (std::size_t k = 0; k < std::size(numbers); ++k) {
+      if (k > 0) text_ += ',';
+      append_number(text_, numbers[k]);
+    }
+    text_ += ']';
+  }
+  text_ += "]}";
+}
+
+void MessageText::append_colliders(mcap::Bytes data) {
+  decoder_.colliders(data, colliders_);
+  text_ += R"("data":[)";
+  for (std::size_t i = 0; i < colliders_.size(); ++i) {
+    fmt::format_to(std::back_inserter(text_), R"({}{{"id":{},"position":)", i == 0 ? "" : ",", colliders_[i].id);
+    append_vector(text_, colliders_[i].position_m);
+    text_ += '}';
+  }
+  text_ += ']';
+}
+
+void MessageText::append_event(mcap::Bytes data) {
+  const TraceEvent event = decoder_.event(data);
+  fmt::format_to(std::back_inserter(text_), R"("data":{{"kind":{},"collider":{},"count":{},"text":{}}})",
+                 json_text(event.kind), event.collider, event.count, json_text(event.text));
+}
+
+void MessageText::append_foreign(mcap::Bytes data, const mcap::Channel& channel) {
+  if (channel.message_encoding == "json") {
+    const auto json = nlohmann::json::parse(text_of(data), nullptr, false);
+    if (!json.is_discarded()) {
+      text_ += "\"data\":" + json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+      return;
+    }
+  }
+  text_ += "\"data_base64\":\"";
+  append_base64(text_, data);
+  text_ += '"';
+}
+
+}  // namespace vestige

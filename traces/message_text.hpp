@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+
+#include "traces/mcap/record.hpp"
+#include "traces/message_stream.hpp"
+#include "traces/trace_messages.hpp"
+
+namespace vestige {
+
+/// Writes messages as JSON, each on one line: `{"topic", "sequence", "log_time", "publish_time", "data"}`, times in
+/// nanoseconds. `data` of ours:
+///
+///     /pose       {"origin": [x, y, z], "nodes": [[tx, ty, tz, rx, ry, rz, rw, sx, sy, sz], …]}
+///     /colliders  [{"id", "position": [x, y, z]}, …]
+///     /events     {"kind", "collider", "count", "text"}
+///
+/// Of others: what a message encoded as JSON says, or `data_base64` in place of `data`. Floats are the shortest that
+/// read back to the same bits, NaN and infinities the strings "nan", "inf" and "-inf".
+class MessageText {
+ public:
+  /// The line without its end. A message of ours that cannot be decoded throws `mcap::Malformed`.
+  std::string line(const mcap::Message& message, const mcap::Channel& channel, trace_format::Stream stream);
+
+ private:
+  void append_data(const mcap::Message& message, const mcap::Channel& channel, trace_format::Stream stream);
+  void append_pose(mcap::Bytes data);
+  void append_colliders(mcap::Bytes data);
+  void append_event(mcap::Bytes data);
+  void append_foreign(mcap::Bytes data, const mcap::Channel& channel);
+
+  std::string text_;
+  MessageDecoder decoder_;
+  Pose pose_;
+  std::vector<ColliderSample> colliders_;
+};
+
+}  // namespace vestige

@@ -1,0 +1,348 @@
+#include "traces/recover.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "traces/definitions.hpp"
+#include "traces/error.hpp"
+#include "traces/frame_gate.hpp"
+#include "traces/mcap/chunk_salvage.hpp"
+#include "traces/mcap/crc32.hpp"
+#include "traces/mcap/decode.hpp"
+#include "traces/mcap/record_walker.hpp"
+#include "traces/mcap_output.hpp"
+#include "traces/trace_nodes.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::Bytes;
+using mcap::Malformed;
+using mcap::Opcode;
+using mcap::RecordPlace;
+using mcap::Trust;
+using trace_format::Stream;
+
+constexpr std::string_view kRecoveredName = "recovered";  // traces/FORMAT.md
+constexpr std::string_view kDamagedSuffix = ".damaged";
+constexpr std::size_t kMostRepairsTold = 100;
+
+/// Records that say what others hold: the new file gets its own.
+bool is_rebuilt(Opcode opcode) {
+  switch (opcode) {
+    case Opcode::kFooter:
+    case Opcode::kMessageIndex:
+    case Opcode::kChunkIndex:
+    case Opcode::kAttachmentIndex:
+    case Opcode::kStatistics:
+    case Opcode::kMetadataIndex:
+    case Opcode::kSummaryOffset:
+    case Opcode::kDataEnd:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::string profile_of(const Definitions& definitions) {
+  if (definitions.header) return definitions.header->profile;
+  StreamTable streams;
+  for (const auto& [id, schema] : definitions.schemas) streams.add(schema);
+  for (const auto& [id, channel] : definitions.channels) streams.add(channel);
+  return streams.find(Stream::kPose) == nullptr ? std::string() : std::string(trace_format::kProfile);
+}
+
+class Recoverer {
+ public:
+  Recoverer(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, Definitions definitions)
+      : source_(source),
+        walker_(source, mcap::MagicBytes::kMayBeBroken),
+        output_(sink, profile_of(definitions), definitions.compression.value_or(mcap::Compression::kNone), definitions),
+        gate_(output_.streams(), [this](const mcap::Message& message) { write(message); }) {}
+
+  Recovery run(const std::function<bool(double)>& progress);
+
+ private:
+  void take_damages();
+  void take_damage(const mcap::Damage& damage);
+  void take(const RecordPlace& place);
+  void take_record(Opcode opcode, Bytes content, std::uint64_t offset);
+  void take_chunk(Bytes content);
+  void take_misnamed(Bytes content, std::uint64_t offset);
+  void take_attachment(Bytes content);
+  void take_data_end(const RecordPlace& place, Bytes content);
+  void take_records(Bytes records);
+  void take_remains(Bytes records);
+  void take_inner(Opcode opcode, Bytes content, Trust trust);
+  void write(const mcap::Message& message);
+  void learn_node_count();
+  void repaired(std::string what);
+  void count_messages();
+  void finish();
+
+  const mcap::ByteSource& source_;
+  mcap::RecordWalker walker_;
+  McapOutput output_;
+  FrameGate gate_;
+  Recovery result_;
+  mcap::RawBuffer content_;
+  mcap::RawBuffer expanded_;
+  std::size_t damages_taken_ = 0;
+  std::uint64_t messages_found_ = 0;
+  std::uint64_t unknown_messages_ = 0;
+  std::uint32_t crc_ = mcap::crc32(std::as_bytes(std::span(mcap::kMagic)));
+  std::uint64_t crc_end_ = mcap::kMagicBytes;  ///< up to where crc_ reaches
+  bool data_ended_ = false;
+};
+
+void Recoverer::repaired(std::string what) {
+  if (result_.repaired.size() < kMostRepairsTold) result_.repaired.push_back(std::move(what));
+}
+
+Recovery Recoverer::run(const std::function<bool(double)>& progress) {
+  learn_node_count();
+  RecordPlace place;
+  while (walker_.next(place)) {
+    take_damages();
+    take(place);
+    if (!progress(static_cast<double>(place.end()) / static_cast<double>(source_.size())))
+      throw Error(source_.name(), "recovering it was stopped; nothing was written", "");
+  }
+  take_damages();
+  finish();
+  return std::move(result_);
+}
+
+void Recoverer::learn_node_count() {
+  const mcap::Channel* pose = output_.streams().find(Stream::kPose);
+  if (pose == nullptr) return;
+  if (const auto names = parse_node_names(*pose)) gate_.set_node_count(names->size());
+}
+
+void Recoverer::take_damages() {
+  const std::vector<mcap::Damage>& damages = walker_.damages();
+  for (; damages_taken_ < damages.size(); ++damages_taken_) take_damage(damages[damages_taken_]);
+}
+
+/// Tries what stands where the framing is broken, up to the next record that can be believed.
+void Recoverer::take_damage(const mcap::Damage& damage) {
+  const bool behind_footer = walker_.footer_seen() && damage.offset >= walker_.position();
+  const bool mended = damage.effect == mcap::DamageEffect::kMended;
+  if (damage.bytes == 0 || damage.offset < mcap::kMagicBytes || behind_footer || mended) {
+    repaired(fmt::format("at byte {}: {}", damage.offset, damage.what));
+    return;
+  }
+  std::array<std::byte, 1> first = {};
+  source_.read_at(damage.offset, first);
+  const auto opcode = static_cast<Opcode>(first[0]);
+  if (is_rebuilt(opcode)) {
+    repaired(fmt::format("at byte {}: a {} was broken", damage.offset, mcap::name_of(opcode)));
+    return;
+  }
+  if (data_ended_) return;
+  if (damage.bytes < mcap::kRecordHeadBytes) {
+    result_.bytes_lost += damage.bytes;
+    return;
+  }
+  const std::uint64_t content_bytes = damage.bytes - mcap::kRecordHeadBytes;
+  if (content_bytes > mcap::kMaxChunkBytes) {
+    result_.bytes_lost += damage.bytes;
+    return;
+  }
+  source_.read_at(damage.offset + mcap::kRecordHeadBytes, content_.reset(static_cast<std::size_t>(content_bytes)));
+  const Bytes content = content_.bytes();
+  if (opcode == Opcode::kChunk) {
+    take_chunk(content);
+  } else if (mcap::natural_content_bytes(opcode, content) == content_bytes) {
+    // Only its length was broken: its own fields end where the next record begins.
+    take_record(opcode, content, damage.offset);
+    repaired(fmt::format("at byte {}: the length of a {} was broken", damage.offset, mcap::name_of(opcode)));
+  } else {
+    take_misnamed(content, damage.offset);
+  }
+}
+
+void Recoverer::take(const RecordPlace& place) {
+  if (data_ended_ && place.opcode != Opcode::kChunk) return;
+  if (place.content_bytes > mcap::kMaxChunkBytes && place.opcode != Opcode::kAttachment) {
+    result_.bytes_lost += place.end() - place.offset;
+    return;
+  }
+  const Bytes content = walker_.content(place, content_);
+  if (place.opcode == Opcode::kDataEnd) {
+    take_data_end(place, content);
+    return;
+  }
+  if (place.offset == crc_end_) {
+    std::array<std::byte, mcap::kRecordHeadBytes> head = {};
+    source_.read_at(place.offset, head);
+    crc_ = mcap::crc32(content, mcap::crc32(head, crc_));
+    crc_end_ = place.end();
+  }
+  if (place.opcode == Opcode::kChunk) {
+    take_chunk(content);
+  } else if (place.opcode == Opcode::kMessage || mcap::natural_content_bytes(place.opcode, content)) {
+    take_record(place.opcode, content, place.offset);
+  } else {
+    take_misnamed(content, place.offset);
+  }
+}
+
+void Recoverer::take_data_end(const RecordPlace& place, Bytes content) {
+  data_ended_ = true;
+  const std::uint32_t expected = mcap::decode_data_end(content).data_section_crc;
+  const bool comparable = expected != 0 && place.offset == crc_end_;
+  if (comparable && crc_ != expected && !result_.lost_something() && result_.repaired.empty())
+    result_.unexplained_change = true;
+}
+
+/// A record whose kind means nothing, or does not fit its fields.
+void Recoverer::take_misnamed(Bytes content, std::uint64_t offset) {
+  if (mcap::is_whole_chunk(content, expanded_)) {
+    repaired(fmt::format("at byte {}: the opcode of a Chunk was broken", offset));
+    take_chunk(content);
+  } else {
+    result_.bytes_lost += content.size() + mcap::kRecordHeadBytes;
+  }
+}
+
+/// A record outside chunks whose fields fit.
+void Recoverer::take_record(Opcode opcode, Bytes content, std::uint64_t offset) {
+  switch (opcode) {
+    case Opcode::kSchema:
+    case Opcode::kChannel:
+    case Opcode::kMessage:
+      take_inner(opcode, content, Trust::kVerified);
+      output_.end_full_chunk();
+      break;
+    case Opcode::kAttachment:
+      take_attachment(content);
+      break;
+    case Opcode::kMetadata:
+      output_.write(mcap::decode_metadata(content));
+      ++result_.metadata;
+      break;
+    case Opcode::kHeader:
+      break;
+    default:
+      if (!is_rebuilt(opcode)) take_misnamed(content, offset);
+  }
+}
+
+void Recoverer::take_attachment(Bytes content) {
+  mcap::Attachment attachment = mcap::decode_attachment(content);
+  if (mcap::attachment_crc_holds(content, attachment)) {
+    ++result_.attachments;
+  } else {
+    // Kept, but under a name that nobody takes for the real thing.
+    result_.damaged_attachments.push_back(attachment.name);
+    attachment.name += kDamagedSuffix;
+  }
+  output_.write(attachment);
+}
+
+void Recoverer::take_chunk(Bytes content) {
+  const mcap::ChunkRemains remains = mcap::salvage_chunk(content, expanded_);
+  const std::uint64_t before = messages_found_;
+  if (remains.trust == Trust::kVerified) {
+    take_records(remains.records);
+    ++result_.chunks_whole;
+  } else {
+    take_remains(remains.records);
+    if (messages_found_ > before) {
+      ++result_.chunks_partly;
+    } else {
+      ++result_.chunks_lost;
+      result_.bytes_lost += content.size() + mcap::kRecordHeadBytes;
+    }
+  }
+  output_.end_chunk();
+}
+
+void Recoverer::take_records(Bytes records) {
+  mcap::Cursor cursor(records);
+  try {
+    while (cursor.remaining() > 0) {
+      const mcap::InnerRecord record = mcap::next_record(cursor);
+      take_inner(record.opcode, record.content, Trust::kVerified);
+    }
+  } catch (const Malformed&) {
+    // Its CRC holds: it was written like this.
+    result_.bytes_lost += cursor.remaining();
+  }
+}
+
+void Recoverer::take_remains(Bytes records) {
+  mcap::SalvagedRecords salvaged(records);
+  mcap::InnerRecord record;
+  while (salvaged.next(record)) {
+    try {
+      take_inner(record.opcode, record.content, Trust::kUnverified);
+    } catch (const Malformed&) {
+      continue;  // a definition whose fields do not fit
+    }
+  }
+}
+
+void Recoverer::take_inner(Opcode opcode, Bytes content, Trust trust) {
+  switch (opcode) {
+    case Opcode::kSchema:
+      output_.add(mcap::decode_schema(content));
+      break;
+    case Opcode::kChannel:
+      output_.add(mcap::decode_channel(content));
+      learn_node_count();
+      break;
+    case Opcode::kMessage:
+      ++messages_found_;
+      gate_.take(mcap::decode_message(content), trust);
+      break;
+    default:
+      break;
+  }
+}
+
+void Recoverer::write(const mcap::Message& message) {
+  if (!output_.write(message)) ++unknown_messages_;
+}
+
+void Recoverer::count_messages() {
+  result_.messages = output_.statistics().message_count;
+  result_.messages_unverified = gate_.unverified();
+  result_.messages_left_out = gate_.left_out() + unknown_messages_;
+  if (const auto& claimed = output_.definitions().statistics)
+    result_.messages_lost = claimed->message_count > result_.messages ? claimed->message_count - result_.messages : 0;
+}
+
+void Recoverer::finish() {
+  gate_.finish();
+  count_messages();
+  const bool found_something =
+      result_.messages + result_.attachments + result_.damaged_attachments.size() + result_.metadata > 0;
+  if (!found_something && (result_.lost_something() || !output_.definitions().header))
+    throw Error(source_.name(), "nothing in it can be recovered", "is it the file you meant?");
+  output_.write_definitions();
+  if (result_.lost_something())
+    output_.write(mcap::Metadata{
+        .name = std::string(kRecoveredName),
+        .metadata = {{"bytes_lost", fmt::format("{}", result_.bytes_lost)},
+                     {"chunks_lost", fmt::format("{}", result_.chunks_lost)},
+                     {"chunks_partly_lost", fmt::format("{}", result_.chunks_partly)},
+                     {"messages_lost", result_.messages_lost ? fmt::format("{}", *result_.messages_lost) : "unknown"},
+                     {"messages_left_out", fmt::format("{}", result_.messages_left_out)},
+                     {"messages_unverified", fmt::format("{}", result_.messages_unverified)}}});
+  output_.finish();
+}
+
+}  // namespace
+
+Recovery recover_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink,
+                      const std::function<bool(double)>& progress) {
+  return Recoverer(source, sink, gather_definitions(source)).run(progress);
+}
+
+}  // namespace vestige

@@ -1,0 +1,137 @@
+#include "traces/rewrite.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "traces/definitions.hpp"
+#include "traces/error.hpp"
+#include "traces/mcap/stream_reader.hpp"
+#include "traces/mcap_output.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::Malformed;
+using mcap::Opcode;
+
+constexpr double kNanosecondsPerSecond = 1e9;
+
+class Rewriter {
+ public:
+  Rewriter(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, const TimeRange& range,
+           mcap::Compression compression, Definitions definitions)
+      : source_(source),
+        range_(range),
+        reader_(source),
+        output_(sink, definitions.header ? definitions.header->profile : std::string(), compression, definitions) {}
+
+  Rewritten run(const std::function<bool(double)>& progress);
+
+ private:
+  void take(const mcap::StreamRecord& record);
+  void take_message(const mcap::StreamRecord& record);
+  void take_attachment(const mcap::StreamRecord& record);
+  void require_messages() const;
+
+  const mcap::ByteSource& source_;
+  TimeRange range_;
+  mcap::StreamReader reader_;
+  McapOutput output_;
+  Rewritten result_;
+  std::uint64_t first_ns_ = std::numeric_limits<std::uint64_t>::max();  ///< of all messages there are
+  std::uint64_t last_ns_ = 0;
+  std::uint64_t chunk_offset_ = 0;
+};
+
+Rewritten Rewriter::run(const std::function<bool(double)>& progress) {
+  mcap::StreamRecord record;
+  while (reader_.next(record)) {
+    try {
+      take(record);
+    } catch (const Malformed&) {
+      continue;  // the reader notes records whose fields do not fit
+    }
+    if (!progress(static_cast<double>(record.offset) / static_cast<double>(source_.size())))
+      throw Error(source_.name(), "this was stopped; nothing was written", "");
+  }
+  require_messages();
+  output_.write_definitions();
+  output_.finish();
+  const mcap::Statistics& statistics = output_.statistics();
+  result_.messages = statistics.message_count;
+  result_.start_ns = statistics.message_start_time;
+  result_.end_ns = statistics.message_end_time;
+  result_.bytes = output_.bytes_written();
+  for (mcap::Damage& damage : reader_.damages()) result_.damages.push_back(std::move(damage));
+  return std::move(result_);
+}
+
+void Rewriter::take(const mcap::StreamRecord& record) {
+  switch (record.opcode) {
+    case Opcode::kSchema:
+      output_.add(mcap::decode_schema(record.content));
+      break;
+    case Opcode::kChannel:
+      output_.add(mcap::decode_channel(record.content));
+      break;
+    case Opcode::kMessage:
+      take_message(record);
+      break;
+    case Opcode::kAttachment:
+      take_attachment(record);
+      break;
+    case Opcode::kMetadata:
+      output_.write(mcap::decode_metadata(record.content));
+      break;
+    default:
+      break;
+  }
+}
+
+void Rewriter::take_message(const mcap::StreamRecord& record) {
+  if (!record.in_chunk) {
+    output_.end_full_chunk();
+  } else if (record.offset != chunk_offset_) {
+    output_.end_chunk();
+    chunk_offset_ = record.offset;
+  }
+  const mcap::Message message = mcap::decode_message(record.content);
+  first_ns_ = std::min(first_ns_, message.log_time);
+  last_ns_ = std::max(last_ns_, message.log_time);
+  if (!range_.contains(message.log_time)) {
+    ++result_.left_out;
+  } else if (!output_.write(message)) {
+    result_.damages.push_back(
+        {record.offset, 0, fmt::format("a Message of channel {}, which nothing defines", message.channel_id)});
+  }
+}
+
+void Rewriter::take_attachment(const mcap::StreamRecord& record) {
+  const mcap::Attachment attachment = mcap::decode_attachment(record.content);
+  // The reader notes a damaged one; a new CRC must not make it look sound.
+  if (mcap::attachment_crc_holds(record.content, attachment)) output_.write(attachment);
+}
+
+void Rewriter::require_messages() const {
+  if (result_.left_out == 0 || output_.statistics().message_count > 0) return;
+  throw Error(source_.name(),
+              fmt::format("none of its messages is in the time asked for; they are of {} to {} s",
+                          static_cast<double>(first_ns_) / kNanosecondsPerSecond,
+                          static_cast<double>(last_ns_) / kNanosecondsPerSecond),
+              "choose --from and --to within that");
+}
+
+}  // namespace
+
+Rewritten rewrite_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, const RewriteOptions& options,
+                       const std::function<bool(double)>& progress) {
+  mcap::require_mcap(source);
+  const Definitions definitions = gather_definitions(source);
+  const mcap::Compression compression =
+      options.compression.value_or(definitions.compression.value_or(mcap::Compression::kNone));
+  return Rewriter(source, sink, options.range, compression, definitions).run(progress);
+}
+
+}  // namespace vestige

@@ -1,0 +1,284 @@
+#include "traces/trace_check.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "traces/error.hpp"
+#include "traces/mcap/decode.hpp"
+#include "traces/mcap/summary.hpp"
+#include "traces/message_stream.hpp"
+#include "traces/sha256.hpp"
+#include "traces/trace.hpp"
+#include "traces/trace_messages.hpp"
+#include "traces/trace_nodes.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::CheckedRecord;
+using mcap::Malformed;
+using mcap::Opcode;
+using trace_format::Stream;
+
+constexpr std::string_view kRefused = "reading frames stops here: `vestige recover` leaves out what does not fit";
+
+/// Checks frames against each other, message by message.
+class FrameCheck {
+ public:
+  FrameCheck(TraceCheck& result, std::optional<std::size_t> node_count) : result_(result), node_count_(node_count) {}
+
+  void set_node_count(std::size_t count) { node_count_ = count; }
+  void take(const CheckedRecord& record, Stream stream);
+  void finish() { end_frame(); }
+
+ private:
+  void begin_frame(const CheckedRecord& record, std::uint32_t sequence);
+  void end_frame();
+  void take_pose(const CheckedRecord& record, const mcap::Message& message);
+  void take_colliders(const CheckedRecord& record, const mcap::Message& message);
+  void take_event(const CheckedRecord& record, const mcap::Message& message);
+  void report(const CheckedRecord& record, std::string what, std::string_view consequence);
+
+  TraceCheck& result_;
+  std::optional<std::size_t> node_count_;
+  MessageDecoder decoder_;
+  std::vector<ColliderSample> colliders_;
+  std::optional<std::uint32_t> frame_;  ///< whose messages are being read
+  CheckedRecord first_;                 ///< of that frame; without its content
+  bool has_pose_ = false;
+  bool has_colliders_ = false;
+  bool broken_ = false;  ///< one of its messages was no good, which was said
+  std::optional<std::uint64_t> last_time_ns_;
+};
+
+void FrameCheck::report(const CheckedRecord& record, std::string what, std::string_view consequence) {
+  result_.problems.add({.offset = record.offset,
+                        .bytes = record.bytes,
+                        .offset_in_chunk = record.offset_in_chunk,
+                        .what = std::move(what),
+                        .consequence = std::string(consequence)});
+}
+
+void FrameCheck::begin_frame(const CheckedRecord& record, std::uint32_t sequence) {
+  const std::optional<std::uint32_t> before = frame_;
+  end_frame();
+  frame_ = sequence;
+  first_ = record;
+  first_.content = {};
+  if (!before) return;
+  if (sequence < *before) {
+    report(record, fmt::format("frame {} comes after frame {}", sequence, *before), kRefused);
+  } else if (sequence > *before + 1) {
+    const bool one = sequence == *before + 2;
+    report(record,
+           one ? fmt::format("frame {} is missing", *before + 1)
+               : fmt::format("frames {} to {} are missing", *before + 1, sequence - 1),
+           fmt::format("nothing leads to frame {}, so that it has no contacts", sequence));
+  }
+}
+
+void FrameCheck::end_frame() {
+  if (frame_ && has_colliders_ && !has_pose_ && !broken_)
+    report(first_, fmt::format("frame {} has no pose", *frame_), "it is left out");
+  if (has_pose_ && !broken_) ++result_.frames;
+  has_pose_ = has_colliders_ = broken_ = false;
+}
+
+void FrameCheck::take(const CheckedRecord& record, Stream stream) {
+  const mcap::Message message = mcap::decode_message(record.content);
+  try {
+    if (stream == Stream::kEvents) {
+      take_event(record, message);
+      return;
+    }
+    if (!frame_ || *frame_ != message.sequence) begin_frame(record, message.sequence);
+    if (stream == Stream::kPose) take_pose(record, message);
+    if (stream == Stream::kColliders) take_colliders(record, message);
+  } catch (const Malformed& malformed) {
+    broken_ = stream != Stream::kEvents;
+    report(record, fmt::format("a message of frame {}: {}", message.sequence, malformed.what()), "it is left out");
+  }
+}
+
+void FrameCheck::take_pose(const CheckedRecord& record, const mcap::Message& message) {
+  if (std::exchange(has_pose_, true)) report(record, fmt::format("frame {} has two poses", *frame_), kRefused);
+  const std::size_t nodes = decoder_.pose_node_count(message.data);
+  if (node_count_ && nodes != *node_count_) {
+    broken_ = true;
+    report(record, fmt::format("frame {}: its pose has {} nodes, the avatar {}", *frame_, nodes, *node_count_),
+           kRefused);
+  }
+  if (message.log_time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
+    report(record, fmt::format("frame {}: its time is out of range", *frame_), kRefused);
+  if (last_time_ns_ && message.log_time < *last_time_ns_)
+    report(record,
+           fmt::format("frame {}: its time, {} ns, is before the frame before, {} ns", *frame_, message.log_time,
+                       *last_time_ns_),
+           kRefused);
+  last_time_ns_ = message.log_time;
+}
+
+void FrameCheck::take_colliders(const CheckedRecord& record, const mcap::Message& message) {
+  if (std::exchange(has_colliders_, true))
+    report(record, fmt::format("frame {} has its colliders twice", *frame_), kRefused);
+  decoder_.colliders(message.data, colliders_);
+}
+
+void FrameCheck::take_event(const CheckedRecord& record, const mcap::Message& message) {
+  const TraceEvent event = decoder_.event(message.data);
+  if (event.kind != trace_format::kDroppedKind) return;
+  result_.dropped += event.count;
+  report(record,
+         fmt::format("{} messages of {} were dropped while recording, about frame {}", event.count, event.text,
+                     message.sequence),
+         "they were never in the file");
+}
+
+/// What a trace says about itself: session, attachments, nodes.
+class Contents {
+ public:
+  explicit Contents(TraceCheck& result) : result_(result) {}
+
+  void take(const mcap::Metadata& metadata, std::uint64_t offset) {
+    if (metadata.name != trace_format::kSessionName) return;
+    session_ = metadata.metadata;
+    session_offset_ = offset;
+  }
+  void take(const mcap::Attachment& attachment) {
+    if (attachment.name == trace_format::kAvatarName) avatar_nodes_ = glb_node_count(attachment.data);
+    sha256_[attachment.name] = sha256_hex(attachment.data);
+  }
+  void finish(std::optional<std::size_t> pose_nodes);
+
+ private:
+  void report(std::uint64_t offset, std::string what, std::string consequence) {
+    result_.problems.add({.offset = offset, .what = std::move(what), .consequence = std::move(consequence)});
+  }
+
+  TraceCheck& result_;
+  std::optional<Session> session_;
+  std::uint64_t session_offset_ = 0;
+  std::map<std::string, std::string> sha256_;
+  std::optional<std::size_t> avatar_nodes_;
+};
+
+void Contents::finish(std::optional<std::size_t> pose_nodes) {
+  const std::string avatar(trace_format::kAvatarName);
+  if (!sha256_.contains(avatar))
+    report(0, fmt::format("there is no undamaged attachment {}", avatar),
+           "`vestige replay` has no body to move, and refuses the file");
+  if (avatar_nodes_ && pose_nodes && *avatar_nodes_ != *pose_nodes)
+    report(0, fmt::format("its poses have {} nodes, its avatar has {}", *pose_nodes, *avatar_nodes_),
+           "`vestige replay` refuses the file");
+  if (!session_) {
+    report(0, "there is no metadata record 'session'", "nothing says how it was recorded");
+    return;
+  }
+  for (const auto& [key, value] : *session_) {
+    if (key == trace_format::kVersionKey && value != trace_format::kVersion)
+      report(session_offset_, fmt::format("its format version is '{}', not {}", value, trace_format::kVersion),
+             "a later vestige wrote it; what is new in it is not understood");
+    if (!key.starts_with(trace_format::kSha256Prefix)) continue;
+    const std::string name = key.substr(trace_format::kSha256Prefix.size());
+    const auto attached = sha256_.find(name);
+    if (attached != sha256_.end() && attached->second != value)
+      report(session_offset_,
+             fmt::format("the attachment {} is not the one that was recorded: its SHA-256 differs", name),
+             "the frames may not fit it");
+  }
+}
+
+class Checker {
+ public:
+  explicit Checker(const mcap::ByteSource& source) : frames_(result_, {}), contents_(result_) {
+    // As the reader does: definitions that the summary repeats are known from the beginning.
+    try {
+      const mcap::SummaryResult summary = mcap::read_summary(source);
+      if (!summary.summary) return;
+      for (const mcap::Schema& schema : summary.summary->schemas) streams_.add(schema);
+      for (const mcap::Channel& channel : summary.summary->channels) take(channel);
+    } catch (const Error&) {
+      // The check itself says what is wrong with the beginning.
+      return;
+    }
+  }
+
+  void take(const CheckedRecord& record);
+  TraceCheck finish();
+  TraceCheck& result() { return result_; }
+
+ private:
+  void take(const mcap::Channel& channel);
+
+  TraceCheck result_;
+  StreamTable streams_;
+  FrameCheck frames_;
+  Contents contents_;
+  std::optional<std::size_t> node_count_;
+};
+
+void Checker::take(const mcap::Channel& channel) {
+  streams_.add(channel);
+  const Stream stream = streams_.stream_of(channel.id);
+  if (stream == Stream::kForeign) return;
+  result_.is_trace = true;
+  if (stream != Stream::kPose || node_count_) return;
+  if (const auto names = parse_node_names(channel)) {
+    node_count_ = names->size();
+    frames_.set_node_count(names->size());
+  }
+}
+
+void Checker::take(const CheckedRecord& record) {
+  switch (record.opcode) {
+    case Opcode::kHeader:
+      if (mcap::decode_header(record.content).profile == trace_format::kProfile) result_.is_trace = true;
+      break;
+    case Opcode::kSchema:
+      streams_.add(mcap::decode_schema(record.content));
+      break;
+    case Opcode::kChannel:
+      take(mcap::decode_channel(record.content));
+      break;
+    case Opcode::kAttachment:
+      contents_.take(mcap::decode_attachment(record.content));
+      break;
+    case Opcode::kMetadata:
+      contents_.take(mcap::decode_metadata(record.content), record.offset);
+      break;
+    case Opcode::kMessage: {
+      const Stream stream = streams_.stream_of(mcap::decode_message(record.content).channel_id);
+      if (stream != Stream::kForeign) frames_.take(record, stream);
+      break;
+    }
+    default:
+      break;
+  }
+}
+
+TraceCheck Checker::finish() {
+  frames_.finish();
+  if (!result_.is_trace) return std::move(result_);
+  if (!node_count_)
+    result_.problems.add({.what = "no channel /pose says which nodes the poses have",
+                          .consequence = "`vestige replay` refuses the file"});
+  contents_.finish(node_count_);
+  return std::move(result_);
+}
+
+}  // namespace
+
+TraceCheck check_trace(const mcap::ByteSource& source, const std::function<bool(double)>& progress) {
+  Checker checker(source);
+  checker.result().container = mcap::check_container(
+      source, checker.result().problems, [&](const CheckedRecord& record) { checker.take(record); }, progress);
+  return checker.finish();
+}
+
+}  // namespace vestige
