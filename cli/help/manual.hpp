@@ -13,7 +13,9 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {{
     {0, "done"},
     {1, "failed"},
     {2, "wrong usage"},
-    {3, "done, but not with all of the data (a damaged trace, interrupted, or a figure without its PNG)"},
+    {3,
+     "done, but not with all of the data (a damaged trace, interrupted, a vest that did not confirm every frame, or a "
+     "figure without its PNG)"},
     {4, "a check failed"},
 }};
 
