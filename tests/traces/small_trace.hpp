@@ -18,6 +18,13 @@ namespace vestige::test {
 inline constexpr std::uint64_t kFrames = 16;
 inline constexpr std::uint64_t kFramesInAChunk = 4;
 
+/// Every byte of a trace is cut and flipped; under the address sanitizer, which takes ten times as long, every seventh.
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr std::size_t kByteStep = 7;
+#else
+inline constexpr std::size_t kByteStep = 1;
+#endif
+
 /// A file that is never on disk: thousands of small ones would wait for it.
 class MemoryFile {
  public:
