@@ -41,7 +41,7 @@ void check_sweep_choice(const SweepChoice& choice, SweepSettings& settings) {
 
 std::string prepare_sweep(const SweepChoice& choice, std::vector<std::string> results, std::uint32_t colliders,
                           const Invocation& invocation) {
-  const std::string new_trace = choice.trace.empty() ? choice.output + "/trace.mcap" : "";
+  std::string new_trace = choice.trace.empty() ? choice.output + "/trace.mcap" : "";
   results.push_back(new_trace);
   results.push_back(choice.common.json);
   make_folder(choice.output, "-o");

@@ -101,7 +101,9 @@ TEST_P(TraceCheckCompressed, NamesEveryFlippedByte) {
   rusage after = {};
   ::getrusage(RUSAGE_SELF, &after);
   constexpr long kKibibytes = 64 << 10;
-  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kKibibytes);
+  if (test::kByteStep == 1) {  // a sanitizer keeps what is freed
+    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kKibibytes);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressions, TraceCheckCompressed,
