@@ -245,7 +245,7 @@ void add_stream(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<StreamOptions>();
   CLI::App* verb = add_verb(program, "stream", "Replay a trace in real time and drive a vest with it",
                             "  vestige stream man.mcap --port /dev/ttyUSB0\n"
-                            "  vestige stream man.mcap --port osc://127.0.0.1:9000 --loop\n");
+                            "  vestige stream man.mcap --port osc://127.0.0.1:9000 --rate 2\n");
   verb->add_option("TRACE", options->trace, "The trace")->required();
   add_sink_options(*verb, options->sink);
   const auto add_playing = [&](const char* name, auto& value, const char* description) {

@@ -99,7 +99,7 @@ void add_check(CLI::App& vest, Invocation& invocation) {
   auto options = std::make_shared<CheckOptions>();
   CLI::App* verb = add_verb(vest, "check", "Ask the board who it is, then run each actuator in turn",
                             "  vestige vest check --port /dev/ttyUSB0\n"
-                            "  vestige vest check --port osc://127.0.0.1:9000 --actuators 40\n");
+                            "  vestige vest check --port osc://127.0.0.1:9000 --actuators 2\n");
   add_sink_options(*verb, options->sink);
   verb->add_option("--actuators", options->actuators, "How many there are [default: what the board says, else 6]")
       ->check(help::whole_number(1, kMaxActuators))
