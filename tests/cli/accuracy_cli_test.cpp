@@ -82,7 +82,7 @@ TEST_F(AccuracyCommandLine, ReadsCollidersFromAFileAndSaysWhatThePublishedMethod
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_error, HasSubstr("no 'paper' with ccd"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("paper, static"));
-  const auto scene = nlohmann::json::parse(read_text_file(folder_ / "hand/accuracy.json"))["scenes"][0];
+  const auto scene = json_in("hand/accuracy.json")["scenes"][0];
   EXPECT_EQ(scene["count"], 1);
   EXPECT_EQ(scene["truth"]["events"], 2);  // in through the back, out through the chest
   EXPECT_EQ(point(scene, "ccd", 0)["found"], 2);

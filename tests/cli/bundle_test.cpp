@@ -130,7 +130,7 @@ TEST_F(Bundle, MeasureLeavesAFolderOfResults) {
                            "replay-swarm-paper.json", "sweep/sweep.json", "README.md", "log/machine.txt"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "results" / file)) << file;
   EXPECT_THAT(run("tar -tzf results.tar.gz").standard_output, HasSubstr("results/sweep/sweep.json"));
-  const auto sweep = nlohmann::json::parse(read_text_file(folder_ / "results/sweep/sweep.json"));
+  const auto sweep = json_in("results/sweep/sweep.json");
   std::set<std::string> detectors;
   for (const auto& series : sweep["series"]) detectors.insert(series["detector"]);
   EXPECT_THAT(detectors, IsSupersetOf({"paper", "geometry", "cpu"}));

@@ -24,7 +24,7 @@ TEST_F(SweepCommandLine, MeasuresEverySeriesAndKeepsEveryFrame) {
           "-o s");
   ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
   EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("HAVE 2010"), HasSubstr("paper, osmesa"), HasSubstr("cpu")));
-  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  const auto json = json_in("s/sweep.json");
   EXPECT_EQ(json["schema_version"], 1);
   EXPECT_EQ(json["avatar"]["joints"], 21);
   ASSERT_EQ(json["series"].size(), 3U);
@@ -52,7 +52,7 @@ TEST_F(SweepCommandLine, MeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) 
   ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
   EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("cpu, skip on"), HasSubstr("Times as fast as the fastest paper"),
                                            HasSubstr("Times as fast as the fastest Embree")));
-  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  const auto json = json_in("s/sweep.json");
   std::vector<std::string> names;
   for (const auto& series : json["series"])
     names.push_back(series["detector"].get<std::string>() + " " + series["skip"].get<std::string>());
@@ -81,7 +81,7 @@ TEST_F(SweepCommandLine, MeasuresBesideARendererInAThreadOfItsOwn) {
           "--runs 2 --run-frames 10 --no-figure -o s");
   ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
   EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("paper, osmesa, rendering"), HasSubstr("90 asked for")));
-  const auto json = nlohmann::json::parse(read_text_file(folder_ / "s/sweep.json"));
+  const auto json = json_in("s/sweep.json");
   ASSERT_EQ(json["series"].size(), 4U);
   for (std::size_t i = 0; i < 4; ++i) {
     const auto& series = json["series"][i];
@@ -114,7 +114,7 @@ TEST_F(GrowthCommandLine, MeasuresCollidersAndTrianglesAndWhatSkippingSaves) {
   ASSERT_EQ(growth.exit_code, 0) << growth.standard_error;
   EXPECT_THAT(growth.standard_output, AllOf(HasSubstr("cpu, skip on"), HasSubstr("With 5 colliders"),
                                             HasSubstr("19992"), HasSubstr("What skipping saves")));
-  const auto json = nlohmann::json::parse(read_text_file(folder_ / "g/growth.json"));
+  const auto json = json_in("g/growth.json");
   EXPECT_EQ(json["complete"], true);
   EXPECT_EQ(json["by_colliders"]["series"].size(), 3U);
   EXPECT_EQ(json["by_colliders"]["series"][0]["points"].size(), 2U);

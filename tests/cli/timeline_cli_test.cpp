@@ -24,8 +24,8 @@ class Timelines : public test::CommandLineTest {
       ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
     }
     frames_ = test::read_timeline_csv(read_text_file(folder_ / "t.csv"));
-    hjif_ = nlohmann::json::parse(read_text_file(folder_ / "t.hjif"));
-    tact_ = nlohmann::json::parse(read_text_file(folder_ / "t.tact"));
+    hjif_ = json_in("t.hjif");
+    tact_ = json_in("t.tact");
   }
 
   void expect_that_all_agree() const {

@@ -10,6 +10,7 @@
 
 #include "tests/support/process.hpp"
 #include "tests/support/test_data.hpp"
+#include "traces/input_file.hpp"
 
 namespace vestige::test {
 
@@ -23,6 +24,11 @@ class CommandLineTest : public ::testing::Test {
     const Outcome outcome = run(command);
     EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
     return nlohmann::json::parse(outcome.standard_output, nullptr, false);
+  }
+
+  /// What stands in a JSON file.
+  nlohmann::json json_in(const std::string& file) const {
+    return nlohmann::json::parse(read_text_file(folder_ / file), nullptr, false);
   }
 
   /// The command fails with this exit code, says each of these words, and leaves no file named `absent`.

@@ -4,11 +4,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <optional>
 
+#include "tests/support/memory_growth.hpp"
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/error.hpp"
@@ -96,8 +96,7 @@ TEST_P(RecoverCompressed, KeepsEveryWholeChunkOfAFileThatIsCutAnywhere) {
 }
 
 TEST_P(RecoverCompressed, KeepsEveryIntactChunkWhateverByteIsFlipped) {
-  rusage before = {};
-  ::getrusage(RUSAGE_SELF, &before);
+  const test::MemoryGrowth growth;
   std::size_t kept_of_damaged_chunks = 0;
   std::size_t damaged_chunks = 0;
   for (std::size_t at = 0; at < trace_.bytes.size(); at += test::kByteStep) {
@@ -134,11 +133,8 @@ TEST_P(RecoverCompressed, KeepsEveryIntactChunkWhateverByteIsFlipped) {
   if (GetParam() == Compression::kNone) {
     EXPECT_GT(kept_of_damaged_chunks, 2 * damaged_chunks) << "most frames of a damaged chunk are still there";
   }
-  rusage after = {};
-  ::getrusage(RUSAGE_SELF, &after);
-  constexpr long kKibibytes = 64 << 10;
   if (test::kByteStep == 1) {  // a sanitizer keeps what is freed
-    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kKibibytes);
+    EXPECT_LT(growth.kibibytes(), 64 << 10);
   }
 }
 

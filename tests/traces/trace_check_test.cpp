@@ -4,11 +4,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <functional>
 
+#include "tests/support/memory_growth.hpp"
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/error.hpp"
@@ -74,8 +74,7 @@ TEST_P(TraceCheckCompressed, NamesWhereAFileIsCut) {
 }
 
 TEST_P(TraceCheckCompressed, NamesEveryFlippedByte) {
-  rusage before = {};
-  ::getrusage(RUSAGE_SELF, &before);
+  const test::MemoryGrowth growth;
   for (std::size_t at = 0; at < trace_.bytes.size(); at += test::kByteStep) {
     for (const int flip : {0x01, 0xFF}) {
       std::vector<std::byte> damaged = trace_.bytes;
@@ -98,11 +97,8 @@ TEST_P(TraceCheckCompressed, NamesEveryFlippedByte) {
       }
     }
   }
-  rusage after = {};
-  ::getrusage(RUSAGE_SELF, &after);
-  constexpr long kKibibytes = 64 << 10;
   if (test::kByteStep == 1) {  // a sanitizer keeps what is freed
-    EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kKibibytes);
+    EXPECT_LT(growth.kibibytes(), 64 << 10);
   }
 }
 

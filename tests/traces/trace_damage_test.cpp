@@ -3,12 +3,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <fstream>
 #include <optional>
 
+#include "tests/support/memory_growth.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
@@ -204,14 +204,10 @@ TEST(TraceDamage, ClaimsOfHugeSizesCostNoMemory) {
   const mcap::MemorySource source(bytes);
   mcap::StreamReader reader(source);
   mcap::StreamRecord record;
-  rusage before = {};
-  ::getrusage(RUSAGE_SELF, &before);
+  const test::MemoryGrowth growth;
   while (reader.next(record)) continue;
-  rusage after = {};
-  ::getrusage(RUSAGE_SELF, &after);
   EXPECT_EQ(reader.damages().size(), 13U) << "twelve chunks, no footer";
-  constexpr long kFewKibibytes = 64 << 10;
-  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, kFewKibibytes);
+  EXPECT_LT(growth.kibibytes(), 64 << 10);
 }
 
 TEST(TraceDamage, ABombIsRefusedAtTheSizeItClaims) {
