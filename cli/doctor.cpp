@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
 #include "traces/trace_check.hpp"
 
 namespace vestige::cli {
@@ -82,8 +81,7 @@ std::string describe(const TraceCheck& check, const std::string& file) {
 
 void run_doctor(const DoctorOptions& options, Invocation& invocation) {
   check_outputs({options.common.json}, options.files, options.common);
-  if (std::count(options.files.begin(), options.files.end(), "-") > 1)
-    throw UsageError("-", "standard input can be read once", "name it once");
+  check_inputs(options.files);
   catch_interrupts();
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {

@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
 #include <memory>
 
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
 
 namespace vestige::cli {
 
@@ -24,8 +22,7 @@ void run_merge(const MergeOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   check_outputs({options.output, options.common.json}, options.files, options.common);
   if (options.output == "-") refuse_terminal("-o -");
-  if (std::count(options.files.begin(), options.files.end(), "-") > 1)
-    throw UsageError("-", "standard input can be read once", "name it once");
+  check_inputs(options.files);
   std::vector<std::unique_ptr<mcap::ByteSource>> sources;
   sources.reserve(options.files.size());
   for (const std::string& file : options.files) sources.push_back(std::make_unique<mcap::FileSource>(file));

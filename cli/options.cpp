@@ -96,6 +96,10 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
   }
 }
 
+void check_inputs(const std::vector<std::string>& inputs) {
+  if (std::ranges::count(inputs, "-") > 1) throw UsageError("-", "standard input can be read once", "name it once");
+}
+
 void write_json(const std::string& path, const nlohmann::ordered_json& json, const CommonOptions& options) {
   if (path.empty()) return;
   OutputFile file(path, options.overwrite());

@@ -55,6 +55,9 @@ void make_folder(const std::string& path, const std::string& flag);
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    const CommonOptions& options);
 
+/// Refuses a list of inputs in which "-" stands twice: standard input can be read once.
+void check_inputs(const std::vector<std::string>& inputs);
+
 /// Writes `json` to `path` ("-": standard output), unless `path` is empty.
 void write_json(const std::string& path, const nlohmann::ordered_json& json, const CommonOptions& options);
 

@@ -54,10 +54,7 @@ void Sender::post(const ActuatorFrame& frame, Clock::time_point since) {
   posted_before_ = frame.duty;
   {
     const std::lock_guard lock(mutex_);
-    if (mailbox_) {
-      ++superseded_;
-      if (options_.keep_log) log_.push_back({mailbox_->frame, SentState::Fate::kSuperseded, 0});
-    }
+    if (mailbox_) supersede();
     mailbox_ = {frame, since};
   }
   wake();
@@ -73,15 +70,17 @@ std::vector<SentState> Sender::take_log() {
   return told;
 }
 
+void Sender::supersede() {
+  ++superseded_;
+  if (options_.keep_log) log_.push_back({mailbox_->frame, SentState::Fate::kSuperseded, 0});
+  mailbox_.reset();
+}
+
 SenderStatistics Sender::finish() {
   stopping_ = true;
   wake();
   thread_.join();
-  if (mailbox_) {  // nothing but the off took its place
-    ++superseded_;
-    if (options_.keep_log) log_.push_back({mailbox_->frame, SentState::Fate::kSuperseded, 0});
-    mailbox_.reset();
-  }
+  if (mailbox_) supersede();  // nothing but the off took its place
   if (failed_) std::rethrow_exception(failure_);
   statistics_.superseded = superseded_;
   statistics_.bytes = sink_.bytes_sent();

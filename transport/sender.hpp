@@ -97,6 +97,8 @@ class Sender {
     Clock::time_point since;
   };
 
+  /// Empties the mailbox of what will not be sent.
+  void supersede();
   void run();
   void loop();
   void switch_off();
