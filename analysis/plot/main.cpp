@@ -169,8 +169,21 @@ int draw_timeline(const Options& options) {
 }
 
 int draw_textures(const Options& options) {
-  return write_figure(options, stem_of(options),
-                      [&] { return plot::texture_figure(plot::read_texture_contacts(options.inputs.front())); });
+  return write_figure(options, stem_of(options), [&] {
+    plot::TextureContacts textures = plot::read_texture_contacts(options.inputs.front());
+    if (!options.map.empty()) {
+      const vestige::ActuatorMap map = plot::read_map(options.map);
+      warn(options, map.warnings);
+      for (const plot::TextureContact& contact : textures.contacts)
+        if (contact.actuator > map.actuator_count)
+          throw vestige::Error(options.map,
+                               fmt::format("has {} actuators, and {} names actuator {}", map.actuator_count,
+                                           options.inputs.front().string(), contact.actuator),
+                               "name the map that the textures were made with");
+      textures.names = map.names;
+    }
+    return plot::texture_figure(std::move(textures));
+  });
 }
 
 void warn_of(const Options& options, const plot::Subject& subject) {
@@ -347,11 +360,13 @@ int run(int argc, char** argv) {
   CLI::App& textures =
       add_command(app, "textures", "Collision textures: which actuator each collider touched, and when",
                   "  vestige plot textures textures.exr\n"
-                  "  vestige plot textures textures.exr -o figures/textures\n");
+                  "  vestige plot textures textures.exr --map builtin -o figures/textures\n");
   textures.add_option("INPUT", options.inputs, "What 'vestige replay --textures FILE.exr' wrote")
       ->type_name("EXR")
       ->expected(1)
       ->required();
+  textures.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
+      ->type_name("builtin|FILE.png");
   add_common_options(textures, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
 
   CLI::App& body =
