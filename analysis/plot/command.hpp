@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -32,6 +33,11 @@ struct Options {
   std::size_t poses = 6;
   MomentChoice moments;
   double trail_ms = 100;
+  std::string law = "binary";
+  double hold_ms = 60;
+  double rate_hz = 60;
+  std::uint64_t every = 0;  ///< 0: by `rate_hz`
+  std::size_t top = 12;
   bool force = false;
   bool quiet = false;
 };

@@ -9,11 +9,14 @@
 #include "analysis/plot/body_figure.hpp"
 #include "analysis/plot/growth_figure.hpp"
 #include "analysis/plot/measured_figure.hpp"
+#include "analysis/plot/paraview_export.hpp"
+#include "analysis/plot/report.hpp"
 #include "analysis/plot/scene_figure.hpp"
 #include "analysis/plot/stress_figure.hpp"
 #include "analysis/plot/sweep_figure.hpp"
 #include "analysis/plot/texture_figure.hpp"
 #include "analysis/plot/timeline_figure.hpp"
+#include "cli/terminal.hpp"
 #include "traces/error.hpp"
 #include "traces/trace_reader.hpp"
 
@@ -188,6 +191,71 @@ int draw_scene(Options options) {
     return scene_figure(scene);
   });
   return drawn == kDone ? damage : drawn;
+}
+
+int draw_report(const Options& options) {
+  const std::filesystem::path& batch = options.inputs.front();
+  ReportOptions settings;
+  settings.output = options.output.empty() ? batch : options.output;
+  settings.top = options.top;
+  settings.overwrite = overwrite_of(options);
+  cli::catch_interrupts();
+  ReportOutcome outcome;
+  {
+    cli::Progress progress("report", options.quiet ? cli::Verbosity::kQuiet : cli::Verbosity::kNormal);
+    outcome = write_report(batch, settings, [&](double share) { return progress.update(share); });
+  }
+  if (outcome.interrupted) {
+    warn(options, "stopped; nothing was written");
+    return kIncomplete;
+  }
+  warn(options, outcome.warnings);
+  if (!options.quiet)
+    print_message(fmt::format("wrote {}, and {} figures in {}\n", outcome.page.string(), outcome.figures,
+                              (outcome.page.parent_path() / "figures").string()));
+  return outcome.has_pictures ? kDone : kIncomplete;
+}
+
+int draw_paraview(const Options& options) {
+  const std::filesystem::path& input = options.inputs.front();
+  if (input == "-" && options.output.empty())
+    throw UsageError("-o", "a trace from standard input has no name", "name -o FILE.pvd");
+  std::filesystem::path stem = options.output;
+  if (stem.empty())
+    stem = std::filesystem::path(input).replace_extension();
+  else if (stem.extension() == ".pvd")
+    stem.replace_extension();
+  else
+    stem /= input.stem();
+  TraceReader trace(input);
+  const Subject subject = read_subject(trace, input, options.map);
+  warn_of(options, subject);
+  if (subject.map.actuator_count == 0) warn(options, "there is no actuator map, so that every amplitude is 0");
+  ParaviewOptions settings;
+  settings.law = options.law;
+  settings.law_options.hold_s = options.hold_ms / 1000;
+  settings.rate_hz = options.rate_hz;
+  if (options.every != 0) settings.every = options.every;
+  if (!stem.parent_path().empty()) {
+    std::error_code failure;
+    std::filesystem::create_directories(stem.parent_path(), failure);
+    if (failure) throw system_error(stem.parent_path(), "could not be made", failure.value());
+  }
+  ParaviewSeries series(stem, overwrite_of(options), subject);
+  cli::catch_interrupts();
+  ParaviewResult result;
+  {
+    cli::Progress progress("paraview", options.quiet ? cli::Verbosity::kQuiet : cli::Verbosity::kNormal);
+    result = export_to_paraview(trace, subject, settings, series, [&](double share) { return progress.update(share); });
+  }
+  const int damage = report_damage(options, trace);
+  if (result.frames == 0) throw Error(input.string(), "holds no frame", "record it again");
+  series.commit();
+  if (result.interrupted) warn(options, fmt::format("stopped after {} frames", result.frames));
+  if (!options.quiet)
+    print_message(fmt::format("wrote {}.pvd: {} steps of {} frames, {} contacts\n", stem.string(), series.steps(),
+                              result.frames, result.contacts));
+  return result.interrupted ? kIncomplete : damage;
 }
 
 }  // namespace vestige::plot

@@ -16,4 +16,10 @@ int draw_avatar(Options options);
 int draw_body(Options options);
 int draw_scene(Options options);
 
+/// The page and the figures of what 'vestige batch' wrote.
+int draw_report(const Options& options);
+
+/// A trace as a time series for ParaView: a list and a folder of files instead of a figure.
+int draw_paraview(const Options& options);
+
 }  // namespace vestige::plot

@@ -169,6 +169,46 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 12));
   add_common_options(avatar, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -avatar]");
 
+  CLI::App& report = add_command(app, "report", "A page that compares the maps and laws of a batch (report.html)",
+                                 "  vestige plot report compared\n"
+                                 "  vestige plot report compared --top 3 -o page\n");
+  report.add_option("INPUT", options.inputs, "The folder that 'vestige batch -o DIR' wrote")
+      ->type_name("DIR")
+      ->expected(1)
+      ->required();
+  report.add_option("--top", options.top, "How many maps get pictures, from the best on")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(help::whole_number(1, 1000));
+  add_common_options(report, options, "DIR", "Folder for report.html and figures/ [default: the input]");
+
+  CLI::App& paraview = add_command(app, "paraview", "A trace as a time series for ParaView (.pvd and .vtp)",
+                                   "  vestige plot paraview man.mcap\n"
+                                   "  vestige plot paraview man.mcap --every 1 -o paraview/man.pvd\n");
+  paraview.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
+  paraview.add_option("--map", options.map, "Actuator map instead of the trace's")->type_name("builtin|none|FILE.png");
+  paraview.add_option("--law", options.law, "How strong a contact makes the actuators")
+      ->capture_default_str()
+      ->type_name("binary|speed|phantom|gaussian");
+  paraview.add_option("--hold", options.hold_ms, "How long a contact is felt")
+      ->capture_default_str()
+      ->type_name("MS")
+      ->check(help::between(0, 10000));
+  CLI::Option* every =
+      paraview.add_option("--every", options.every, "One time step for so many frames, instead of --rate")
+          ->type_name("N")
+          ->check(help::whole_number(1, 1000000000));
+  paraview
+      .add_option("--rate", options.rate_hz,
+                  "At most so many time steps a second; each has the contacts since the one before, and the highest "
+                  "amplitudes")
+      ->capture_default_str()
+      ->type_name("HZ")
+      ->check(help::between(0.001, 1e6))
+      ->excludes(every);
+  add_common_options(paraview, options, "DIR|FILE.pvd",
+                     "Write DIR/NAME.pvd and the folder DIR/NAME, or FILE.pvd and FILE [default: beside the trace]");
+
   app.set_help_flag("-h,--help", "Print this help");
   // What `vestige` asks of its helper, to answer for `vestige plot`.
   const std::string word = argc > 1 ? argv[1] : "";
@@ -204,6 +244,8 @@ int run(int argc, char** argv) {
   if (body.parsed()) return plot::draw_body(options);
   if (scene.parsed()) return plot::draw_scene(options);
   if (avatar.parsed()) return plot::draw_avatar(options);
+  if (report.parsed()) return plot::draw_report(options);
+  if (paraview.parsed()) return plot::draw_paraview(options);
   if (timeline.parsed()) return plot::draw_timeline(options);
   return plot::draw_textures(options);
 }
