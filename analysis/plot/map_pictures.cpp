@@ -21,7 +21,7 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr double kBodiesPt = 252;  ///< both sides
+constexpr double kBodiesPt = 240;  ///< both sides
 constexpr double kMostHeightPt = 180;
 constexpr double kBarRoomPt = 54;
 constexpr double kSideNamePt = 13;

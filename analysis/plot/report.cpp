@@ -48,7 +48,7 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
   Contacts contacts;
   for (const ReportTrace& trace : data.traces) {
     const std::filesystem::path file = folder / "contacts" / (trace.name + ".csv");
-    ContactRecording recording = read_contact_recording(file.string());
+    ContactRecording recording = read_contact_recording(file.string()).contacts;
     for (std::size_t i = 0; i < recording.contacts.size(); ++i) {
       const Contact& contact = recording.contacts[i];
       if (contact.triangle >= avatar.triangles.size())

@@ -35,6 +35,14 @@ std::size_t length(const JsonField& field) {
   return field.value().size();
 }
 
+/// A name that files have: it leads to no other folder.
+std::string file_name(const JsonField& field) {
+  std::string name = field.text();
+  if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
+    field.refuse(fmt::format("is '{}', which is no name of a map or a trace", name));
+  return name;
+}
+
 Estimate read_estimate(const JsonField& field) {
   Estimate estimate;
   estimate.mean = number(field, "mean");
@@ -58,8 +66,8 @@ ReportMetric read_metric(const JsonField& field) {
 Candidate read_candidate(const JsonField& field, const std::vector<ReportMetric>& metrics) {
   Candidate candidate;
   if (field.has("rank")) candidate.rank = whole(field.at("rank"));
-  candidate.map = field.at("map").text();
-  candidate.law = field.at("law").text();
+  candidate.map = file_name(field.at("map"));
+  candidate.law = file_name(field.at("law"));
   candidate.headline = read_estimate(field.at("headline"));
   candidate.difference_from_best = read_estimate(field.at("difference_from_best"));
   candidate.distinguishable_from_best = truth(field.at("distinguishable_from_best"));
@@ -83,22 +91,23 @@ void read_ranking(const std::filesystem::path& file, ReportData& data) {
   for (std::size_t i = 0; i < ranking.count(); ++i) data.ranking.push_back(read_candidate(ranking.at(i), data.metrics));
 }
 
-std::string words_of(const JsonField& list) {
-  std::string words;
-  for (std::size_t i = 0; i < length(list); ++i) {
-    const std::string word = list.at(i).text();
-    // As it could be typed again.
-    const bool plain = !word.empty() && word.find_first_of(" \t\n'\"\\$&;|<>()*?[]{}~#!`") == std::string::npos;
-    std::string shown = word;
-    if (!plain) {
-      shown = "'";
-      for (const char letter : word) shown += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
-      shown += "'";
-    }
-    if (i > 0) words += ' ';
-    words += shown;
+/// As it could be typed again.
+std::string quoted(const std::string& word) {
+  if (!word.empty() && word.find_first_of(" \t\n'\"\\$&;|<>()*?[]{}~#!`") == std::string::npos) return word;
+  std::string inside;
+  for (const char letter : word) {
+    if (letter == '\'')
+      inside.append("'\\''");
+    else
+      inside.push_back(letter);
   }
-  return words;
+  return fmt::format("'{}'", inside);
+}
+
+std::string words_of(const JsonField& list) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < length(list); ++i) words.push_back(quoted(list.at(i).text()));
+  return fmt::format("{}", fmt::join(words, " "));
 }
 
 void read_provenance(const JsonField& run, ReportData& data) {
@@ -131,14 +140,14 @@ void read_run(const std::filesystem::path& file, ReportData& data) {
   read_provenance(run, data);
   const JsonField batch = run.at("batch");
   const JsonField laws = batch.at("laws");
-  for (std::size_t i = 0; i < laws.count(); ++i) data.laws.push_back(laws.at(i).text());
+  for (std::size_t i = 0; i < laws.count(); ++i) data.laws.push_back(file_name(laws.at(i)));
   if (batch.has("options") && batch.at("options").has("hold_ms"))
     data.hold_ms = batch.at("options").at("hold_ms").within(0, kMost);
   const JsonField traces = run.at("traces");
   for (std::size_t i = 0; i < length(traces); ++i) {
     const JsonField field = traces.at(i);
     ReportTrace trace;
-    trace.name = field.at("name").text();
+    trace.name = file_name(field.at("name"));
     trace.given = field.at("given").text();
     trace.frames = field.at("frames").within(0, kMost);
     trace.colliders = field.at("colliders").within(0, kMost);

@@ -24,7 +24,7 @@ body {
   margin: 0; background: var(--paper); color: var(--ink);
   font: 1rem/1.55 system-ui, "Segoe UI", "Liberation Sans", Arial, Helvetica, sans-serif;
 }
-header, main, nav, footer { max-width: 70rem; margin: 0 auto; padding: 0 1.25rem; }
+header, main, nav, footer { max-width: 77rem; margin: 0 auto; padding: 0 1.25rem; }
 header { padding-top: 2rem; }
 .skip { position: absolute; left: -100rem; }
 .skip:focus { left: 1rem; top: 1rem; background: var(--paper); padding: .5rem 1rem; z-index: 2; }
@@ -52,11 +52,11 @@ tr.level td, tr.level th { background: var(--mark); }
 .formula { min-width: 18rem; max-width: 30rem; }
 .source { min-width: 12rem; max-width: 22rem; }
 .model { display: inline-block; font-size: .78rem; line-height: 1.3; padding: .1rem .45rem; border: 1px solid var(--warn); color: var(--warn); border-radius: .3rem; }
-.figures { display: flex; flex-wrap: wrap; gap: 1rem; align-items: flex-start; }
+.figures { display: flex; flex-wrap: wrap; gap: 0 .8rem; align-items: flex-start; }
 figure { margin: .75rem 0; max-width: 100%; }
-.sheet { background: #fff; border: 1px solid var(--line); border-radius: .35rem; padding: .6rem; overflow-x: auto; }
+.sheet { background: #fff; border: 1px solid var(--line); border-radius: .35rem; padding: .4rem; overflow-x: auto; width: fit-content; max-width: 100%; }
 .sheet svg { display: block; max-width: 100%; height: auto; }
-.wide svg { min-width: 34rem; }
+.wide svg { width: 52rem; min-width: 34rem; }
 figcaption { font-size: .88rem; color: var(--soft); margin-top: .35rem; max-width: 40rem; overflow-wrap: anywhere; }
 .pair { flex: 0 1 auto; }
 .pair figcaption { max-width: 22rem; }
@@ -79,7 +79,7 @@ footer { padding-top: 1rem; padding-bottom: 3rem; }
   header, main, footer { max-width: none; padding: 0; }
   .scroll, .tall, .sheet { overflow: visible; max-height: none; }
   .sheet { border: 0; padding: 0; }
-  .wide svg { min-width: 0; }
+  .wide svg { width: auto; min-width: 0; }
   table { font-size: 8pt; }
   th, td { padding: .15rem .4rem; }
   .formula, .source, .name { min-width: 0; }
