@@ -102,7 +102,7 @@ class ErrorFigure : public Figure {
     draw_dots(canvas, series, plot, x, y, y_ticks);
     if (!is_first)
       for (Tick& tick : y_ticks) tick.label.clear();
-    draw_x_axis(canvas, plot, x, linear_ticks(x.low, x.high, columns() > 2 ? 3 : 6), "Time (s)");
+    draw_x_axis(canvas, plot, x, linear_ticks(x.low, x.high, columns() > 2 ? 4 : 6), "Time (s)");
     draw_y_axis(canvas, {plot.left_pt, plot.bottom_pt + kLanePt, plot.right_pt, plot.top_pt}, y, y_ticks,
                 is_first ? "Localisation error (mm)" : "");
     draw_medians(canvas, series, x, y);

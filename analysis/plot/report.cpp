@@ -19,7 +19,6 @@
 #include "analysis/plot/ranking_figure.hpp"
 #include "analysis/plot/report_data.hpp"
 #include "analysis/plot/report_page.hpp"
-#include "analysis/plot/report_words.hpp"
 #include "analysis/plot/subject.hpp"
 #include "analysis/plot/timeline_figure.hpp"
 #include "detector/actuator_layout.hpp"
@@ -205,8 +204,8 @@ class Report {
       const std::unique_ptr<IntensityLaw> made = make_law(law, layout, law_options);
       section.timelines.push_back(draw(
           fmt::format("{}-timeline-{}", name, law), *timeline_figure(timeline_of(contacts.shown, layout->map(), *made)),
-          fmt::format("Amplitude of each actuator over {} under {} (duty 255 is full), contacts held for {} ms.",
-                      contacts.shown_trace, law, number_text(data.hold_ms))));
+          fmt::format("Amplitude of each actuator over {} under {} (duty 255 is full), contacts held for {:g} ms.",
+                      contacts.shown_trace, law, data.hold_ms)));
     }
     return section;
   }

@@ -195,6 +195,7 @@ class Page {
                                      sentence_case(counted(data_.traces.size(), "trace"))));
     if (data_.ranking.size() > 2 && data_.traces.size() > 1)
       cautions.emplace_back("Each comparison with the first stands at 95\u00a0% for itself: of many, some err.");
+    if (const auto more = more_coverage(); !more.empty()) cautions.push_back(more);
     if (headline().model_based)
       cautions.push_back(
           fmt::format("{} is a model, not a user study.", html_text(sentence_case(words_of_name(headline().name)))));
@@ -204,6 +205,23 @@ class Page {
     out_ += "</ul></div>\n";
   }
 
+  /// What an error alone would hide: it counts only contacts that are felt.
+  std::string more_coverage() const {
+    const auto coverage = std::ranges::find(data_.metrics, "coverage", &ReportMetric::name);
+    const auto index = static_cast<std::size_t>(coverage - data_.metrics.begin());
+    if (coverage == data_.metrics.end() || index == data_.headline || !best().metrics[index].mean) return {};
+    const double felt = *best().metrics[index].mean;
+    const Candidate* most = &best();
+    for (const Candidate& one : data_.ranking)
+      if (one.metrics[index].mean.value_or(0) > most->metrics[index].mean.value_or(0)) most = &one;
+    constexpr double kWorthSaying = 0.005;
+    const double felt_most = *most->metrics[index].mean;
+    if (felt_most < felt + kWorthSaying) return {};
+    return fmt::format(
+        "{} lets {:.1f}\u00a0% of contacts be felt, {} {:.1f}\u00a0%; {} says nothing of those that are not.",
+        name_of(best()), 100 * felt, name_of(*most), 100 * felt_most, html_text(words_of_name(headline().name)));
+  }
+
   const UnfeltShare* unfelt_of(const std::string& map) const {
     const auto found = std::ranges::find(page_.unfelt, map, &UnfeltShare::map);
     return found == page_.unfelt.end() ? nullptr : &*found;
@@ -211,12 +229,12 @@ class Page {
 
   void ranking() {
     out_ += "<section aria-labelledby=\"ranking\">\n<h2 id=\"ranking\">Ranking</h2>\n";
-    for (const PageFigure& one : page_.ranking) out_ += figure(one, "wide");
+    for (const PageFigure& one : page_.ranking) out_ += figure(one, "ranking");
     std::string table = "<table>\n";
     add(table,
-        "<caption>{}, mean over traces. Highlighted rows cannot be told from the first at 95\u00a0%. Not felt: "
+        "<caption><span>{}, mean over traces. Highlighted rows cannot be told from the first at 95\u00a0%. Not felt: "
         "contacts of "
-        "all traces on skin without an actuator, whatever the law.</caption>\n"
+        "all traces on skin without an actuator, whatever the law.</span></caption>\n"
         "<thead><tr><th scope=\"col\" class=\"n\">Rank</th><th scope=\"col\">Map</th><th scope=\"col\">Law</th>"
         "<th scope=\"col\" class=\"n\">{}</th><th scope=\"col\">95\u00a0% interval</th><th scope=\"col\">Against the "
         "first</th><th scope=\"col\" class=\"n\">Traces</th><th scope=\"col\" class=\"n\">Not "
@@ -296,7 +314,8 @@ class Page {
   void actuators(const MapSection& map) {
     if (map.actuators.empty()) return;
     std::string table = fmt::format(
-        "<table>\n<caption>Actuators of {}, and the contacts on their skin in all traces</caption>\n<thead><tr><th "
+        "<table>\n<caption><span>Actuators of {}, and the contacts on their skin in all "
+        "traces</span></caption>\n<thead><tr><th "
         "scope=\"col\" class=\"n\">Number</th><th scope=\"col\">Name</th><th scope=\"col\" "
         "class=\"n\">Contacts</th><th "
         "scope=\"col\" class=\"n\">Share</th></tr></thead>\n<tbody>\n",
@@ -312,10 +331,10 @@ class Page {
   }
 
   void all_metrics() {
-    out_ += "<section aria-labelledby=\"metrics\">\n<h2 id=\"metrics\">All metrics</h2>\n";
+    out_ += "<section class=\"metrics\" aria-labelledby=\"metrics\">\n<h2 id=\"metrics\">All metrics</h2>\n";
     std::string table =
-        "<table class=\"metrics\">\n<caption>Mean over traces and, below it, its 95\u00a0% "
-        "interval</caption>\n<thead><tr><th "
+        "<table class=\"all\">\n<caption><span>Mean over traces and, below it, its 95\u00a0% "
+        "interval</span></caption>\n<thead><tr><th "
         "scope=\"col\">Map</th><th scope=\"col\">Law</th>";
     for (const ReportMetric& metric : data_.metrics)
       add(table, "<th scope=\"col\" class=\"n\" style=\"white-space:normal\">{}{}</th>", title_of(metric),
@@ -336,9 +355,10 @@ class Page {
   void definitions() {
     out_ += "<section aria-labelledby=\"definitions\">\n<h2 id=\"definitions\">Definitions</h2>\n";
     std::string table =
-        "<table>\n<caption>How each metric is computed, and where it comes from. Those marked as a model rest on a "
+        "<table>\n<caption><span>How each metric is computed, and where it comes from. Those marked as a model rest on "
+        "a "
         "model of "
-        "perception, motors or link; nobody was asked.</caption>\n<thead><tr><th scope=\"col\">Metric</th><th "
+        "perception, motors or link; nobody was asked.</span></caption>\n<thead><tr><th scope=\"col\">Metric</th><th "
         "scope=\"col\">Unit</th><th scope=\"col\">Better</th><th scope=\"col\">Formula</th><th "
         "scope=\"col\">Source</th></tr></thead>\n<tbody>\n";
     for (const ReportMetric& metric : data_.metrics)
@@ -355,14 +375,14 @@ class Page {
       const auto known = std::ranges::find(kLaws, law, &LawWords::name);
       if (known != kLaws.end()) add(out_, "<dt>{}</dt><dd>{}</dd>\n", html_text(law), html_text(known->words));
     }
-    add(out_, "</dl>\n<p>A contact is held for {} ms.</p>\n</section>\n", number_text(data_.hold_ms));
+    add(out_, "</dl>\n<p>A contact is held for {:g} ms.</p>\n</section>\n", data_.hold_ms);
   }
 
   void inputs() {
     out_ += "<section aria-labelledby=\"inputs\">\n<h2 id=\"inputs\">Traces and failures</h2>\n";
     std::string table =
-        "<table>\n<caption>Each trace was run through collision detection once, for all maps and "
-        "laws</caption>\n<thead><tr><th "
+        "<table>\n<caption><span>Each trace was run through collision detection once, for all maps and "
+        "laws</span></caption>\n<thead><tr><th "
         "scope=\"col\">Trace</th><th scope=\"col\">Given as</th><th scope=\"col\" class=\"n\">Frames</th><th "
         "scope=\"col\" "
         "class=\"n\">Colliders</th><th scope=\"col\" class=\"n\">Contacts</th><th "
@@ -383,7 +403,7 @@ class Page {
       return;
     }
     table =
-        "<table>\n<caption>Inputs that were left out</caption>\n<thead><tr><th scope=\"col\">What</th><th "
+        "<table>\n<caption><span>Inputs that were left out</span></caption>\n<thead><tr><th scope=\"col\">What</th><th "
         "scope=\"col\">Name</th><th scope=\"col\">Given as</th><th scope=\"col\">Cause</th><th "
         "scope=\"col\">Remedy</th></tr></thead>\n<tbody>\n";
     for (const ReportFailure& failure : data_.failures)

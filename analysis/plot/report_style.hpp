@@ -42,13 +42,18 @@ nav ol { padding: 0; margin: 1rem 0 0; list-style: none; display: flex; flex-wra
 .scroll { overflow: auto; max-width: 100%; margin: .75rem 0 1.25rem; }
 .tall { max-height: 38rem; }
 table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
-caption { text-align: left; padding: 0 0 .5rem; color: var(--soft); max-width: 46rem; }
+caption { text-align: left; padding: 0 0 .5rem; color: var(--soft); }
+caption span { display: block; width: fit-content; max-width: min(46rem, calc(100vw - 3rem)); position: sticky; left: 0; }
 th, td { padding: .35rem .8rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--line); }
 thead th { position: sticky; top: 0; background: var(--paper); border-bottom: 2px solid var(--line); vertical-align: bottom; }
 .n { text-align: right; white-space: nowrap; }
+thead .n { white-space: normal; }
 .interval { color: var(--soft); white-space: nowrap; }
 .name { overflow-wrap: anywhere; min-width: 6rem; max-width: 18rem; }
 tr.level td, tr.level th { background: var(--mark); }
+.all tbody th { position: sticky; left: 0; background: var(--paper); }
+.all thead th { min-width: 6.5rem; }
+.all thead th:first-child { left: 0; z-index: 1; }
 .formula { min-width: 18rem; max-width: 30rem; }
 .source { min-width: 12rem; max-width: 22rem; }
 .model { display: inline-block; font-size: .78rem; line-height: 1.3; padding: .1rem .45rem; border: 1px solid var(--warn); color: var(--warn); border-radius: .3rem; }
@@ -57,6 +62,7 @@ figure { margin: .75rem 0; max-width: 100%; }
 .sheet { background: #fff; border: 1px solid var(--line); border-radius: .35rem; padding: .4rem; overflow-x: auto; width: fit-content; max-width: 100%; }
 .sheet svg { display: block; max-width: 100%; height: auto; }
 .wide svg { width: 52rem; min-width: 34rem; }
+.ranking svg { width: 46rem; min-width: 21rem; }
 figcaption { font-size: .88rem; color: var(--soft); margin-top: .35rem; max-width: 40rem; overflow-wrap: anywhere; }
 .pair { flex: 0 1 auto; }
 .pair figcaption { max-width: 22rem; }
@@ -70,6 +76,7 @@ footer { padding-top: 1rem; padding-bottom: 3rem; }
   h1 { font-size: 1.5rem; }
   header, main, nav, footer { padding-left: 1rem; padding-right: 1rem; }
   .sheet { padding: .3rem; }
+  th, td { padding: .3rem .5rem; }
 }
 @media print {
   :root { --paper: #fff; --ink: #000; --soft: #444; --line: #bbb; --mark: #eef4f8; --warn: #7a3300; --warn-paper: #fff; --accent: #000; }
@@ -79,14 +86,22 @@ footer { padding-top: 1rem; padding-bottom: 3rem; }
   header, main, footer { max-width: none; padding: 0; }
   .scroll, .tall, .sheet { overflow: visible; max-height: none; }
   .sheet { border: 0; padding: 0; }
-  .wide svg { width: auto; min-width: 0; }
+  .wide svg, .ranking svg { width: auto; min-width: 0; }
   table { font-size: 8pt; }
   th, td { padding: .15rem .4rem; }
-  .formula, .source, .name { min-width: 0; }
-  thead th { position: static; }
+  .formula, .source { min-width: 0; }
+  .name { min-width: 3.5rem; overflow-wrap: break-word; }
+  .pair { width: 32.5%; }
+  .pair .sheet { width: 100%; }
+  thead th, .all tbody th { position: static; }
+  .all thead th { min-width: 0; }
   figure, tr { break-inside: avoid; }
   h2, h3 { break-after: avoid; }
-  .metrics { font-size: 6.5pt; }
+  @page landscape { size: A4 landscape; margin: 10mm; }
+  .metrics { page: landscape; }
+  .all { font-size: 5pt; }
+  .all th, .all td { padding: .1rem .12rem; white-space: normal; }
+  .all .interval { white-space: normal; }
 }
 )css";
 
