@@ -54,6 +54,10 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
         throw Error(file.string(),
                     fmt::format("names triangle {}, and avatar.glb has {}", contact.triangle, avatar.triangles.size()),
                     kRemedy);
+      const glm::dvec2& weights = contact.barycentric;
+      constexpr double kSlack = 1e-9;
+      if (!(weights.x >= 0 && weights.y >= 0 && weights.x + weights.y <= 1 + kSlack))
+        throw Error(file.string(), fmt::format("contact {}: u and v are no weights from 0 to 1", i + 1), kRemedy);
       RecordedContact one;
       one.triangle = contact.triangle;
       one.barycentric = contact.barycentric;
@@ -175,7 +179,9 @@ class Report {
     section.map = name;
     section.contacts = contacts.all.size();
     section.warnings = map.warnings;
-    for (const std::string& actuator : map.names) section.actuators.push_back({actuator, 0});
+    for (const std::string& actuator : map.names)
+      section.actuators.push_back(
+          {actuator.empty() ? fmt::format("actuator {}", section.actuators.size() + 1) : actuator, 0});
     for (const RecordedContact& contact : contacts.all) {
       const std::uint16_t actuator =
           actuator_at(avatar, map, contact.triangle, contact.barycentric.x, contact.barycentric.y);

@@ -237,6 +237,9 @@ TEST_F(ReportTest, NamesWhatIsWrongWithAFolderAndWritesNothing) {
   test::write_text(folder_ / "batch/contacts/two.csv",
                    std::string(kHeader) + "0,0,,,,,,,,,\n1,0.1,3,99,0.5,0.2,0.3,0,0,1,0\n");
   EXPECT_THAT(report().standard_error, AllOf(HasSubstr("two.csv"), HasSubstr("triangle 99")));
+  test::write_text(folder_ / "batch/contacts/two.csv",
+                   std::string(kHeader) + "0,0,,,,,,,,,\n1,0.1,3,1,0.5,7,0.3,0,0,1,0\n");
+  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("two.csv"), HasSubstr("u and v")));
   test::write_text(folder_ / "batch/contacts/two.csv", "0,0,torn");
   EXPECT_THAT(report().standard_error, HasSubstr("two.csv"));
   std::filesystem::remove(folder_ / "batch/contacts/two.csv");
