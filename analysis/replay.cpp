@@ -4,7 +4,6 @@
 #include <chrono>
 #include <span>
 
-#include "detector/intensity.hpp"
 #include "detector/texture_hash.hpp"
 
 namespace vestige {
@@ -81,7 +80,7 @@ class RecordedRows {
 }  // namespace
 
 ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
-                    double hold_s, const ReplayOutputs& outputs, const ReplayExpectation& expectation,
+                    const ReplayOutputs& outputs, const ReplayExpectation& expectation,
                     const std::function<bool(double)>& progress) {
   const std::vector<std::uint32_t>& ids = trace.collider_ids();
   const std::uint64_t frame_count = trace.frame_count();
@@ -93,7 +92,6 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
   RecordedRows recorded(
       expectation.contacts != nullptr ? std::span(*expectation.contacts) : std::span<const RecordedContact>(), ids);
   FrameBuilder builder(avatar, ids, detectors.first().method());
-  BinaryLaw law(actuator_count, hold_s);
   TextureHash hash;
   TraceFrame trace_frame;
   std::uint64_t frames_read = 0;
@@ -128,7 +126,7 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
     hash.add(row);
     if (outputs.contacts != nullptr) outputs.contacts->write(frame, row, ids);
     if (outputs.textures != nullptr) outputs.textures->add(frame, row);
-    if (outputs.timeline != nullptr) outputs.timeline->write(law.next(frame.time_s, row));
+    if (outputs.timeline != nullptr) outputs.timeline->write(outputs.drive->next(frame.time_s, row));
     if (expectation.contacts != nullptr) result.comparison->add(row, recorded.row_of(frame.index));
     ++result.frames;
     return progress(static_cast<double>(result.frames) / static_cast<double>(frame_count));

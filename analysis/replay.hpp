@@ -9,6 +9,7 @@
 #include "analysis/comparison.hpp"
 #include "analysis/detector_team.hpp"
 #include "analysis/skinning_error.hpp"
+#include "detector/actuator_drive.hpp"
 #include "detector/contacts_csv.hpp"
 #include "detector/detector.hpp"
 #include "detector/texture_exr.hpp"
@@ -22,6 +23,7 @@ struct ReplayOutputs {
   ContactsCsv* contacts = nullptr;
   TextureExr* textures = nullptr;
   TimelineFile* timeline = nullptr;
+  ActuatorDrive* drive = nullptr;  ///< what the timeline holds; null only without one
 };
 
 /// What a replay is compared with, at most one of the two.
@@ -48,9 +50,9 @@ struct ReplayResult {
 };
 
 /// Runs all frames of `trace` through `detectors`, whose rows must carry what the outputs need and `kHashedPlanes`.
-/// `hold_s` as for `BinaryLaw`. `progress` is told the share done and returns false to stop early.
+/// `progress` is told the share done and returns false to stop early.
 ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
-                    double hold_s, const ReplayOutputs& outputs, const ReplayExpectation& expectation,
+                    const ReplayOutputs& outputs, const ReplayExpectation& expectation,
                     const std::function<bool(double)>& progress);
 
 }  // namespace vestige

@@ -266,11 +266,12 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     textures.emplace(texture_planes, collider_ids.size(), std::move(attributes));
   }
 
+  ActuatorDrive drive(make_law("binary", trace.map.actuator_count, {.hold_s = options.hold_ms / 1e3}));
   ReplayResult result;
   {
     Progress progress("Replaying", verbosity);
-    result = replay(trace.reader, trace.avatar, trace.map.actuator_count, detectors, options.hold_ms / 1e3,
-                    {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get()},
+    result = replay(trace.reader, trace.avatar, trace.map.actuator_count, detectors,
+                    {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get(), &drive},
                     verification.expectation(), [&](double share) { return progress.update(share); });
   }
   if (result.frames == 0) throw Error(options.trace, "holds no frame", "record it again");

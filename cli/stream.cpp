@@ -11,8 +11,8 @@
 #include "cli/scene.hpp"
 #include "cli/sink_choice.hpp"
 #include "cli/verbs.hpp"
+#include "detector/actuator_drive.hpp"
 #include "detector/actuator_map_watch.hpp"
-#include "detector/intensity.hpp"
 #include "detector/path_choice.hpp"
 #include "detector/pressure.hpp"
 #include "traces/error.hpp"
@@ -154,8 +154,8 @@ PlaybackCalls::Law make_law(const SinkChoice& sink, std::size_t actuator_count, 
   if (sink.quantity() == Quantity::kPressure)
     return [law = std::make_shared<PressureLaw>(actuator_count, hold_s)](
                double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
-  return [law = std::make_shared<BinaryLaw>(actuator_count, hold_s)](
-             double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
+  return [drive = std::make_shared<ActuatorDrive>(vestige::make_law("binary", actuator_count, {.hold_s = hold_s}))](
+             double time_s, const ContactRow& row) -> const ActuatorFrame& { return drive->next(time_s, row); };
 }
 
 void run_stream(const StreamOptions& options, Invocation& invocation) {

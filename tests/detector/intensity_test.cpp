@@ -1,8 +1,7 @@
-#include "detector/intensity.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "detector/actuator_drive.hpp"
 #include "detector/texture_hash.hpp"
 
 namespace vestige {
@@ -17,16 +16,16 @@ Contact contact_on(std::uint16_t actuator) {
 }
 
 TEST(BinaryLaw, SwitchesTheActuatorOfAContactOnAndHoldsIt) {
-  BinaryLaw law(2, 0.060);
-  EXPECT_THAT(law.next(0, {contact_on(2), Contact()}).duty, ::testing::ElementsAre(0, 255));
+  ActuatorDrive law(make_law("binary", 2, {}));
+  EXPECT_THAT(law.next(0, ContactRow{contact_on(2), Contact()}).duty, ::testing::ElementsAre(0, 255));
   EXPECT_THAT(law.next(0.059, {}).duty, ::testing::ElementsAre(0, 255));
   EXPECT_THAT(law.next(0.060, {}).duty, ::testing::ElementsAre(0, 0));
-  EXPECT_THAT(law.next(0.070, {contact_on(0)}).duty, ::testing::ElementsAre(0, 0));
+  EXPECT_THAT(law.next(0.070, ContactRow{contact_on(0)}).duty, ::testing::ElementsAre(0, 0));
 }
 
 TEST(BinaryLaw, WithoutHoldGivesTheRawFrames) {
-  BinaryLaw law(1, 0);
-  EXPECT_THAT(law.next(0, {contact_on(1)}).duty, ::testing::ElementsAre(255));
+  ActuatorDrive law(make_law("binary", 1, {.hold_s = 0}));
+  EXPECT_THAT(law.next(0, ContactRow{contact_on(1)}).duty, ::testing::ElementsAre(255));
   EXPECT_THAT(law.next(0, {}).duty, ::testing::ElementsAre(0));
 }
 
