@@ -77,11 +77,16 @@ class RecordedRows {
   ContactRow row_;
 };
 
+void look_up_anew(const ActuatorMap& map, ContactRow& row) {
+  for (Contact& contact : row)
+    if (contact.hit()) contact.actuator = map.at(contact.texture_coordinate);
+}
+
 }  // namespace
 
 ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
                     const ReplayOutputs& outputs, const ReplayExpectation& expectation,
-                    const std::function<bool(double)>& progress) {
+                    std::span<const MapChange> changes, const std::function<bool(double)>& progress) {
   const std::vector<std::uint32_t>& ids = trace.collider_ids();
   const std::uint64_t frame_count = trace.frame_count();
   const std::uint64_t skinning_step = std::max<std::uint64_t>(1, frame_count / kSkinningFrames);
@@ -114,6 +119,14 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
         checking_s += seconds(Clock::now() - check);
       }
       ++frames_read;
+    }
+  };
+  const ActuatorMap* changed_map = nullptr;
+  std::size_t next_change = 0;
+  const auto follow_changes = [&](double time_s) {
+    for (; next_change < changes.size() && changes[next_change].time_s <= time_s; ++next_change) {
+      changed_map = &changes[next_change].map;
+      if (outputs.drive != nullptr) outputs.drive->law().change_layout(changes[next_change].layout);
     }
   };
   const auto take = [&](const Frame& frame, const ContactRow& row, const DetectorWork& work) {
@@ -156,6 +169,9 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
       expectation.detectors->finish();
     }
     for (std::size_t i = 0; i < batch.count && !result.interrupted; ++i) {
+      follow_changes(batch.frames[i].time_s);
+      if (changed_map != nullptr) look_up_anew(*changed_map, batch.rows[i]);
+      if (changed_map != nullptr && expectation.detectors != nullptr) look_up_anew(*changed_map, expected.rows[i]);
       if (expectation.detectors != nullptr) result.comparison->add(batch.rows[i], expected.rows[i]);
       result.interrupted = !take(batch.frames[i], batch.rows[i], batch.work[i]);
     }

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,6 +34,13 @@ struct ReplayExpectation {
   const std::vector<RecordedContact>* contacts = nullptr;  ///< of an earlier run, ascending frames
 };
 
+/// Another actuator map from a time of the trace on.
+struct MapChange {
+  double time_s = 0;
+  ActuatorMap map;                               ///< of as many actuators as the trace's
+  std::shared_ptr<const ActuatorLayout> layout;  ///< what the drive's law goes on with; null for one that needs none
+};
+
 struct ReplayResult {
   std::uint64_t frames = 0;
   std::uint64_t contacts = 0;
@@ -49,10 +58,11 @@ struct ReplayResult {
   bool interrupted = false;
 };
 
-/// Runs all frames of `trace` through `detectors`, whose rows must carry what the outputs need and `kHashedPlanes`.
+/// Runs all frames of `trace` through `detectors`, whose rows must carry what the outputs need and `kHashedPlanes`;
+/// with `changes` (ascending times), which say anew what actuator every contact has, texture coordinates too.
 /// `progress` is told the share done and returns false to stop early.
 ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
                     const ReplayOutputs& outputs, const ReplayExpectation& expectation,
-                    const std::function<bool(double)>& progress);
+                    std::span<const MapChange> changes, const std::function<bool(double)>& progress);
 
 }  // namespace vestige

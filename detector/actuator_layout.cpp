@@ -19,6 +19,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMostTexels = 2048;  // a side: a finer map is sampled
 constexpr std::size_t kLane = 8;             // actuators are padded to whole lanes
 constexpr float kBeyond_m = 1e9F;            // stands for infinitely far, where infinite - infinite would be no number
+constexpr double kFar_m = 0.050;             // apart: skin that is not one place
 /// Neighbours are looked for on a grid of points this much finer than the actuators are apart, within each triangle.
 constexpr double kPointsASpacing = 8;
 constexpr int kMostPoints = 32;
@@ -80,11 +81,28 @@ double area_of(const SurfaceDistance& surface, std::uint32_t triangle) {
   return std::isfinite(area) ? area : 0;
 }
 
-/// Goes through the skin in pieces of a texel: `piece(triangle, weights of its corners, the map's number, m²)`.
-template <typename Piece>
-void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const SurfaceDistance& surface, Piece&& piece) {
-  const std::uint32_t width = std::min(map.width, kMostTexels);
-  const std::uint32_t height = std::min(map.height, kMostTexels);
+struct Size {
+  std::uint32_t width;
+  std::uint32_t height;
+};
+
+Size sampled_size(const ActuatorMap& map) {
+  return {std::min(map.width, kMostTexels), std::min(map.height, kMostTexels)};
+}
+
+/// A piece of skin as large as a texel.
+struct Piece {
+  SkinPoint point;         // its middle
+  std::uint16_t actuator;  // the map's number
+  double area_m2;
+  std::size_t texel;  // or kNoTexel: a whole triangle between the texels' centres
+};
+constexpr std::size_t kNoTexel = ~std::size_t{0};
+
+/// Goes through the skin in pieces; `texels`: how many there are.
+template <typename Take>
+void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const SurfaceDistance& surface, Take&& take) {
+  const auto [width, height] = sampled_size(map);
   const glm::dvec2 scale(width, height);
   for (std::uint32_t number = 0; number < avatar.triangles.size(); ++number) {
     const double area_m2 = area_of(surface, number);
@@ -98,7 +116,7 @@ void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const Surf
     std::size_t texels = 0;
     for_texels_of(corners, width, height, [&](std::uint32_t, std::uint32_t, std::uint32_t count) { texels += count; });
     if (texels == 0) {
-      piece(number, glm::dvec3(1.0 / 3), map.at((a + b + c) / 3.0), area_m2);
+      take(Piece{{number, glm::dvec3(1.0 / 3)}, map.at((a + b + c) / 3.0), area_m2, kNoTexel});
       continue;
     }
     const glm::dvec2 ab = corners[1] - corners[0];
@@ -115,11 +133,56 @@ void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const Surf
         const glm::dvec2 from = turned - corners[0];
         const double v = std::clamp((from.x * ac.y - from.y * ac.x) / doubled, 0.0, 1.0);
         const double w = std::clamp((ab.x * from.y - ab.y * from.x) / doubled, 0.0, 1.0 - v);
-        piece(number, glm::dvec3(1 - v - w, v, w), map.at(at / scale), area_m2 / static_cast<double>(texels));
+        const std::size_t texel = std::size_t{row} * width + static_cast<std::size_t>(at.x);
+        take(Piece{
+            {number, glm::dvec3(1 - v - w, v, w)}, map.at(at / scale), area_m2 / static_cast<double>(texels), texel});
       }
     });
   }
 }
+
+/// Finds skin whose texels other skin far away has too.
+class SharedTexels {
+ public:
+  SharedTexels(const SurfaceDistance& surface, const ActuatorMap& map) : surface_(surface) {
+    const auto [width, height] = sampled_size(map);
+    first_.resize(std::size_t{width} * height);
+  }
+
+  void add(const Piece& piece) {
+    if (piece.texel == kNoTexel) return;
+    First& first = first_[piece.texel];
+    if (first.triangle == kNoTriangle) {
+      first = {piece.point.triangle, static_cast<float>(piece.area_m2), false};
+      return;
+    }
+    if (!is_far(surface_.position_of(piece.point), first.triangle)) return;
+    area_m2_ += piece.area_m2;
+    if (!first.is_shared) area_m2_ += static_cast<double>(first.area_m2);
+    first.is_shared = true;
+  }
+
+  double area_m2() const { return area_m2_; }
+
+ private:
+  struct First {
+    std::uint32_t triangle = kNoTriangle;
+    float area_m2 = 0;
+    bool is_shared = false;
+  };
+
+  bool is_far(const glm::dvec3& from, std::uint32_t triangle) const {
+    const glm::uvec3& corner = surface_.triangles()[triangle];
+    const std::array<glm::dvec3, 3> corners = {surface_.position_m()[corner.x], surface_.position_m()[corner.y],
+                                               surface_.position_m()[corner.z]};
+    const glm::dvec3 weight = nearest_in_triangle(from, corners[0], corners[1], corners[2]);
+    return glm::distance(from, weight.x * corners[0] + weight.y * corners[1] + weight.z * corners[2]) > kFar_m;
+  }
+
+  const SurfaceDistance& surface_;
+  std::vector<First> first_;
+  double area_m2_ = 0;
+};
 
 }  // namespace
 
@@ -141,12 +204,14 @@ void ActuatorLayout::place_actuators(const Avatar& avatar) {
   place_.assign(n, std::nullopt);
   position_m_.assign(n, glm::dvec3(0));
   std::vector<glm::dvec3> middle(n, glm::dvec3(0));
-  for_pieces_of_skin(avatar, map_, surface_,
-                     [&](std::uint32_t triangle, const glm::dvec3& weight, std::uint16_t actuator, double area_m2) {
-                       if (actuator == 0) return;
-                       area_m2_[actuator - 1U] += area_m2;
-                       middle[actuator - 1U] += area_m2 * surface_.position_of({triangle, weight});
-                     });
+  SharedTexels shared(surface_, map_);
+  for_pieces_of_skin(avatar, map_, surface_, [&](const Piece& piece) {
+    if (piece.actuator == 0) return;
+    area_m2_[piece.actuator - 1U] += piece.area_m2;
+    middle[piece.actuator - 1U] += piece.area_m2 * surface_.position_of(piece.point);
+    shared.add(piece);
+  });
+  if (mapped_area_m2() > 0) ambiguous_share_ = shared.area_m2() / mapped_area_m2();
   for (std::size_t i = 0; i < n; ++i) {
     if (i < map_.position_m.size() && map_.position_m[i]) place_[i] = nearest_on_skin(surface_, *map_.position_m[i]);
     if (area_m2_[i] > 0) middle[i] /= area_m2_[i];
@@ -155,16 +220,14 @@ void ActuatorLayout::place_actuators(const Avatar& avatar) {
   std::vector<bool> is_given(n);
   for (std::size_t i = 0; i < n; ++i) is_given[i] = place_[i].has_value();
   if (!std::ranges::all_of(is_given, std::identity()))
-    for_pieces_of_skin(avatar, map_, surface_,
-                       [&](std::uint32_t triangle, const glm::dvec3& weight, std::uint16_t actuator, double) {
-                         if (actuator == 0 || is_given[actuator - 1U]) return;
-                         const std::size_t i = actuator - 1U;
-                         const SkinPoint point = {triangle, weight};
-                         const double piece_m = glm::distance(surface_.position_of(point), middle[i]);
-                         if (!(piece_m < away_m[i])) return;
-                         away_m[i] = piece_m;
-                         place_[i] = point;
-                       });
+    for_pieces_of_skin(avatar, map_, surface_, [&](const Piece& piece) {
+      if (piece.actuator == 0 || is_given[piece.actuator - 1U]) return;
+      const std::size_t i = piece.actuator - 1U;
+      const double piece_m = glm::distance(surface_.position_of(piece.point), middle[i]);
+      if (!(piece_m < away_m[i])) return;
+      away_m[i] = piece_m;
+      place_[i] = piece.point;
+    });
   for (std::size_t i = 0; i < n; ++i)
     if (place_[i]) position_m_[i] = surface_.position_of(*place_[i]);
 }

@@ -59,6 +59,9 @@ class ActuatorLayout {
   double area_m2(std::size_t actuator) const { return area_m2_[actuator]; }
   double mapped_area_m2() const;
   double skin_area_m2() const { return skin_area_m2_; }
+  /// The share of the mapped skin whose texels other skin has too that is far from it (more than 50 mm, not touching):
+  /// contact there fires an actuator that may be meant for the other. 0 where nothing is mapped.
+  double ambiguous_share() const { return ambiguous_share_; }
 
   /// Along the surface between two actuators; +inf where one has no place.
   double between_m(std::size_t a, std::size_t b) const { return between_m_[a * actuator_count() + b]; }
@@ -96,6 +99,7 @@ class ActuatorLayout {
   std::vector<glm::dvec3> position_m_;
   std::vector<double> area_m2_;
   double skin_area_m2_ = 0;
+  double ambiguous_share_ = 0;
   std::size_t stride_ = 0;                  // actuators, padded
   std::array<std::vector<float>, 3> axes_;  // x, y and z of the positions, padded
   std::vector<float> detour_;               // vertices x stride
