@@ -74,6 +74,7 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
   ASSERT_EQ(
       run("vestige record --rate 100 --duration 0.3 -o man.mcap && "
           "vestige replay man.mcap --timeline timeline.csv --textures textures.exr --contacts contacts.csv && "
+          "vestige batch --maps builtin --traces man.mcap --laws binary -o compared -q && "
           "mkdir -p results/sweep gpu software figures && "
           "vestige accuracy --detector cpu --colliders swarm --rate 60 --truth-rate 240 --duration 0.1 --count 5 "
           "--no-figure -o results/accuracy -q && "
