@@ -4,7 +4,6 @@
 #include <chrono>
 #include <span>
 
-#include "detector/intensity.hpp"
 #include "detector/texture_hash.hpp"
 
 namespace vestige {
@@ -78,11 +77,16 @@ class RecordedRows {
   ContactRow row_;
 };
 
+void look_up_anew(const ActuatorMap& map, ContactRow& row) {
+  for (Contact& contact : row)
+    if (contact.hit()) contact.actuator = map.at(contact.texture_coordinate);
+}
+
 }  // namespace
 
 ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
-                    double hold_s, const ReplayOutputs& outputs, const ReplayExpectation& expectation,
-                    const std::function<bool(double)>& progress) {
+                    const ReplayOutputs& outputs, const ReplayExpectation& expectation,
+                    std::span<const MapChange> changes, const std::function<bool(double)>& progress) {
   const std::vector<std::uint32_t>& ids = trace.collider_ids();
   const std::uint64_t frame_count = trace.frame_count();
   const std::uint64_t skinning_step = std::max<std::uint64_t>(1, frame_count / kSkinningFrames);
@@ -93,7 +97,6 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
   RecordedRows recorded(
       expectation.contacts != nullptr ? std::span(*expectation.contacts) : std::span<const RecordedContact>(), ids);
   FrameBuilder builder(avatar, ids, detectors.first().method());
-  BinaryLaw law(actuator_count, hold_s);
   TextureHash hash;
   TraceFrame trace_frame;
   std::uint64_t frames_read = 0;
@@ -118,6 +121,14 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
       ++frames_read;
     }
   };
+  const ActuatorMap* changed_map = nullptr;
+  std::size_t next_change = 0;
+  const auto follow_changes = [&](double time_s) {
+    for (; next_change < changes.size() && changes[next_change].time_s <= time_s; ++next_change) {
+      changed_map = &changes[next_change].map;
+      if (outputs.drive != nullptr) outputs.drive->law().change_layout(changes[next_change].layout);
+    }
+  };
   const auto take = [&](const Frame& frame, const ContactRow& row, const DetectorWork& work) {
     result.work += work;
     for (const Contact& contact : row) {
@@ -128,7 +139,7 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
     hash.add(row);
     if (outputs.contacts != nullptr) outputs.contacts->write(frame, row, ids);
     if (outputs.textures != nullptr) outputs.textures->add(frame, row);
-    if (outputs.timeline != nullptr) outputs.timeline->write(law.next(frame.time_s, row));
+    if (outputs.timeline != nullptr) outputs.timeline->write(outputs.drive->next(frame.time_s, row));
     if (expectation.contacts != nullptr) result.comparison->add(row, recorded.row_of(frame.index));
     ++result.frames;
     return progress(static_cast<double>(result.frames) / static_cast<double>(frame_count));
@@ -158,6 +169,9 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
       expectation.detectors->finish();
     }
     for (std::size_t i = 0; i < batch.count && !result.interrupted; ++i) {
+      follow_changes(batch.frames[i].time_s);
+      if (changed_map != nullptr) look_up_anew(*changed_map, batch.rows[i]);
+      if (changed_map != nullptr && expectation.detectors != nullptr) look_up_anew(*changed_map, expected.rows[i]);
       if (expectation.detectors != nullptr) result.comparison->add(batch.rows[i], expected.rows[i]);
       result.interrupted = !take(batch.frames[i], batch.rows[i], batch.work[i]);
     }

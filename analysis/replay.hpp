@@ -2,13 +2,16 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/comparison.hpp"
 #include "analysis/detector_team.hpp"
 #include "analysis/skinning_error.hpp"
+#include "detector/actuator_drive.hpp"
 #include "detector/contacts_csv.hpp"
 #include "detector/detector.hpp"
 #include "detector/texture_exr.hpp"
@@ -22,12 +25,20 @@ struct ReplayOutputs {
   ContactsCsv* contacts = nullptr;
   TextureExr* textures = nullptr;
   TimelineFile* timeline = nullptr;
+  ActuatorDrive* drive = nullptr;  ///< what the timeline holds; null only without one
 };
 
 /// What a replay is compared with, at most one of the two.
 struct ReplayExpectation {
   DetectorTeam* detectors = nullptr;                       ///< run beside, on the same frames
   const std::vector<RecordedContact>* contacts = nullptr;  ///< of an earlier run, ascending frames
+};
+
+/// Another actuator map from a time of the trace on.
+struct MapChange {
+  double time_s = 0;
+  ActuatorMap map;                               ///< of as many actuators as the trace's
+  std::shared_ptr<const ActuatorLayout> layout;  ///< what the drive's law goes on with; null for one that needs none
 };
 
 struct ReplayResult {
@@ -47,10 +58,11 @@ struct ReplayResult {
   bool interrupted = false;
 };
 
-/// Runs all frames of `trace` through `detectors`, whose rows must carry what the outputs need and `kHashedPlanes`.
-/// `hold_s` as for `BinaryLaw`. `progress` is told the share done and returns false to stop early.
+/// Runs all frames of `trace` through `detectors`, whose rows must carry what the outputs need and `kHashedPlanes`;
+/// with `changes` (ascending times), which say anew what actuator every contact has, texture coordinates too.
+/// `progress` is told the share done and returns false to stop early.
 ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
-                    double hold_s, const ReplayOutputs& outputs, const ReplayExpectation& expectation,
-                    const std::function<bool(double)>& progress);
+                    const ReplayOutputs& outputs, const ReplayExpectation& expectation,
+                    std::span<const MapChange> changes, const std::function<bool(double)>& progress);
 
 }  // namespace vestige

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -32,5 +33,37 @@ Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::ui
 /// Half the spread between the quartiles of the repetitions' frequencies over their median: the noise of a measurement.
 /// 0 for fewer than two repetitions.
 double relative_noise(std::span<const Repetition> repetitions);
+
+/// A mean over units (traces, subjects, …) and how far it can be trusted.
+struct MeanInterval {
+  double mean = 0;    ///< NaN for no value
+  Interval interval;  ///< 95 %; NaN for fewer than two values
+  std::size_t n = 0;  ///< units that have a value
+};
+
+/// Bootstrap of means over the same units for many candidates: each resample draws whole units, the same ones for every
+/// candidate, so that what makes a unit hard for all of them cancels in differences (Efron & Tibshirani 1993, ch. 8).
+/// Values that are NaN are missing. The quantiles are moved outwards for few units, where the plain percentile
+/// interval is too narrow ("expanded percentile", Hesterberg 2015, The American Statistician 69:371, section 5.2).
+/// Seeded: the same input gives the same bits.
+class PairedBootstrap {
+ public:
+  PairedBootstrap(std::size_t units, std::uint64_t seed);
+
+  /// `values`: one for each unit.
+  MeanInterval mean(std::span<const double> values) const;
+
+  /// Of `values` - `others`, over the units that have both.
+  MeanInterval difference(std::span<const double> values, std::span<const double> others) const;
+
+ private:
+  std::size_t units_;
+  std::vector<std::uint32_t> drawn_;  // resample by resample, `units_` each
+};
+
+/// The quantile at which an expanded 95 % percentile interval of `n` values begins: Phi(-sqrt(n / (n-1)) t(0.975,
+/// n-1)), from a table, since its functions differ between machines in the last bit. 0 for fewer than four: their whole
+/// range.
+double expanded_level(std::size_t n);
 
 }  // namespace vestige

@@ -59,6 +59,7 @@ int run(int argc, char** argv) {
   add_query(program, invocation);
   add_stress(program, invocation);
   add_accuracy(program, invocation);
+  add_batch(program, invocation);
   add_inspect(program, invocation);
   add_doctor(program, invocation);
   add_recover(program, invocation);

@@ -2,15 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "analysis/provenance.hpp"
 #include "cli/detectors.hpp"
-#include "cli/help/validators.hpp"
+#include "cli/law_choice.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
 #include "detector/path_choice.hpp"
@@ -26,7 +30,8 @@ struct ReplayOptions {
   DetectorChoice choice;
   std::string trace;
   std::size_t threads = 1;
-  double hold_ms = 60;
+  LawFlags law;
+  std::vector<std::string> map_at;
   std::string contacts;
   std::string textures;
   std::string planes = "actuator,t,triangle";
@@ -65,6 +70,63 @@ PlaneSet parse_planes(const std::string& text) {
   return planes;
 }
 
+/// One --map-at: when, and a map's file.
+struct TimedMap {
+  double time_s = 0;
+  std::string file;
+};
+
+/// By time. Throws `UsageError` for what is no TIME=FILE, and for a time that stands twice.
+std::vector<TimedMap> parse_map_at(const std::vector<std::string>& texts) {
+  std::vector<TimedMap> maps;
+  for (const std::string& text : texts) {
+    const std::size_t sign = text.find('=');
+    TimedMap timed;
+    const char* const end = text.data() + std::min(sign, text.size());
+    const auto [read_to, failure] = std::from_chars(text.data(), end, timed.time_s);
+    if (sign == std::string::npos || failure != std::errc() || read_to != end || !std::isfinite(timed.time_s) ||
+        sign + 1 == text.size())
+      throw UsageError("--map-at", fmt::format("'{}' is not a time in seconds, an equals sign and a map", text),
+                       "write for example --map-at 2.5=other.png");
+    timed.file = text.substr(sign + 1);
+    maps.push_back(timed);
+  }
+  std::ranges::stable_sort(maps, {}, &TimedMap::time_s);
+  const auto twice = std::ranges::adjacent_find(maps, {}, &TimedMap::time_s);
+  if (twice != maps.end())
+    throw UsageError("--map-at", fmt::format("two maps begin at {} s", twice->time_s), "leave one of them out");
+  return maps;
+}
+
+/// What --map-at cannot be used with.
+void check_map_at(const ReplayOptions& options) {
+  if (options.map_at.empty()) return;
+  if (options.choice.surface == "mapped")
+    throw UsageError("--map-at", "changes what --surface mapped looks for on the way", "leave one of the two out");
+  for (const std::string& detector : {options.choice.detector, options.verify})
+    if (detector == "paper")
+      throw UsageError("--map-at", "--detector paper has its map on the GPU and keeps it", "choose another detector");
+}
+
+std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace,
+                                 const DriveMaker* drives, Verbosity verbosity) {
+  std::vector<MapChange> changes;
+  for (const TimedMap& timed : timed_maps) {
+    const ActuatorMapFiles files = read_actuator_map_files(timed.file);
+    if (files.png.empty()) throw UsageError("--map-at", "'none' is no map", "name a PNG file, or builtin");
+    MapChange change = {timed.time_s, parse_actuator_map(files.png, files.json, timed.file), nullptr};
+    if (change.map.actuator_count != trace.map.actuator_count)
+      throw Error(timed.file,
+                  fmt::format("names {} actuators, where the trace's map has {}", change.map.actuator_count,
+                              trace.map.actuator_count),
+                  "give every map of a replay the same actuators");
+    for (const std::string& warning : change.map.warnings) warn(warning, verbosity);
+    if (drives != nullptr) change.layout = drives->layout_of(change.map);
+    changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
 /// What --verify names: another detector, or a file that an earlier replay wrote.
 struct Verification {
   std::unique_ptr<DetectorTeam> detectors;
@@ -75,7 +137,8 @@ struct Verification {
   ReplayExpectation expectation() const { return {detectors.get(), from_csv ? &contacts : nullptr}; }
 };
 
-Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector) {
+Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector,
+                               PlaneSet planes) {
   Verification verification;
   if (options.verify.empty()) return verification;
   if (is_detector(options.verify)) {
@@ -83,8 +146,7 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
       throw UsageError("--verify", fmt::format("'{}' would be compared with itself", options.verify),
                        "name the other detector, or a file");
     verification.detectors = std::make_unique<DetectorTeam>(options.threads, [&] {
-      return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map,
-                           kHashedPlanes);
+      return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, planes);
     });
   } else if (options.verify.ends_with(".csv")) {
     verification.contacts = read_contacts_csv(options.verify);
@@ -134,6 +196,7 @@ struct Run {
   std::size_t colliders;
   std::optional<PickedPath> picked;  ///< by --detector auto
   const Detector& detector;
+  const DriveMaker* drives = nullptr;  ///< of the timeline; null without one
 };
 
 std::string describe(const PickedPath& picked) {
@@ -154,7 +217,9 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const Run& run, const
   json["method"] = options.choice.method;
   json["skip"] = options.choice.skip;
   json["surface"] = options.choice.surface;
-  json["hold_ms"] = options.hold_ms;
+  json["hold_ms"] = options.law.hold_ms;
+  if (run.drives != nullptr) json["law"] = run.drives->to_json();
+  for (const std::string& map : options.map_at) json["map_at"].push_back(map);
   json["gl"] = vestige::to_json(run.detector.gl_info());
   json["avatar"] = vestige::to_json(trace.avatar);
   if (options.choice.surface == "mapped") json["triangles_left_out"] = run.detector.triangles_left_out();
@@ -230,7 +295,12 @@ int report_verification(const ReplayOptions& options, const ReplayResult& result
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
-  check_outputs(outputs, {options.trace, options.verify}, options.common);
+  const std::vector<TimedMap> timed_maps = parse_map_at(options.map_at);
+  check_map_at(options);
+  options.law.check();
+  std::vector<std::string> inputs = {options.trace, options.verify, options.law.actuator};
+  for (const TimedMap& timed : timed_maps) inputs.push_back(timed.file);
+  check_outputs(outputs, inputs, options.common);
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);
 
@@ -239,6 +309,12 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   PlaneSet planes = kHashedPlanes;
   if (!options.textures.empty()) planes = planes | texture_planes;
   if (!options.contacts.empty()) planes = PlaneSet::all();
+  std::optional<DriveMaker> drives;
+  if (!options.timeline.empty()) drives.emplace(options.law, trace.avatar, trace.map);
+  if (drives) planes = planes | drives->planes();
+  const std::vector<MapChange> changes = read_maps(timed_maps, trace, drives ? &*drives : nullptr, verbosity);
+  const PlaneSet verified = changes.empty() ? kHashedPlanes : kHashedPlanes | Plane::kTextureCoordinate;
+  planes = planes | verified;
   std::optional<PickedPath> picked;
   if (options.choice.detector == "auto")
     picked = pick_path(trace.avatar.triangles.size(), collider_ids.size(), options.choice.skip_kind());
@@ -246,8 +322,8 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     return make_detector(picked ? picked->detector : options.choice.detector, options.choice.context, options.choice,
                          trace.avatar, trace.map, planes);
   });
-  const Run run = {options, trace, collider_ids.size(), picked, detectors.first()};
-  const Verification verification = load_verification(options, trace, run.detector);
+  const Run run = {options, trace, collider_ids.size(), picked, detectors.first(), drives ? &*drives : nullptr};
+  const Verification verification = load_verification(options, trace, run.detector, verified);
 
   catch_interrupts();  // before the first temporary file
   std::optional<ContactsCsv> contacts;
@@ -266,12 +342,13 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     textures.emplace(texture_planes, collider_ids.size(), std::move(attributes));
   }
 
+  const std::unique_ptr<ActuatorDrive> drive = drives ? drives->make() : nullptr;
   ReplayResult result;
   {
     Progress progress("Replaying", verbosity);
-    result = replay(trace.reader, trace.avatar, trace.map.actuator_count, detectors, options.hold_ms / 1e3,
-                    {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get()},
-                    verification.expectation(), [&](double share) { return progress.update(share); });
+    result = replay(trace.reader, trace.avatar, trace.map.actuator_count, detectors,
+                    {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get(), drive.get()},
+                    verification.expectation(), changes, [&](double share) { return progress.update(share); });
   }
   if (result.frames == 0) throw Error(options.trace, "holds no frame", "record it again");
   if (textures) textures->write(*texture_file);
@@ -325,21 +402,25 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       "Write the actuators' duties: a row a frame, 0 to 255; or as MPEG haptics (.hjif); or for bHaptics (.tact, "
       "at most 40 actuators)")
       ->type_name("OUT.csv|OUT.hjif|OUT.tact|-");
-  add_result("--hold", options->hold_ms,
-             "How long a contact keeps its actuator on, in ms: a coin motor cannot answer a single frame; 0 gives the "
-             "raw frames")
-      ->capture_default_str()
-      ->check(help::kNotNegative)
-      ->type_name("MS");
+  verb->add_option("--map-at", options->map_at,
+                   "Use another actuator map from a time of the trace on, with as many actuators; again for more")
+      ->group("Results")
+      ->type_name("TIME=FILE.png")
+      ->expected(1)
+      ->take_all();
   add_result("--verify", options->verify,
              "Compare with another detector (cpu, exact, geometry, paper), or with the --contacts or --json of an "
              "earlier replay; exit "
              "4 if contacts differ")
       ->type_name("DETECTOR|FILE");
+  add_law_options(
+      *verb, options->law, "Intensity",
+      "How long a contact is felt, in ms: a coin motor cannot answer a single frame; 0 gives the raw frames");
   add_common_options(*verb, options->common);
   // Flags that would do nothing are refused.
   verb->get_option("--planes")->needs(verb->get_option("--textures"));
-  verb->get_option("--hold")->needs(verb->get_option("--timeline"));
+  for (const char* flag : {"--hold", "--law", "--full-speed", "--sigma", "--actuator"})
+    verb->get_option(flag)->needs(verb->get_option("--timeline"));
   verb->callback([options, &invocation] { run_replay(*options, invocation); });
 }
 

@@ -8,11 +8,12 @@
 #include "analysis/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/law_choice.hpp"
 #include "cli/scene.hpp"
 #include "cli/sink_choice.hpp"
 #include "cli/verbs.hpp"
+#include "detector/actuator_drive.hpp"
 #include "detector/actuator_map_watch.hpp"
-#include "detector/intensity.hpp"
 #include "detector/path_choice.hpp"
 #include "detector/pressure.hpp"
 #include "traces/error.hpp"
@@ -29,7 +30,7 @@ struct StreamOptions {
   PlaybackOptions playback;
   std::string trace;
   std::string map;
-  double hold_ms = 60;
+  LawFlags law;
   std::string log;
 };
 
@@ -65,6 +66,43 @@ struct Streamed {
   std::uint64_t maps_reloaded = 0;
 };
 
+/// What the trace's contacts become, run by run: pressures where the sink asks for them, else what --law says.
+class LawMaker {
+ public:
+  LawMaker(const StreamOptions& options, const OpenTrace& trace)
+      : hold_s_(options.law.hold_ms / 1e3 * options.playback.rate), actuator_count_(trace.map.actuator_count) {
+    if (options.sink.quantity() != Quantity::kPressure)
+      drives_.emplace(options.law, trace.avatar, trace.map, options.playback.rate);
+  }
+
+  PlaneSet planes() const { return drives_ ? drives_->planes() : kHashedPlanes | Plane::kPressure; }
+  bool needs_layout() const { return drives_ && drives_->has_layout(); }
+  nlohmann::ordered_json to_json() const { return drives_ ? drives_->to_json() : nlohmann::ordered_json("pressure"); }
+
+  PlaybackCalls::Law make() {
+    if (!drives_)
+      return [law = std::make_shared<PressureLaw>(actuator_count_, hold_s_)](
+                 double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
+    drive_ = drives_->make();
+    return [drive = drive_](double time_s, const ContactRow& row) -> const ActuatorFrame& {
+      return drive->next(time_s, row);
+    };
+  }
+
+  /// Goes on with another map's layout, in this run and those that follow.
+  void use(const std::shared_ptr<const ActuatorLayout>& layout) {
+    if (!layout) return;
+    drives_->use(layout);
+    if (drive_) drive_->law().change_layout(layout);
+  }
+
+ private:
+  double hold_s_;
+  std::size_t actuator_count_;
+  std::optional<DriveMaker> drives_;
+  std::shared_ptr<ActuatorDrive> drive_;  ///< of the run that goes on
+};
+
 nlohmann::ordered_json to_json(const LatencyHistogram& latency) {
   return {{"p50", latency.quantile_us(0.5)},
           {"p95", latency.quantile_us(0.95)},
@@ -73,11 +111,12 @@ nlohmann::ordered_json to_json(const LatencyHistogram& latency) {
 }
 
 nlohmann::ordered_json to_json(const Streamed& streamed, const StreamOptions& options, const OpenSink& sink,
-                               const Detector& detector, const Invocation& invocation) {
+                               const Detector& detector, const LawMaker& laws, const Invocation& invocation) {
   const SenderStatistics& sender = streamed.sender;
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.trace;
   json["detector"] = detector.name();
+  json["law"] = laws.to_json();
   json["gl"] = vestige::to_json(detector.gl_info());
   json["frames"] = streamed.playback.frames;
   json["contacts"] = streamed.playback.contacts;
@@ -150,18 +189,14 @@ int report_losses(const Streamed& streamed, const OpenSink& sink, Verbosity verb
   return code;
 }
 
-PlaybackCalls::Law make_law(const SinkChoice& sink, std::size_t actuator_count, double hold_s) {
-  if (sink.quantity() == Quantity::kPressure)
-    return [law = std::make_shared<PressureLaw>(actuator_count, hold_s)](
-               double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
-  return [law = std::make_shared<BinaryLaw>(actuator_count, hold_s)](
-             double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
-}
-
 void run_stream(const StreamOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.log, options.common.json, options.sink.output_path()};
-  check_outputs(outputs, {options.trace, options.map}, options.common);
+  check_outputs(outputs, {options.trace, options.map, options.law.actuator}, options.common);
+  options.law.check();
+  if (options.sink.quantity() == Quantity::kPressure && options.law.any())
+    throw UsageError(options.law.actuator.empty() ? "--law" : "--actuator",
+                     "pressures follow from the speed of contacts, by a law of their own", "leave it out");
   if (!options.map.empty() && options.choice.surface == "mapped")
     throw UsageError("--map", "may change while it is felt, which --surface mapped cannot follow",
                      "leave one of the two out");
@@ -186,9 +221,9 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
       options.choice.detector == "auto"
           ? pick_path(trace.avatar.triangles.size(), colliders, options.choice.skip_kind()).detector
           : options.choice.detector;
-  const PlaneSet planes =
-      options.sink.quantity() == Quantity::kPressure ? kHashedPlanes | Plane::kPressure : kHashedPlanes;
-  const auto detector = make_detector(name, options.choice.context, options.choice, trace.avatar, trace.map, planes);
+  LawMaker laws(options, trace);
+  const auto detector =
+      make_detector(name, options.choice.context, options.choice, trace.avatar, trace.map, laws.planes());
 
   catch_interrupts();
   std::optional<StreamLog> log;
@@ -200,19 +235,19 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
          verbosity);
   const auto tell = [verbosity](const std::string& text) { warn(text, verbosity); };
   std::optional<ActuatorMapWatch> watch;
-  if (watched) watch.emplace(options.map, map_stamp, actuator_count, tell);
+  if (watched)
+    watch.emplace(options.map, map_stamp, actuator_count, tell, laws.needs_layout() ? &trace.avatar : nullptr);
 
   Streamed streamed;
   {
     Sender sender(sink.sink(), {.keep_log = log.has_value()}, tell);
     Progress progress("Streaming", verbosity);
     PlaybackCalls calls;
-    calls.make_law = [&] {
-      return make_law(options.sink, actuator_count, options.hold_ms / 1e3 * options.playback.rate);
-    };
+    calls.make_law = [&] { return laws.make(); };
     calls.go_on = [&](double share) {
-      if (auto map = watch ? watch->take() : std::nullopt) {
-        trace.map = std::move(*map);
+      if (auto taken = watch ? watch->take() : std::nullopt) {
+        trace.map = std::move(taken->map);
+        laws.use(taken->layout);
         ++streamed.maps_reloaded;
         for (const std::string& warning : trace.map.warnings) tell(warning);
       }
@@ -231,7 +266,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   if (log) log->commit();
 
   print_summary(summary(streamed, sink), outputs, options.common);
-  write_json(options.common.json, to_json(streamed, options, sink, *detector, invocation), options.common);
+  write_json(options.common.json, to_json(streamed, options, sink, *detector, laws, invocation), options.common);
   const int losses = report_losses(streamed, sink, verbosity);
   const int damage = report_damage(trace.reader, options.trace, verbosity);
   const bool cut_short = interrupted() && !options.playback.loop;
@@ -259,12 +294,8 @@ void add_stream(CLI::App& program, Invocation& invocation) {
   add_playing("--map", options->map,
               "Use this actuator map instead of the trace's, and read it again whenever it changes on disk")
       ->type_name("builtin|FILE.png");
-  add_playing(
-      "--hold", options->hold_ms,
-      "How long a contact keeps its actuator on, in ms of the vest's time: a coin motor cannot answer a single frame")
-      ->capture_default_str()
-      ->check(help::kNotNegative)
-      ->type_name("MS");
+  add_law_options(*verb, options->law, "Intensity",
+                  "How long a contact is felt, in ms of the vest's time: a coin motor cannot answer a single frame");
   add_detector_and_context(*verb, options->choice);
   add_detector_options(*verb, options->choice);
   verb->add_option("--log", options->log,

@@ -14,6 +14,7 @@ void add_growth(CLI::App& program, Invocation& invocation);
 void add_query(CLI::App& program, Invocation& invocation);
 void add_stress(CLI::App& program, Invocation& invocation);
 void add_accuracy(CLI::App& program, Invocation& invocation);
+void add_batch(CLI::App& program, Invocation& invocation);
 void add_inspect(CLI::App& program, Invocation& invocation);
 void add_doctor(CLI::App& program, Invocation& invocation);
 void add_recover(CLI::App& program, Invocation& invocation);

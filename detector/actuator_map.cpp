@@ -124,7 +124,22 @@ GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name)
 struct Sidecar {
   std::vector<std::uint16_t> grey;
   std::vector<std::string> names;
+  std::vector<std::optional<glm::dvec3>> position_m;
 };
+
+/// Three finite numbers, or nothing where there is none to read.
+std::optional<glm::dvec3> parse_position(const nlohmann::json& entry, const std::string& where) {
+  if (!entry.contains("position_m")) return std::nullopt;
+  const nlohmann::json& list = entry["position_m"];
+  const auto is_finite = [](const nlohmann::json& value) {
+    return value.is_number() && std::isfinite(value.get<double>());
+  };
+  if (!list.is_array() || list.size() != 3 || !std::ranges::all_of(list, is_finite))
+    throw Error(
+        where, "'position_m' is not three finite numbers",
+        R"(write the actuator's middle on the skin in metres, "position_m": [0.08, 1.3, 0.12], or leave it out)");
+  return glm::dvec3(list[0].get<double>(), list[1].get<double>(), list[2].get<double>());
+}
 
 Sidecar parse_sidecar(std::string_view json, std::string_view name) {
   constexpr const char* kRemedy = R"(write {"actuators": [{"grey": 40, "name": "chest left"}, …]})";
@@ -143,6 +158,7 @@ Sidecar parse_sidecar(std::string_view json, std::string_view name) {
     sidecar.grey.push_back(grey);
     const bool named = entry.contains("name") && entry["name"].is_string();
     sidecar.names.push_back(named ? entry["name"].get<std::string>() : fmt::format("actuator {}", sidecar.grey.size()));
+    sidecar.position_m.push_back(parse_position(entry, where));
   }
   return sidecar;
 }
@@ -157,6 +173,7 @@ Sidecar actuators_of(const GreyImage& image, std::string_view name, std::vector<
   for (const auto& [grey, count] : texels) {
     found.grey.push_back(grey);
     found.names.push_back(fmt::format("actuator {}", found.grey.size()));
+    found.position_m.emplace_back();
     if (count <= kFewTexels) ++thin;
   }
   if (found.grey.size() > kManyActuators)
@@ -209,6 +226,7 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
   }
   map.actuator_count = listed.grey.size();
   map.names = std::move(listed.names);
+  map.position_m = std::move(listed.position_m);
   return map;
 }
 

@@ -18,16 +18,17 @@ constexpr std::chrono::milliseconds kBetweenLooks(100);
 }  // namespace
 
 ActuatorMapWatch::ActuatorMapWatch(std::string file, std::string read_stamp, std::size_t actuator_count,
-                                   std::function<void(const std::string&)> warn)
+                                   std::function<void(const std::string&)> warn, const Avatar* avatar)
     : file_(std::move(file)),
       actuator_count_(actuator_count),
       warn_(std::move(warn)),
+      avatar_(avatar),
       read_stamp_(std::move(read_stamp)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 ActuatorMapWatch::~ActuatorMapWatch() = default;
 
-std::optional<ActuatorMap> ActuatorMapWatch::take() {
+std::optional<WatchedMap> ActuatorMapWatch::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(map_, std::nullopt);
 }
@@ -68,8 +69,10 @@ void ActuatorMapWatch::read() try {
   if (map.actuator_count != actuator_count_)
     throw Error(file_, fmt::format("now names {} actuators, where {} are in use", map.actuator_count, actuator_count_),
                 "start again to use it");
+  std::shared_ptr<const ActuatorLayout> layout;
+  if (avatar_ != nullptr) layout = std::make_shared<ActuatorLayout>(*avatar_, map);
   const std::lock_guard lock(mutex_);
-  map_ = std::move(map);
+  map_ = {std::move(map), std::move(layout)};
 } catch (const std::exception& error) {
   warn_(fmt::format("{}\n  The map before it stays in use.", error.what()));
 }

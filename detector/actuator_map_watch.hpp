@@ -2,15 +2,23 @@
 
 #include <condition_variable>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
 
+#include "detector/actuator_layout.hpp"
 #include "detector/actuator_map.hpp"
 
 namespace vestige {
+
+/// A map as it was read, and where its actuators are on the body, if that was asked for.
+struct WatchedMap {
+  ActuatorMap map;
+  std::shared_ptr<const ActuatorLayout> layout;
+};
 
 /// Reads an actuator map again when its PNG or its sidecar changes on disk, in a thread of its own, so that a map can
 /// be edited while it is felt (HAVE 2010 §III.B). A file is read once it has been left alone for 0.1 s.
@@ -21,16 +29,16 @@ class ActuatorMapWatch {
 
   /// `file`: a PNG; `read_stamp`: its stamp from before it was read. Maps with another number of actuators than
   /// `actuator_count` are not taken, nor is what cannot be read: `warn` is told, in the watch's thread, and the old one
-  /// stays.
+  /// stays. `avatar`, which stays in use: the body for layouts; null for none, which take their time to measure.
   ActuatorMapWatch(std::string file, std::string read_stamp, std::size_t actuator_count,
-                   std::function<void(const std::string&)> warn);
+                   std::function<void(const std::string&)> warn, const Avatar* avatar = nullptr);
   /// Waits for the thread.
   ~ActuatorMapWatch();
   ActuatorMapWatch(const ActuatorMapWatch&) = delete;
   ActuatorMapWatch& operator=(const ActuatorMapWatch&) = delete;
 
   /// The newest map that has been read since the last call, whole.
-  std::optional<ActuatorMap> take();
+  std::optional<WatchedMap> take();
 
  private:
   void run(const std::stop_token& stop);
@@ -39,10 +47,11 @@ class ActuatorMapWatch {
   std::string file_;
   std::size_t actuator_count_;
   std::function<void(const std::string&)> warn_;
+  const Avatar* avatar_;
   std::string read_stamp_;
   std::mutex mutex_;
   std::condition_variable_any stopped_;
-  std::optional<ActuatorMap> map_;
+  std::optional<WatchedMap> map_;
   std::jthread thread_;  // last: it uses all of the above
 };
 

@@ -1,24 +1,215 @@
 #include "detector/intensity.hpp"
 
-#include <limits>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "detector/portable_math.hpp"
+#include "traces/error.hpp"
 
 namespace vestige {
 
-BinaryLaw::BinaryLaw(std::size_t actuator_count, double hold_s)
-    : hold_s_(hold_s), on_until_s_(actuator_count, -std::numeric_limits<double>::infinity()) {
-  frame_.duty.resize(actuator_count);
+namespace {
+
+using Layout = std::shared_ptr<const ActuatorLayout>;
+using Rule = HeldAmplitudes::Rule;
+
+/// Half of a duty's step: rounds to nothing.
+constexpr double kNothing = 0.5 / 255;
+
+/// Laws whose contacts ask for their own actuator alone, which a row's contacts name.
+constexpr PlaneSet kOwnActuator = Plane::kActuator;
+/// Laws that ask where a contact is.
+constexpr PlaneSet kPlace = Plane::kTriangle | Plane::kBarycentric | Plane::kTextureCoordinate;
+
+class Binary final : public IntensityLaw {
+ public:
+  Binary(std::size_t actuator_count, const LawOptions& options)
+      : IntensityLaw(nullptr, actuator_count, options, Rule::kEveryContact) {}
+  const char* name() const override { return "binary"; }
+  PlaneSet planes() const override { return kOwnActuator; }
+  void spread(const LocatedContact& contact, std::vector<Share>& out) const override {
+    out.clear();
+    if (contact.actuator != 0) out.push_back({contact.actuator - 1U, 1});
+  }
+};
+
+class Speed final : public IntensityLaw {
+ public:
+  Speed(std::size_t actuator_count, const LawOptions& options)
+      : IntensityLaw(nullptr, actuator_count, options, Rule::kEveryContact) {}
+  const char* name() const override { return "speed"; }
+  PlaneSet planes() const override { return kOwnActuator | Plane::kSpeed; }
+  void spread(const LocatedContact& contact, std::vector<Share>& out) const override {
+    out.clear();
+    const double share = contact.speed_m_per_s / options().full_speed_m_per_s;
+    if (contact.actuator != 0 && share > 0) out.push_back({contact.actuator - 1U, std::min(share, 1.0)});
+  }
+};
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
+  return a.x * b.y - a.y * b.x;
 }
 
-const ActuatorFrame& BinaryLaw::next(double time_s, const ContactRow& row) {
-  frame_.time_s = time_s;
-  for (std::size_t i = 0; i < frame_.duty.size(); ++i) frame_.duty[i] = time_s < on_until_s_[i] ? 255 : 0;
-  for (const Contact& contact : row) {
-    if (!contact.hit() || contact.actuator == 0) continue;
-    const std::size_t i = contact.actuator - 1U;
-    frame_.duty[i] = 255;
-    on_until_s_[i] = time_s + hold_s_;
+/// The actuators that a contact lies between, and their weights, which add up to 1.
+class Between {
+ public:
+  Between(const ActuatorLayout& layout, const LocatedContact& contact) : layout_(layout), contact_(contact) {
+    const std::span<const float> distance_m = contact.distance_m();
+    nearest_ = static_cast<std::uint16_t>(std::ranges::min_element(distance_m) - distance_m.begin());
+    if (!find_triangle()) find_edge();
   }
-  return frame_;
+
+  std::span<const Share> weights() const { return {weight_.data(), count_}; }
+
+ private:
+  bool find_triangle() {
+    double best_m = std::numeric_limits<double>::infinity();
+    for (const std::uint32_t number : layout_.neighbours_of(nearest_)) {
+      const std::array<std::uint16_t, 3>& corner = layout_.neighbours()[number];
+      // Of several that seem to hold the contact (one may lie on the body's other side), the one whose corners are
+      // nearest.
+      const double farthest_m = std::max(
+          {contact_.distance_m()[corner[0]], contact_.distance_m()[corner[1]], contact_.distance_m()[corner[2]]});
+      if (farthest_m >= best_m) continue;
+      const std::array<glm::dvec2, 3> to = {towards(corner[0]), towards(corner[1]), towards(corner[2])};
+      const std::array<double, 3> part = {cross(to[1], to[2]), cross(to[2], to[0]), cross(to[0], to[1])};
+      const double whole = part[0] + part[1] + part[2];
+      if (!(std::abs(whole) > 0)) continue;
+      const std::array<double, 3> weight = {part[0] / whole, part[1] / whole, part[2] / whole};
+      if (!(weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0)) continue;
+      best_m = farthest_m;
+      count_ = 0;
+      for (std::size_t i = 0; i < 3; ++i)
+        if (weight[i] > 0) weight_[count_++] = {corner[i], weight[i]};
+    }
+    return count_ != 0;
+  }
+
+  void find_edge() {
+    const glm::dvec2 from = towards(nearest_);
+    weight_[0] = {nearest_, 1};
+    count_ = 1;
+    double least = glm::dot(from, from);
+    for (const std::uint16_t other : layout_.beside(nearest_)) {
+      const glm::dvec2 way = towards(other) - from;
+      const double length_squared = glm::dot(way, way);
+      if (!(length_squared > 0)) continue;
+      const double share = std::clamp(-glm::dot(from, way) / length_squared, 0.0, 1.0);
+      const glm::dvec2 there = from + share * way;
+      if (!(glm::dot(there, there) < least)) continue;
+      least = glm::dot(there, there);
+      count_ = 0;
+      if (share < 1) weight_[count_++] = {nearest_, 1 - share};
+      if (share > 0) weight_[count_++] = {other, share};
+    }
+  }
+
+  glm::dvec2 towards(std::uint16_t actuator) const { return layout_.towards_m(contact_, actuator); }
+
+  const ActuatorLayout& layout_;
+  const LocatedContact& contact_;
+  std::uint16_t nearest_ = 0;
+  std::array<Share, 3> weight_ = {};
+  std::size_t count_ = 0;
+};
+
+enum class Energy { kEven, kSagging };
+
+class Phantom final : public IntensityLaw {
+ public:
+  Phantom(const Layout& layout, const LawOptions& options, Energy energy)
+      : IntensityLaw(layout, layout->actuator_count(), options, Rule::kLatestOfCollider), energy_(energy) {}
+  const char* name() const override { return energy_ == Energy::kEven ? "phantom" : "linear"; }
+  PlaneSet planes() const override { return kPlace; }
+  void spread(const LocatedContact& contact, std::vector<Share>& out) const override {
+    out.clear();
+    if (contact.actuator == 0) return;
+    const Between between(layout(), contact);
+    for (const Share& weight : between.weights())
+      out.push_back({weight.actuator, energy_ == Energy::kEven ? std::sqrt(weight.amplitude) : weight.amplitude});
+  }
+
+ private:
+  Energy energy_;
+};
+
+class Gaussian final : public IntensityLaw {
+ public:
+  Gaussian(const Layout& layout, const LawOptions& options)
+      : IntensityLaw(layout, layout->actuator_count(), options, Rule::kLatestOfCollider) {}
+  const char* name() const override { return "gaussian"; }
+  PlaneSet planes() const override { return kPlace; }
+  void spread(const LocatedContact& contact, std::vector<Share>& out) const override {
+    out.clear();
+    if (contact.actuator == 0) return;
+    const double sigma_m = sigma_of(layout(), options());
+    // One actuator alone has no spacing: it is on.
+    const double scale = std::isfinite(sigma_m) ? 0.5 / (sigma_m * sigma_m) : 0;
+    const double reach_squared = 2 * kLogOfSteps / (2 * scale);
+    const std::span<const float> distance_m = contact.distance_m();
+    for (std::uint32_t i = 0; i < distance_m.size(); ++i) {
+      const double squared = static_cast<double>(distance_m[i]) * static_cast<double>(distance_m[i]);
+      if (squared >= reach_squared) continue;
+      const double amplitude = portable_exp(-squared * scale);
+      if (amplitude >= kNothing) out.push_back({i, std::min(amplitude, 1.0)});
+    }
+  }
+
+ private:
+  static constexpr double kLogOfSteps = 6.24;  // a little more than -ln(kNothing)
+};
+
+}  // namespace
+
+double sigma_of(const ActuatorLayout& layout, const LawOptions& options) {
+  return options.sigma_m.value_or(0.5 * layout.spacing_m());
+}
+
+IntensityLaw::IntensityLaw(Layout layout, std::size_t actuator_count, const LawOptions& options, Rule hold_rule)
+    : layout_(std::move(layout)),
+      actuator_count_(actuator_count),
+      options_(options),
+      hold_rule_(hold_rule),
+      held_(actuator_count, options.hold_s, hold_rule) {}
+
+const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Contact> row) {
+  held_.begin(time_s);
+  const bool asks_where = planes().has(Plane::kBarycentric);
+  for (std::uint32_t column = 0; column < row.size(); ++column) {
+    const Contact& contact = row[column];
+    if (!contact.hit() || contact.actuator == 0) continue;
+    if (asks_where) {
+      layout_->locate(contact, located_);
+    } else {
+      located_.speed_m_per_s = contact.speed_m_per_s;
+    }
+    located_.actuator = contact.actuator;
+    spread(located_, shares_);
+    held_.add(column, shares_);
+  }
+  return held_.now();
+}
+
+bool needs_layout(std::string_view law) {
+  return law == "phantom" || law == "linear" || law == "gaussian";
+}
+
+std::unique_ptr<IntensityLaw> make_law(std::string_view name, Layout layout, const LawOptions& options) {
+  if (name == "phantom") return std::make_unique<Phantom>(layout, options, Energy::kEven);
+  if (name == "linear") return std::make_unique<Phantom>(layout, options, Energy::kSagging);
+  if (name == "gaussian") return std::make_unique<Gaussian>(layout, options);
+  return make_law(name, layout->actuator_count(), options);
+}
+
+std::unique_ptr<IntensityLaw> make_law(std::string_view name, std::size_t actuator_count, const LawOptions& options) {
+  if (name == "binary") return std::make_unique<Binary>(actuator_count, options);
+  if (name == "speed") return std::make_unique<Speed>(actuator_count, options);
+  throw UsageError("--law", fmt::format("there is no intensity law '{}'", name),
+                   fmt::format("choose of: {}", fmt::join(kLawNames, ", ")));
 }
 
 }  // namespace vestige

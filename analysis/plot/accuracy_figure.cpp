@@ -17,13 +17,17 @@ constexpr double kWidthPt = 468;
 constexpr double kMarginPt = 8;
 constexpr double kLeftPt = 50;
 constexpr double kLegendPt = 96;
-constexpr double kTitlePt = 15;
+constexpr double kTitlePt = 19;
 constexpr double kSharesPt = 84;  ///< height of the logarithmic part of a panel
 constexpr double kLanePt = 8.5;   ///< and of each lane below it
 constexpr double kPanelGapPt = 10;
 constexpr double kAxisRoomPt = 34;
 constexpr double kSmallLinePt = 8;
 constexpr double kLegendLinePt = 11;
+constexpr double kTitleGapPt = 9;  ///< marks at the very top, and their labels, stay clear of the titles
+constexpr double kMarkPt = 4;
+constexpr double kRateHeightPt = 3.7;  ///< of digits in `kRateStyle`
+constexpr double kRateGapPt = 1.2;     ///< between labels
 constexpr double kMost = 1;
 constexpr double kLeastShown = 0.002;
 
@@ -137,23 +141,28 @@ class AccuracyFigure : public Figure {
   void draw_panel(Canvas& canvas, const AccuracyPanel& panel, const Axis& x, double top_pt, bool is_last) const {
     const Box plot = {x.begin_pt, top_pt - kTitlePt - kSharesPt - lanes_pt(), x.end_pt, top_pt - kTitlePt};
     const Axis y = {Scale::kLog, least_share(), kMost, plot.bottom_pt + lanes_pt(), plot.top_pt};
-    canvas.text({plot.left_pt, plot.top_pt + 4},
+    canvas.text({plot.left_pt, plot.top_pt + kTitleGapPt},
                 fmt::format("{}: {} colliders, {} true events", panel.colliders, panel.collider_count,
                             grouped(panel.true_events)),
                 kTitleStyle);
     draw_frame(canvas, plot, x, y, is_last);
-    FreePlace free_place({plot.left_pt, plot.bottom_pt, plot.right_pt + 8, plot.top_pt + 3});
+    FreePlace free_place({plot.left_pt, plot.bottom_pt, plot.right_pt + 8, plot.top_pt + kTitleGapPt - 2});
+    if (x.low < 1 && x.high > 1) {
+      const std::array<Place, 2> real_time = {Place{x.place_pt(1), plot.bottom_pt}, Place{x.place_pt(1), plot.top_pt}};
+      free_place.take(real_time);
+    }
     std::vector<std::vector<Place>> lines;
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
       lines.push_back(places(panel.series[i], i, x, y));
       free_place.take(lines.back());
       for (const Place& place : lines.back())
-        free_place.take({place.x_pt - 2, place.y_pt - 2, place.x_pt + 2, place.y_pt + 2});
+        free_place.take(
+            {place.x_pt - kMarkPt / 2, place.y_pt - kMarkPt / 2, place.x_pt + kMarkPt / 2, place.y_pt + kMarkPt / 2});
       canvas.polyline(lines.back(), {colour(i), 1, Dash::kSolid});
     }
     for (std::size_t i = 0; i < lines.size(); ++i)
       for (std::size_t p = 0; p < lines[i].size(); ++p) {
-        canvas.mark(lines[i][p], mark_of(panel.series[i]), 4, colour(i), kWhite);
+        canvas.mark(lines[i][p], mark_of(panel.series[i]), kMarkPt, colour(i), kWhite);
         draw_rate(canvas, panel.series[i].points[p].rate_hz, lines[i][p], free_place);
       }
   }
@@ -171,17 +180,23 @@ class AccuracyFigure : public Figure {
   static void draw_rate(Canvas& canvas, double rate_hz, const Place& at, FreePlace& free_place) {
     const std::string label = short_rate(rate_hz);
     const double half_pt = text_width_pt(label, kRateStyle) / 2;
-    constexpr double kHeightPt = 4;
+    const double beside_pt = kMarkPt / 2 + kRateGapPt + half_pt;
+    const double above_pt = kMarkPt / 2 + kRateGapPt + kRateHeightPt / 2;
+    const double aslant_pt = kRateHeightPt / 2 + kRateGapPt;
     std::vector<Box> boxes;
     for (const Place& centre :
-         {Place{at.x_pt, at.y_pt + 4.8}, Place{at.x_pt, at.y_pt - 4.8}, Place{at.x_pt + half_pt + 3.5, at.y_pt + 2.5},
-          Place{at.x_pt - half_pt - 3.5, at.y_pt + 2.5}, Place{at.x_pt + half_pt + 3.5, at.y_pt - 2.5},
-          Place{at.x_pt - half_pt - 3.5, at.y_pt - 2.5}})
-      boxes.push_back(
-          {centre.x_pt - half_pt, centre.y_pt - kHeightPt / 2, centre.x_pt + half_pt, centre.y_pt + kHeightPt / 2});
-    const auto place = std::ranges::find_if(boxes, [&](const Box& box) { return free_place.is_free(box); });
+         {Place{at.x_pt, at.y_pt + above_pt}, Place{at.x_pt, at.y_pt - above_pt},
+          Place{at.x_pt + beside_pt, at.y_pt + aslant_pt}, Place{at.x_pt - beside_pt, at.y_pt + aslant_pt},
+          Place{at.x_pt + beside_pt, at.y_pt - aslant_pt}, Place{at.x_pt - beside_pt, at.y_pt - aslant_pt}})
+      boxes.push_back({centre.x_pt - half_pt, centre.y_pt - kRateHeightPt / 2, centre.x_pt + half_pt,
+                       centre.y_pt + kRateHeightPt / 2});
+    const auto with_gap = [](const Box& box) {
+      return Box{box.left_pt - kRateGapPt / 2, box.bottom_pt - kRateGapPt / 2, box.right_pt + kRateGapPt / 2,
+                 box.top_pt + kRateGapPt / 2};
+    };
+    const auto place = std::ranges::find_if(boxes, [&](const Box& box) { return free_place.is_free(with_gap(box)); });
     if (place == boxes.end()) return;  // marks beside it along the line say it
-    free_place.take(*place);
+    free_place.take(with_gap(*place));
     canvas.text({(place->left_pt + place->right_pt) / 2, place->bottom_pt}, label, kRateStyle);
   }
 
@@ -206,8 +221,8 @@ class AccuracyFigure : public Figure {
                 {7, kInk, Anchor::kRight, Level::kMiddle});
     if (x.low < 1 && x.high > 1) {
       const double x_pt = x.place_pt(1);
-      canvas.line({x_pt, plot.bottom_pt}, {x_pt, plot.top_pt}, {kSmallPrint, 0.5, Dash::kDotted});
-      canvas.text({x_pt, plot.top_pt + 2}, "real time", {6, kSmallPrint, Anchor::kCentre, Level::kFoot});
+      canvas.line({x_pt, plot.bottom_pt}, {x_pt, plot.top_pt + kTitleGapPt - 2}, {kSmallPrint, 0.5, Dash::kDotted});
+      canvas.text({x_pt, plot.top_pt + kTitleGapPt}, "real time", {6, kSmallPrint, Anchor::kCentre, Level::kFoot});
     }
     if (is_last) {
       draw_x_axis(canvas, plot, x, x_ticks, "Run time for a second of motion (s)");
@@ -222,7 +237,7 @@ class AccuracyFigure : public Figure {
     const double left_pt = kWidthPt - kLegendPt + 14;
     for (std::size_t i = 0; i < all.size(); ++i) {
       canvas.line({left_pt, y_pt}, {left_pt + 14, y_pt}, {colour(i), 1, Dash::kSolid});
-      canvas.mark({left_pt + 7, y_pt}, mark_of(all[i]), 4, colour(i), kWhite);
+      canvas.mark({left_pt + 7, y_pt}, mark_of(all[i]), kMarkPt, colour(i), kWhite);
       canvas.text({left_pt + 18, y_pt}, fmt::format("{}, {}", all[i].detector, all[i].method), kLegendStyle);
       y_pt -= kLegendLinePt;
     }

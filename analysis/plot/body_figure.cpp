@@ -8,8 +8,9 @@
 #include <optional>
 
 #include "analysis/plot/axis.hpp"
-#include "analysis/plot/colour_bar.hpp"
+#include "analysis/plot/body_sides.hpp"
 #include "analysis/plot/contact_density.hpp"
+#include "analysis/plot/heat.hpp"
 #include "analysis/plot/palette.hpp"
 #include "analysis/plot/region_colours.hpp"
 #include "analysis/plot/region_image.hpp"
@@ -33,74 +34,29 @@ constexpr double kGapPt = 12;
 constexpr double kMostCellHeightPt = 300;
 /// Wider bodies get a row each for map and contacts.
 constexpr double kSlender = 0.62;
-/// How far contacts are spread, in the body's largest extent: 2.5 cm for a grown person.
-constexpr double kSigma = 1.0 / 70;
-
 constexpr Colour kContactColour = kBlack;
-
-/// From skin without contacts to the most: darker throughout.
-Colour heat_ramp(double part) {
-  struct Stop {
-    double part;
-    Colour colour;
-  };
-  constexpr std::array<Stop, 5> kStops = {
-      {{0, {222, 220, 217}}, {0.2, {253, 206, 110}}, {0.45, {236, 130, 30}}, {0.72, {190, 40, 30}}, {1, {80, 4, 40}}}};
-  std::size_t i = 1;
-  while (i + 1 < kStops.size() && part > kStops[i].part) ++i;
-  const double between = (part - kStops[i - 1].part) / (kStops[i].part - kStops[i - 1].part);
-  return blend(kStops[i - 1].colour, kStops[i].colour, std::clamp(between, 0.0, 1.0));
-}
-
-/// The unit of area that suits a body, in metres along its side.
-struct AreaUnit {
-  const char* name;
-  double side_m;
-};
-
-AreaUnit unit_for(double extent_m) {
-  if (extent_m < 0.3) return {"cm²", 0.01};
-  return extent_m < 20 ? AreaUnit{"dm²", 0.1} : AreaUnit{"m²", 1};
-}
-
-struct Side {
-  const char* name;
-  double azimuth_degrees;
-};
 
 struct Picture {
   Raster raster;
   std::vector<RegionLabel> labels;
 };
 
-/// Two significant digits, without an exponent.
-std::string two_digits(double value) {
-  const double decimals = std::clamp(1 - std::floor(std::log10(value)), 0.0, 9.0);
-  return fmt::format("{:.{}f}", value, static_cast<int>(decimals));
-}
-
 class BodyFigure : public Figure {
  public:
   explicit BodyFigure(Body body)
       : body_(std::move(body)),
         surface_(SurfacePoser(body_.subject.avatar).pose(rest_pose(body_.subject.avatar), glm::dvec3(0))) {
-    const glm::dvec3 size = surface_.high - surface_.low;
-    extent_ = std::max({size.x, size.y, size.z});
-    if (!(extent_ > 0)) extent_ = 1;
-    sides_ = size.z > 1.2 * size.x ? std::array<Side, 2>{{{"left", 90}, {"right", -90}}}
-                                   : std::array<Side, 2>{{{"front", 0}, {"back", 180}}};
-    lay_out(std::max(size.x, size.z > 1.2 * size.x ? size.z : 0), size.y);
+    extent_ = extent_of(surface_);
+    sides_ = sides_of(surface_);
+    lay_out(shown_width_of(surface_), (surface_.high - surface_.low).y);
     contacts_of_.assign(body_.subject.map.actuator_count + 1, 0);
     // By the map that is drawn, which need not be the one that the contacts were recorded with.
     for (const RecordedContact& contact : body_.contacts)
       ++contacts_of_[body_.subject.actuator_at(contact.triangle, contact.barycentric.x, contact.barycentric.y)];
     if (body_.has_contacts) {
-      density_.emplace(surface_, body_.contacts, kSigma * extent_);
+      density_.emplace(surface_, body_.contacts, kHeatSigma * extent_);
       unit_ = unit_for(extent_);
-      const double highest = density_->highest() * unit_.side_m * unit_.side_m;
-      bar_high_ = highest > 0 ? round_up_125(highest) : 1;
-      // Half of a bar unused would waste its colours.
-      if (bar_high_ > 1.5 * highest && highest > 0) bar_high_ = std::ceil(highest / bar_high_ * 10) * bar_high_ / 10;
+      bar_high_ = heat_bar_high(density_->highest() * unit_.side_m * unit_.side_m);
     }
     make_pictures();
   }
@@ -126,7 +82,8 @@ class BodyFigure : public Figure {
       const double left_pt = below ? kLeftPt : kLeftPt + 2 * cell_width_pt_ + kGapPt;
       const double heat_top_pt = below ? top_pt - row_height_pt() : top_pt;
       draw_group(canvas, left_pt, heat_top_pt, "Density of contacts", heat_);
-      draw_heat_bar(canvas, left_pt + 2 * cell_width_pt_ + 14, heat_top_pt - kRowTitlePt);
+      draw_heat_bar(canvas, {left_pt + 2 * cell_width_pt_ + 14, heat_top_pt - kRowTitlePt},
+                    std::min(120.0, cell_height_pt_ - 30), bar_high_, extent_);
     }
     draw_legend(canvas, top_pt);
     draw_scale_bar(canvas, {kLeftPt, 7}, unit_per_pt_, 60);
@@ -157,18 +114,11 @@ class BodyFigure : public Figure {
                                       : fmt::format("{} contacts", grouped(static_cast<double>(body_.contacts.size())));
   }
 
-  View view_of(const Side& side) const {
-    View view = view_of_cell(Camera::from(side.azimuth_degrees, 0), cell_width_pt_, cell_height_pt_, unit_per_pt_);
-    const glm::dvec3 seen = view.camera.seen((surface_.low + surface_.high) / 2.0);
-    view.left = seen.x - static_cast<double>(view.width) / 2 * view.unit_per_dot;
-    view.bottom = seen.y - static_cast<double>(view.height) / 2 * view.unit_per_dot;
-    return view;
-  }
-
   void make_pictures() {
     const std::size_t count = body_.subject.map.actuator_count;
-    for (const Side& side : sides_) {
-      const StudioShot shot(surface_, view_of(side), std::nullopt);
+    for (const BodySide& side : sides_) {
+      const StudioShot shot(surface_, view_of_side(surface_, side, cell_width_pt_, cell_height_pt_, unit_per_pt_),
+                            std::nullopt);
       std::vector<StudioShot::Overlay> dots = {{shot, kWhite}, {shot, kContactColour}};
       const double width_dots = static_cast<double>(print_dots(contact_size_pt()));
       for (const RecordedContact& contact : body_.contacts) {
@@ -215,19 +165,6 @@ class BodyFigure : public Figure {
       }
       canvas.text({(cell.left_pt + cell.right_pt) / 2, cell.bottom_pt - 6}, sides_[i].name, {7, kInk, Anchor::kCentre});
     }
-  }
-
-  void draw_heat_bar(Canvas& canvas, double left_pt, double top_pt) const {
-    const double bar_top_pt = top_pt - 24;
-    const Box bar = {left_pt, bar_top_pt - std::min(120.0, cell_height_pt_ - 30), left_pt + 7, bar_top_pt};
-    draw_colour_bar(canvas, bar, heat_ramp, linear_ticks(0, bar_high_, 5), bar_high_, "");
-    canvas.text({left_pt, bar_top_pt + 16}, "contacts", {7, kInk, Anchor::kLeft, Level::kFoot});
-    canvas.text({left_pt, bar_top_pt + 7}, fmt::format("per {}", unit_.name), {7, kInk, Anchor::kLeft, Level::kFoot});
-    const double sigma_m = kSigma * extent_;
-    canvas.text({left_pt, bar.bottom_pt - 11}, "spread by", {7, kSmallPrint, Anchor::kLeft, Level::kFoot});
-    canvas.text({left_pt, bar.bottom_pt - 20},
-                sigma_m < 0.1 ? two_digits(sigma_m * 1000) + " mm (σ)" : two_digits(sigma_m) + " m (σ)",
-                {7, kSmallPrint, Anchor::kLeft, Level::kFoot});
   }
 
   std::size_t legend_entries() const {
@@ -286,7 +223,7 @@ class BodyFigure : public Figure {
   Body body_;
   Surface surface_;
   double extent_ = 1;
-  std::array<Side, 2> sides_ = {};
+  std::array<BodySide, 2> sides_ = {};
   bool stacked_ = false;
   double cell_width_pt_ = 0;
   double cell_height_pt_ = 0;

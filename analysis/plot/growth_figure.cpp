@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <sstream>
 #include <utility>
 
 #include "analysis/plot/axis.hpp"
@@ -16,36 +15,24 @@ namespace {
 
 constexpr double kWidthPt = 468;
 constexpr double kMarginPt = 8;
-constexpr double kLeftPt = 48;
+constexpr double kLeftPt = 60;
 constexpr double kPanelGapPt = 22;
 constexpr double kPlotHeightPt = 190;
 constexpr double kTitlePt = 14;
 constexpr double kAxisRoomPt = 34;
 constexpr double kLegendLinePt = 11;
-constexpr double kLegendColumnPt = 150;
-constexpr std::size_t kLegendColumns = 3;
+constexpr double kLegendColumnPt = 113;
+constexpr double kMarkPt = 3.6;
+/// Half of the widest tick label under a panel's right end.
+constexpr double kRightPt = 18;
 constexpr double kSmallLinePt = 8;
 
 constexpr TextStyle kTitleStyle = {8, kInk, Anchor::kLeft, Level::kFoot, Weight::kBold};
 constexpr TextStyle kLegendStyle = {7, kInk, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
-/// Breaks `text` at spaces into lines of the small print.
 std::vector<std::string> wrapped(const std::string& text) {
-  std::vector<std::string> lines;
-  std::string line;
-  std::istringstream words(text);
-  for (std::string word; words >> word;) {
-    const std::string longer = line.empty() ? word : fmt::format("{} {}", line, word);
-    if (!line.empty() && text_width_pt(longer, kSmallStyle) > kWidthPt - 2 * kMarginPt) {
-      lines.push_back(line);
-      line = word;
-    } else {
-      line = longer;
-    }
-  }
-  lines.push_back(line);
-  return lines;
+  return plot::wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
 }
 
 std::vector<std::string> small_print(const GrowthResult& result) {
@@ -77,7 +64,7 @@ class GrowthFigure : public Figure {
 
   void draw(Canvas& canvas) const override {
     const double top_pt = height_pt() - kMarginPt - kTitlePt;
-    const double panel_pt = (kWidthPt - kLeftPt - kPanelGapPt - kMarginPt) / 2;
+    const double panel_pt = (kWidthPt - kLeftPt - kPanelGapPt - kRightPt) / 2;
     double left_pt = kLeftPt;
     for (std::size_t i = 0; i < result_.panels.size(); ++i) {
       draw_panel(canvas, i, {left_pt, top_pt - kPlotHeightPt, left_pt + panel_pt, top_pt});
@@ -94,8 +81,7 @@ class GrowthFigure : public Figure {
  private:
   const std::vector<GrowthLine>& lines() const { return result_.panels.front().lines; }
   double legend_pt() const {
-    const std::size_t rows = (lines().size() + kLegendColumns - 1) / kLegendColumns;
-    return static_cast<double>(rows) * kLegendLinePt + 4;
+    return static_cast<double>(std::ranges::max(legend(), {}, &LegendPlace::row).row + 1) * kLegendLinePt + 4;
   }
 
   bool has_twin(const GrowthLine& line) const {
@@ -106,18 +92,53 @@ class GrowthFigure : public Figure {
   Dash dash(const GrowthLine& line) const {
     return line.skip == "off" && has_twin(line) ? Dash::kDashed : Dash::kSolid;
   }
+  /// By its detector and by whatever else tells it from the others.
   std::string name(const GrowthLine& line) const {
-    std::string text = line.context.empty() ? line.detector : fmt::format("{}, {}", line.detector, line.context);
-    if (dash(line) == Dash::kDashed) text += ", no skipping";
+    std::string text = line.detector;
+    const auto other_context = [&](const GrowthLine& one) {
+      return one.detector == line.detector && one.context != line.context;
+    };
+    if (!line.context.empty() && std::ranges::any_of(lines(), other_context)) text += ", " + line.context;
+    if (has_twin(line)) text += line.skip == "off" ? ", no skipping" : ", skipping";
     return text;
   }
-  Colour colour(const GrowthLine& line) const {
+
+  /// Detectors and contexts in the order of the file.
+  std::vector<std::pair<std::string, std::string>> kinds() const {
     std::vector<std::pair<std::string, std::string>> kinds;
     for (const GrowthLine& one : lines())
       if (std::ranges::find(kinds, std::pair(one.detector, one.context)) == kinds.end())
         kinds.emplace_back(one.detector, one.context);
-    const auto found = std::ranges::find(kinds, std::pair(line.detector, line.context));
-    return kLineColours[static_cast<std::size_t>(found - kinds.begin()) % kLineColours.size()];
+    return kinds;
+  }
+  std::size_t kind(const GrowthLine& line) const {
+    const auto all = kinds();
+    return static_cast<std::size_t>(std::ranges::find(all, std::pair(line.detector, line.context)) - all.begin());
+  }
+  Colour colour(const GrowthLine& line) const { return kLineColours[kind(line) % kLineColours.size()]; }
+
+  /// Hollow where nothing is skipped, so that twins of one colour differ in more than their dashes.
+  void draw_mark(Canvas& canvas, const Place& place, const GrowthLine& line) const {
+    if (dash(line) == Dash::kSolid) return canvas.mark(place, Mark::kCircle, kMarkPt, colour(line), kWhite);
+    canvas.mark(place, Mark::kCircle, kMarkPt + 0.6, colour(line), colour(line));
+    canvas.mark(place, Mark::kCircle, kMarkPt - 1.4, kWhite, kWhite);
+  }
+
+  struct LegendPlace {
+    const GrowthLine* line = nullptr;
+    std::size_t column = 0;
+    std::size_t row = 0;
+  };
+  /// A detector's lines below each other, detectors side by side.
+  std::vector<LegendPlace> legend() const {
+    constexpr std::size_t kColumns = 4;
+    std::vector<LegendPlace> places;
+    for (const GrowthLine& line : lines()) {
+      const std::size_t column = kind(line) % kColumns;
+      const auto above = std::ranges::count_if(places, [&](const LegendPlace& one) { return one.column == column; });
+      places.push_back({&line, column, static_cast<std::size_t>(above)});
+    }
+    return places;
   }
 
   /// The same for both panels, so that heights compare.
@@ -168,17 +189,18 @@ class GrowthFigure : public Figure {
       places.reserve(line.points.size());
       for (const GrowthPoint& point : line.points) places.push_back({x.place_pt(point.size), y.place_pt(point.us)});
       canvas.polyline(places, {colour(line), 1.2, dash(line)});
-      for (const Place& place : places) canvas.mark(place, Mark::kCircle, 3.6, colour(line), kWhite);
+      for (const Place& place : places) draw_mark(canvas, place, line);
     }
   }
 
   void draw_legend(Canvas& canvas, double top_pt) const {
-    for (std::size_t i = 0; i < lines().size(); ++i) {
-      const double left_pt = kMarginPt + static_cast<double>(i % kLegendColumns) * kLegendColumnPt;
-      const std::size_t row = i / kLegendColumns;
-      const double y_pt = top_pt - static_cast<double>(row) * kLegendLinePt;
-      canvas.line({left_pt, y_pt}, {left_pt + 14, y_pt}, {colour(lines()[i]), 1.2, dash(lines()[i])});
-      canvas.text({left_pt + 18, y_pt}, name(lines()[i]), kLegendStyle);
+    for (const LegendPlace& entry : legend()) {
+      const GrowthLine& line = *entry.line;
+      const double left_pt = kMarginPt + static_cast<double>(entry.column) * kLegendColumnPt;
+      const double y_pt = top_pt - static_cast<double>(entry.row) * kLegendLinePt;
+      canvas.line({left_pt, y_pt}, {left_pt + 20, y_pt}, {colour(line), 1.2, dash(line)});
+      draw_mark(canvas, {left_pt + 10, y_pt}, line);
+      canvas.text({left_pt + 24, y_pt}, name(line), kLegendStyle);
     }
   }
 

@@ -4,28 +4,13 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <filesystem>
-#include <functional>
 #include <iostream>
 #include <memory>
 #include <new>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
-#include "analysis/plot/accuracy_figure.hpp"
-#include "analysis/plot/avatar_figure.hpp"
-#include "analysis/plot/body_figure.hpp"
-#include "analysis/plot/figure_export.hpp"
-#include "analysis/plot/growth_figure.hpp"
-#include "analysis/plot/headless_window.hpp"
-#include "analysis/plot/measured_figure.hpp"
-#include "analysis/plot/scene_figure.hpp"
-#include "analysis/plot/stress_figure.hpp"
-#include "analysis/plot/sweep_figure.hpp"
-#include "analysis/plot/texture_figure.hpp"
-#include "analysis/plot/timeline_figure.hpp"
+#include "analysis/plot/draw.hpp"
 #include "cli/help/command_table.hpp"
 #include "cli/help/completion.hpp"
 #include "cli/help/help_text.hpp"
@@ -34,240 +19,13 @@
 #include "cli/help/validators.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
-#include "traces/trace_reader.hpp"
 #include "version.hpp"
 
 namespace {
 
-using vestige::Overwrite;
-using vestige::plot::Figure;
+using vestige::plot::Options;
 namespace help = vestige::help;
 namespace plot = vestige::plot;
-
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kWrongUsage = 2;
-constexpr int kIncomplete = 3;
-
-struct Options {
-  std::vector<std::filesystem::path> inputs;
-  std::filesystem::path output;
-  std::string avatar;
-  std::string map;
-  std::filesystem::path contacts;
-  std::filesystem::path measured;
-  std::string animation;
-  std::size_t poses = 6;
-  plot::MomentChoice moments;
-  double trail_ms = 100;
-  bool force = false;
-  bool quiet = false;
-};
-
-void warn(const Options& options, std::string_view text) {
-  if (!options.quiet) vestige::print_message(fmt::format("vestige: warning: {}\n", text));
-}
-
-void warn(const Options& options, const std::vector<std::string>& texts) {
-  for (const std::string& text : texts) warn(options, text);
-}
-
-void write_file(const Options& options, const std::filesystem::path& path, std::string_view bytes) {
-  vestige::OutputFile file(path, options.force ? Overwrite::kAllow : Overwrite::kRefuse);
-  file.write(bytes);
-  file.commit();
-  if (!options.quiet) vestige::print_message(fmt::format("wrote {}\n", path.string()));
-}
-
-/// Writes STEM.svg and STEM.png.
-int write_figure(const Options& options, const std::filesystem::path& stem,
-                 const std::function<std::unique_ptr<Figure>()>& make_figure) {
-  const std::filesystem::path svg = stem.string() + ".svg";
-  const std::filesystem::path png = stem.string() + ".png";
-  const Overwrite overwrite = options.force ? Overwrite::kAllow : Overwrite::kRefuse;
-  vestige::refuse_overwrite(svg, overwrite);
-  vestige::refuse_overwrite(png, overwrite);
-  const std::unique_ptr<Figure> figure = make_figure();
-  write_file(options, svg, plot::svg_of(*figure));
-  try {
-    write_file(options, png, plot::png_of(*figure));
-  } catch (const plot::GlUnavailable& error) {
-    warn(options, fmt::format("{}: left out: {}\n  install libegl1 and libgl1-mesa-dri, or convert the SVG: "
-                              "rsvg-convert -d 300 -p 300",
-                              png.string(), error.what()));
-    return kIncomplete;
-  }
-  return kDone;
-}
-
-/// OUT of `-o OUT`, without .svg or .png; else the input's name without its extension.
-std::filesystem::path stem_of(const Options& options) {
-  std::filesystem::path stem = options.output;
-  if (stem.empty()) return std::filesystem::path(options.inputs.front()).replace_extension();
-  if (stem.extension() == ".svg" || stem.extension() == ".png") stem.replace_extension();
-  return stem;
-}
-
-/// NAME.json, which 'vestige NAME' wrote into the input folder, as NAME.svg and .png there or in OUT.
-int draw_results(const Options& options, const char* name,
-                 std::unique_ptr<plot::Figure> (*figure_of)(const std::filesystem::path& folder)) {
-  const std::filesystem::path& folder = options.inputs.front();
-  const std::filesystem::path results = folder / fmt::format("{}.json", name);
-  if (!std::filesystem::exists(results))
-    throw vestige::Error(results.string(), "no such file",
-                         fmt::format("name a folder that 'vestige {} -o' wrote", name));
-  return write_figure(options, (options.output.empty() ? folder : options.output) / name,
-                      [&] { return figure_of(folder); });
-}
-
-int draw_accuracy(const Options& options) {
-  return draw_results(options, "accuracy", [](const std::filesystem::path& folder) {
-    return plot::accuracy_figure(plot::read_accuracy(folder));
-  });
-}
-
-int draw_sweep(const Options& options) {
-  std::filesystem::path folder = options.output;
-  if (folder.empty()) {
-    const auto& first = options.inputs.front();
-    folder = std::filesystem::is_directory(first) ? first : first.parent_path();
-  }
-  return write_figure(options, folder / "frequency",
-                      [&] { return plot::sweep_figure(plot::read_sweeps(options.inputs)); });
-}
-
-int draw_growth(const Options& options) {
-  return draw_results(options, "growth", [](const std::filesystem::path& folder) {
-    return plot::growth_figure(plot::read_growth(folder));
-  });
-}
-
-int draw_stress(const Options& options) {
-  return draw_results(options, "stress", [](const std::filesystem::path& folder) {
-    return plot::stress_figure(plot::read_stress(folder));
-  });
-}
-
-int draw_timeline(const Options& options) {
-  return write_figure(options, stem_of(options), [&] {
-    plot::Timeline timeline = plot::read_timeline(options.inputs.front());
-    if (!options.map.empty()) {
-      const vestige::ActuatorMap map = plot::read_map(options.map);
-      warn(options, map.warnings);
-      if (map.actuator_count != timeline.actuator_count)
-        throw vestige::Error(options.map,
-                             fmt::format("has {} actuators, and {} has {}", map.actuator_count,
-                                         options.inputs.front().string(), timeline.actuator_count),
-                             "name the map that the timeline was made with");
-      timeline.names = map.names;
-    }
-    if (!options.measured.empty())
-      return plot::measured_figure(std::move(timeline), plot::read_timeline(options.measured),
-                                   options.measured.string());
-    return plot::timeline_figure(std::move(timeline));
-  });
-}
-
-int draw_textures(const Options& options) {
-  return write_figure(options, stem_of(options),
-                      [&] { return plot::texture_figure(plot::read_texture_contacts(options.inputs.front())); });
-}
-
-void warn_of(const Options& options, const plot::Subject& subject) {
-  warn(options, subject.avatar.warnings);
-  warn(options, subject.map.warnings);
-}
-
-/// What is wrong with a trace that was read to its end; its part of the exit code.
-int report_damage(const Options& options, const vestige::TraceReader& trace) {
-  if (trace.complete()) return kDone;
-  warn(options, vestige::damage_of(trace, options.inputs.front().string()));
-  return kIncomplete;
-}
-
-/// Contacts of another avatar or map are not drawn. With --map, contacts name actuators of a map that is not there.
-vestige::ContactLimits limits_of(const Options& options, const plot::Subject& subject) {
-  vestige::ContactLimits limits;
-  limits.triangles = subject.avatar.triangles.size();
-  if (options.map.empty() && subject.map.actuator_count > 0) limits.actuators = subject.map.actuator_count;
-  return limits;
-}
-
-/// Larger than that, a figure fits neither on a page nor into OpenGL's windows.
-constexpr std::size_t kMostAnimations = 4;
-
-int draw_avatar(Options options) {
-  if (options.output.empty())
-    options.output = std::filesystem::path(options.inputs.front()).replace_extension().string() + "-avatar";
-  return write_figure(options, stem_of(options), [&] {
-    const std::string input = options.inputs.front();
-    plot::ContactSheet sheet;
-    sheet.subject = plot::read_subject(input, "none");
-    warn_of(options, sheet.subject);
-    sheet.animations = plot::ContactSheet::choose(sheet.subject.avatar, options.animation);
-    sheet.poses = options.poses;
-    if (sheet.animations.size() > kMostAnimations) {
-      warn(options, fmt::format("{}: has {} animations, of which the first {} are drawn; name others with --animation",
-                                input, sheet.animations.size(), kMostAnimations));
-      sheet.animations.resize(kMostAnimations);
-    }
-    return plot::avatar_figure(sheet);
-  });
-}
-
-/// `damage` becomes the trace's part of the exit code.
-plot::Subject body_subject(const Options& options, int& damage) {
-  if (options.inputs.empty()) return plot::read_subject(options.avatar, options.map);
-  vestige::TraceReader trace(options.inputs.front());
-  plot::Subject subject = plot::read_subject(trace, options.inputs.front(), options.map);
-  trace.frame_count();  // reads all of it
-  damage = report_damage(options, trace);
-  return subject;
-}
-
-int draw_body(Options options) {
-  if (options.inputs.empty() == options.avatar.empty())
-    throw vestige::UsageError("plot body", "needs either a trace or --avatar", "name one of them");
-  const std::string input = options.inputs.empty() ? options.avatar : options.inputs.front().string();
-  if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-body";
-  int damage = kDone;
-  const int drawn = write_figure(options, stem_of(options), [&] {
-    plot::Body body;
-    body.subject = body_subject(options, damage);
-    warn_of(options, body.subject);
-    body.has_contacts = !options.contacts.empty();
-    if (body.subject.map.actuator_count == 0 && !body.has_contacts)
-      throw vestige::Error(input, "there is no actuator map, and no contact", "name a --map, or --contacts, or both");
-    if (body.has_contacts)
-      body.contacts = vestige::read_contacts_csv(options.contacts, limits_of(options, body.subject));
-    return plot::body_figure(std::move(body));
-  });
-  return drawn == kDone ? damage : drawn;
-}
-
-int draw_scene(Options options) {
-  const std::filesystem::path& input = options.inputs.front();
-  if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-scene";
-  options.moments.trail_s = options.trail_ms / 1000;
-  int damage = kDone;
-  const int drawn = write_figure(options, stem_of(options), [&] {
-    vestige::TraceReader trace(input);
-    plot::Scene scene;
-    scene.subject = plot::read_subject(trace, input, options.map);
-    warn_of(options, scene.subject);
-    scene.trail_s = options.moments.trail_s;
-    scene.has_contacts = !options.contacts.empty();
-    const std::vector<plot::FrameTime> times = plot::frame_times(trace, input.string());
-    damage = report_damage(options, trace);
-    vestige::ContactLimits limits = limits_of(options, scene.subject);
-    limits.frames = times.back().index + 1;
-    std::vector<vestige::RecordedContact> contacts;
-    if (scene.has_contacts) contacts = vestige::read_contacts_csv(options.contacts, limits);
-    scene.moments = plot::read_moments(trace, input.string(), times, options.moments, contacts);
-    return plot::scene_figure(scene);
-  });
-  return drawn == kDone ? damage : drawn;
-}
 
 CLI::App& add_command(CLI::App& app, const char* name, const char* what, const std::string& examples) {
   CLI::App& command = *app.add_subcommand(name, what);
@@ -347,11 +105,13 @@ int run(int argc, char** argv) {
   CLI::App& textures =
       add_command(app, "textures", "Collision textures: which actuator each collider touched, and when",
                   "  vestige plot textures textures.exr\n"
-                  "  vestige plot textures textures.exr -o figures/textures\n");
+                  "  vestige plot textures textures.exr --map builtin -o figures/textures\n");
   textures.add_option("INPUT", options.inputs, "What 'vestige replay --textures FILE.exr' wrote")
       ->type_name("EXR")
       ->expected(1)
       ->required();
+  textures.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
+      ->type_name("builtin|FILE.png");
   add_common_options(textures, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
 
   CLI::App& body =
@@ -409,6 +169,46 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 12));
   add_common_options(avatar, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -avatar]");
 
+  CLI::App& report = add_command(app, "report", "A page that compares the maps and laws of a batch (report.html)",
+                                 "  vestige plot report compared\n"
+                                 "  vestige plot report compared --top 3 -o page\n");
+  report.add_option("INPUT", options.inputs, "The folder that 'vestige batch -o DIR' wrote")
+      ->type_name("DIR")
+      ->expected(1)
+      ->required();
+  report.add_option("--top", options.top, "How many maps get pictures, from the best on")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(help::whole_number(1, 1000));
+  add_common_options(report, options, "DIR", "Folder for report.html and figures/ [default: the input]");
+
+  CLI::App& paraview = add_command(app, "paraview", "A trace as a time series for ParaView (.pvd and .vtp)",
+                                   "  vestige plot paraview man.mcap\n"
+                                   "  vestige plot paraview man.mcap --every 1 -o paraview/man.pvd\n");
+  paraview.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
+  paraview.add_option("--map", options.map, "Actuator map instead of the trace's")->type_name("builtin|none|FILE.png");
+  paraview.add_option("--law", options.law, "How strong a contact makes the actuators")
+      ->capture_default_str()
+      ->type_name("binary|speed|phantom|gaussian");
+  paraview.add_option("--hold", options.hold_ms, "How long a contact is felt")
+      ->capture_default_str()
+      ->type_name("MS")
+      ->check(help::between(0, 10000));
+  CLI::Option* every =
+      paraview.add_option("--every", options.every, "One time step for so many frames, instead of --rate")
+          ->type_name("N")
+          ->check(help::whole_number(1, 1000000000));
+  paraview
+      .add_option("--rate", options.rate_hz,
+                  "At most so many time steps a second; each has the contacts since the one before, and the highest "
+                  "amplitudes")
+      ->capture_default_str()
+      ->type_name("HZ")
+      ->check(help::between(0.001, 1e6))
+      ->excludes(every);
+  add_common_options(paraview, options, "DIR|FILE.pvd",
+                     "Write DIR/NAME.pvd and the folder DIR/NAME, or FILE.pvd and FILE [default: beside the trace]");
+
   app.set_help_flag("-h,--help", "Print this help");
   // What `vestige` asks of its helper, to answer for `vestige plot`.
   const std::string word = argc > 1 ? argv[1] : "";
@@ -418,7 +218,7 @@ int run(int argc, char** argv) {
                          ? help::completions(table, {argv + 2, argv + argc})
                          : help::manual_page(table, help::VerbPages::kNone, vestige::kVersion, vestige::kCommitDate));
     if (std::fflush(stdout) != 0) throw vestige::system_error("standard output", "could not write", errno);
-    return kDone;
+    return plot::kDone;
   }
   if (!word.empty() && word.front() != '-')
     if (const auto remedy = help::unknown_verb_remedy(app, word))
@@ -433,19 +233,21 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     vestige::print_message(fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n",
                                        help::cause_of(app, error)));
-    return kWrongUsage;
+    return plot::kWrongUsage;
   }
   if (options.output == "-")
     throw vestige::UsageError("-o -", "a plot is two files, and standard output is one", "name OUT");
-  if (sweep.parsed()) return draw_sweep(options);
-  if (accuracy.parsed()) return draw_accuracy(options);
-  if (growth.parsed()) return draw_growth(options);
-  if (stress.parsed()) return draw_stress(options);
-  if (body.parsed()) return draw_body(options);
-  if (scene.parsed()) return draw_scene(options);
-  if (avatar.parsed()) return draw_avatar(options);
-  if (timeline.parsed()) return draw_timeline(options);
-  return draw_textures(options);
+  if (sweep.parsed()) return plot::draw_sweep(options);
+  if (accuracy.parsed()) return plot::draw_accuracy(options);
+  if (growth.parsed()) return plot::draw_growth(options);
+  if (stress.parsed()) return plot::draw_stress(options);
+  if (body.parsed()) return plot::draw_body(options);
+  if (scene.parsed()) return plot::draw_scene(options);
+  if (avatar.parsed()) return plot::draw_avatar(options);
+  if (report.parsed()) return plot::draw_report(options);
+  if (paraview.parsed()) return plot::draw_paraview(options);
+  if (timeline.parsed()) return plot::draw_timeline(options);
+  return plot::draw_textures(options);
 }
 
 }  // namespace
@@ -457,12 +259,12 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const vestige::UsageError& error) {
     vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
-    return kWrongUsage;
+    return plot::kWrongUsage;
   } catch (const std::bad_alloc&) {
     vestige::print_message("vestige: error: out of memory\n");
-    return kFailed;
+    return plot::kFailed;
   } catch (const std::exception& error) {
     vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
-    return kFailed;
+    return plot::kFailed;
   }
 }

@@ -24,11 +24,16 @@ constexpr double kMarginPt = 8;
 constexpr double kSmallLinePt = 8;
 constexpr double kFamilyGapPt = 2;
 constexpr double kLeastWidthPt = 360;
+constexpr double kKeyPt = 24;
+/// Shares of errors from one in a million to all, by their powers of ten.
+constexpr double kDecades = 6;
+constexpr Colour kNoErrors = {238, 241, 245};
 
 constexpr TextStyle kHeadStyle = {7, kInk, Anchor::kCentre, Level::kFoot, Weight::kBold};
 constexpr TextStyle kMethodStyle = {6, kInk, Anchor::kCentre, Level::kFoot};
 constexpr TextStyle kNameStyle = {7, kInk, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kMagnitudeStyle = {6, kSmallPrint, Anchor::kRight, Level::kMiddle};
+constexpr TextStyle kKeyStyle = {6, kInk, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
 struct Column {
@@ -45,9 +50,8 @@ bool same_family(const StressLine& a, const StressLine& b) {
   return a.name == b.name && a.variant == b.variant;
 }
 
-/// An error in a million is as visible as it must be: the scale is logarithmic, from 1e-6 to 1.
+/// An error in a million is as visible as it must be: the scale is logarithmic.
 double shade_of(double rate) {
-  constexpr double kDecades = 6;
   return std::clamp(1 + std::log10(rate) / kDecades, 0.0, 1.0);
 }
 
@@ -68,7 +72,7 @@ class StressFigure : public Figure {
                     2 * kMarginPt + kNamePt + kMagnitudePt + kColumnPt * static_cast<double>(columns_.size()));
   }
   double height_pt() const override {
-    return 2 * kMarginPt + kHeadPt + rows_pt() + kSmallLinePt * static_cast<double>(small_print().size() + 1);
+    return 2 * kMarginPt + kHeadPt + rows_pt() + kKeyPt + kSmallLinePt * static_cast<double>(small_print().size() + 1);
   }
   std::string description() const override {
     std::string text = "Errors of each detector by family of hostile cases.";
@@ -104,6 +108,7 @@ class StressFigure : public Figure {
                   kMagnitudeStyle);
       for (const StressCell& cell : line.cells) draw_cell(canvas, cell, y_pt);
     }
+    draw_key(canvas, y_pt - 6);
     draw_small_print(canvas);
   }
 
@@ -132,10 +137,33 @@ class StressFigure : public Figure {
     const double left_pt = column_pt(static_cast<std::size_t>(found - columns_.begin()));
     const Box box = {left_pt + 0.5, bottom_pt + 0.4, left_pt + kColumnPt - 0.5, bottom_pt + kRowPt - 0.4};
     const double rate = cell.error_rate();
-    canvas.rectangle(box, rate > 0 ? number_ramp(shade_of(rate)) : Colour{238, 241, 245});
+    canvas.rectangle(box, rate > 0 ? number_ramp(shade_of(rate)) : kNoErrors);
     const Colour ink = rate > 0 && shade_of(rate) > 0.2 ? kWhite : kInk;
     const TextStyle style = {6, ink, Anchor::kCentre, Level::kMiddle, rate > 0 ? Weight::kBold : Weight::kRegular};
     canvas.text({left_pt + kColumnPt / 2, bottom_pt + kRowPt / 2}, shown(rate * cell.cases), style);
+  }
+
+  /// What the colours mean: none, then shares of a cell's cases.
+  static void draw_key(Canvas& canvas, double top_pt) {
+    constexpr double kStepPt = 1.5;
+    constexpr std::size_t kSteps = 120;
+    const Box none = {kMarginPt + kNamePt + 4, top_pt - 7, kMarginPt + kNamePt + kMagnitudePt - 8, top_pt};
+    const Box bar = {column_pt(0) + 8, none.bottom_pt, column_pt(0) + 8 + kStepPt * kSteps, none.top_pt};
+    canvas.text({kMarginPt, (bar.bottom_pt + bar.top_pt) / 2}, "Share of cases wrong", kKeyStyle);
+    canvas.rectangle(none, kNoErrors);
+    const TextStyle label = {6, kInk, Anchor::kCentre, Level::kTop};
+    canvas.text({(none.left_pt + none.right_pt) / 2, none.bottom_pt - 3}, "none", label);
+    for (std::size_t i = 0; i < kSteps; ++i) {
+      const double left_pt = bar.left_pt + kStepPt * static_cast<double>(i);
+      canvas.rectangle({left_pt, bar.bottom_pt, left_pt + kStepPt, bar.top_pt},
+                       number_ramp((static_cast<double>(i) + 0.5) / kSteps));
+    }
+    for (const auto& [share, name] :
+         {std::pair(1e-6, "0.0001 %"), std::pair(1e-4, "0.01 %"), std::pair(1e-2, "1 %"), std::pair(1.0, "100 %")}) {
+      const double x_pt = bar.left_pt + shade_of(share) * kStepPt * kSteps;
+      canvas.line({x_pt, bar.bottom_pt}, {x_pt, bar.bottom_pt - 2}, {kInk, 0.5, Dash::kSolid});
+      canvas.text({x_pt, bar.bottom_pt - 3}, name, label);
+    }
   }
 
   std::vector<std::string> small_print() const {
@@ -149,9 +177,7 @@ class StressFigure : public Figure {
     const std::string cases =
         fewest == most ? fmt::format("{:.0f}", most) : fmt::format("{:.0f} to {:.0f}", fewest, most);
     std::vector<std::string> lines = {
-        fmt::format("Errors among {} cases a cell: missed, false, on another triangle or actuator. Darker: a larger "
-                    "share.",
-                    cases),
+        fmt::format("Errors among {} cases a cell: missed, false, on another triangle or actuator.", cases),
         "Numbers beside the families: magnitudes, as 'vestige stress -v' defines them."};
     if (!result_.renderer.empty()) lines.push_back(fmt::format("OpenGL: {}.", result_.renderer));
     std::string last;

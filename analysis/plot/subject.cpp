@@ -13,7 +13,7 @@ ActuatorMap read_map(const std::string& map) {
   return files.png.empty() ? ActuatorMap() : parse_actuator_map(files.png, files.json, map);
 }
 
-std::uint16_t Subject::actuator_at(std::uint32_t triangle, double u, double v) const {
+std::uint16_t actuator_at(const Avatar& avatar, const ActuatorMap& map, std::uint32_t triangle, double u, double v) {
   const glm::uvec3& corner = avatar.triangles[triangle];
   const auto& coordinates = avatar.texture_coordinate;
   return map.at((1 - u - v) * glm::dvec2(coordinates[corner.x]) + u * glm::dvec2(coordinates[corner.y]) +

@@ -10,15 +10,19 @@
 
 namespace vestige::plot {
 
+/// The actuator of the skin where the triangle's second and third vertex weigh u and v, by the very look-up that
+/// detectors use.
+std::uint16_t actuator_at(const Avatar& avatar, const ActuatorMap& map, std::uint32_t triangle, double u, double v);
+
 /// Who is drawn.
 struct Subject {
   std::string title;
   Avatar avatar;
   ActuatorMap map;  ///< without actuators where there is none
 
-  /// The actuator of the skin where the triangle's second and third vertex weigh u and v, by the very look-up that
-  /// detectors use.
-  std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const;
+  std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const {
+    return plot::actuator_at(avatar, map, triangle, u, v);
+  }
 };
 
 /// "builtin", "none" or a PNG file, whose sidecar is the .json of the same name, if there is one. Throws `Error`.

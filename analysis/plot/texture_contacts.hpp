@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace vestige::plot {
@@ -17,6 +18,7 @@ struct TextureContacts {
   std::uint32_t frames = 0;
   std::uint32_t colliders = 0;
   std::vector<TextureContact> contacts;  ///< by frame, then collider
+  std::vector<std::string> names;        ///< of actuators 1, 2, …; the file holds none
 };
 
 /// Reads the plane `actuator` of an OpenEXR file as 'vestige replay --textures' writes it: width = colliders, height =

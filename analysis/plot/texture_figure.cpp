@@ -83,6 +83,12 @@ class TextureFigure : public Figure {
   /// Else numbers stand for themselves, on a ramp.
   bool has_categories() const { return highest_actuator() <= kActuatorColours.size(); }
 
+  std::string name_of(std::size_t actuator) const {
+    if (actuator > textures_.names.size()) return fmt::format("actuator {}", actuator);
+    const std::string& name = textures_.names[actuator - 1];
+    return name.empty() ? fmt::format("actuator {}", actuator) : fmt::format("{} {}", actuator, name);
+  }
+
   Colour colour(std::size_t actuator) const {
     if (actuator == 0) return kUnmapped;
     if (has_categories()) return kActuatorColours[actuator - 1];
@@ -120,13 +126,15 @@ class TextureFigure : public Figure {
     double y_pt = plot.top_pt - 4;
     const auto entry = [&](std::size_t actuator, std::string_view name, std::size_t count) {
       canvas.rectangle({kLegendPt, y_pt - 3, kLegendPt + 10, y_pt + 3}, colour(actuator));
-      canvas.text({kLegendPt + 14, y_pt}, fmt::format("{} ({})", name, grouped(static_cast<double>(count))), {7, kInk});
+      const std::string behind = fmt::format(" ({})", grouped(static_cast<double>(count)));
+      const double room_pt = kWidthPt - 2 - kLegendPt - 14 - text_width_pt(behind, {7, kInk});
+      canvas.text({kLegendPt + 14, y_pt}, shortened(std::string(name), {7, kInk}, room_pt) + behind, {7, kInk});
       y_pt -= kLegendLinePt;
     };
     if (contacts_of_.empty()) canvas.text({kLegendPt, y_pt}, "no contact", {7, kInk});
     if (has_categories()) {
       for (const auto& [actuator, count] : contacts_of_)
-        if (actuator > 0) entry(actuator, fmt::format("actuator {}", actuator), count);
+        if (actuator > 0) entry(actuator, name_of(actuator), count);
     }
     if (const auto unmapped = contacts_of_.find(0); unmapped != contacts_of_.end())
       entry(0, "unmapped skin", unmapped->second);

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "detector/intensity.hpp"
+#include "detector/actuator_drive.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_fixture.hpp"
 
@@ -59,7 +59,7 @@ class PlaybackTest : public ::testing::Test {
     PlaybackCalls::Clock::time_point first;
     PlaybackCalls calls;
     calls.make_law = [] {
-      return [law = std::make_shared<BinaryLaw>(1, 0.06)](
+      return [law = std::make_shared<ActuatorDrive>(make_law("binary", 1, {}))](
                  double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
     };
     calls.go_on = [&](double) { return taken.size() < frames; };

@@ -16,3 +16,12 @@ vestige_test(plot_body_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_body_test.cpp ${CMAKE_CURRENT_LIST_DIR}/plot_scene_test.cpp
   LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG)
 add_dependencies(plot_body_test vestige vestige-plot)
+find_package(VTK 9.1 REQUIRED COMPONENTS CommonCore CommonDataModel IOXML)
+vestige_test(plot_paraview_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_paraview_test.cpp
+  LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG nlohmann_json::nlohmann_json VTK::CommonCore VTK::CommonDataModel VTK::IOXML)
+add_dependencies(plot_paraview_test vestige vestige-plot)
+vestige_test(plot_report_test
+  SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_report_test.cpp
+  LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG nlohmann_json::nlohmann_json)
+add_dependencies(plot_report_test vestige vestige-plot)

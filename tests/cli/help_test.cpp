@@ -76,6 +76,7 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
           "vestige trim man.mcap --to 1 -o beginning.mcap && vestige trim man.mcap --from 1 -o end.mcap && "
           "cp beginning.mcap part-1.mcap && cp end.mcap part-2.mcap && "
           "vestige replay man.mcap --timeline timeline.csv --textures textures.exr --contacts contacts.csv && "
+          "vestige batch --maps builtin --traces man.mcap --laws binary -o compared -q && "
           "mkdir -p results/sweep gpu software figures && "
           "vestige accuracy --detector cpu --colliders swarm --rate 60 --truth-rate 240 --duration 0.1 --count 5 "
           "--no-figure -o results/accuracy -q && "

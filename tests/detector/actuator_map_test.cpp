@@ -1,5 +1,6 @@
 #include "detector/actuator_map.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
@@ -76,6 +77,23 @@ TEST(ActuatorMap, TakesNumbersAndNamesFromTheSidecar) {
   EXPECT_THAT(message_of([&] { parse_actuator_map(png, "{", "map.png"); }), HasSubstr("map.png, sidecar"));
   EXPECT_THAT(message_of([&] { parse_actuator_map(png, R"({"actuators": [{"grey": 0}]})", "map.png"); }),
               HasSubstr("actuators[0]"));
+}
+
+TEST(ActuatorMap, TakesPositionsFromTheSidecarWhereItGivesThem) {
+  const auto png = make_png<std::uint8_t>({0, 200, 10, 200}, 2, PNG_COLOR_TYPE_GRAY);
+  const ActuatorMap map = parse_actuator_map(
+      png, R"({"actuators": [{"grey": 200, "position_m": [0.5, 1, -2e-1]}, {"grey": 10}]})", "map.png");
+  ASSERT_EQ(map.position_m.size(), 2U);
+  EXPECT_EQ(map.position_m[0], glm::dvec3(0.5, 1, -0.2));
+  EXPECT_EQ(map.position_m[1], std::nullopt);
+  EXPECT_EQ(parse_actuator_map(png, "", "map.png").position_m.size(), 2U);
+  for (const char* position : {"[1, 2]", "[1, 2, 3, 4]", R"(["a", 2, 3])", "1", "null", "[1, 2, null]"}) {
+    const std::string sidecar =
+        fmt::format(R"({{"actuators": [{{"grey": 200}}, {{"grey": 10, "position_m": {}}}]}})", position);
+    EXPECT_THAT(message_of([&] { parse_actuator_map(png, sidecar, "map.png"); }),
+                HasSubstr("actuators[1]: 'position_m' is not three finite numbers"))
+        << position;
+  }
 }
 
 TEST(ActuatorMap, TakesTheNearestTexelAndWrapsAround) {

@@ -30,7 +30,7 @@ class ActuatorMapWatchTest : public ::testing::Test {
   /// As long as a slow machine may take.
   std::optional<ActuatorMap> wait_for_map(ActuatorMapWatch& watch) const {
     for (int i = 0; i < 500; ++i) {
-      if (auto map = watch.take()) return map;
+      if (auto watched = watch.take()) return watched->map;
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     return std::nullopt;

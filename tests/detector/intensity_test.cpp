@@ -3,10 +3,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "detector/actuator_drive.hpp"
 #include "detector/texture_hash.hpp"
+#include "tests/support/flat_body.hpp"
+#include "traces/error.hpp"
 
 namespace vestige {
 namespace {
+
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
+
+constexpr int kCells = 16;
 
 Contact contact_on(std::uint16_t actuator) {
   Contact contact;
@@ -16,18 +26,134 @@ Contact contact_on(std::uint16_t actuator) {
   return contact;
 }
 
+/// Two actuators half a metre apart, and three.
+std::shared_ptr<const ActuatorLayout> layout_of(const std::vector<glm::dvec2>& places) {
+  return std::make_shared<ActuatorLayout>(test::flat_body(kCells), test::nearest_map(places, 128));
+}
+const std::vector<glm::dvec2> kTwo = {{0.25, 0.5}, {0.75, 0.5}};
+const std::vector<glm::dvec2> kThree = {{0.25, 0.25}, {0.75, 0.25}, {0.5, 0.75}};
+
+Contact contact_on(const std::shared_ptr<const ActuatorLayout>& layout, double x, double y) {
+  Contact contact = test::contact_at(x, y, kCells);
+  contact.actuator = layout->map().at(contact.texture_coordinate);
+  return contact;
+}
+
+std::vector<double> amplitudes(std::string_view law, const std::vector<glm::dvec2>& places, double x, double y,
+                               const LawOptions& options = {}) {
+  const auto layout = layout_of(places);
+  return make_law(law, layout, options)->next(0, ContactRow{contact_on(layout, x, y)});
+}
+
 TEST(BinaryLaw, SwitchesTheActuatorOfAContactOnAndHoldsIt) {
-  BinaryLaw law(2, 0.060);
-  EXPECT_THAT(law.next(0, {contact_on(2), Contact()}).duty, ::testing::ElementsAre(0, 255));
-  EXPECT_THAT(law.next(0.059, {}).duty, ::testing::ElementsAre(0, 255));
-  EXPECT_THAT(law.next(0.060, {}).duty, ::testing::ElementsAre(0, 0));
-  EXPECT_THAT(law.next(0.070, {contact_on(0)}).duty, ::testing::ElementsAre(0, 0));
+  ActuatorDrive law(make_law("binary", 2, {}));
+  EXPECT_THAT(law.next(0, ContactRow{contact_on(2), Contact()}).duty, ElementsAre(0, 255));
+  EXPECT_THAT(law.next(0.059, {}).duty, ElementsAre(0, 255));
+  EXPECT_THAT(law.next(0.060, {}).duty, ElementsAre(0, 0));
+  EXPECT_THAT(law.next(0.070, ContactRow{contact_on(0)}).duty, ElementsAre(0, 0));
 }
 
 TEST(BinaryLaw, WithoutHoldGivesTheRawFrames) {
-  BinaryLaw law(1, 0);
-  EXPECT_THAT(law.next(0, {contact_on(1)}).duty, ::testing::ElementsAre(255));
-  EXPECT_THAT(law.next(0, {}).duty, ::testing::ElementsAre(0));
+  ActuatorDrive law(make_law("binary", 1, {.hold_s = 0}));
+  EXPECT_THAT(law.next(0, ContactRow{contact_on(1)}).duty, ElementsAre(255));
+  EXPECT_THAT(law.next(0, {}).duty, ElementsAre(0));
+}
+
+TEST(SpeedLaw, IsAsStrongAsTheImpactIsFastAndHoldsTheStrongest) {
+  const auto law = make_law("speed", 1, {.full_speed_m_per_s = 2});
+  const auto at = [&](double time_s, double speed_m_per_s) {
+    Contact contact = contact_on(1);
+    contact.speed_m_per_s = speed_m_per_s;
+    return law->next(time_s, ContactRow{contact}).front();
+  };
+  EXPECT_EQ(at(0, 0.5), 0.25);
+  EXPECT_EQ(at(0.02, 5), 1);
+  EXPECT_EQ(at(0.05, 1), 1);
+  EXPECT_EQ(law->next(0.085, {}).front(), 0.5);  // the weaker one lasts until 0.11
+  EXPECT_EQ(law->next(0.11, {}).front(), 0);
+  EXPECT_EQ(at(1, 0), 0);
+  EXPECT_EQ(at(2, std::numeric_limits<double>::quiet_NaN()), 0);
+}
+
+TEST(PhantomLaw, SharesAContactBetweenTwoActuatorsByTheRootOfTheWay) {
+  for (const double share : {0.0, 0.1, 0.25, 0.5, 0.8, 1.0}) {
+    const double x = 0.25 + 0.5 * share;
+    EXPECT_THAT(amplitudes("phantom", kTwo, x, 0.5),
+                ElementsAre(DoubleNear(std::sqrt(1 - share), 2e-3), DoubleNear(std::sqrt(share), 2e-3)));
+    EXPECT_THAT(amplitudes("linear", kTwo, x, 0.5), ElementsAre(DoubleNear(1 - share, 1e-5), DoubleNear(share, 1e-5)));
+  }
+  // Beside the line, by the nearest place on it; beyond its ends, by the end.
+  EXPECT_THAT(amplitudes("linear", kTwo, 0.35, 0.7), ElementsAre(DoubleNear(0.8, 1e-5), DoubleNear(0.2, 1e-5)));
+  EXPECT_THAT(amplitudes("phantom", kTwo, 0.1, 0.4), ElementsAre(1, 0));
+}
+
+TEST(PhantomLaw, SharesAContactAmongThreeActuatorsSoThatTheirMiddleIsWhereItIs) {
+  const auto weights = amplitudes("linear", kThree, 0.5, 0.5);
+  EXPECT_THAT(weights, ElementsAre(DoubleNear(0.25, 1e-5), DoubleNear(0.25, 1e-5), DoubleNear(0.5, 1e-5)));
+  const auto amplitude = amplitudes("phantom", kThree, 0.6, 0.4);
+  double energy = 0;
+  glm::dvec2 middle(0);
+  for (std::size_t i = 0; i < 3; ++i) {
+    energy += amplitude[i] * amplitude[i];
+    middle += amplitude[i] * amplitude[i] * kThree[i];
+  }
+  EXPECT_NEAR(energy, 1, 1e-12);
+  EXPECT_NEAR(middle.x, 0.6, 1e-5);
+  EXPECT_NEAR(middle.y, 0.4, 1e-5);
+}
+
+TEST(PhantomLaw, OfOneActuatorIsBinary) {
+  EXPECT_THAT(amplitudes("phantom", {{0.5, 0.5}}, 0.9, 0.2), ElementsAre(1));
+  EXPECT_THAT(amplitudes("gaussian", {{0.5, 0.5}}, 0.9, 0.2), ElementsAre(1));
+}
+
+TEST(PhantomLaw, LetsAColliderThatMovesOnLeaveNothingBehind) {
+  const auto layout = layout_of(kTwo);
+  const auto law = make_law("phantom", layout, {});
+  const auto other = [&](double x) { return contact_on(layout, x, 0.5); };
+  law->next(0, ContactRow{other(0.25)});
+  EXPECT_THAT(law->next(0.01, ContactRow{other(0.75)}), ElementsAre(DoubleNear(0, 2e-3), DoubleNear(1, 1e-6)));
+  // Of another collider it is another contact; and without one, it is held.
+  EXPECT_THAT(law->next(0.02, ContactRow{Contact(), other(0.25)}),
+              ElementsAre(DoubleNear(1, 1e-6), DoubleNear(1, 1e-6)));
+  EXPECT_THAT(law->next(0.0699, {}), ElementsAre(DoubleNear(1, 1e-6), DoubleNear(1, 1e-6)));
+  EXPECT_THAT(law->next(0.0700, {}), ElementsAre(DoubleNear(1, 1e-6), DoubleNear(0, 2e-3)));
+  EXPECT_THAT(law->next(0.08, {}), ElementsAre(0, 0));
+}
+
+TEST(GaussianLaw, FallsOffWithTheDistanceAlongTheSkin) {
+  EXPECT_THAT(amplitudes("gaussian", kTwo, 0.35, 0.5, {.sigma_m = 0.2}),
+              ElementsAre(DoubleNear(std::exp(-0.125), 1e-5), DoubleNear(std::exp(-2), 1e-5)));
+  // Half the spacing, where nobody says.
+  EXPECT_THAT(amplitudes("gaussian", kTwo, 0.5, 0.5),
+              ElementsAre(DoubleNear(std::exp(-0.5), 1e-5), DoubleNear(std::exp(-0.5), 1e-5)));
+  // What would round to nothing is nothing.
+  EXPECT_THAT(amplitudes("gaussian", kTwo, 0.25, 0.5, {.sigma_m = 0.05}), ElementsAre(DoubleNear(1, 1e-5), 0));
+}
+
+TEST(IntensityLaws, LetSkinThatNoActuatorCoversFireNothing) {
+  const auto layout = std::make_shared<ActuatorLayout>(test::flat_body(kCells), test::nearest_map(kTwo, 128, 0.1));
+  for (const char* name : {"binary", "speed", "phantom", "linear", "gaussian"}) {
+    Contact contact = test::contact_at(0.5, 0.5, kCells);
+    contact.speed_m_per_s = 1;
+    EXPECT_THAT(make_law(name, layout, {})->next(0, ContactRow{contact}), ElementsAre(0, 0)) << name;
+    EXPECT_STREQ(make_law(name, layout, {})->name(), name);
+  }
+}
+
+TEST(IntensityLaws, TakeTheStrongestOfSeveralContacts) {
+  const auto layout = layout_of(kTwo);
+  const ContactRow row = {contact_on(layout, 0.25, 0.5), contact_on(layout, 0.45, 0.5), contact_on(layout, 0.5, 0.5)};
+  EXPECT_THAT(make_law("linear", layout, {})->next(0, row), ElementsAre(DoubleNear(1, 1e-6), DoubleNear(0.5, 1e-5)));
+}
+
+TEST(IntensityLaws, AreRefusedByOtherNamesNamingTheRealOnes) {
+  try {
+    make_law("sine", 1, {});
+    FAIL();
+  } catch (const UsageError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("phantom"));
+  }
 }
 
 TEST(TextureHash, IsTheSha256OfTriangleTimeAndActuatorInLittleEndian) {

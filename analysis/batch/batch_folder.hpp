@@ -1,0 +1,76 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "analysis/batch/batch_plan.hpp"
+
+namespace vestige {
+
+/// kReplace: a folder of another batch becomes one of this; what it has of use to this one is kept.
+enum class OtherBatch { kRefuse, kReplace };
+
+/// What one process at a time holds while it writes into a folder. Let go when the process ends, however it ends.
+class FolderLock {
+ public:
+  /// Makes the folder unless it exists. Throws `Error` when another process has it, naming process and machine.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// A batch's folder:
+///   run.json                where it comes from, its inputs, what failed, what took how long
+///   scores.csv|json         map, trace, law, then each metric
+///   ranking.csv|json        a row for each map and law
+///   items/NAME.json         a trace's scores; items/NAME.run.json: where and when, and what it took
+///   contacts/NAME.csv       a trace's contacts
+///   traces/NAME.mcap        a scenario, recorded
+///   maps/NAME.png|json, avatar.glb
+/// Each file is complete or absent. An item's file is written last, so that one that is there has all of its files.
+class BatchFolder {
+ public:
+  /// Locks the folder, refuses one of another batch or with files that are none of a batch's, and removes what a killed
+  /// run left half-written. `batch`: `to_json(plan)`. Throws `Error`.
+  BatchFolder(std::filesystem::path folder, const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other);
+
+  std::string item(const std::string& name) const { return file("items", name, ".json"); }
+  std::string item_run(const std::string& name) const { return file("items", name, ".run.json"); }
+  std::string contacts(const std::string& name) const { return file("contacts", name, ".csv"); }
+  std::string trace(const std::string& name) const { return file("traces", name, ".mcap"); }
+  /// Where a scenario's trace grows until it is complete.
+  std::string growing_trace(const std::string& name) const { return file("traces", "." + name, ".mcap"); }
+  std::string map_png(const std::string& name) const { return file("maps", name, ".png"); }
+  std::string map_json(const std::string& name) const { return file("maps", name, ".json"); }
+  std::string top(std::string_view name) const { return (folder_ / name).string(); }
+
+  /// The item of that trace, if it is there and is a result of this key and trace.
+  std::optional<nlohmann::ordered_json> finished(const std::string& name, const std::string& key,
+                                                 const std::string& trace_sha256) const;
+
+ private:
+  std::string file(std::string_view folder, std::string_view name, std::string_view extension) const;
+  void refuse_others(const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other) const;
+  void remove_leftovers() const;
+
+  std::filesystem::path folder_;
+  FolderLock lock_;
+};
+
+/// Writes a file that is complete or absent, in the place of an older one.
+void write_file(const std::string& path, std::string_view text);
+
+/// The same, with an indent of 2.
+void write_json_file(const std::string& path, const nlohmann::ordered_json& json);
+
+/// Reads a JSON object. Throws `Error` naming the file.
+nlohmann::ordered_json read_json_object(const std::string& path, std::string_view remedy);
+
+}  // namespace vestige

@@ -1,0 +1,123 @@
+#include "analysis/batch/batch_inputs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "analysis/mapping/layouts.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/sha256.hpp"
+#include "traces/trace_reader.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// The bytes of the avatar that the traces are of; `given` becomes where it is from.
+std::vector<std::byte> avatar_of(const std::vector<BatchTrace>& traces, std::string& given) {
+  for (const BatchTrace& trace : traces) {
+    if (trace.scenario != nullptr) {
+      given = "builtin";
+      return builtin_avatar_glb();
+    }
+    try {
+      const TraceReader reader(trace.given);
+      given = trace.given;
+      return {reader.avatar_glb().begin(), reader.avatar_glb().end()};
+    } catch (const Error&) {
+      // It will be reported with the other traces.
+    }
+  }
+  throw Error("--traces", "none of them can be read, so there is no avatar",
+              "'vestige doctor' says what is wrong with a trace");
+}
+
+ActuatorMapFiles map_files(const std::string& given, const Avatar& avatar, bool builtin_avatar) {
+  if (given == "builtin" && !builtin_avatar)
+    throw Error(given, "is drawn for the built-in avatar, and the batch's is another",
+                "name one of the layouts, which fit any humanoid, or a PNG for this avatar");
+  return read_map_files(avatar, given);
+}
+
+void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
+  map.files = map_files(map.given, plan.avatar, builtin_avatar);
+  ActuatorMap parsed = parse_actuator_map(map.files.png, map.files.json, map.given);
+  if (parsed.actuator_count == 0)
+    throw Error(map.given, "has no actuator", "paint regions other than black, or list actuators in the sidecar");
+  Sha256 sha;
+  sha.update(map.files.png);
+  sha.update(std::as_bytes(std::span(map.files.json)));
+  map.layout = std::make_shared<const ActuatorLayout>(plan.avatar, std::move(parsed));
+  map.sha256 = sha.hex();
+}
+
+/// Calls `work` for each of 0 … count - 1. Throws what it throws, once all threads have ended.
+template <typename Work>
+void in_threads(std::size_t threads, std::size_t count, const Work& work) {
+  std::atomic<std::size_t> next = 0;
+  std::mutex mutex;
+  std::exception_ptr failure;
+  std::vector<std::thread> running;
+  for (std::size_t i = 0; i < threads; ++i) {
+    running.emplace_back([&] {
+      try {
+        for (std::size_t k = next++; k < count; k = next++) work(k);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        failure = std::current_exception();
+      }
+    });
+  }
+  for (std::thread& thread : running) thread.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace
+
+std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar, const std::vector<std::string>& maps,
+                                      std::size_t jobs) {
+  plan.avatar_given = avatar;
+  if (avatar.empty())
+    plan.avatar_glb = avatar_of(plan.traces, plan.avatar_given);
+  else
+    plan.avatar_glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
+  plan.avatar = parse_avatar_glb(plan.avatar_glb, plan.avatar_given);
+  plan.avatar_sha256 = sha256_hex(plan.avatar_glb);
+  const bool builtin = plan.avatar_sha256 == sha256_hex(builtin_avatar_glb());
+
+  const std::vector<std::string> names = unique_names(maps);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    BatchMap& map = plan.maps.emplace_back();
+    map.name = names[i];
+    map.given = maps[i];
+  }
+  std::vector<std::optional<BatchFailure>> failed(maps.size());
+  in_threads(std::min(jobs, maps.size()), maps.size(), [&](std::size_t i) {
+    BatchMap& map = plan.maps[i];
+    try {
+      load_map(map, plan, builtin);
+    } catch (const Error& error) {
+      failed[i] = failure_of("map", map.name, map.given, error);
+    }
+  });
+  std::vector<BatchFailure> failures;
+  for (std::optional<BatchFailure>& failure : failed)
+    if (failure) failures.push_back(std::move(*failure));
+  return failures;
+}
+
+std::vector<BatchTrace> name_traces(const std::vector<std::string>& given) {
+  const std::vector<std::string> names = unique_names(given);
+  std::vector<BatchTrace> traces;
+  for (std::size_t i = 0; i < given.size(); ++i) traces.push_back({names[i], given[i], find_scenario(given[i])});
+  return traces;
+}
+
+}  // namespace vestige

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "detector/contact.hpp"
+
+namespace vestige {
+
+/// All contacts of one trace, and nothing else of it: what is computed once and judged under every map and law.
+struct ContactRecording {
+  std::vector<double> time_s;         ///< one for each frame, ascending
+  std::vector<std::size_t> first;     ///< frames + 1: the contacts of frame k are [first[k], first[k + 1])
+  std::vector<std::uint32_t> column;  ///< for each contact, ascending within a frame: its collider's rank
+  std::vector<Contact> contacts;      ///< with `kRecordedPlanes`; `actuator` is looked up under each map
+
+  std::size_t frames() const { return time_s.size(); }
+
+  /// Adds a frame, and the contacts of its row. Times must ascend.
+  void add(double frame_time_s, std::span<const Contact> row);
+};
+
+/// What the rows must carry.
+inline constexpr PlaneSet kRecordedPlanes =
+    kHashedPlanes | Plane::kBarycentric | Plane::kTextureCoordinate | Plane::kSpeed | Plane::kSide;
+
+}  // namespace vestige

@@ -1,0 +1,237 @@
+#include "analysis/mapping/law_score.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "analysis/mapping/balance.hpp"
+#include "analysis/mapping/localisation.hpp"
+#include "detector/actuator_drive.hpp"
+#include "detector/portable_math.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMillimetres = 1e3;
+constexpr double kMilliseconds = 1e3;
+
+/// For laws, which share what they refer to; the caller keeps it alive.
+std::shared_ptr<const ActuatorLayout> borrow(const ActuatorLayout& layout) {
+  return {std::shared_ptr<const ActuatorLayout>(), &layout};
+}
+
+/// When a motor that goes from `amplitude` to `settled` comes to `threshold`, seconds from now.
+double crossing_s(const Motor& motor, double amplitude, double settled, double threshold) {
+  const double tau_s = settled > amplitude ? motor.rise_s : motor.fall_s;
+  return tau_s * portable_log2((amplitude - settled) / (threshold - settled)) * 0x1.62e42fefa39efp-1;
+}
+
+double ratio(double part, double whole) {
+  return whole > 0 ? part / whole : kNaN;
+}
+
+}  // namespace
+
+LawScore::LawScore(const ActuatorLayout& layout, const LawChoice& choice, double frame_s)
+    : layout_(layout),
+      choice_(choice),
+      law_(make_law(choice.name, borrow(layout), choice.options)),
+      held_(layout.actuator_count(), choice.options.hold_s, law_->hold_rule()),
+      amplitude_(layout.actuator_count(), 0),
+      duty_(layout.actuator_count(), 0),
+      use_(layout.actuator_count(), 0),
+      observer_(layout.actuator_count()),
+      timing_(layout.actuator_count()),
+      link_(state_bytes(layout.actuator_count()), choice.line_bytes_per_s) {
+  if (!choice.actuators) return;
+  for (const Motor& motor : choice.actuators->motors(layout.map())) {
+    Response& response = responses_.emplace_back();
+    response.motor = motor;
+    for (int duty = 0; duty < 256; ++duty) {
+      const auto told = static_cast<std::uint8_t>(duty);
+      const double reached = motor.after(0, told, std::max(choice.options.hold_s, frame_s));
+      response.reached.push_back(reached >= motor.felt_threshold ? reached : 0);
+    }
+  }
+}
+
+void LawScore::begin_frame(std::uint64_t frame, double time_s) {
+  if (started_ && !responses_.empty()) advance_motors(frame - 1, time_s);
+  held_.begin(time_s);
+}
+
+void LawScore::feel_shares(const LocatedContact& contact) {
+  law_->spread(contact, shares_);
+  if (responses_.empty()) return;
+  felt_.clear();
+  for (const Share& share : shares_) {
+    const Response& response = responses_[share.actuator];
+    const double reached = response.reached[response.motor.duty(share.amplitude)];
+    if (reached > 0) felt_.push_back({share.actuator, reached});
+  }
+}
+
+double LawScore::add(const JudgedContact& contact) {
+  feel_shares(contact.located);
+  held_.add(contact.column, shares_);
+  for (const Share& share : shares_) timing_.ask(share.actuator, contact.frame, contact.instant_s);
+  if (shares_.empty()) timing_.ask_nothing();
+
+  ++contacts_;
+  const std::vector<Share>& felt = responses_.empty() ? shares_ : felt_;
+  if (felt.empty()) {
+    observer_.add_unfelt(contact.region);
+    return kNaN;
+  }
+  ++fired_;
+  double error_m = 0;
+  double energy_error_m = 0;
+  if (felt.size() == 1) {
+    error_m = energy_error_m = static_cast<double>(contact.located.distance_m()[felt.front().actuator]);
+    observer_.add_single(contact.region, felt.front().actuator);
+  } else {
+    const glm::dvec2 offset_m = felt_offset_m(layout_, contact.located, felt, Centroid::kAmplitude);
+    error_m = glm::length(offset_m);
+    energy_error_m = glm::length(felt_offset_m(layout_, contact.located, felt, Centroid::kEnergy));
+    observer_.add(contact.region, layout_, contact.located, offset_m);
+  }
+  squared_error_m2_ += error_m * error_m;
+  squared_energy_error_m2_ += energy_error_m * energy_error_m;
+  const double acuities = error_m / contact.acuity_m;
+  squared_acuities_ += acuities * acuities;
+  return error_m;
+}
+
+void LawScore::add_to_slide(const JudgedContact& contact, const SlideFinder& slides, SlideFinder::Step step) {
+  if (contact.column >= smoothness_.size()) smoothness_.resize(contact.column + 1);
+  SlideSmoothness& smoothness = smoothness_[contact.column];
+  if (step == SlideFinder::Step::kBegins) smoothness = SlideSmoothness();
+  const std::vector<Share>& felt = responses_.empty() ? shares_ : felt_;
+  double energy = 0;
+  double weights = 0;
+  glm::dvec3 middle_m(0);
+  for (const Share& share : felt) {
+    energy += share.amplitude * share.amplitude;
+    weights += share.amplitude;
+    middle_m += share.amplitude * layout_.position_m(share.actuator);
+  }
+  if (weights > 0) middle_m /= weights;
+  smoothness.add(energy, weights > 0 ? &middle_m : nullptr, slides.step_m(contact.column));
+}
+
+void LawScore::end_chain(std::uint32_t column, const SlideFinder& slides) {
+  if (column < smoothness_.size() && slides.is_slide(column))
+    slide_score_.add(smoothness_[column], slides.way_m(column));
+}
+
+void LawScore::advance_motors(std::uint64_t frame, double time_s) {
+  const double step_s = time_s - last_time_s_;
+  for (std::size_t i = 0; i < responses_.size(); ++i) {
+    Response& response = responses_[i];
+    if (response.felt == 0 && duty_[i] == 0) continue;
+    const Motor& motor = response.motor;
+    const double before = response.felt;
+    response.felt = motor.after(before, duty_[i], step_s);
+    if (response.felt < 1e-6) response.felt = 0;
+    const double threshold = motor.felt_threshold;
+    if (std::max(before, response.felt) >= threshold) timing_.vibrates(i, frame);
+    const bool is_on = response.felt >= threshold;
+    if (is_on == timing_.is_on(i)) continue;
+    const double settled = motor.settled(duty_[i]);
+    const double at_s = last_time_s_ + std::clamp(crossing_s(motor, before, settled, threshold), 0.0, step_s);
+    if (is_on) {
+      ++switches_;
+      timing_.begins(i, at_s);
+    } else {
+      timing_.ends(i, at_s);
+    }
+  }
+}
+
+void LawScore::end_frame(std::uint64_t frame, double time_s) {
+  const std::vector<double>& now = held_.now();
+  bool changed = !started_;
+  double sum = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    const double amplitude = now[i];
+    if (amplitude == 0 && amplitude_[i] == 0 && duty_[i] == 0) continue;
+    std::uint8_t duty = duty_[i];
+    if (!responses_.empty()) {
+      Response& response = responses_[i];
+      duty = drive(response.motor, amplitude, time_s, duty, response.kick_until_s);
+      if (amplitude == 0 && !timing_.is_on(i)) timing_.gives_up(i);
+      const double told = duty / 255.0;
+      use_[i] += told;
+      sum += told;
+    } else {
+      if (amplitude != amplitude_[i]) duty = static_cast<std::uint8_t>(std::lround(255 * amplitude));
+      if (duty != 0) timing_.vibrates(i, frame);
+      if (duty != 0 && duty_[i] == 0) {
+        ++switches_;
+        timing_.begins(i, time_s);
+      } else if (duty == 0 && duty_[i] != 0) {
+        timing_.ends(i, time_s);
+      } else if (amplitude == 0) {
+        timing_.gives_up(i);
+      }
+      use_[i] += amplitude;
+      sum += amplitude;
+    }
+    amplitude_[i] = amplitude;
+    if (duty != duty_[i]) {
+      duty_[i] = duty;
+      changed = true;
+    }
+  }
+  peak_ = std::max(peak_, sum);
+  if (changed) link_.post(time_s);
+  started_ = true;
+  last_time_s_ = time_s;
+}
+
+Scores LawScore::scores(double duration_s, std::size_t frames) {
+  if (started_) link_.finish(last_time_s_);
+  const auto actuators = static_cast<double>(layout_.actuator_count());
+  const auto fired = static_cast<double>(fired_);
+  double use = 0;
+  double least_area_m2 = std::numeric_limits<double>::infinity();
+  double most_area_m2 = 0;
+  for (std::size_t i = 0; i < use_.size(); ++i) {
+    use += use_[i];
+    least_area_m2 = std::min(least_area_m2, layout_.area_m2(i));
+    most_area_m2 = std::max(most_area_m2, layout_.area_m2(i));
+  }
+  const double bits = observer_.bits(layout_);
+  return {
+      ratio(fired, static_cast<double>(contacts_)),
+      layout_.mapped_area_m2(),
+      ratio(layout_.mapped_area_m2(), layout_.skin_area_m2()),
+      ratio(most_area_m2, least_area_m2),
+      std::sqrt(ratio(squared_error_m2_, fired)) * kMillimetres,
+      std::sqrt(ratio(squared_acuities_, fired)),
+      std::sqrt(ratio(squared_energy_error_m2_, fired)) * kMillimetres,
+      slide_score_.ripple(),
+      slide_score_.largest_jump_m() * kMillimetres,
+      slide_score_.reversals_per_m(),
+      timing_.f1(),
+      timing_.mean_onset_s() * kMilliseconds,
+      timing_.mean_offset_s() * kMilliseconds,
+      timing_.late_share(0),
+      timing_.late_share(1),
+      timing_.late_share(2),
+      bits,
+      portable_exp(bits * 0x1.62e42fefa39efp-1),
+      use_evenness(use_),
+      ratio(use, actuators * static_cast<double>(frames)),
+      ratio(peak_, actuators),
+      ratio(static_cast<double>(switches_), actuators * duration_s),
+      layout_.ambiguous_share(),
+      ratio(static_cast<double>(link_.superseded()), static_cast<double>(link_.changes())),
+      ratio(link_.bytes_sent(), choice_.line_bytes_per_s * duration_s),
+  };
+}
+
+}  // namespace vestige

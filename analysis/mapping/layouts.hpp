@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "detector/actuator_map.hpp"
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// The layouts that Vestige can lay onto any avatar with texture coordinates, by name: "paper6" (three heights, right
+/// and left: HAVE 2010, Fig. 4), "torso16" (two rings of eight around the torso), "torso40" (five rows of four in
+/// front, five behind) and "body" (head, torso and limbs).
+std::vector<std::string> layout_names();
+
+/// A line about what it is.
+std::string layout_summary(std::string_view layout);
+
+bool is_layout(std::string_view map);
+
+/// The layout on this avatar, as the two files of a map (1024 x 1024 texels), with names and positions; the same bytes
+/// for the same avatar. Throws `Error`: no such layout, no texture coordinates, a region without skin.
+ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout);
+
+/// The layout's regions, as a region file says them (analysis/mapping/region_file.hpp): to begin one's own with.
+std::string layout_regions_json(std::string_view layout);
+
+/// `map`: a layout's name, or what `read_actuator_map_files` takes. Throws `Error`.
+ActuatorMapFiles read_map_files(const Avatar& avatar, const std::string& map);
+
+}  // namespace vestige

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "analysis/plot/figure.hpp"
+#include "analysis/plot/scene_moments.hpp"
+#include "traces/output_file.hpp"
+
+namespace vestige::plot {
+
+// Exit codes.
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;
+inline constexpr int kWrongUsage = 2;
+inline constexpr int kIncomplete = 3;
+
+/// What the command line says, of every kind of figure.
+struct Options {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  std::string avatar;
+  std::string map;
+  std::filesystem::path contacts;
+  std::filesystem::path measured;
+  std::string animation;
+  std::size_t poses = 6;
+  MomentChoice moments;
+  double trail_ms = 100;
+  std::string law = "binary";
+  double hold_ms = 60;
+  double rate_hz = 60;
+  std::uint64_t every = 0;  ///< 0: by `rate_hz`
+  std::size_t top = 12;
+  bool force = false;
+  bool quiet = false;
+};
+
+inline Overwrite overwrite_of(const Options& options) {
+  return options.force ? Overwrite::kAllow : Overwrite::kRefuse;
+}
+
+/// "vestige: warning: …" on standard error; with -q, nothing.
+void warn(const Options& options, std::string_view text);
+void warn(const Options& options, const std::vector<std::string>& texts);
+
+/// Writes a file and says so.
+void write_file(const Options& options, const std::filesystem::path& path, std::string_view bytes);
+
+/// Writes STEM.svg and STEM.png. Without OpenGL the second is left out, which is `kIncomplete`.
+int write_figure(const Options& options, const std::filesystem::path& stem,
+                 const std::function<std::unique_ptr<Figure>()>& make_figure);
+
+/// OUT of `-o OUT`, without .svg or .png; else the input's name without its extension.
+std::filesystem::path stem_of(const Options& options);
+
+}  // namespace vestige::plot

@@ -1,0 +1,261 @@
+#include "analysis/plot/draw.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "analysis/plot/accuracy_figure.hpp"
+#include "analysis/plot/avatar_figure.hpp"
+#include "analysis/plot/body_figure.hpp"
+#include "analysis/plot/growth_figure.hpp"
+#include "analysis/plot/measured_figure.hpp"
+#include "analysis/plot/paraview_export.hpp"
+#include "analysis/plot/report.hpp"
+#include "analysis/plot/scene_figure.hpp"
+#include "analysis/plot/stress_figure.hpp"
+#include "analysis/plot/sweep_figure.hpp"
+#include "analysis/plot/texture_figure.hpp"
+#include "analysis/plot/timeline_figure.hpp"
+#include "cli/terminal.hpp"
+#include "traces/error.hpp"
+#include "traces/trace_reader.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+/// NAME.json, which 'vestige NAME' wrote into the input folder, as NAME.svg and .png there or in OUT.
+int draw_results(const Options& options, const char* name,
+                 std::unique_ptr<Figure> (*figure_of)(const std::filesystem::path& folder)) {
+  const std::filesystem::path& folder = options.inputs.front();
+  const std::filesystem::path results = folder / fmt::format("{}.json", name);
+  if (!std::filesystem::exists(results))
+    throw Error(results.string(), "no such file", fmt::format("name a folder that 'vestige {} -o' wrote", name));
+  return write_figure(options, (options.output.empty() ? folder : options.output) / name,
+                      [&] { return figure_of(folder); });
+}
+
+void warn_of(const Options& options, const Subject& subject) {
+  warn(options, subject.avatar.warnings);
+  warn(options, subject.map.warnings);
+}
+
+/// What is wrong with a trace that was read to its end; its part of the exit code.
+int report_damage(const Options& options, const TraceReader& trace) {
+  if (trace.complete()) return kDone;
+  warn(options, damage_of(trace, options.inputs.front().string()));
+  return kIncomplete;
+}
+
+/// Contacts of another avatar or map are not drawn. With --map, contacts name actuators of a map that is not there.
+ContactLimits limits_of(const Options& options, const Subject& subject) {
+  ContactLimits limits;
+  limits.triangles = subject.avatar.triangles.size();
+  if (options.map.empty() && subject.map.actuator_count > 0) limits.actuators = subject.map.actuator_count;
+  return limits;
+}
+
+/// Larger than that, a figure fits neither on a page nor into OpenGL's windows.
+constexpr std::size_t kMostAnimations = 4;
+
+/// `damage` becomes the trace's part of the exit code.
+Subject body_subject(const Options& options, int& damage) {
+  if (options.inputs.empty()) return read_subject(options.avatar, options.map);
+  TraceReader trace(options.inputs.front());
+  Subject subject = read_subject(trace, options.inputs.front(), options.map);
+  trace.frame_count();  // reads all of it
+  damage = report_damage(options, trace);
+  return subject;
+}
+
+}  // namespace
+
+int draw_accuracy(const Options& options) {
+  return draw_results(options, "accuracy",
+                      [](const std::filesystem::path& folder) { return accuracy_figure(read_accuracy(folder)); });
+}
+
+int draw_sweep(const Options& options) {
+  std::filesystem::path folder = options.output;
+  if (folder.empty()) {
+    const auto& first = options.inputs.front();
+    folder = std::filesystem::is_directory(first) ? first : first.parent_path();
+  }
+  return write_figure(options, folder / "frequency", [&] { return sweep_figure(read_sweeps(options.inputs)); });
+}
+
+int draw_growth(const Options& options) {
+  return draw_results(options, "growth",
+                      [](const std::filesystem::path& folder) { return growth_figure(read_growth(folder)); });
+}
+
+int draw_stress(const Options& options) {
+  return draw_results(options, "stress",
+                      [](const std::filesystem::path& folder) { return stress_figure(read_stress(folder)); });
+}
+
+int draw_timeline(const Options& options) {
+  return write_figure(options, stem_of(options), [&] {
+    Timeline timeline = read_timeline(options.inputs.front());
+    if (!options.map.empty()) {
+      const ActuatorMap map = read_map(options.map);
+      warn(options, map.warnings);
+      if (map.actuator_count != timeline.actuator_count)
+        throw Error(options.map,
+                    fmt::format("has {} actuators, and {} has {}", map.actuator_count, options.inputs.front().string(),
+                                timeline.actuator_count),
+                    "name the map that the timeline was made with");
+      timeline.names = map.names;
+    }
+    if (!options.measured.empty())
+      return measured_figure(std::move(timeline), read_timeline(options.measured), options.measured.string());
+    return timeline_figure(std::move(timeline));
+  });
+}
+
+int draw_textures(const Options& options) {
+  return write_figure(options, stem_of(options), [&] {
+    TextureContacts textures = read_texture_contacts(options.inputs.front());
+    if (!options.map.empty()) {
+      const ActuatorMap map = read_map(options.map);
+      warn(options, map.warnings);
+      for (const TextureContact& contact : textures.contacts)
+        if (contact.actuator > map.actuator_count)
+          throw Error(options.map,
+                      fmt::format("has {} actuators, and {} names actuator {}", map.actuator_count,
+                                  options.inputs.front().string(), contact.actuator),
+                      "name the map that the textures were made with");
+      textures.names = map.names;
+    }
+    return texture_figure(std::move(textures));
+  });
+}
+
+int draw_avatar(Options options) {
+  if (options.output.empty())
+    options.output = std::filesystem::path(options.inputs.front()).replace_extension().string() + "-avatar";
+  return write_figure(options, stem_of(options), [&] {
+    const std::string input = options.inputs.front();
+    ContactSheet sheet;
+    sheet.subject = read_subject(input, "none");
+    warn_of(options, sheet.subject);
+    sheet.animations = ContactSheet::choose(sheet.subject.avatar, options.animation);
+    sheet.poses = options.poses;
+    if (sheet.animations.size() > kMostAnimations) {
+      warn(options, fmt::format("{}: has {} animations, of which the first {} are drawn; name others with --animation",
+                                input, sheet.animations.size(), kMostAnimations));
+      sheet.animations.resize(kMostAnimations);
+    }
+    return avatar_figure(sheet);
+  });
+}
+
+int draw_body(Options options) {
+  if (options.inputs.empty() == options.avatar.empty())
+    throw UsageError("plot body", "needs either a trace or --avatar", "name one of them");
+  const std::string input = options.inputs.empty() ? options.avatar : options.inputs.front().string();
+  if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-body";
+  int damage = kDone;
+  const int drawn = write_figure(options, stem_of(options), [&] {
+    Body body;
+    body.subject = body_subject(options, damage);
+    warn_of(options, body.subject);
+    body.has_contacts = !options.contacts.empty();
+    if (body.subject.map.actuator_count == 0 && !body.has_contacts)
+      throw Error(input, "there is no actuator map, and no contact", "name a --map, or --contacts, or both");
+    if (body.has_contacts) body.contacts = read_contacts_csv(options.contacts, limits_of(options, body.subject));
+    return body_figure(std::move(body));
+  });
+  return drawn == kDone ? damage : drawn;
+}
+
+int draw_scene(Options options) {
+  const std::filesystem::path& input = options.inputs.front();
+  if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-scene";
+  options.moments.trail_s = options.trail_ms / 1000;
+  int damage = kDone;
+  const int drawn = write_figure(options, stem_of(options), [&] {
+    TraceReader trace(input);
+    Scene scene;
+    scene.subject = read_subject(trace, input, options.map);
+    warn_of(options, scene.subject);
+    scene.trail_s = options.moments.trail_s;
+    scene.has_contacts = !options.contacts.empty();
+    const std::vector<FrameTime> times = frame_times(trace, input.string());
+    damage = report_damage(options, trace);
+    ContactLimits limits = limits_of(options, scene.subject);
+    limits.frames = times.back().index + 1;
+    std::vector<RecordedContact> contacts;
+    if (scene.has_contacts) contacts = read_contacts_csv(options.contacts, limits);
+    scene.moments = read_moments(trace, input.string(), times, options.moments, contacts);
+    return scene_figure(scene);
+  });
+  return drawn == kDone ? damage : drawn;
+}
+
+int draw_report(const Options& options) {
+  const std::filesystem::path& batch = options.inputs.front();
+  ReportOptions settings;
+  settings.output = options.output.empty() ? batch : options.output;
+  settings.top = options.top;
+  settings.overwrite = overwrite_of(options);
+  cli::catch_interrupts();
+  ReportOutcome outcome;
+  {
+    cli::Progress progress("report", options.quiet ? cli::Verbosity::kQuiet : cli::Verbosity::kNormal);
+    outcome = write_report(batch, settings, [&](double share) { return progress.update(share); });
+  }
+  if (outcome.interrupted) {
+    warn(options, "stopped; nothing was written");
+    return kIncomplete;
+  }
+  warn(options, outcome.warnings);
+  if (!options.quiet)
+    print_message(fmt::format("wrote {}, and {} figures in {}\n", outcome.page.string(), outcome.figures,
+                              (outcome.page.parent_path() / "figures").string()));
+  return outcome.has_pictures ? kDone : kIncomplete;
+}
+
+int draw_paraview(const Options& options) {
+  const std::filesystem::path& input = options.inputs.front();
+  if (input == "-" && options.output.empty())
+    throw UsageError("-o", "a trace from standard input has no name", "name -o FILE.pvd");
+  std::filesystem::path stem = options.output;
+  if (stem.empty())
+    stem = std::filesystem::path(input).replace_extension();
+  else if (stem.extension() == ".pvd")
+    stem.replace_extension();
+  else
+    stem /= input.stem();
+  TraceReader trace(input);
+  const Subject subject = read_subject(trace, input, options.map);
+  warn_of(options, subject);
+  if (subject.map.actuator_count == 0) warn(options, "there is no actuator map, so that every amplitude is 0");
+  ParaviewOptions settings;
+  settings.law = options.law;
+  settings.law_options.hold_s = options.hold_ms / 1000;
+  settings.rate_hz = options.rate_hz;
+  if (options.every != 0) settings.every = options.every;
+  if (!stem.parent_path().empty()) {
+    std::error_code failure;
+    std::filesystem::create_directories(stem.parent_path(), failure);
+    if (failure) throw system_error(stem.parent_path(), "could not be made", failure.value());
+  }
+  ParaviewSeries series(stem, overwrite_of(options), subject);
+  cli::catch_interrupts();
+  ParaviewResult result;
+  {
+    cli::Progress progress("paraview", options.quiet ? cli::Verbosity::kQuiet : cli::Verbosity::kNormal);
+    result = export_to_paraview(trace, subject, settings, series, [&](double share) { return progress.update(share); });
+  }
+  const int damage = report_damage(options, trace);
+  if (result.frames == 0) throw Error(input.string(), "holds no frame", "record it again");
+  series.commit();
+  if (result.interrupted) warn(options, fmt::format("stopped after {} frames", result.frames));
+  if (!options.quiet)
+    print_message(fmt::format("wrote {}.pvd: {} steps of {} frames, {} contacts\n", stem.string(), series.steps(),
+                              result.frames, result.contacts));
+  return result.interrupted ? kIncomplete : damage;
+}
+
+}  // namespace vestige::plot

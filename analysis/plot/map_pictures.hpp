@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "analysis/plot/body_sides.hpp"
+#include "analysis/plot/figure.hpp"
+#include "analysis/plot/studio.hpp"
+#include "analysis/plot/surface.hpp"
+#include "detector/actuator_map.hpp"
+#include "detector/contacts_csv.hpp"
+#include "traces/avatar.hpp"
+
+namespace vestige::plot {
+
+/// Pictures of many maps on one body, from two sides each, that compare: one light, one scale for all numbers of
+/// contacts. The body is lit once.
+class MapPictures {
+ public:
+  /// `contacts`: of all traces, on the avatar's triangles.
+  MapPictures(const Avatar& avatar, std::vector<RecordedContact> contacts);
+  ~MapPictures();
+  MapPictures(const MapPictures&) = delete;
+  MapPictures& operator=(const MapPictures&) = delete;
+
+  std::size_t contact_count() const { return contacts_.size(); }
+  /// Contacts on skin that no actuator of `map` covers: nothing is felt of them, under any law.
+  std::size_t unfelt_count(const ActuatorMap& map) const;
+
+  /// The regions of a map, numbered.
+  std::unique_ptr<Figure> regions(const ActuatorMap& map) const;
+  /// How dense contacts are, with the outlines of the regions.
+  std::unique_ptr<Figure> contacts(const ActuatorMap& map) const;
+  /// The same of those contacts that are not felt.
+  std::unique_ptr<Figure> unfelt(const ActuatorMap& map) const;
+
+ private:
+  std::vector<RecordedContact> unfelt_contacts(const ActuatorMap& map) const;
+  std::unique_ptr<Figure> heat(const ActuatorMap& map, const std::vector<RecordedContact>& contacts,
+                               std::string description) const;
+
+  const Avatar& avatar_;
+  std::vector<RecordedContact> contacts_;
+  Surface surface_;
+  double extent_m_;
+  std::array<BodySide, 2> sides_;
+  double cell_width_pt_ = 0;
+  double cell_height_pt_ = 0;
+  double m_per_pt_ = 1;
+  double bar_high_ = 1;
+  std::vector<StudioShot> shots_;  ///< one a side
+};
+
+}  // namespace vestige::plot

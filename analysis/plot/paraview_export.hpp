@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "analysis/plot/paraview_series.hpp"
+#include "analysis/plot/subject.hpp"
+#include "detector/intensity.hpp"
+#include "traces/trace_reader.hpp"
+
+namespace vestige::plot {
+
+struct ParaviewOptions {
+  std::string law = "binary";
+  LawOptions law_options;
+  double rate_hz = 60;                 ///< at most so many steps a second, above 0
+  std::optional<std::uint64_t> every;  ///< instead of a rate: one step for so many frames, at least 1
+};
+
+struct ParaviewResult {
+  std::uint64_t frames = 0;
+  std::uint64_t contacts = 0;
+  bool interrupted = false;
+};
+
+/// Runs the trace through the CPU detector and the law, frame by frame, and hands steps to `series`. Nothing between
+/// two steps is lost: a step has all contacts since the one before, and of each actuator the highest amplitude. The
+/// last frame is a step. Frames at one time belong to one step. `progress` is told the share done and returns false to
+/// stop; what was written until then is whole. Throws `Error`.
+ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, const ParaviewOptions& options,
+                                  ParaviewSeries& series, const std::function<bool(double)>& progress);
+
+}  // namespace vestige::plot

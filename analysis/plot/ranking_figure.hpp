@@ -1,0 +1,14 @@
+#pragma once
+
+#include <memory>
+
+#include "analysis/plot/figure.hpp"
+#include "analysis/plot/report_data.hpp"
+
+namespace vestige::plot {
+
+/// The best `most` candidates from the top, each with its headline score and 95 % interval; those that cannot be told
+/// from the first are filled, the others hollow. `data` must stay.
+std::unique_ptr<Figure> ranking_figure(const ReportData& data, std::size_t most);
+
+}  // namespace vestige::plot

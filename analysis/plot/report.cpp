@@ -1,0 +1,254 @@
+#include "analysis/plot/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "analysis/mapping/contact_recording_file.hpp"
+#include "analysis/mapping/scores.hpp"
+#include "analysis/plot/error_figure.hpp"
+#include "analysis/plot/figure_export.hpp"
+#include "analysis/plot/growing_folder.hpp"
+#include "analysis/plot/headless_window.hpp"
+#include "analysis/plot/map_pictures.hpp"
+#include "analysis/plot/ranking_figure.hpp"
+#include "analysis/plot/report_data.hpp"
+#include "analysis/plot/report_page.hpp"
+#include "analysis/plot/subject.hpp"
+#include "analysis/plot/timeline_figure.hpp"
+#include "detector/actuator_layout.hpp"
+#include "detector/intensity.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr std::size_t kRankedShown = 40;
+constexpr std::string_view kRemedy = "run the batch again, with --force";
+
+/// Thrown where the user stopped; not an error.
+struct Stopped {};
+
+/// The contacts of a batch's traces.
+struct Contacts {
+  std::vector<RecordedContact> all;
+  ContactRecording shown;  ///< of the trace with the most
+  std::string shown_trace;
+};
+
+Contacts read_contacts(const std::filesystem::path& folder, const ReportData& data, const Avatar& avatar) {
+  Contacts contacts;
+  for (const ReportTrace& trace : data.traces) {
+    const std::filesystem::path file = folder / "contacts" / (trace.name + ".csv");
+    ContactRecording recording = read_contact_recording(file.string()).contacts;
+    for (std::size_t i = 0; i < recording.contacts.size(); ++i) {
+      const Contact& contact = recording.contacts[i];
+      if (contact.triangle >= avatar.triangles.size())
+        throw Error(file.string(),
+                    fmt::format("names triangle {}, and avatar.glb has {}", contact.triangle, avatar.triangles.size()),
+                    kRemedy);
+      const glm::dvec2& weights = contact.barycentric;
+      constexpr double kSlack = 1e-9;
+      if (!(weights.x >= 0 && weights.y >= 0 && weights.x + weights.y <= 1 + kSlack))
+        throw Error(file.string(), fmt::format("contact {}: u and v are no weights from 0 to 1", i + 1), kRemedy);
+      RecordedContact one;
+      one.triangle = contact.triangle;
+      one.barycentric = contact.barycentric;
+      contacts.all.push_back(one);
+    }
+    if (recording.contacts.size() > contacts.shown.contacts.size()) {
+      contacts.shown = std::move(recording);
+      contacts.shown_trace = trace.name;
+    }
+  }
+  return contacts;
+}
+
+ActuatorMap read_batch_map(const std::filesystem::path& folder, const std::string& map) {
+  return read_map((folder / "maps" / (map + ".png")).string());
+}
+
+/// What the actuators are told over the trace.
+Timeline timeline_of(const ContactRecording& recording, const ActuatorMap& map, IntensityLaw& law) {
+  Timeline timeline;
+  timeline.actuator_count = map.actuator_count;
+  timeline.names = map.names;
+  std::uint32_t columns = 0;
+  for (const std::uint32_t column : recording.column) columns = std::max(columns, column + 1);
+  ContactRow row;
+  for (std::size_t frame = 0; frame < recording.frames(); ++frame) {
+    row.assign(columns, Contact());
+    for (std::size_t i = recording.first[frame]; i < recording.first[frame + 1]; ++i) {
+      Contact contact = recording.contacts[i];
+      contact.actuator = map.at(contact.texture_coordinate);
+      row[recording.column[i]] = contact;
+    }
+    const std::vector<double>& amplitude = law.next(recording.time_s[frame], row);
+    const bool again = !timeline.time_s.empty() && recording.time_s[frame] <= timeline.time_s.back();
+    if (!again) {
+      timeline.time_s.push_back(recording.time_s[frame]);
+      timeline.duty.resize(timeline.duty.size() + map.actuator_count);
+    }
+    std::uint8_t* duty = &timeline.duty[timeline.duty.size() - map.actuator_count];
+    for (std::size_t i = 0; i < map.actuator_count; ++i)
+      duty[i] = std::max(duty[i], static_cast<std::uint8_t>(std::lround(std::clamp(amplitude[i], 0.0, 1.0) * 255)));
+  }
+  return timeline;
+}
+
+class Report {
+ public:
+  Report(const std::filesystem::path& batch, const ReportOptions& options, const std::function<bool(double)>& progress)
+      : batch_(batch), options_(options), progress_(progress) {}
+
+  ReportOutcome write() {
+    const std::filesystem::path page_file = options_.output / "report.html";
+    const ReportData data = read_report(batch_);
+    refuse_overwrite(page_file, options_.overwrite);
+    std::error_code failure;
+    std::filesystem::create_directories(options_.output, failure);
+    if (failure) throw system_error(options_.output, "could not be made", failure.value());
+    folder_.emplace(options_.output / "figures", options_.overwrite);
+    outcome_.page = page_file;
+
+    const std::filesystem::path glb = batch_ / "avatar.glb";
+    const Avatar avatar = parse_avatar_glb(read_avatar_glb(glb.string()), glb.string());
+    const Contacts contacts = read_contacts(batch_, data, avatar);
+    const std::vector<std::string> maps = data.maps();
+    const std::size_t pictured = std::min(options_.top, maps.size());
+    figures_expected_ = 1 + pictured * (4 + data.laws.size());
+
+    ReportPage page = {data, {}, {}, {}, contacts.shown_trace};
+    if (data.ranking.front().headline.mean) {
+      std::string caption =
+          "Each combination of map and law: mean over traces, and its 95\u00a0% interval. Filled: cannot "
+          "be told from the first at 95\u00a0%.";
+      if (data.traces.size() < 2) caption = "Each combination of map and law, on the one trace.";
+      if (data.ranking.size() > kRankedShown) caption += fmt::format(" The best {} are drawn.", kRankedShown);
+      page.ranking.push_back(draw("ranking", *ranking_figure(data, kRankedShown), caption));
+    }
+    const MapPictures pictures(avatar, contacts.all);
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      ActuatorMap map = read_batch_map(batch_, maps[i]);
+      page.unfelt.push_back({maps[i], contacts.all.size(), pictures.unfelt_count(map)});
+      if (i < pictured) page.maps.push_back(section(data, maps[i], avatar, contacts, pictures, std::move(map)));
+    }
+
+    const std::string html = report_html(page);
+    folder_->commit([](const std::filesystem::path&) { return false; });
+    OutputFile file(page_file, options_.overwrite);
+    file.write(html);
+    file.commit();
+    return std::move(outcome_);
+  }
+
+ private:
+  PageFigure draw(const std::string& stem, const Figure& figure, std::string caption) {
+    if (!progress_(static_cast<double>(outcome_.figures) / static_cast<double>(figures_expected_))) throw Stopped();
+    PageFigure page = {stem, svg_of(figure), figure.description(), std::move(caption)};
+    write_file(stem + ".svg", page.svg);
+    if (outcome_.has_pictures) {
+      try {
+        write_file(stem + ".png", png_of(figure));
+      } catch (const GlUnavailable& error) {
+        outcome_.has_pictures = false;
+        outcome_.warnings.push_back(fmt::format("{}: PNG files are left out: {}\n  install libegl1 and libgl1-mesa-dri",
+                                                (options_.output / "figures").string(), error.what()));
+      }
+    }
+    ++outcome_.figures;
+    return page;
+  }
+
+  void write_file(const std::string& name, std::string_view bytes) {
+    OutputFile file(folder_->path() / name, Overwrite::kAllow);
+    file.write(bytes);
+    file.commit();
+  }
+
+  MapSection section(const ReportData& data, const std::string& name, const Avatar& avatar, const Contacts& contacts,
+                     const MapPictures& pictures, ActuatorMap map) {
+    MapSection section;
+    section.map = name;
+    section.contacts = contacts.all.size();
+    section.warnings = map.warnings;
+    for (const std::string& actuator : map.names)
+      section.actuators.push_back(
+          {actuator.empty() ? fmt::format("actuator {}", section.actuators.size() + 1) : actuator, 0});
+    for (const RecordedContact& contact : contacts.all) {
+      const std::uint16_t actuator =
+          actuator_at(avatar, map, contact.triangle, contact.barycentric.x, contact.barycentric.y);
+      if (actuator == 0)
+        ++section.unfelt;
+      else
+        ++section.actuators[actuator - 1U].contacts;
+    }
+    section.bodies.push_back(draw(name + "-regions", *pictures.regions(map), "Regions and their actuators' numbers."));
+    section.bodies.push_back(draw(name + "-contacts", *pictures.contacts(map), "Where contacts are."));
+    section.bodies.push_back(draw(name + "-not-felt", *pictures.unfelt(map), "Where contacts are not felt."));
+    if (contacts.shown.contacts.empty() || map.actuator_count == 0) return section;
+
+    const auto layout = std::make_shared<const ActuatorLayout>(avatar, std::move(map));
+    LawOptions law_options;
+    law_options.hold_s = data.hold_ms / 1000;
+    std::vector<ErrorSeries> errors;
+    for (const std::string& law : data.laws) errors.push_back(errors_of(contacts.shown, *layout, law, law_options));
+    section.errors.push_back(draw(
+        name + "-errors", *error_figure(std::move(errors), contacts.shown.time_s.front(), contacts.shown.time_s.back()),
+        fmt::format("Localisation error of each contact of {} over time; line: median. Red, below: not felt.",
+                    contacts.shown_trace)));
+    std::vector<std::string> laws = data.laws;
+    std::ranges::stable_partition(laws, [&](const std::string& law) { return law == data.best_of(name).law; });
+    for (const std::string& law : laws) {
+      const std::unique_ptr<IntensityLaw> made = make_law(law, layout, law_options);
+      section.timelines.push_back(draw(
+          fmt::format("{}-timeline-{}", name, law), *timeline_figure(timeline_of(contacts.shown, layout->map(), *made)),
+          fmt::format("Amplitude of each actuator over {} under {} (duty 255 is full), contacts held for {:g} ms.",
+                      contacts.shown_trace, law, data.hold_ms)));
+    }
+    return section;
+  }
+
+  static ErrorSeries errors_of(const ContactRecording& recording, const ActuatorLayout& layout, const std::string& law,
+                               const LawOptions& law_options) {
+    ErrorSeries series;
+    series.law = law;
+    LawChoice choice;
+    choice.name = law;
+    choice.options = law_options;
+    series.error_mm = contact_errors_mm(recording, layout, choice);
+    for (std::size_t frame = 0; frame < recording.frames(); ++frame)
+      series.time_s.insert(series.time_s.end(), recording.first[frame + 1] - recording.first[frame],
+                           recording.time_s[frame]);
+    return series;
+  }
+
+  const std::filesystem::path& batch_;
+  const ReportOptions& options_;
+  const std::function<bool(double)>& progress_;
+  std::optional<GrowingFolder> folder_;
+  std::size_t figures_expected_ = 1;
+  ReportOutcome outcome_;
+};
+
+}  // namespace
+
+ReportOutcome write_report(const std::filesystem::path& batch, const ReportOptions& options,
+                           const std::function<bool(double)>& progress) {
+  try {
+    return Report(batch, options, progress).write();
+  } catch (const Stopped&) {
+    ReportOutcome outcome;
+    outcome.interrupted = true;
+    return outcome;
+  }
+}
+
+}  // namespace vestige::plot

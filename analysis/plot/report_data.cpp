@@ -1,0 +1,196 @@
+#include "analysis/plot/report_data.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "analysis/plot/json_field.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr std::string_view kRemedy = "was it written by 'vestige batch'? Run the batch again, with --force";
+constexpr double kMost = std::numeric_limits<double>::max();
+
+std::optional<double> number(const JsonField& parent, const char* key) {
+  if (!parent.has(key)) return std::nullopt;
+  return parent.at(key).within(-kMost, kMost);
+}
+
+std::size_t whole(const JsonField& field) {
+  return static_cast<std::size_t>(field.within(0, 1e15));
+}
+
+bool truth(const JsonField& field) {
+  if (!field.value().is_boolean()) field.refuse("is neither true nor false");
+  return field.value().get<bool>();
+}
+
+/// Lists may be empty here.
+std::size_t length(const JsonField& field) {
+  if (!field.value().is_array()) field.refuse("is no list");
+  return field.value().size();
+}
+
+/// A name that files have: it leads to no other folder.
+std::string file_name(const JsonField& field) {
+  std::string name = field.text();
+  if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
+    field.refuse(fmt::format("is '{}', which is no name of a map or a trace", name));
+  return name;
+}
+
+Estimate read_estimate(const JsonField& field) {
+  Estimate estimate;
+  estimate.mean = number(field, "mean");
+  estimate.low = number(field, "low");
+  estimate.high = number(field, "high");
+  estimate.traces = whole(field.at("n"));
+  return estimate;
+}
+
+ReportMetric read_metric(const JsonField& field) {
+  ReportMetric metric;
+  metric.name = field.at("name").text();
+  metric.unit = field.at("unit").text();
+  metric.better = field.at("better").text();
+  metric.model_based = truth(field.at("model_based"));
+  metric.formula = field.at("formula").text();
+  metric.source = field.at("source").text();
+  return metric;
+}
+
+Candidate read_candidate(const JsonField& field, const std::vector<ReportMetric>& metrics) {
+  Candidate candidate;
+  if (field.has("rank")) candidate.rank = whole(field.at("rank"));
+  candidate.map = file_name(field.at("map"));
+  candidate.law = file_name(field.at("law"));
+  candidate.headline = read_estimate(field.at("headline"));
+  candidate.difference_from_best = read_estimate(field.at("difference_from_best"));
+  candidate.distinguishable_from_best = truth(field.at("distinguishable_from_best"));
+  const JsonField values = field.at("metrics");
+  for (const ReportMetric& metric : metrics) candidate.metrics.push_back(read_estimate(values.at(metric.name.c_str())));
+  return candidate;
+}
+
+void read_ranking(const std::filesystem::path& file, ReportData& data) {
+  const nlohmann::json json = read_json(file, kRemedy);
+  const JsonField document(json, file, kRemedy);
+  const JsonField metrics = document.at("metrics");
+  for (std::size_t i = 0; i < metrics.count(); ++i) data.metrics.push_back(read_metric(metrics.at(i)));
+  const std::string rank_by = document.at("rank_by").text();
+  const auto headline = std::ranges::find(data.metrics, rank_by, &ReportMetric::name);
+  if (headline == data.metrics.end())
+    document.at("rank_by").refuse(fmt::format("is '{}', which is no metric", rank_by));
+  data.headline = static_cast<std::size_t>(headline - data.metrics.begin());
+  data.interval = document.at("interval").text();
+  const JsonField ranking = document.at("ranking");
+  for (std::size_t i = 0; i < ranking.count(); ++i) data.ranking.push_back(read_candidate(ranking.at(i), data.metrics));
+}
+
+/// As it could be typed again.
+std::string quoted(const std::string& word) {
+  if (!word.empty() && word.find_first_of(" \t\n'\"\\$&;|<>()*?[]{}~#!`") == std::string::npos) return word;
+  std::string inside;
+  for (const char letter : word) {
+    if (letter == '\'')
+      inside.append("'\\''");
+    else
+      inside.push_back(letter);
+  }
+  return fmt::format("'{}'", inside);
+}
+
+std::string words_of(const JsonField& list) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < length(list); ++i) words.push_back(quoted(list.at(i).text()));
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+void read_provenance(const JsonField& run, ReportData& data) {
+  const auto add = [&](const char* name, std::string value) {
+    if (!value.empty()) data.provenance.emplace_back(name, std::move(value));
+  };
+  add("Command", words_of(run.at("argv")));
+  if (run.has("time")) add("Finished", run.at("time").text());
+  if (run.has("version")) add("Version", run.at("version").text());
+  add("Commit", commit_of(run));
+  if (run.has("machine"))
+    add("Machine", phrase(run.at("machine"), {{"processor", ""}, {"cores", " cores"}, {"system", ""}}));
+  const JsonField batch = run.at("batch");
+  add("Avatar", phrase(batch.at("avatar"), {{"given", ""}, {"sha256", " (SHA-256)"}}));
+  if (batch.has("options"))
+    add("Detection",
+        phrase(batch.at("options"), {{"detector", ""}, {"method", ""}, {"hold_ms", " ms hold"}, {"seed", " as seed"}}));
+  if (run.has("totals")) {
+    const JsonField totals = run.at("totals");
+    const auto seconds = [&](const char* key) { return totals.has(key) ? totals.at(key).within(0, kMost) : 0; };
+    add("Processor time", fmt::format("reading {:.2f} s, detection {:.2f} s, all maps and laws {:.2f} s",
+                                      seconds("reading_s"), seconds("detection_s"), seconds("scoring_s")));
+  }
+}
+
+void read_run(const std::filesystem::path& file, ReportData& data) {
+  const nlohmann::json json = read_json(file, kRemedy);
+  const JsonField run(json, file, kRemedy);
+  if (run.has("complete")) data.complete = truth(run.at("complete"));
+  read_provenance(run, data);
+  const JsonField batch = run.at("batch");
+  const JsonField laws = batch.at("laws");
+  for (std::size_t i = 0; i < laws.count(); ++i) data.laws.push_back(file_name(laws.at(i)));
+  if (batch.has("options") && batch.at("options").has("hold_ms"))
+    data.hold_ms = batch.at("options").at("hold_ms").within(0, kMost);
+  const JsonField traces = run.at("traces");
+  for (std::size_t i = 0; i < length(traces); ++i) {
+    const JsonField field = traces.at(i);
+    ReportTrace trace;
+    trace.name = file_name(field.at("name"));
+    trace.given = field.at("given").text();
+    trace.frames = field.at("frames").within(0, kMost);
+    trace.colliders = field.at("colliders").within(0, kMost);
+    trace.contacts = field.at("contacts").within(0, kMost);
+    if (field.has("damage"))
+      for (std::size_t k = 0; k < length(field.at("damage")); ++k)
+        trace.damage.push_back(field.at("damage").at(k).text());
+    data.traces.push_back(std::move(trace));
+  }
+  const JsonField failures = run.at("failures");
+  for (std::size_t i = 0; i < length(failures); ++i) {
+    const JsonField field = failures.at(i);
+    data.failures.push_back({field.at("what").text(), field.at("name").text(), field.at("given").text(),
+                             field.at("cause").text(), field.at("remedy").text()});
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> ReportData::maps() const {
+  std::vector<std::string> names;
+  for (const Candidate& candidate : ranking)
+    if (std::ranges::find(names, candidate.map) == names.end()) names.push_back(candidate.map);
+  return names;
+}
+
+const Candidate& ReportData::best_of(const std::string& map) const {
+  return *std::ranges::find(ranking, map, &Candidate::map);
+}
+
+ReportData read_report(const std::filesystem::path& folder) {
+  if (!std::filesystem::is_directory(folder))
+    throw Error(folder.string(), std::filesystem::exists(folder) ? "is no folder" : "there is no such folder",
+                "name the folder that 'vestige batch -o' wrote");
+  if (!std::filesystem::exists(folder / "ranking.json"))
+    throw Error(folder.string(), "holds no ranking.json: no batch was finished here",
+                std::filesystem::exists(folder / "run.json")
+                    ? "run the same 'vestige batch' again: it goes on where it was stopped; run.json says what failed"
+                    : "run 'vestige batch -o' first, and name its folder");
+  ReportData data;
+  read_ranking(folder / "ranking.json", data);
+  read_run(folder / "run.json", data);
+  return data;
+}
+
+}  // namespace vestige::plot

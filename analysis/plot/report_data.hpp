@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace vestige::plot {
+
+/// A mean over traces and its 95 % interval; nothing where a batch has none (no value, fewer than two traces).
+struct Estimate {
+  std::optional<double> mean;
+  std::optional<double> low;
+  std::optional<double> high;
+  std::size_t traces = 0;
+
+  bool has_interval() const { return mean && low && high && traces > 1; }
+};
+
+struct ReportMetric {
+  std::string name;
+  std::string unit;    ///< empty: a plain number
+  std::string better;  ///< "higher", "lower", "neither"
+  bool model_based = false;
+  std::string formula;
+  std::string source;
+};
+
+/// A map with a law, and how it did.
+struct Candidate {
+  std::optional<std::size_t> rank;  ///< from 1; none: it has no value on any trace
+  std::string map;
+  std::string law;
+  Estimate headline;
+  Estimate difference_from_best;
+  bool distinguishable_from_best = false;
+  std::vector<Estimate> metrics;  ///< in the order of `ReportData::metrics`
+};
+
+struct ReportFailure {
+  std::string what;  ///< "map" or "trace"
+  std::string name;
+  std::string given;
+  std::string cause;
+  std::string remedy;
+};
+
+struct ReportTrace {
+  std::string name;
+  std::string given;
+  double frames = 0;
+  double colliders = 0;
+  double contacts = 0;
+  std::vector<std::string> damage;
+};
+
+/// What 'vestige batch -o DIR' wrote, apart from contacts, maps and avatar.
+struct ReportData {
+  std::size_t headline = 0;  ///< which of `metrics`
+  std::string interval;      ///< how intervals were made, in the batch's own words
+  std::vector<ReportMetric> metrics;
+  std::vector<Candidate> ranking;  ///< best first
+  std::vector<ReportTrace> traces;
+  std::vector<ReportFailure> failures;
+  std::vector<std::string> laws;  ///< in the order of the batch
+  double hold_ms = 60;
+  bool complete = true;                                         ///< false: the batch was stopped
+  std::vector<std::pair<std::string, std::string>> provenance;  ///< name and value, as they are shown
+
+  /// Names of the ranked maps, best first.
+  std::vector<std::string> maps() const;
+  /// Of the ranked maps, the first candidate.
+  const Candidate& best_of(const std::string& map) const;
+};
+
+/// Reads ranking.json and run.json. Throws `Error` naming file and field; of a folder without a ranking it says what to
+/// run.
+ReportData read_report(const std::filesystem::path& folder);
+
+}  // namespace vestige::plot

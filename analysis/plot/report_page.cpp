@@ -1,0 +1,437 @@
+#include "analysis/plot/report_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <string_view>
+
+#include "analysis/plot/axis.hpp"
+#include "analysis/plot/html.hpp"
+#include "analysis/plot/report_style.hpp"
+#include "analysis/plot/report_words.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr std::size_t kFewTraces = 10;
+
+/// Laws that 'vestige batch' knows.
+struct LawWords {
+  std::string_view name;
+  std::string_view words;
+};
+constexpr std::array<LawWords, 5> kLaws = {{
+    {"binary", "A contact switches the actuator of its skin fully on (Spanlang et al. 2010, HAVE)."},
+    {"speed", "As strong as the collider's speed along the skin's normal, up to a speed that asks for everything."},
+    {"phantom",
+     "Shared between the actuators that a contact lies between, at constant energy: for two, A₁ = √(1−β) A and "
+     "A₂ = √β A (Israr & Poupyrev 2011, Tactile Brush)."},
+    {"gaussian", "Every actuator, less with its distance along the body: exp(−d²/2σ²)."},
+    {"linear", "Shared as by phantom, but linearly, so that energy sags between actuators; for comparison."},
+}};
+
+template <typename... Arguments>
+void add(std::string& out, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
+  fmt::format_to(std::back_inserter(out), text, std::forward<Arguments>(arguments)...);
+}
+
+std::string unit_of(const ReportMetric& metric) {
+  return metric.unit.empty() ? "" : fmt::format("\u00a0{}", html_text(metric.unit));
+}
+
+/// "localisation error (mm)"
+std::string title_of(const ReportMetric& metric) {
+  const std::string words = html_text(sentence_case(words_of_name(metric.name)));
+  return metric.unit.empty() ? words : fmt::format("{} ({})", words, html_text(metric.unit));
+}
+
+constexpr std::string_view kModelLabel = "<span class=\"model\">model, not a user study</span>";
+
+std::string value_cell(const std::optional<double>& value) {
+  return fmt::format("<td class=\"n\">{}</td>", value ? number_text(*value) : "–");
+}
+
+std::string interval_words(const Estimate& estimate) {
+  if (!estimate.has_interval()) return "–";
+  return fmt::format("{} to {}", number_text(*estimate.low), number_text(*estimate.high));
+}
+
+std::string percent(std::size_t part, std::size_t whole) {
+  if (whole == 0) return "–";
+  const double share = 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+  // Nearly none is not none, and nearly all is not all.
+  if (part > 0 && share < 0.1) return "under 0.1\u00a0%";
+  if (part < whole && share > 99.9) return "over 99.9\u00a0%";
+  return fmt::format("{:.1f}\u00a0%", share);
+}
+
+std::string figure(const PageFigure& one, std::string_view kind) {
+  return fmt::format("<figure class=\"{}\"><div class=\"sheet\">{}</div><figcaption>{}</figcaption></figure>\n", kind,
+                     inline_svg(one.svg, one.stem, one.label), html_text(one.caption));
+}
+
+/// A table that scrolls by itself, with the keyboard too.
+std::string scrolling(std::string_view label, std::string_view table, std::string_view kind = "") {
+  return fmt::format("<div class=\"scroll {}\" tabindex=\"0\" role=\"region\" aria-label=\"{}\">\n{}</div>\n", kind,
+                     html_text(label), table);
+}
+
+class Page {
+ public:
+  explicit Page(const ReportPage& page) : page_(page), data_(page.data) {}
+
+  std::string html() {
+    head();
+    ranking();
+    maps();
+    all_metrics();
+    definitions();
+    inputs();
+    provenance();
+    out_ +=
+        "</main>\n<footer><p class=\"soft\">Written by <code>vestige plot report</code>. This page needs no network: "
+        "its figures stand in it. Beside it, as SVG and PNG, they are in the folder <code>figures</code>, and all "
+        "scores are in <code>scores.csv</code>.</p></footer>\n</body>\n</html>\n";
+    return std::move(out_);
+  }
+
+ private:
+  const ReportMetric& headline() const { return data_.metrics[data_.headline]; }
+  const Candidate& best() const { return data_.ranking.front(); }
+  static std::string name_of(const Candidate& candidate) {
+    return fmt::format("{} with {}", html_text(candidate.map), html_text(candidate.law));
+  }
+
+  std::size_t level_with_best() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(data_.ranking, [](const Candidate& one) { return is_level(one); }) - 1);
+  }
+  /// Ranked, and not to be told from the first.
+  static bool is_level(const Candidate& one) { return one.rank && !one.distinguishable_from_best; }
+
+  void head() {
+    const std::string title = fmt::format("Actuator mappings compared: {} by {}", counted(data_.maps().size(), "map"),
+                                          words_of_name(headline().name));
+    add(out_,
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta name=\"color-scheme\" content=\"light dark\">\n<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n"
+        "<a class=\"skip\" href=\"#report\">Skip to the report</a>\n<header>\n<h1>Actuator mappings compared</h1>\n",
+        html_text(title), kReportStyle);
+    lead();
+    out_ += "</header>\n<nav aria-label=\"Contents\"><ol>\n";
+    for (const auto& [id, name] : {std::pair("ranking", "Ranking"), std::pair("maps", "Maps on the body"),
+                                   std::pair("metrics", "All metrics"), std::pair("definitions", "Definitions"),
+                                   std::pair("inputs", "Traces and failures"), std::pair("provenance", "Provenance")})
+      add(out_, "<li><a href=\"#{}\">{}</a></li>\n", id, name);
+    out_ += "</ol></nav>\n<main id=\"report\">\n";
+  }
+
+  void lead() {
+    const ReportMetric& metric = headline();
+    const std::string words = html_text(words_of_name(metric.name));
+    if (!best().headline.mean) {
+      add(out_,
+          "<p class=\"lead\">No combination of map and law has a value of {} on any trace, so nothing is ranked.</p>\n",
+          words);
+    } else {
+      add(out_, "<p class=\"lead\"><strong>{}</strong> has the {} {}: {}. ", name_of(best()),
+          metric.better == "higher" ? "highest" : "lowest", words, html_text(estimate_text(best().headline, metric)));
+      out_ += others_in_words() + "</p>\n";
+    }
+    double contacts = 0;
+    double frames = 0;
+    for (const ReportTrace& trace : data_.traces) {
+      contacts += trace.contacts;
+      frames += trace.frames;
+    }
+    add(out_,
+        "<p>Compared: {} × {} over {} ({} frames, {} contacts), by the mean over traces of {}{}; {} is better.</p>\n",
+        counted(data_.maps().size(), "map"), counted(data_.laws.size(), "intensity law"),
+        counted(data_.traces.size(), "trace"), grouped(frames), grouped(contacts), words,
+        metric.unit.empty() ? "" : fmt::format(" in {}", html_text(metric.unit)), html_text(metric.better));
+    cautions();
+  }
+
+  std::string others_in_words() const {
+    const std::size_t others = data_.ranking.size() - 1;
+    if (others == 0) return "There is nothing else to compare it with.";
+    if (data_.traces.size() < 2)
+      return fmt::format(
+          "With one trace it cannot be said whether that would hold on another: the {} have no interval "
+          "either.",
+          counted(others, others == 1 ? "other combination" : "other combination"));
+    const std::size_t level = level_with_best();
+    if (level == 0)
+      return others == 1
+                 ? "The other combination of map and law is worse, as far as these traces tell."
+                 : fmt::format("All {} other combinations of map and law are worse, as far as these traces tell.",
+                               others);
+    return fmt::format("Of the {} of map and law, {} cannot be told from it.", counted(others, "other combination"),
+                       level);
+  }
+
+  void cautions() {
+    std::vector<std::string> cautions;
+    if (!data_.complete) cautions.emplace_back("The batch was stopped before its end; what is shown is part of it.");
+    if (!data_.failures.empty())
+      cautions.push_back(fmt::format("{} could not be used and {} left out (<a href=\"#failures\">Failures</a>).",
+                                     counted(data_.failures.size(), "input"),
+                                     data_.failures.size() == 1 ? "is" : "are"));
+    const auto damaged =
+        std::ranges::count_if(data_.traces, [](const ReportTrace& one) { return !one.damage.empty(); });
+    if (damaged != 0)
+      cautions.push_back(fmt::format("{} damaged; only what could be read of {} counts.",
+                                     damaged == 1 ? "One trace is" : fmt::format("{} traces are", damaged),
+                                     damaged == 1 ? "it" : "them"));
+    if (data_.traces.size() < 2)
+      cautions.emplace_back("One trace gives no interval: nothing here says how the maps compare on another one.");
+    else if (data_.traces.size() < kFewTraces)
+      cautions.push_back(fmt::format("{} are few: intervals are rough, and hold for traces like these only.",
+                                     sentence_case(counted(data_.traces.size(), "trace"))));
+    if (data_.ranking.size() > 2 && data_.traces.size() > 1)
+      cautions.emplace_back("Each comparison with the first stands at 95\u00a0% for itself: of many, some err.");
+    if (const auto more = more_coverage(); !more.empty()) cautions.push_back(more);
+    if (headline().model_based)
+      cautions.push_back(
+          fmt::format("{} is a model, not a user study.", html_text(sentence_case(words_of_name(headline().name)))));
+    if (cautions.empty()) return;
+    out_ += "<div class=\"caution\" role=\"note\"><ul>\n";
+    for (const std::string& caution : cautions) add(out_, "<li>{}</li>\n", caution);
+    out_ += "</ul></div>\n";
+  }
+
+  /// What an error alone would hide: it counts only contacts that are felt.
+  std::string more_coverage() const {
+    const auto coverage = std::ranges::find(data_.metrics, "coverage", &ReportMetric::name);
+    const auto index = static_cast<std::size_t>(coverage - data_.metrics.begin());
+    if (coverage == data_.metrics.end() || index == data_.headline || !best().metrics[index].mean) return {};
+    const double felt = *best().metrics[index].mean;
+    const Candidate* most = &best();
+    for (const Candidate& one : data_.ranking)
+      if (one.metrics[index].mean.value_or(0) > most->metrics[index].mean.value_or(0)) most = &one;
+    constexpr double kWorthSaying = 0.005;
+    const double felt_most = *most->metrics[index].mean;
+    if (felt_most < felt + kWorthSaying) return {};
+    return fmt::format(
+        "{} lets {:.1f}\u00a0% of contacts be felt, {} {:.1f}\u00a0%; {} says nothing of those that are not.",
+        name_of(best()), 100 * felt, name_of(*most), 100 * felt_most, html_text(words_of_name(headline().name)));
+  }
+
+  const UnfeltShare* unfelt_of(const std::string& map) const {
+    const auto found = std::ranges::find(page_.unfelt, map, &UnfeltShare::map);
+    return found == page_.unfelt.end() ? nullptr : &*found;
+  }
+
+  void ranking() {
+    out_ += "<section aria-labelledby=\"ranking\">\n<h2 id=\"ranking\">Ranking</h2>\n";
+    for (const PageFigure& one : page_.ranking) out_ += figure(one, "ranking");
+    std::string table = "<table>\n";
+    add(table,
+        "<caption><span>{}, mean over traces. Highlighted rows cannot be told from the first at 95\u00a0%. Not felt: "
+        "contacts of "
+        "all traces on skin without an actuator, whatever the law.</span></caption>\n"
+        "<thead><tr><th scope=\"col\" class=\"n\">Rank</th><th scope=\"col\">Map</th><th scope=\"col\">Law</th>"
+        "<th scope=\"col\" class=\"n\">{}</th><th scope=\"col\">95\u00a0% interval</th><th scope=\"col\">Against the "
+        "first</th><th scope=\"col\" class=\"n\">Traces</th><th scope=\"col\" class=\"n\">Not "
+        "felt</th></tr></thead>\n<tbody>\n",
+        title_of(headline()), title_of(headline()));
+    for (std::size_t i = 0; i < data_.ranking.size(); ++i) {
+      const Candidate& one = data_.ranking[i];
+      const UnfeltShare* unfelt = unfelt_of(one.map);
+      add(table,
+          "<tr{}><td class=\"n\">{}</td><th scope=\"row\" class=\"name\">{}</th><td>{}</td>{}<td "
+          "class=\"interval\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
+          is_level(one) && data_.traces.size() > 1 ? " class=\"level\"" : "",
+          one.rank ? fmt::format("{}", *one.rank) : "–", html_text(one.map), html_text(one.law),
+          value_cell(one.headline.mean), interval_words(one.headline), against_first(one, i == 0), one.headline.traces,
+          unfelt == nullptr ? "–" : percent(unfelt->unfelt, unfelt->contacts));
+    }
+    out_ += scrolling("Ranking", table + "</tbody>\n</table>\n", "tall");
+    add(out_, "<p class=\"soft\">Intervals: {}.</p>\n</section>\n", html_text(data_.interval));
+  }
+
+  std::string against_first(const Candidate& one, bool is_first) const {
+    if (!one.rank) return "no value";
+    if (is_first) return "first";
+    const Estimate& difference = one.difference_from_best;
+    if (!difference.has_interval()) return "cannot be told: too few traces";
+    const std::string interval = fmt::format(" <span class=\"interval\">({}{})</span>",
+                                             html_text(difference_text(difference)), unit_of(headline()));
+    return (one.distinguishable_from_best ? "worse" : "not distinguishable") + interval;
+  }
+
+  static std::string difference_text(const Estimate& difference) {
+    const auto with_sign = [](double value) { return (value > 0 ? "+" : "") + number_text(value); };
+    return fmt::format("{} to {}", with_sign(*difference.low), with_sign(*difference.high));
+  }
+
+  void maps() {
+    out_ += "<section aria-labelledby=\"maps\">\n<h2 id=\"maps\">Maps on the body</h2>\n";
+    add(out_,
+        "<p>Best first. Densities count the contacts of all traces and have one scale, so that maps compare. Skin "
+        "without an actuator gives nothing to feel, under any law.{}</p>\n",
+        page_.shown_trace.empty()
+            ? " No trace has a contact."
+            : fmt::format(" Errors and timelines are of the trace <strong>{}</strong>, which has the most contacts.",
+                          html_text(page_.shown_trace)));
+    for (std::size_t i = 0; i < page_.maps.size(); ++i) map_section(page_.maps[i], i);
+    const std::vector<std::string> all = data_.maps();
+    if (all.size() > page_.maps.size())
+      add(out_, "<p class=\"soft\">{} more: they rank behind these and have no pictures here. --top draws more.</p>\n",
+          counted(all.size() - page_.maps.size(), "map"));
+    out_ += "</section>\n";
+  }
+
+  void map_section(const MapSection& map, std::size_t index) {
+    const Candidate& best = data_.best_of(map.map);
+    add(out_, "<section aria-labelledby=\"map-{0}\">\n<h3 id=\"map-{0}\">{1}</h3>\n", index + 1, html_text(map.map));
+    add(out_, "<p>{}; best law {}: {}. Felt: {} of {}.</p>\n", counted(map.actuators.size(), "actuator"),
+        html_text(best.law), html_text(estimate_text(best.headline, headline())),
+        percent(map.contacts - map.unfelt, map.contacts), counted_contacts(map.contacts));
+    for (const std::string& warning : map.warnings) add(out_, "<p class=\"caution\">{}</p>\n", html_text(warning));
+    out_ += "<div class=\"figures\">\n";
+    for (const PageFigure& one : map.bodies) out_ += figure(one, "pair");
+    out_ += "</div>\n";
+    for (const PageFigure& one : map.errors) out_ += figure(one, "wide");
+    for (std::size_t i = 0; i < map.timelines.size(); ++i) {
+      if (i == 1) add(out_, "<details><summary>Timelines under the other laws</summary>\n");
+      out_ += figure(map.timelines[i], "wide");
+    }
+    if (map.timelines.size() > 1) out_ += "</details>\n";
+    actuators(map);
+    out_ += "</section>\n";
+  }
+
+  static std::string counted_contacts(std::size_t count) {
+    return fmt::format("{} contact{}", grouped(static_cast<double>(count)), count == 1 ? "" : "s");
+  }
+
+  void actuators(const MapSection& map) {
+    if (map.actuators.empty()) return;
+    std::string table = fmt::format(
+        "<table>\n<caption><span>Actuators of {}, and the contacts on their skin in all "
+        "traces</span></caption>\n<thead><tr><th "
+        "scope=\"col\" class=\"n\">Number</th><th scope=\"col\">Name</th><th scope=\"col\" "
+        "class=\"n\">Contacts</th><th "
+        "scope=\"col\" class=\"n\">Share</th></tr></thead>\n<tbody>\n",
+        html_text(map.map));
+    for (std::size_t i = 0; i < map.actuators.size(); ++i)
+      add(table,
+          "<tr><td class=\"n\">{}</td><th scope=\"row\" class=\"name\">{}</th><td class=\"n\">{}</td><td "
+          "class=\"n\">{}</td></tr>\n",
+          i + 1, html_text(map.actuators[i].name), grouped(static_cast<double>(map.actuators[i].contacts)),
+          percent(map.actuators[i].contacts, map.contacts));
+    add(out_, "<details><summary>Contacts of each actuator</summary>\n{}</details>\n",
+        scrolling(fmt::format("Actuators of {}", map.map), table + "</tbody>\n</table>\n", "tall"));
+  }
+
+  void all_metrics() {
+    out_ += "<section class=\"metrics\" aria-labelledby=\"metrics\">\n<h2 id=\"metrics\">All metrics</h2>\n";
+    std::string table =
+        "<table class=\"all\">\n<caption><span>Mean over traces and, below it, its 95\u00a0% "
+        "interval</span></caption>\n<thead><tr><th "
+        "scope=\"col\">Map</th><th scope=\"col\">Law</th>";
+    for (const ReportMetric& metric : data_.metrics)
+      add(table, "<th scope=\"col\" class=\"n\" style=\"white-space:normal\">{}{}</th>", title_of(metric),
+          metric.model_based ? fmt::format("<br>{}", kModelLabel) : "");
+    table += "</tr></thead>\n<tbody>\n";
+    for (const Candidate& one : data_.ranking) {
+      add(table, "<tr><th scope=\"row\" class=\"name\">{}</th><td>{}</td>", html_text(one.map), html_text(one.law));
+      for (const Estimate& estimate : one.metrics) {
+        add(table, "<td class=\"n\">{}", estimate.mean ? number_text(*estimate.mean) : "–");
+        if (estimate.has_interval()) add(table, "<br><span class=\"interval\">{}</span>", interval_words(estimate));
+        table += "</td>";
+      }
+      table += "</tr>\n";
+    }
+    out_ += scrolling("All metrics", table + "</tbody>\n</table>\n", "tall") + "</section>\n";
+  }
+
+  void definitions() {
+    out_ += "<section aria-labelledby=\"definitions\">\n<h2 id=\"definitions\">Definitions</h2>\n";
+    std::string table =
+        "<table>\n<caption><span>How each metric is computed, and where it comes from. Those marked as a model rest on "
+        "a "
+        "model of "
+        "perception, motors or link; nobody was asked.</span></caption>\n<thead><tr><th scope=\"col\">Metric</th><th "
+        "scope=\"col\">Unit</th><th scope=\"col\">Better</th><th scope=\"col\">Formula</th><th "
+        "scope=\"col\">Source</th></tr></thead>\n<tbody>\n";
+    for (const ReportMetric& metric : data_.metrics)
+      add(table,
+          "<tr><th scope=\"row\">{}{}<br><code>{}</code></th><td>{}</td><td>{}</td><td class=\"formula\">{}</td><td "
+          "class=\"source\">{}</td></tr>\n",
+          html_text(sentence_case(words_of_name(metric.name))),
+          metric.model_based ? fmt::format("<br>{}", kModelLabel) : "", html_text(metric.name),
+          metric.unit.empty() ? "–" : html_text(metric.unit), html_text(metric.better), html_text(metric.formula),
+          html_text(metric.source));
+    out_ += scrolling("Definitions of the metrics", table + "</tbody>\n</table>\n");
+    out_ += "<h3>Intensity laws</h3>\n<dl>\n";
+    for (const std::string& law : data_.laws) {
+      const auto known = std::ranges::find(kLaws, law, &LawWords::name);
+      if (known != kLaws.end()) add(out_, "<dt>{}</dt><dd>{}</dd>\n", html_text(law), html_text(known->words));
+    }
+    add(out_, "</dl>\n<p>A contact is held for {:g} ms.</p>\n</section>\n", data_.hold_ms);
+  }
+
+  void inputs() {
+    out_ += "<section aria-labelledby=\"inputs\">\n<h2 id=\"inputs\">Traces and failures</h2>\n";
+    std::string table =
+        "<table>\n<caption><span>Each trace was run through collision detection once, for all maps and "
+        "laws</span></caption>\n<thead><tr><th "
+        "scope=\"col\">Trace</th><th scope=\"col\">Given as</th><th scope=\"col\" class=\"n\">Frames</th><th "
+        "scope=\"col\" "
+        "class=\"n\">Colliders</th><th scope=\"col\" class=\"n\">Contacts</th><th "
+        "scope=\"col\">Damage</th></tr></thead>\n<tbody>\n";
+    for (const ReportTrace& trace : data_.traces) {
+      std::string damage;
+      for (const std::string& one : trace.damage) damage += (damage.empty() ? "" : "<br>") + html_text(one);
+      add(table,
+          "<tr><th scope=\"row\" class=\"name\">{}</th><td class=\"name\">{}</td><td class=\"n\">{}</td><td "
+          "class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td></tr>\n",
+          html_text(trace.name), html_text(trace.given), grouped(trace.frames), grouped(trace.colliders),
+          grouped(trace.contacts), damage.empty() ? "none" : damage);
+    }
+    out_ += scrolling("Traces", table + "</tbody>\n</table>\n", "tall");
+    out_ += "<h3 id=\"failures\">Failures</h3>\n";
+    if (data_.failures.empty()) {
+      out_ += "<p>None: every input was used.</p>\n</section>\n";
+      return;
+    }
+    table =
+        "<table>\n<caption><span>Inputs that were left out</span></caption>\n<thead><tr><th scope=\"col\">What</th><th "
+        "scope=\"col\">Name</th><th scope=\"col\">Given as</th><th scope=\"col\">Cause</th><th "
+        "scope=\"col\">Remedy</th></tr></thead>\n<tbody>\n";
+    for (const ReportFailure& failure : data_.failures)
+      add(table,
+          "<tr><td>{}</td><th scope=\"row\" class=\"name\">{}</th><td class=\"name\">{}</td><td "
+          "class=\"source\">{}</td><td class=\"source\">{}</td></tr>\n",
+          html_text(failure.what), html_text(failure.name), html_text(failure.given), html_text(failure.cause),
+          html_text(failure.remedy));
+    out_ += scrolling("Failures", table + "</tbody>\n</table>\n") + "</section>\n";
+  }
+
+  void provenance() {
+    out_ += "<section aria-labelledby=\"provenance\">\n<h2 id=\"provenance\">Provenance</h2>\n<dl>\n";
+    for (const auto& [name, value] : data_.provenance)
+      add(out_, "<dt>{}</dt><dd>{}</dd>\n", html_text(name),
+          name == "Command" ? fmt::format("<code>{}</code>", html_text(value)) : html_text(value));
+    out_ += "</dl>\n</section>\n";
+  }
+
+  const ReportPage& page_;
+  const ReportData& data_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string report_html(const ReportPage& page) {
+  return Page(page).html();
+}
+
+}  // namespace vestige::plot

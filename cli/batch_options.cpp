@@ -1,0 +1,133 @@
+#include "cli/batch_options.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+#include <set>
+
+#include "analysis/batch/batch_inputs.hpp"
+#include "analysis/batch/batch_results.hpp"
+#include "analysis/mapping/layouts.hpp"
+#include "analysis/mapping/scores.hpp"
+#include "cli/help/validators.hpp"
+#include "detector/intensity.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+const std::vector<std::string> kLaws(std::begin(kLawNames), std::end(kLawNames));
+constexpr const char* kScenarioGroup = "Scenarios among the traces";
+
+std::string describe_maps() {
+  std::string text = "The actuator maps: the built-in one, a layout laid onto the avatar, or a PNG file";
+  for (const std::string& name : layout_names())
+    fmt::format_to(std::back_inserter(text), "\n  {:<8} {}", name, layout_summary(name));
+  return text;
+}
+
+std::string scenario_names() {
+  std::string text;
+  for (const Scenario& scenario : scenarios()) text += fmt::format("{}{}", text.empty() ? "" : ", ", scenario.name);
+  return text;
+}
+
+void check_distinct(const std::vector<std::string>& given, const std::string& flag) {
+  std::set<std::string> seen;
+  for (const std::string& one : given)
+    if (!seen.insert(one).second) throw UsageError(flag, fmt::format("'{}' stands there twice", one), "name each once");
+}
+
+}  // namespace
+
+CLI::Option* add_rank_by(CLI::App& verb, std::string& rank_by) {
+  return verb.add_option("--rank-by", rank_by, "The metric that puts maps and laws in order")->type_name("METRIC");
+}
+
+void add_batch_options(CLI::App& verb, BatchOptions& options) {
+  verb.add_option("--maps", options.maps, describe_maps())->required()->type_name("builtin|LAYOUT|FILE.png");
+  verb.add_option("--traces", options.traces,
+                  fmt::format("The traces: files, or scenarios to record on the avatar ({})", scenario_names()))
+      ->required()
+      ->type_name("FILE|SCENARIO");
+  options.laws = fmt::format("{}", fmt::join(kLaws, ","));
+  verb.add_option("--laws", options.laws, "How a contact becomes intensities")
+      ->capture_default_str()
+      ->type_name("LIST");
+  verb.add_option("--hold", options.hold_ms, "How long an actuator stays on after a contact")
+      ->capture_default_str()
+      ->check(help::kNotNegative)
+      ->type_name("MS");
+  options.rank_by = default_metric_to_rank_by();
+  add_rank_by(verb, options.rank_by)->capture_default_str();
+  verb.add_option("-o,--output", options.output,
+                  "Folder for the results; the same command goes on where it was stopped")
+      ->required()
+      ->type_name("DIR");
+  verb.add_option("--avatar", options.avatar,
+                  "The avatar that maps and traces are for [default: that of the first trace, the built-in one for a "
+                  "scenario]")
+      ->type_name("builtin|FILE");
+  const auto add_recording = [&](const char* name, auto& value, const char* description, const char* type) {
+    return verb.add_option(name, value, description)->group(kScenarioGroup)->type_name(type);
+  };
+  add_recording("--rate", options.rate_hz, "Frames per second [default: 1000]", "HZ")->check(help::kPositive);
+  add_recording("--duration", options.duration_s, "How long, in seconds [default: 2]", "S")->check(help::kPositive);
+  add_recording("--count", options.count, "Colliders [default: 100; slide: 1]", "N")
+      ->check(help::whole_number(1, 1000000));
+  add_detector_and_context(verb, options.choice);
+  add_detector_options(verb, options.choice);
+  add_common_options(verb, options.common);
+}
+
+BatchPlan plan_of(const BatchOptions& options) {
+  check_distinct(options.maps, "--maps");
+  check_distinct(options.traces, "--traces");
+  if (options.choice.surface != "all")
+    throw UsageError("--surface", "all maps share one detection, so unmapped skin cannot be passed through",
+                     "leave it out; 'vestige replay --surface mapped' looks at one map");
+  metric_to_rank_by(options.rank_by);
+  BatchPlan plan;
+  plan.traces = name_traces(options.traces);
+  plan.laws = parse_names(options.laws, kLaws, "--laws");
+  plan.hold_s = options.hold_ms / 1e3;
+  plan.detector = options.choice.detector == "auto" ? "cpu" : options.choice.detector;
+  plan.method = options.choice.method;
+  plan.skip = options.choice.skip;
+  plan.seed = options.common.seed;
+  if ((options.rate_hz || options.duration_s || options.count) && !plan.has_scenario())
+    throw UsageError(options.rate_hz      ? "--rate"
+                     : options.duration_s ? "--duration"
+                                          : "--count",
+                     "none of the traces is a scenario, and files are as they were recorded", "leave it out");
+  plan.recording.rate_hz = options.rate_hz.value_or(plan.recording.rate_hz);
+  plan.recording.duration_s = options.duration_s.value_or(plan.recording.duration_s);
+  plan.recording.count = options.count;
+  return plan;
+}
+
+std::vector<std::string> arguments_of(const BatchOptions& options) {
+  std::vector<std::string> words = {"--maps"};
+  words.insert(words.end(), options.maps.begin(), options.maps.end());
+  words.emplace_back("--traces");
+  words.insert(words.end(), options.traces.begin(), options.traces.end());
+  const auto add = [&](const char* flag, const std::string& value) { words.insert(words.end(), {flag, value}); };
+  add("--laws", options.laws);
+  add("--hold", fmt::format("{}", options.hold_ms));
+  add("--rank-by", options.rank_by);
+  if (!options.avatar.empty()) add("--avatar", options.avatar);
+  if (options.rate_hz) add("--rate", fmt::format("{}", *options.rate_hz));
+  if (options.duration_s) add("--duration", fmt::format("{}", *options.duration_s));
+  if (options.count) add("--count", fmt::format("{}", *options.count));
+  add("--detector", options.choice.detector);
+  if (options.choice.context != "auto") add("--context", options.choice.context);
+  if (options.choice.device >= 0) add("--device", fmt::format("{}", options.choice.device));
+  add("--method", options.choice.method);
+  add("--skip", options.choice.skip);
+  add("--seed", fmt::format("{}", options.common.seed));
+  if (options.common.force) words.emplace_back("--force");
+  return words;
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,67 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "analysis/batch/slurm_script.hpp"
+#include "cli/batch_options.hpp"
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct BatchSlurmOptions {
+  BatchOptions batch;
+  std::size_t shards = 0;
+  std::size_t jobs = 1;
+  std::vector<std::string> sbatch;
+};
+
+void run_slurm(const BatchSlurmOptions& options) {
+  const BatchPlan plan = plan_of(options.batch);
+  if (!options.batch.common.json.empty())
+    throw UsageError("--json", "a script is all that this writes", "leave it out");
+  if (options.shards > plan.traces.size())
+    throw UsageError("--shards",
+                     fmt::format("{} shards of {} traces leave some empty", options.shards, plan.traces.size()),
+                     fmt::format("make {} shards at most", plan.traces.size()));
+  SlurmBatch batch;
+  batch.program = std::filesystem::read_symlink("/proc/self/exe").string();
+  batch.working_folder = std::filesystem::current_path().string();
+  batch.arguments = arguments_of(options.batch);
+  batch.output = std::filesystem::absolute(options.batch.output).lexically_normal().string();
+  batch.shards = options.shards;
+  batch.jobs = options.jobs;
+  batch.merge_arguments = {"--rank-by", options.batch.rank_by};
+  if (options.batch.common.force) batch.merge_arguments.emplace_back("--force");
+  batch.sbatch = options.sbatch;
+  fmt::print("{}", slurm_script(batch));
+}
+
+}  // namespace
+
+void add_batch_slurm(CLI::App& batch, Invocation& invocation) {
+  static_cast<void>(invocation);
+  auto options = std::make_shared<BatchSlurmOptions>();
+  CLI::App* verb = add_verb(
+      batch, "slurm", "Print a script that runs a batch as a Slurm job array, and merges its shards",
+      "  vestige batch slurm --shards 3 --maps paper6 body --traces swarm hug slide -o compared >submit.sh\n"
+      "  vestige batch slurm --shards 2 --maps paper6 --traces swarm hug --sbatch=--time=60 -o c >submit.sh\n");
+  verb->add_option("--shards", options->shards, "Into how many jobs the traces are split")
+      ->required()
+      ->check(CLI::Range(1, 1000000))
+      ->type_name("N");
+  verb->add_option("--jobs", options->jobs, "Processors of each shard")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1024))
+      ->type_name("N");
+  verb->add_option("--sbatch", options->sbatch, "A further option of sbatch, as in --sbatch=--partition=short")
+      ->allow_extra_args(false)
+      ->type_name("OPTION");
+  add_batch_options(*verb, options->batch);
+  verb->callback([options] { run_slurm(*options); });
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+namespace vestige {
+
+// Functions that give the same bits on every machine, which a C library's need not: theirs differ between processors
+// with and without fma. Both are within 1e-15 of the true value, relative to it (log2: or absolute).
+
+/// e^x.
+inline double portable_exp(double x) {
+  if (!(x < 709)) return x >= 709 ? std::numeric_limits<double>::infinity() : x;
+  if (x < -745) return 0;
+  constexpr double kLn2High = 0x1.62e42fefa0000p-1;  // its last bits are 0, so that whole multiples are exact
+  constexpr double kLn2Low = 0x1.cf79abc9e3b3ap-40;
+  const double whole = std::floor(x * 0x1.71547652b82fep0 + 0.5);
+  const double r = (x - whole * kLn2High) - whole * kLn2Low;  // within ln 2 / 2
+  double sum = 1;
+  for (int n = 14; n > 0; --n) sum = 1 + r * sum / n;
+  return std::ldexp(sum, static_cast<int>(whole));
+}
+
+/// The logarithm to base 2; -inf for 0, not a number below. Exact for powers of two.
+inline double portable_log2(double x) {
+  if (!(x > 0)) return x == 0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+  if (std::isinf(x)) return x;
+  int exponent = 0;
+  double mantissa = std::frexp(x, &exponent);
+  if (mantissa < 0x1.6a09e667f3bcdp-1) {
+    mantissa *= 2;
+    --exponent;
+  }
+  // ln m = 2 artanh s
+  const double s = (mantissa - 1) / (mantissa + 1);
+  double sum = 0;
+  for (int n = 25; n > 0; n -= 2) sum = sum * s * s + 1.0 / n;
+  return exponent + 2 * s * sum * 0x1.71547652b82fep0;
+}
+
+/// x^y for x ≥ 0.
+inline double portable_pow(double x, double y) {
+  if (x == 0) return y == 0 ? 1 : 0;
+  if (x == 1 || y == 1) return x;
+  return portable_exp(y * portable_log2(x) * 0x1.62e42fefa39efp-1);
+}
+
+}  // namespace vestige

@@ -1,0 +1,274 @@
+// Batches as a user runs them: what they make, and what they bear.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+
+#include "tests/support/command_line.hpp"
+#include "traces/builtin_avatar.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class BatchCommandLine : public test::CommandLineTest {
+ protected:
+  /// One-second traces of twenty colliders.
+  void record(const std::vector<std::string>& names) const {
+    int seed = 0;
+    for (const std::string& name : names)
+      ASSERT_EQ(
+          run("vestige record --count 20 --rate 100 --duration 1 --seed " + std::to_string(++seed) + " -o " + name)
+              .exit_code,
+          0);
+  }
+
+  /// Everything that must be the same bytes for equal work.
+  void expect_same_results(const std::string& a, const std::string& b) const {
+    EXPECT_EQ(run("diff -r --exclude=run.json --exclude='*.run.json' --exclude=.lock " + a + " " + b).standard_output,
+              "");
+    for (const char* name : {"scores.csv", "scores.json", "ranking.csv", "ranking.json"})
+      EXPECT_TRUE(std::filesystem::exists(folder_ / a / name)) << name;
+  }
+
+  nlohmann::json json_in(const std::string& path) const {
+    return nlohmann::json::parse(read_text_file(folder_ / path));
+  }
+
+  void write_map(const std::string& name) const {
+    const auto png = builtin_actuator_map_png();
+    std::ofstream(folder_ / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+  }
+};
+
+TEST_F(BatchCommandLine, ScoresEveryMapAndLawOnContactsThatAreDetectedOnce) {
+  record({"a.mcap", "b.mcap"});
+  write_map("mine.png");
+  const test::Outcome batch =
+      run("vestige batch --maps builtin mine.png --traces a.mcap b.mcap --laws binary,phantom -o out");
+  ASSERT_EQ(batch.exit_code, 0) << batch.standard_error;
+  EXPECT_THAT(batch.standard_output, AllOf(HasSubstr("detected 2 traces once, 8 scores"), HasSubstr("rank"),
+                                           HasSubstr("phantom"), HasSubstr("95 %")));
+  const auto scores = json_in("out/scores.json");
+  EXPECT_EQ(scores["schema_version"], 1);
+  ASSERT_EQ(scores["scores"].size(), 8U);
+  EXPECT_GT(scores["metrics"].size(), 3U);
+  for (const auto& metric : scores["metrics"]) {
+    EXPECT_TRUE(metric["model_based"].is_boolean());
+    EXPECT_NE(metric["formula"], "");
+    EXPECT_TRUE(scores["scores"][0]["values"].contains(metric["name"]));
+  }
+  EXPECT_EQ(run("head -1 out/scores.csv | cut -d, -f1-3").standard_output, "map,trace,law\n");
+  EXPECT_EQ(run("wc -l <out/scores.csv").standard_output, "9\n");
+  EXPECT_EQ(run("wc -l <out/ranking.csv").standard_output, "5\n");
+  const auto ranking = json_in("out/ranking.json");
+  ASSERT_EQ(ranking["ranking"].size(), 4U);
+  EXPECT_EQ(ranking["ranking"][0]["rank"], 1);
+  const auto& headline = ranking["ranking"][0]["headline"];
+  EXPECT_LE(headline["low"], headline["mean"]);
+  EXPECT_LE(headline["mean"], headline["high"]);
+
+  const auto run_json = json_in("out/run.json");
+  EXPECT_EQ(run_json["complete"], true);
+  EXPECT_EQ(run_json["batch"]["maps"][1]["given"], "mine.png");
+  EXPECT_EQ(run_json["traces"][1]["sha256"], run("sha256sum b.mcap | cut -c1-64").standard_output.substr(0, 64));
+  EXPECT_GT(run_json["totals"]["detection_s"], 0);
+  EXPECT_EQ(run_json["failures"].size(), 0U);
+
+  // The contacts are those that replay finds.
+  EXPECT_EQ(run("vestige replay a.mcap -q --contacts replay.csv && cut -d, -f1-9 replay.csv >expected && "
+                "grep -v ',,' out/contacts/a.csv | cut -d, -f1-9 >found && cmp expected found")
+                .exit_code,
+            0);
+  EXPECT_EQ(run("cmp mine.png out/maps/mine.png && vestige avatar out/avatar.glb").exit_code, 0);
+}
+
+TEST_F(BatchCommandLine, RecordsScenariosItself) {
+  const std::string command =
+      "vestige batch --maps builtin --traces slide hug --laws binary --rate 100 --duration 0.5 ";
+  ASSERT_EQ(run(command + "-o one").exit_code, 0);
+  const auto items = json_in("one/run.json")["traces"];
+  EXPECT_EQ(items[0]["frames"], 50);
+  EXPECT_EQ(items[1]["colliders"], 100);
+  EXPECT_EQ(run("vestige replay one/traces/hug.mcap -q").exit_code, 0);
+  ASSERT_EQ(run(command + "-o two --jobs 1").exit_code, 0);
+  expect_same_results("one", "two");
+}
+
+TEST_F(BatchCommandLine, IsTheSameBytesWhateverTheJobs) {
+  record({"a.mcap", "b.mcap", "c.mcap"});
+  const std::string command = "vestige batch --maps builtin paper6 --traces a.mcap b.mcap c.mcap ";
+  ASSERT_EQ(run(command + "--jobs 1 -o one").exit_code, 0);
+  ASSERT_EQ(run(command + "--jobs 2 -o two").exit_code, 0);
+  expect_same_results("one", "two");
+}
+
+TEST_F(BatchCommandLine, ShardsMergeIntoTheBytesOfAWholeBatch) {
+  record({"a.mcap", "b.mcap", "c.mcap", "d.mcap", "e.mcap"});
+  const std::string command =
+      "vestige batch --maps builtin --traces a.mcap b.mcap c.mcap nowhere.mcap d.mcap e.mcap --laws binary,speed ";
+  ASSERT_EQ(run(command + "-o whole").exit_code, 3);
+  for (const char* shard : {"1", "2", "3"})
+    ASSERT_EQ(run(command + "--shard " + shard + "/3 -o part" + shard).exit_code, shard[0] == '1' ? 3 : 0);
+  const test::Outcome merge = run("vestige batch merge part3 part1 part2 -o merged");
+  EXPECT_EQ(merge.exit_code, 3) << merge.standard_error;
+  EXPECT_THAT(merge.standard_error, HasSubstr("nowhere"));
+  expect_same_results("whole", "merged");
+  EXPECT_EQ(json_in("merged/run.json")["failures"].size(), 1U);
+  // Once more is no harm: the same shard twice, into the same folder.
+  EXPECT_EQ(run("vestige batch merge part1 part2 part3 part1 -o merged").exit_code, 3);
+  expect_same_results("whole", "merged");
+
+  expect_failure("vestige batch merge part1 part3 -o m", 1, {"2/3", "missing"}, "m");
+  expect_failure("vestige batch merge part1 part2 part3 -o part2", 2, {"part2"});
+  ASSERT_EQ(run("vestige batch --maps builtin --traces a.mcap b.mcap --laws binary --shard 2/2 -o other").exit_code, 0);
+  expect_failure("vestige batch merge part1 other part3 -o m", 1, {"other", "laws", "traces"}, "m");
+  expect_failure("vestige batch merge part1 nowhere -o m", 1, {"nowhere", "no batch"}, "m");
+  ASSERT_EQ(run("cp -r part2 changed && sed -i 's/\"frames\": 100/\"frames\": 101/' changed/items/b.json").exit_code,
+            0);
+  expect_failure("vestige batch merge part1 part2 part3 changed -o m", 1, {"b.json", "differs"}, "m");
+  ASSERT_EQ(run("rm changed/items/b.json").exit_code, 0);
+  expect_failure("vestige batch merge part1 changed part3 -o m", 1, {"b.json", "missing"}, "m");
+  ASSERT_EQ(run("sed -i 's/\"complete\": true/\"complete\": false/' changed/run.json").exit_code, 0);
+  expect_failure("vestige batch merge part1 changed part3 -o m", 1, {"changed", "not finished"}, "m");
+}
+
+TEST_F(BatchCommandLine, GoesOnAfterItWasKilled) {
+  record({"a.mcap", "b.mcap", "c.mcap"});
+  const std::vector<std::string> words = {"batch",  "--maps", "builtin", "--traces", "a.mcap",     "b.mcap", "c.mcap",
+                                          "--laws", "binary", "--jobs",  "1",        "--detector", "exact"};
+  std::string command = "vestige";
+  for (const std::string& word : words) command += " " + word;
+  ASSERT_EQ(run(command + " -o whole").exit_code, 0);
+  for (const char* signal : {"KILL", "INT"}) {
+    const std::string folder = std::string("killed-") + signal;
+    const test::Outcome killed = run(command + " -o " + folder + " & P=$!; for i in $(seq 3000); do [ -e " + folder +
+                                     "/items/a.json ] && break; sleep 0.01; done; kill -" + signal + " $P; wait $P");
+    EXPECT_EQ(killed.exit_code, std::string(signal) == "KILL" ? 137 : 3) << killed.standard_error;
+    EXPECT_EQ(json_in(folder + "/run.json")["complete"], false);
+    ASSERT_FALSE(std::filesystem::exists(folder_ / folder / "items/c.json")) << "it was to be killed in the middle";
+    EXPECT_FALSE(std::filesystem::exists(folder_ / folder / "scores.csv"));
+    const auto written = std::filesystem::last_write_time(folder_ / folder / "items/a.json");
+    const test::Outcome again = run(command + " -o " + folder);
+    EXPECT_EQ(again.exit_code, 0) << again.standard_error;
+    EXPECT_THAT(again.standard_output, HasSubstr("finished by an earlier run"));
+    EXPECT_EQ(std::filesystem::last_write_time(folder_ / folder / "items/a.json"), written);
+    expect_same_results("whole", folder);
+    EXPECT_EQ(run("find " + folder + " -name '.*' ! -name .lock ! -path " + folder).standard_output, "") << "leftovers";
+  }
+}
+
+TEST_F(BatchCommandLine, RunsAgainWhatHasChangedAndNothingElse) {
+  record({"a.mcap", "b.mcap"});
+  const std::string command = "vestige batch --maps builtin --traces a.mcap b.mcap --laws binary -o out";
+  ASSERT_EQ(run(command).exit_code, 0);
+  EXPECT_THAT(run(command).standard_output, HasSubstr("detected 0 traces once"));
+  ASSERT_EQ(run("vestige record --count 5 --rate 100 --duration 1 -o b.mcap --force").exit_code, 0);
+  EXPECT_THAT(run(command).standard_output, HasSubstr("detected 1 trace once"));
+  EXPECT_EQ(json_in("out/run.json")["traces"][1]["colliders"], 5);
+
+  expect_failure("vestige batch --maps builtin --traces a.mcap --laws binary -o out", 1, {"another batch", "--force"});
+  EXPECT_THAT(run("vestige batch --maps builtin --traces a.mcap --laws binary -o out --force").standard_output,
+              HasSubstr("detected 0 traces once, 1 scores"));
+  ASSERT_EQ(run("mkdir mine && echo precious >mine/scores.csv").exit_code, 0);
+  expect_failure(command + " -o mine", 2, {"--output"});
+  expect_failure("vestige batch --maps builtin --traces a.mcap -o mine", 1, {"mine", "scores.csv", "--force"});
+  EXPECT_EQ(read_text_file(folder_ / "mine/scores.csv"), "precious\n");
+}
+
+TEST_F(BatchCommandLine, OneBadInputDoesNotStopTheRest) {
+  record({"a.mcap", "b.mcap"});
+  ASSERT_EQ(run("head -c 2000 /dev/urandom >noise.mcap && echo text >text.png && cp b.mcap cut.mcap && "
+                "truncate -s -3000 cut.mcap && vestige avatar builtin -o man.glb --map-output grey.png && "
+                "echo '{\"actuators\": [{\"grey\": 1, \"name\": \"one\"}]}' >grey.json")
+                .exit_code,
+            0);
+  ASSERT_EQ(
+      run("vestige record --avatar '" + test::data("avatars/avatars/CesiumMan.glb").string() +
+          "' --rate 50 --duration 0.2 -o stranger.mcap || vestige record --rate 50 --duration 0.2 -o stranger.mcap")
+          .exit_code,
+      0);
+  const test::Outcome batch =
+      run("vestige batch --maps text.png builtin grey.png nowhere.png --traces noise.mcap a.mcap stranger.mcap "
+          "nowhere.mcap "
+          "cut.mcap b.mcap --laws binary -o out");
+  EXPECT_EQ(batch.exit_code, 3) << batch.standard_error;
+  const auto json = json_in("out/run.json");
+  EXPECT_EQ(json["complete"], true);
+  std::map<std::string, std::string> cause;
+  for (const auto& failure : json["failures"]) {
+    cause[failure["given"]] = failure["cause"];
+    EXPECT_NE(failure["remedy"], "") << failure;
+    EXPECT_THAT(batch.standard_output, HasSubstr(failure["given"].get<std::string>()));
+  }
+  EXPECT_THAT(cause["text.png"], HasSubstr("PNG"));
+  EXPECT_THAT(cause["grey.png"], HasSubstr("sidecar does not list"));
+  EXPECT_THAT(cause["nowhere.png"], HasSubstr("nowhere.png"));
+  EXPECT_THAT(cause["noise.mcap"], HasSubstr("noise.mcap"));
+  EXPECT_THAT(cause["nowhere.mcap"], HasSubstr("nowhere.mcap"));
+  EXPECT_FALSE(cause.contains("a.mcap"));
+  if (std::filesystem::exists(test::data("avatars/avatars/CesiumMan.glb"))) {
+    EXPECT_THAT(cause["stranger.mcap"], HasSubstr("another avatar"));
+  }
+  // A trace that was cut off is scored as far as it goes, and said.
+  EXPECT_FALSE(cause.contains("cut.mcap"));
+  EXPECT_THAT(batch.standard_error, HasSubstr("cut.mcap"));
+  EXPECT_THAT(run("cut -d, -f1-3 out/scores.csv").standard_output,
+              AllOf(HasSubstr("builtin,a,binary\n"), HasSubstr("builtin,b,binary\n"), HasSubstr("builtin,cut,binary\n"),
+                    Not(HasSubstr("noise")), Not(HasSubstr("grey"))));
+  expect_failure("vestige batch --maps text.png --traces a.mcap -o none", 1, {"none of them", "PNG"}, "none");
+  expect_failure("vestige batch --maps builtin --traces noise.mcap -o none", 1, {"--traces", "none"}, "none");
+}
+
+TEST_F(BatchCommandLine, TwoInOneFolderAreNotLetIn) {
+  ASSERT_EQ(run("vestige record --count 3 --rate 100 --duration 10 -o slow.mcap").exit_code, 0);
+  const std::string command = "vestige batch --maps builtin --traces slow.mcap --laws binary --detector exact -o out";
+  const test::Outcome both =
+      run(command + " & P=$!; for i in $(seq 1000); do [ -e out/run.json ] && break; sleep 0.01; done; " + command +
+          "; echo second $?; kill -INT $P; wait $P");
+  EXPECT_THAT(both.standard_output, HasSubstr("second 1"));
+  EXPECT_THAT(both.standard_error, AllOf(HasSubstr("another batch is writing"), HasSubstr("process ")));
+}
+
+/// A disk of its own that is too small.
+TEST_F(BatchCommandLine, AFullDiskKeepsWhatIsFinishedAndTheBatchGoesOnLater) {
+  record({"a.mcap", "b.mcap", "c.mcap"});
+  const std::string command = "vestige batch --maps builtin --traces a.mcap b.mcap c.mcap --laws binary --jobs 1 -o ";
+  if (run("unshare -m sh -c 'mkdir disk && mount -t tmpfs -o size=64k none disk'; rmdir disk").exit_code != 0)
+    GTEST_SKIP() << "THIS SYSTEM LETS NOBODY MOUNT A DISK: A FULL ONE WAS NOT TESTED";
+  ASSERT_EQ(run(command + "whole").exit_code, 0);
+  // As large as all but the last contacts; then larger.
+  const test::Outcome full =
+      run("size=$(du -sk --apparent-size whole/avatar.glb whole/maps whole/contacts/a.csv | awk '{n += $1} END {print "
+          "n + 40}')\n"
+          "mkdir disk && unshare -m bash -c \"mount -t tmpfs -o size=${size}k none disk && { " +
+          command + "disk/out; echo first \\$?; ls disk/out/items; mount -o remount,size=100m disk; " + command +
+          "disk/out; echo again \\$?; cp -r disk/out after; }\"");
+  EXPECT_THAT(full.standard_error, HasSubstr("disk is full")) << full.standard_output;
+  EXPECT_THAT(full.standard_output, AllOf(HasSubstr("first 1"), HasSubstr("a.json"), HasSubstr("again 0")));
+  expect_same_results("whole", "after");
+}
+
+TEST_F(BatchCommandLine, RefusesWhatWouldDoNothing) {
+  record({"a.mcap"});
+  const std::string command = "vestige batch --maps builtin --traces a.mcap -o none ";
+  expect_failure(command + "--rate 100", 2, {"--rate", "scenario"}, "none");
+  expect_failure(command + "--surface mapped", 2, {"--surface"}, "none");
+  expect_failure(command + "--laws binary,magic", 2, {"magic", "phantom"}, "none");
+  expect_failure(command + "--rank-by beauty", 2, {"beauty", "coverage"}, "none");
+  expect_failure(command + "--shard 2/2", 2, {"--shard"}, "none");
+  expect_failure(command + "--shard 0/1", 2, {"--shard", "0/1"}, "none");
+  expect_failure("vestige batch --maps builtin builtin --traces a.mcap -o none", 2, {"--maps", "twice"}, "none");
+  expect_failure("vestige batch --maps builtin -o none", 2, {"--traces"}, "none");
+  expect_failure("vestige batch --maps builtin merge a b -o none", 2, {"--maps", "merge"}, "none");
+  expect_failure("vestige batch slurm --shards 2 --maps builtin --traces a.mcap -o none", 2, {"--shards"}, "none");
+}
+
+}  // namespace
+}  // namespace vestige

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "analysis/mapping/scores.hpp"
+#include "detector/detector.hpp"
+#include "tests/support/flat_body.hpp"
+#include "tests/support/scene_run.hpp"
+
+namespace vestige::test {
+
+/// A metric of a result, by its name; throws for one that is none.
+inline double metric(const Scores& scores, std::string_view name) {
+  const auto found = std::ranges::find(metrics(), name, &Metric::name);
+  return scores.at(static_cast<std::size_t>(found - metrics().begin()));
+}
+
+/// The contacts of a built-in scenario around an avatar.
+inline ContactRecording record_scenario(std::string_view scenario, const Avatar& avatar, std::uint32_t colliders,
+                                        int frames, double rate_hz) {
+  const ActuatorMap none;
+  const auto detector = make_cpu_detector(avatar, none, {.planes = kRecordedPlanes, .skip = Skip::kOn});
+  FrameBuilder builder = frame_builder(avatar, colliders, Method::kStatic);
+  ContactRecording recording;
+  ContactRow row;
+  for (const TraceFrame& trace_frame : scene(scenario, avatar, colliders, frames, rate_hz)) {
+    const Frame& frame = builder.next(trace_frame);
+    detector->detect(frame, row);
+    recording.add(frame.time_s, row);
+  }
+  return recording;
+}
+
+}  // namespace vestige::test
