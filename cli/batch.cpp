@@ -213,20 +213,19 @@ void add_batch(CLI::App& program, Invocation& invocation) {
   verb->require_subcommand(0, 1);
   add_batch_merge(*verb, invocation);
   add_batch_slurm(*verb, invocation);
-  // What the batch itself must be given is not asked for where only its parts are handled.
-  for (CLI::App* part : verb->get_subcommands([](CLI::App*) { return true; }))
-    part->preparse_callback([verb](std::size_t) {
-      for (CLI::Option* option : verb->get_options()) option->required(false);
+  // What the batch itself must be given is not asked for where only its parts are handled, and would do nothing there.
+  for (CLI::App* part : verb->get_subcommands([](CLI::App*) { return true; })) {
+    part->preparse_callback([verb, part](std::size_t) {
+      for (CLI::Option* option : verb->get_options()) {
+        if (option->count() != 0)
+          throw UsageError(option->get_name(), fmt::format("stands before '{}'", part->get_name()),
+                           fmt::format("give it behind '{0}', or './{0}' where a file is meant", part->get_name()));
+        option->required(false);
+      }
     });
+  }
   verb->callback([verb, options, &invocation] {
-    if (verb->get_subcommands().empty()) {
-      run_batch_verb(*options, invocation);
-      return;
-    }
-    for (const CLI::Option* option : verb->get_options())
-      if (option->count() != 0)
-        throw UsageError(option->get_name(), fmt::format("stands before '{}'", verb->get_subcommands()[0]->get_name()),
-                         "give its flags behind it");
+    if (verb->get_subcommands().empty()) run_batch_verb(*options, invocation);
   });
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
-#include <limits>
 #include <utility>
+
+#include "detector/texture_stretch.hpp"
 
 namespace vestige {
 
@@ -61,30 +61,6 @@ class MappedTexels {
   std::uint32_t height_;
   std::vector<std::vector<Run>> rows_;
 };
-
-struct Stretch {
-  double low = std::numeric_limits<double>::infinity();
-  double high = -std::numeric_limits<double>::infinity();
-
-  void add(double value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-};
-
-/// The part of a triangle with low <= y <= high, along x: of its corners there and of its edges where they leave.
-Stretch stretch_within(const std::array<glm::dvec2, 3>& corners, double low, double high) {
-  Stretch stretch;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const glm::dvec2& from = corners[i];
-    const glm::dvec2& to = corners[(i + 1) % corners.size()];
-    if (from.y >= low && from.y <= high) stretch.add(from.x);
-    for (const double y : {low, high})
-      if ((from.y < y) != (to.y < y))
-        stretch.add(glm::mix(from.x, to.x, std::clamp((y - from.y) / (to.y - from.y), 0.0, 1.0)));
-  }
-  return stretch;
-}
 
 /// Conservative rasterisation (Akenine-Möller & Aila 2005), row by row: whether any texel within the margin of the
 /// triangle has an actuator. Corners in texels.

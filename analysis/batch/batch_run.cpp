@@ -13,6 +13,7 @@
 #include <limits>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -101,19 +102,12 @@ class Run {
   void in_threads(std::size_t count, const std::function<bool(const BatchProgress&)>& progress) {
     std::vector<std::thread> threads;
     running_ = count;
-    for (std::size_t i = 0; i < count; ++i) {
-      threads.emplace_back([this] {
-        try {
-          work();
-        } catch (const Stopped&) {
-          // What was under way is dropped.
-        } catch (...) {
-          note_failure();
-        }
-        const std::lock_guard lock(mutex_);
-        --running_;
-        ended_.notify_all();
-      });
+    try {
+      for (std::size_t i = 0; i < count; ++i) threads.emplace_back([this] { run_thread(); });
+    } catch (const std::system_error&) {
+      const std::lock_guard lock(mutex_);
+      running_ -= count - threads.size();  // those that there are do all the work
+      if (threads.empty()) throw Error("--jobs", "the system starts no thread", "try again later");
     }
     for (std::unique_lock lock(mutex_); running_ != 0; lock.lock()) {
       ended_.wait_for(lock, kProgressPeriod);
@@ -121,6 +115,19 @@ class Run {
       if (!progress(progress_now())) stop_ = true;
     }
     for (std::thread& thread : threads) thread.join();
+  }
+
+  void run_thread() {
+    try {
+      work();
+    } catch (const Stopped&) {
+      // What was under way is dropped.
+    } catch (...) {
+      note_failure();
+    }
+    const std::lock_guard lock(mutex_);
+    --running_;
+    ended_.notify_all();
   }
 
   BatchProgress progress_now() const {
@@ -221,7 +228,10 @@ class Run {
   RecordedTrace detect(const std::string& path, std::size_t i, Detector& detector, nlohmann::ordered_json& item,
                        ItemTimes& times) {
     double mark_s = cpu_s();
-    const auto lap_s = [&] { return cpu_s() - std::exchange(mark_s, cpu_s()); };
+    const auto lap_s = [&] {
+      const double now_s = cpu_s();
+      return now_s - std::exchange(mark_s, now_s);
+    };
     TraceReader reader(path);
     if (sha256_hex(reader.avatar_glb()) != plan_.avatar_sha256)
       throw Error(path, fmt::format("was recorded with another avatar than the batch's, '{}'", plan_.avatar_given),

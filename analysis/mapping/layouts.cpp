@@ -1,6 +1,129 @@
 #include "analysis/mapping/layouts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "analysis/mapping/map_maker.hpp"
+#include "traces/error.hpp"
+
 namespace vestige {
-std::vector<std::string> layout_names() { return {"paper6", "torso16", "torso40", "body"}; }
-std::string layout_summary(std::string_view l) { return "layout " + std::string(l); }
-ActuatorMapFiles read_map_files(const Avatar&, const std::string& map) { for (auto& n : layout_names()) if (n == map) return read_actuator_map_files("builtin"); return read_actuator_map_files(map); }
+
+namespace {
+
+struct Layout {
+  std::string_view name;
+  std::string_view summary;
+  std::string_view regions;
+  EmptyRegions empty;
+};
+
+constexpr std::array kLayouts = {Layout{"paper6", "three heights of the torso, right and left", R"({
+  "regions": [
+    {"name": "torso", "part": "vest", "angle": [-180, 180],
+     "grid": {"rows": 3, "columns": 2,
+              "names": ["upper torso, right", "upper torso, left",
+                        "middle torso, right", "middle torso, left",
+                        "lower torso, right", "lower torso, left"]}}
+  ]
 }
+)",
+                                        EmptyRegions::kRefuse},
+                                 Layout{"torso16", "two rings of eight around the torso", R"({
+  "regions": [
+    {"name": "torso", "part": "vest", "angle": [-180, 180],
+     "grid": {"rows": 2, "columns": 8,
+              "names": ["upper back right", "upper side right, behind", "upper side right, in front", "chest right",
+                        "chest left", "upper side left, in front", "upper side left, behind", "upper back left",
+                        "lower back right", "lower side right, behind", "lower side right, in front", "belly right",
+                        "belly left", "lower side left, in front", "lower side left, behind", "lower back left"]}}
+  ]
+}
+)",
+                                        EmptyRegions::kRefuse},
+                                 Layout{"torso40", "five rows of four on the front of the torso, five on its back", R"({
+  "regions": [
+    {"name": "front", "part": "vest", "side": "front", "grid": {"rows": 5, "columns": 4}},
+    {"name": "back", "part": "vest", "side": "back", "grid": {"rows": 5, "columns": 4}}
+  ]
+}
+)",
+                                        EmptyRegions::kRefuse},
+                                 Layout{"body", "the whole body: head, eight on the torso, and three on each limb", R"({
+  "regions": [
+    {"name": "head", "part": ["head", "neck"]},
+    {"name": "torso, front", "part": "torso", "side": "front",
+     "grid": {"rows": 2, "columns": 2, "names": ["chest right", "chest left", "belly right", "belly left"]}},
+    {"name": "torso, back", "part": "torso", "side": "back",
+     "grid": {"rows": 2, "columns": 2,
+              "names": ["upper back left", "upper back right", "lower back left", "lower back right"]}},
+    {"name": "upper arm right", "part": "upper arm right"},
+    {"name": "upper arm left", "part": "upper arm left"},
+    {"name": "forearm right", "part": "forearm right"},
+    {"name": "forearm left", "part": "forearm left"},
+    {"name": "hand right", "part": "hand right"},
+    {"name": "hand left", "part": "hand left"},
+    {"name": "thigh right", "part": "thigh right"},
+    {"name": "thigh left", "part": "thigh left"},
+    {"name": "shin right", "part": "shin right"},
+    {"name": "shin left", "part": "shin left"},
+    {"name": "foot right", "part": "foot right"},
+    {"name": "foot left", "part": "foot left"}
+  ]
+}
+)",
+                                        EmptyRegions::kLeaveOut}};
+
+const Layout& find_layout(std::string_view name) {
+  const auto* found = std::ranges::find(kLayouts, name, &Layout::name);
+  if (found == kLayouts.end())
+    throw Error(name, "there is no such layout", fmt::format("there are: {}", fmt::join(layout_names(), ", ")));
+  return *found;
+}
+
+}  // namespace
+
+std::vector<std::string> layout_names() {
+  std::vector<std::string> names;
+  for (const Layout& layout : kLayouts) names.emplace_back(layout.name);
+  return names;
+}
+
+std::string layout_summary(std::string_view layout) {
+  return std::string(find_layout(layout).summary);
+}
+
+std::string layout_list() {
+  std::string list;
+  for (const Layout& layout : kLayouts) list += fmt::format("\n  {:<8} {}", layout.name, layout.summary);
+  return list;
+}
+
+bool is_layout(std::string_view map) {
+  return std::ranges::find(kLayouts, map, &Layout::name) != kLayouts.end();
+}
+
+std::string layout_regions_json(std::string_view layout) {
+  return std::string(find_layout(layout).regions);
+}
+
+EmptyRegions layout_empty_regions(std::string_view layout) {
+  return find_layout(layout).empty;
+}
+
+ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout) {
+  const Layout& found = find_layout(layout);
+  require_texture_coordinates(avatar, fmt::format("layout {}: the avatar", layout));
+  const Body body(avatar);
+  const RegionPlan plan(body, parse_region_file(found.regions, layout), layout);
+  MapSettings settings;
+  settings.empty = found.empty;
+  return make_map(body, plan, settings, layout, "the avatar").files;
+}
+
+ActuatorMapFiles read_map_files(const Avatar& avatar, const std::string& map) {
+  return is_layout(map) ? make_layout(avatar, map) : read_actuator_map_files(map);
+}
+
+}  // namespace vestige

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/mapping/map_maker.hpp"
 #include "detector/actuator_map.hpp"
 #include "traces/avatar.hpp"
 
@@ -17,11 +18,17 @@ std::vector<std::string> layout_names();
 /// A line about what it is.
 std::string layout_summary(std::string_view layout);
 
+/// All of them, "\n  NAME  SUMMARY" each, for help texts.
+std::string layout_list();
+
 bool is_layout(std::string_view map);
 
 /// The layout on this avatar, as the two files of a map (1024 x 1024 texels), with names and positions; the same bytes
 /// for the same avatar. Throws `Error`: no such layout, no texture coordinates, a region without skin.
 ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout);
+
+/// What becomes of its regions that an avatar has no skin for.
+EmptyRegions layout_empty_regions(std::string_view layout);
 
 /// The layout's regions, as a region file says them (analysis/mapping/region_file.hpp): to begin one's own with.
 std::string layout_regions_json(std::string_view layout);

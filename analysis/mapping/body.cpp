@@ -1,0 +1,238 @@
+#include "analysis/mapping/body.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "traces/pose.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr double kVestLow = 0.045;
+constexpr double kVestHigh = 0.955;
+
+/// A grown person's, in shares of the height: soles, knees, crotch, neck, chin.
+constexpr double kAnkles = 0.05;
+constexpr double kKnees = 0.28;
+constexpr double kCrotch = 0.48;
+constexpr double kNeck = 0.83;
+constexpr double kChin = 0.87;
+constexpr double kShoulder = 0.115;  // from the middle outwards; elbow and wrist:
+constexpr double kElbow = 0.27;
+constexpr double kWrist = 0.40;
+/// One that is wider holds its arms out.
+constexpr double kArmsHang = 0.35;
+
+struct Extent {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -std::numeric_limits<double>::infinity();
+
+  void add(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  bool is_empty() const { return low > high; }
+};
+
+}  // namespace
+
+Body::Body(const Avatar& avatar) : surface_(avatar), parts_of_nodes_(vestige::parts_of_nodes(avatar)) {
+  weigh_parts();
+  settle_islands();
+  if (!is_understood()) {
+    understanding_ = Understanding::kProportions;
+    part_weights_.clear();
+  }
+  find_middle();
+  find_vest();
+}
+
+void Body::weigh_parts() {
+  for (const Influences& influences : avatar().influences) {
+    auto& weights = part_weights_.emplace_back();
+    for (std::size_t k = 0; k < kMaxInfluences && influences.weight[k] > 0; ++k) {
+      const auto node = static_cast<std::size_t>(avatar().palette[influences.palette[k]].node);
+      // What has no part, and none above it, such as a root, is the trunk on which the rest hangs.
+      const BodyPart part = parts_of_nodes_[node].value_or(BodyPart::kTorso);
+      weights[static_cast<std::size_t>(part)] += influences.weight[k];
+    }
+  }
+}
+
+/// An island is smaller than a fifth of its part's largest piece: the other hand is none.
+constexpr std::size_t kIslandsInLargest = 5;
+
+/// Vertices in one place count once: they have the same weights.
+void Body::settle_islands() {
+  const auto strongest = [](const std::array<float, kBodyParts>& weights) {
+    return static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
+  };
+  std::vector<std::size_t> part(surface_.place_count(), 0);
+  std::vector<std::set<std::uint32_t>> beside(surface_.place_count());
+  for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i) {
+    const glm::uvec3 places = surface_.places(i);
+    for (int corner = 0; corner < 3; ++corner) {
+      part[places[corner]] = strongest(part_weights_[avatar().triangles[i][corner]]);
+      beside[places[corner]].insert({places[(corner + 1) % 3], places[(corner + 2) % 3]});
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> pieces;
+  std::array<std::size_t, kBodyParts> largest = {};
+  std::vector<bool> seen(part.size(), false);
+  for (std::uint32_t first = 0; first < part.size(); ++first) {
+    if (seen[first]) continue;
+    seen[first] = true;
+    auto& piece = pieces.emplace_back(1, first);
+    for (std::size_t i = 0; i < piece.size(); ++i)
+      for (const std::uint32_t next : beside[piece[i]])
+        if (!seen[next] && part[next] == part[first]) {
+          seen[next] = true;
+          piece.push_back(next);
+        }
+    largest[part[first]] = std::max(largest[part[first]], piece.size());
+  }
+  std::vector<std::optional<std::size_t>> settled(part.size());
+  for (const auto& piece : pieces) {
+    if (kIslandsInLargest * piece.size() >= largest[part[piece.front()]]) continue;
+    std::array<std::size_t, kBodyParts> around = {};
+    for (const std::uint32_t place : piece)
+      for (const std::uint32_t next : beside[place])
+        if (part[next] != part[place]) ++around[part[next]];
+    const auto most = std::ranges::max_element(around);
+    // What touches nothing, such as a sword, stays what its joint says.
+    if (*most == 0) continue;
+    for (const std::uint32_t place : piece) settled[place] = static_cast<std::size_t>(most - around.begin());
+  }
+  for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i)
+    for (int corner = 0; corner < 3; ++corner)
+      if (const auto& to = settled[surface_.places(i)[corner]]) {
+        auto& weights = part_weights_[avatar().triangles[i][corner]];
+        weights = {};
+        weights[*to] = 1;
+      }
+}
+
+/// A torso, and at least two of: head or neck, arms, legs.
+bool Body::is_understood() const {
+  std::array<bool, kBodyParts> named = {};
+  for (const PaletteEntry& entry : avatar().palette)
+    if (const auto part = parts_of_nodes_[static_cast<std::size_t>(entry.node)])
+      named[static_cast<std::size_t>(*part)] = true;
+  const auto any = [&](BodyPart first, BodyPart last) {
+    return std::any_of(named.begin() + static_cast<std::ptrdiff_t>(first),
+                       named.begin() + static_cast<std::ptrdiff_t>(last) + 1, [](bool is) { return is; });
+  };
+  const int limbs = int{any(BodyPart::kNeck, BodyPart::kHead)} + int{any(BodyPart::kUpperArm, BodyPart::kHand)} +
+                    int{any(BodyPart::kThigh, BodyPart::kFoot)};
+  return any(BodyPart::kTorso, BodyPart::kTorso) && limbs >= 2;
+}
+
+BodyPart Body::part_by_proportions(const glm::dvec3& position_m) const {
+  const Box& bounds = surface_.bounds();
+  const double height_m = surface_.height_m();
+  const double y = (position_m.y - bounds.low.y) / height_m;
+  const double beside = std::abs(position_m.x - (bounds.low.x + bounds.high.x) / 2) / height_m;
+  const bool arms_out = bounds.extent().x > kArmsHang * height_m * 1.3;
+  if (arms_out && y > kCrotch * 0.8 && y < kChin && beside > kShoulder) {
+    if (beside > kWrist) return BodyPart::kHand;
+    return beside > kElbow ? BodyPart::kForearm : BodyPart::kUpperArm;
+  }
+  if (y >= kChin) return BodyPart::kHead;
+  if (y >= kNeck) return BodyPart::kNeck;
+  if (y >= kCrotch) return BodyPart::kTorso;
+  if (y >= kKnees) return BodyPart::kThigh;
+  return y >= kAnkles ? BodyPart::kShin : BodyPart::kFoot;
+}
+
+BodyPart Body::part_at(const SkinPoint& point) const {
+  if (understanding_ == Understanding::kProportions) return part_by_proportions(surface_.position_m(point));
+  const glm::uvec3& corner = avatar().triangles[point.triangle];
+  const auto& a = part_weights_[corner.x];
+  const auto& b = part_weights_[corner.y];
+  const auto& c = part_weights_[corner.z];
+  std::size_t best = 0;
+  double most = -1;
+  for (std::size_t i = 0; i < kBodyParts; ++i) {
+    const double weight = point.weight.x * double{a[i]} + point.weight.y * double{b[i]} + point.weight.z * double{c[i]};
+    if (weight > most) {
+      most = weight;
+      best = i;
+    }
+  }
+  return static_cast<BodyPart>(best);
+}
+
+int Body::node_at(const SkinPoint& point) const {
+  struct Weighed {
+    int node;
+    double weight;
+  };
+  std::array<Weighed, 3 * kMaxInfluences> nodes = {};
+  std::size_t count = 0;
+  for (int corner = 0; corner < 3; ++corner) {
+    const Influences& influences = avatar().influences[avatar().triangles[point.triangle][corner]];
+    for (std::size_t k = 0; k < kMaxInfluences && influences.weight[k] > 0; ++k) {
+      const int node = avatar().palette[influences.palette[k]].node;
+      const auto end = nodes.begin() + static_cast<std::ptrdiff_t>(count);
+      auto found = std::find_if(nodes.begin(), end, [&](const Weighed& other) { return other.node == node; });
+      if (found == end) {
+        *found = {node, 0};
+        ++count;
+      }
+      found->weight += point.weight[corner] * double{influences.weight[k]};
+    }
+  }
+  // Of equal ones, the first by number: corners may come in any order.
+  const auto better = [](const Weighed& a, const Weighed& b) {
+    return a.weight != b.weight ? a.weight < b.weight : a.node > b.node;
+  };
+  return std::max_element(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(count), better)->node;
+}
+
+void Body::find_middle() {
+  const Box& bounds = surface_.bounds();
+  Extent torso;
+  for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i) {
+    const SkinPoint middle = {i, glm::dvec3(1.0 / 3)};
+    if (part_at(middle) != BodyPart::kTorso) continue;
+    for (const glm::dvec3& corner : surface_.corners_m(i)) torso.add(corner.x);
+  }
+  middle_x_m_ = torso.is_empty() ? (bounds.low.x + bounds.high.x) / 2 : (torso.low + torso.high) / 2;
+}
+
+void Body::find_vest() {
+  // The joint nearest to the trunk of each limb, by what is above it.
+  std::vector<glm::dmat4> world;
+  const Pose rest = rest_pose(avatar());
+  world_matrices(avatar(), rest, world);
+  Extent hips;
+  Extent necks;
+  Extent torso;
+  if (understanding_ == Understanding::kJoints)
+    for (const PaletteEntry& entry : avatar().palette) {
+      const auto i = static_cast<std::size_t>(entry.node);
+      const int parent = avatar().nodes[i].parent;
+      const auto above = parent < 0 ? std::nullopt : parts_of_nodes_[static_cast<std::size_t>(parent)];
+      if (parts_of_nodes_[i] == above) continue;
+      const double y_m = world[i][3].y + rest.origin_m.y;
+      if (parts_of_nodes_[i] == BodyPart::kThigh) hips.add(y_m);
+      if (parts_of_nodes_[i] == BodyPart::kNeck || parts_of_nodes_[i] == BodyPart::kHead) necks.add(y_m);
+    }
+  for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i) {
+    const SkinPoint middle = {i, glm::dvec3(1.0 / 3)};
+    if (part_at(middle) == BodyPart::kTorso) torso.add(surface_.position_m(middle).y);
+  }
+  if (torso.is_empty()) torso = {surface_.bounds().low.y, surface_.bounds().high.y};
+  const double low_m = hips.is_empty() ? torso.low : hips.low;
+  const double high_m = necks.is_empty() ? torso.high : necks.low;
+  const bool upright = low_m < high_m;
+  const double from_m = upright ? low_m : torso.low;
+  const double to_m = upright ? high_m : torso.high;
+  vest_low_m_ = from_m + kVestLow * (to_m - from_m);
+  vest_high_m_ = from_m + kVestHigh * (to_m - from_m);
+}
+
+}  // namespace vestige

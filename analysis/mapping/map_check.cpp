@@ -1,0 +1,274 @@
+#include "analysis/mapping/map_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <map>
+
+#include "analysis/mapping/map_raster.hpp"
+#include "analysis/mapping/skin_pieces.hpp"
+#include "detector/texture_stretch.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// Of an actuator's skin: what is smaller is a speck of a border's steps, or of charts that meet within a texel.
+constexpr double kSpeck = 0.01;
+constexpr double kSpeckTexels = 4;
+constexpr std::size_t kMostListed = 8;
+
+struct Piece {
+  double area_m2 = 0;
+  std::size_t patches = 0;
+  glm::dvec3 sum = glm::dvec3(0);
+};
+
+class Checker {
+ public:
+  Checker(const Body& body, const ActuatorMap& map)
+      : body_(body), map_(map), far_m_(kFarApart * body.surface().bounds().longest_side()) {
+    result_.actuators.resize(map.actuator_count);
+    for (std::size_t i = 0; i < map.actuator_count; ++i) result_.actuators[i].name = map.names[i];
+    for (const std::uint16_t actuator : map.actuator)
+      if (actuator != 0) ++of(actuator).texels;
+    patches_ = skin_pieces(body.surface(), map);
+  }
+
+  MapCheck check() {
+    measure();
+    find_unreached();
+    find_shared();
+    find_split();
+    find_soft_edges();
+    find_misplaced();
+    std::ranges::stable_sort(result_.findings, std::ranges::greater(), &MapFinding::severity);
+    return std::move(result_);
+  }
+
+ private:
+  CheckedActuator& of(std::uint16_t actuator) { return result_.actuators[actuator - 1U]; }
+  std::string quoted(std::uint16_t actuator) const {
+    return fmt::format("{} '{}'", actuator, map_.names[actuator - 1U]);
+  }
+  void add(Severity severity, const char* kind, std::uint16_t actuator, std::string cause, std::string remedy) {
+    result_.findings.push_back({severity, kind, actuator, std::move(cause), std::move(remedy)});
+  }
+
+  void measure() {
+    for (const SkinPatch& patch : patches_) {
+      result_.skin_m2 += double{patch.area_m2};
+      if (patch.actuator == 0) continue;
+      of(patch.actuator).area_m2 += double{patch.area_m2};
+      Piece& piece = pieces_[{patch.actuator, patch.piece}];
+      piece.area_m2 += double{patch.area_m2};
+      piece.sum += double{patch.area_m2} * glm::dvec3(patch.position_m);
+      ++piece.patches;
+    }
+  }
+
+  void find_unreached() {
+    std::vector<bool> reached(map_.actuator_count + 1, false);
+    const glm::dvec2 size(map_.width, map_.height);
+    std::size_t unfit = 0;
+    const auto wrap = [](std::int64_t value, std::int64_t side) {
+      return static_cast<std::size_t>(((value % side) + side) % side);
+    };
+    for (std::uint32_t i = 0; i < body_.avatar().triangles.size(); ++i) {
+      const auto corners = body_.surface().texels(i, size);
+      if (!fits_texture(corners, size)) {
+        ++unfit;
+        continue;
+      }
+      for_touched_texels(corners, [&](std::int64_t column, std::int64_t row) {
+        reached[map_.actuator[wrap(row, map_.height) * map_.width + wrap(column, map_.width)]] = true;
+      });
+    }
+    if (unfit > 0)
+      add(Severity::kProblem, "texture_coordinates", 0,
+          fmt::format("{} triangles have texture coordinates that are not finite, or cover the texture more than once "
+                      "over, so that each fires many regions",
+                      unfit),
+          "give them a place of their own in the texture, and export the avatar again");
+    if (map_.actuator_count == 0)
+      add(Severity::kProblem, "never_fires", 0, "the map is black all over, so that nothing will ever fire",
+          "paint regions in grey levels, or let 'vestige map make' draw them");
+    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
+      if (of(actuator).texels == 0)
+        add(Severity::kProblem, "never_fires", actuator,
+            fmt::format("actuator {} can never fire: the image has none of its grey", quoted(actuator)),
+            "paint its region, or take it out of the sidecar");
+      else if (!reached[actuator] && unfit == 0)
+        add(Severity::kProblem, "never_fires", actuator,
+            fmt::format("actuator {} can never fire: no skin reaches its {} texels", quoted(actuator),
+                        of(actuator).texels),
+            "paint it where the avatar's texture shows skin: 'vestige avatar FILE --uv uv.png' draws where that is");
+    }
+  }
+
+  bool is_mirrored(const glm::vec3& a, const glm::vec3& b) const {
+    const glm::dvec3 image(2 * body_.middle_x_m() - double{a.x}, a.y, a.z);
+    return glm::distance(image, glm::dvec3(b)) < far_m_;
+  }
+
+  /// Each texel's first patch stands for it; others far from it share it.
+  void find_shared() {
+    constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> first(map_.actuator.size(), kNone);
+    struct Sharing {
+      std::size_t texels = 0;
+      std::size_t other_pieces = 0;
+      std::size_t mirrored = 0;
+      float farthest_m = 0;
+    };
+    std::vector<Sharing> sharing(map_.actuator_count + 1);
+    enum : std::uint8_t { kShared = 1, kMirrored = 2 };
+    std::vector<std::uint8_t> marks(map_.actuator.size(), 0);
+    for (std::uint32_t i = 0; i < patches_.size(); ++i) {
+      const SkinPatch& patch = patches_[i];
+      if (patch.actuator == 0) continue;
+      if (first[patch.texel] == kNone) first[patch.texel] = i;
+      const SkinPatch& other = patches_[first[patch.texel]];
+      const float apart_m = glm::distance(patch.position_m, other.position_m);
+      if (double{apart_m} < far_m_) continue;
+      Sharing& shared = sharing[patch.actuator];
+      shared.farthest_m = std::max(shared.farthest_m, apart_m);
+      std::uint8_t& mark = marks[patch.texel];
+      if ((mark & kShared) == 0) {
+        ++shared.texels;
+        if (patch.piece != other.piece) ++shared.other_pieces;
+      }
+      mark |= kShared;
+      if (is_mirrored(patch.position_m, other.position_m)) {
+        if ((mark & kMirrored) == 0) ++shared.mirrored;
+        mark |= kMirrored;
+      }
+    }
+    for (const SkinPatch& patch : patches_) {
+      if (patch.actuator == 0) continue;
+      if ((marks[patch.texel] & kShared) != 0) of(patch.actuator).shared_m2 += double{patch.area_m2};
+      if ((marks[patch.texel] & kMirrored) != 0) of(patch.actuator).mirrored_m2 += double{patch.area_m2};
+    }
+    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
+      const Sharing& shared = sharing[actuator];
+      const CheckedActuator& checked = of(actuator);
+      if (shared.texels == 0) continue;
+      const bool is_speck =
+          checked.shared_m2 < kSpeck * checked.area_m2 || static_cast<double>(shared.texels) < kSpeckTexels;
+      if (2 * shared.mirrored > shared.texels) {
+        const auto& position_m = map_.position_m[actuator - 1U];
+        const bool is_central = position_m && std::abs(position_m->x - body_.middle_x_m()) < far_m_;
+        add(is_speck || is_central ? Severity::kNote : Severity::kProblem, "mirrored_texels", actuator,
+            fmt::format("actuator {} fires left and right alike: {} of its {} texels lie on both halves of the body "
+                        "({:.0f} cm² of skin)",
+                        quoted(actuator), shared.mirrored, checked.texels, checked.mirrored_m2 * 1e4),
+            "the avatar's halves share one texture: give each its own place in it; or, where that is meant, say so "
+            "with a position_m in the body's middle");
+      } else {
+        add(is_speck || shared.other_pieces == 0 ? Severity::kNote : Severity::kProblem, "shared_texels", actuator,
+            fmt::format("actuator {}: {} of its {} texels lie on two places of the skin, up to {:.2f} m apart "
+                        "({:.0f} cm² of skin)",
+                        quoted(actuator), shared.texels, checked.texels, double{shared.farthest_m},
+                        checked.shared_m2 * 1e4),
+            "no map can tell these places apart: give each its own place in the texture; 'vestige avatar FILE --uv "
+            "uv.png' draws where they lie upon each other");
+      }
+    }
+  }
+
+  void find_split() {
+    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
+      CheckedActuator& checked = of(actuator);
+      std::vector<Piece> pieces;
+      for (auto found = pieces_.lower_bound({actuator, 0}); found != pieces_.end() && found->first.first == actuator;
+           ++found)
+        // A patch is half a texel.
+        if (found->second.area_m2 >= kSpeck * checked.area_m2 &&
+            static_cast<double>(found->second.patches) >= 2 * kSpeckTexels)
+          pieces.push_back(found->second);
+      checked.pieces = pieces.size();
+      if (pieces.size() < 2) continue;
+      std::ranges::stable_sort(pieces, std::ranges::greater(), &Piece::area_m2);
+      std::string places;
+      for (std::size_t i = 0; i < std::min(pieces.size(), kMostListed); ++i) {
+        const glm::dvec3 middle = pieces[i].sum / pieces[i].area_m2;
+        places += fmt::format("{}{:.0f} cm² around ({:.2f}, {:.2f}, {:.2f})", i == 0 ? "" : ", ",
+                              pieces[i].area_m2 * 1e4, middle.x, middle.y, middle.z);
+      }
+      if (pieces.size() > kMostListed) places += ", …";
+      add(Severity::kProblem, "split", actuator,
+          fmt::format("actuator {} lies in {} pieces on the body: {}", quoted(actuator), pieces.size(), places),
+          "an actuator is felt in one place: take the strays out, or give each piece its own grey");
+    }
+  }
+
+  /// Greys that nowhere have a texel with all four neighbours alike.
+  void find_soft_edges() {
+    std::vector<bool> is_solid(map_.actuator_count + 1, false);
+    for (std::uint32_t row = 0; row < map_.height; ++row)
+      for (std::uint32_t column = 0; column < map_.width; ++column) {
+        const auto at = [&](std::uint32_t x, std::uint32_t y) {
+          return map_.actuator[std::size_t{y} * map_.width + x];
+        };
+        const std::uint16_t here = at(column, row);
+        const bool same =
+            (column == 0 || at(column - 1, row) == here) && (column + 1 == map_.width || at(column + 1, row) == here) &&
+            (row == 0 || at(column, row - 1) == here) && (row + 1 == map_.height || at(column, row + 1) == here);
+        if (same) is_solid[here] = true;
+      }
+    std::size_t soft = 0;
+    std::size_t texels = 0;
+    std::uint16_t one = 0;
+    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
+      if (is_solid[actuator] || of(actuator).texels == 0) continue;
+      ++soft;
+      one = actuator;
+      texels += of(actuator).texels;
+    }
+    // A map as coarse as a chessboard has no edges.
+    if (soft == 0 || (soft == map_.actuator_count && map_.width * map_.height < 64 * 64)) return;
+    add(Severity::kProblem, "soft_edges", soft == 1 ? one : std::uint16_t{0},
+        fmt::format("{} of {} grey levels are nowhere more than two texels wide ({} texels): soft edges of an editor, "
+                    "each an actuator of its own",
+                    soft, map_.actuator_count, texels),
+        "draw with a hard brush (GIMP: the pencil; no anti-aliasing, no scaling with interpolation)");
+  }
+
+  void find_misplaced() {
+    std::vector<double> nearest_m(map_.actuator_count + 1, std::numeric_limits<double>::infinity());
+    for (const SkinPatch& patch : patches_) {
+      if (patch.actuator == 0 || !map_.position_m[patch.actuator - 1U]) continue;
+      const double away_m = glm::distance(glm::dvec3(patch.position_m), *map_.position_m[patch.actuator - 1U]);
+      nearest_m[patch.actuator] = std::min(nearest_m[patch.actuator], away_m);
+    }
+    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator)
+      if (std::isfinite(nearest_m[actuator]) && nearest_m[actuator] > far_m_)
+        add(Severity::kProblem, "position", actuator,
+            fmt::format("actuator {}: its position_m is {:.2f} m away from the nearest skin that fires it",
+                        quoted(actuator), nearest_m[actuator]),
+            "is the map another avatar's? Positions are metres in the avatar's rest pose");
+  }
+
+  const Body& body_;
+  const ActuatorMap& map_;
+  double far_m_;
+  std::vector<SkinPatch> patches_;
+  std::map<std::pair<std::uint16_t, std::uint32_t>, Piece> pieces_;
+  MapCheck result_;
+};
+
+}  // namespace
+
+bool MapCheck::good() const {
+  return std::ranges::none_of(findings, [](const MapFinding& f) { return f.severity == Severity::kProblem; });
+}
+
+MapCheck check_map(const Body& body, const ActuatorMap& map, std::string_view avatar_name) {
+  require_texture_coordinates(body.avatar(), avatar_name);
+  return Checker(body, map).check();
+}
+
+}  // namespace vestige

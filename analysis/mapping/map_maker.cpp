@@ -1,0 +1,158 @@
+#include "analysis/mapping/map_maker.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "analysis/mapping/skin_patches.hpp"
+#include "analysis/png_image.hpp"
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// Of the body's longest side: how finely skin is measured.
+constexpr double kSampleStep = 0.004;
+constexpr std::size_t kMostInEightBits = 240;
+
+/// Skin by actuator: [0] is that of none.
+struct SkinOfActuator {
+  double area_m2 = 0;
+  glm::dvec3 sum = glm::dvec3(0);  ///< of the positions, by area
+  glm::dvec3 nearest_m = glm::dvec3(0);
+  double distance_squared = std::numeric_limits<double>::infinity();
+};
+
+template <typename Visit>
+void for_each_patch(const BodySurface& surface, const Visit& visit) {
+  const double step_m = kSampleStep * surface.bounds().longest_side();
+  for (std::uint32_t i = 0; i < surface.avatar().triangles.size(); ++i) {
+    const SkinPatches patches = patches_of_length(surface, i, step_m);
+    const double area_m2 = surface.area_m2(i) / static_cast<double>(patches.count());
+    patches.for_each([&](const SkinPoint& point) { visit(point, area_m2); });
+  }
+}
+
+/// Of the body's longest side: a region whose middle is so near to the body's has its actuator there.
+constexpr double kCentral = 0.01;
+
+std::vector<SkinOfActuator> measure(const Body& body, const RegionPlan& plan) {
+  const BodySurface& surface = body.surface();
+  const double central_m = kCentral * surface.bounds().longest_side();
+  const auto is_central = [&](double x_m) { return std::abs(x_m - body.middle_x_m()) < central_m; };
+  std::vector<SkinOfActuator> skin(plan.actuator_count() + 1);
+  struct Patch {
+    std::uint16_t actuator;
+    glm::dvec3 position_m;
+  };
+  std::vector<Patch> patches;
+  for_each_patch(surface, [&](const SkinPoint& point, double area_m2) {
+    const Patch& patch = patches.emplace_back(Patch{plan.at(point), surface.position_m(point)});
+    skin[patch.actuator].area_m2 += area_m2;
+    skin[patch.actuator].sum += area_m2 * patch.position_m;
+  });
+  for (const Patch& patch : patches) {
+    SkinOfActuator& of = skin[patch.actuator];
+    if (!(of.area_m2 > 0)) continue;
+    const glm::dvec3 middle_m = of.sum / of.area_m2;
+    const glm::dvec3 off = patch.position_m - middle_m;
+    double distance_squared = glm::dot(off, off);
+    // All around a head, the skin is as far from its middle; that on the body's own middle goes first.
+    if (is_central(middle_m.x) && !is_central(patch.position_m.x))
+      distance_squared += surface.height_m() * surface.height_m();
+    if (distance_squared >= of.distance_squared) continue;
+    of.distance_squared = distance_squared;
+    of.nearest_m = patch.position_m;
+  }
+  return skin;
+}
+
+/// To a tenth of a millimetre, as a researcher would write it.
+double rounded(double metres) {
+  return std::round(metres * 1e4) / 1e4 + 0.0;
+}
+
+std::string sidecar_of(const std::vector<MadeActuator>& actuators) {
+  std::string text = "{\n  \"actuators\": [\n";
+  for (std::size_t i = 0; i < actuators.size(); ++i) {
+    const glm::dvec3& p = actuators[i].position_m;
+    const nlohmann::ordered_json entry = {
+        {"grey", actuators[i].grey}, {"name", actuators[i].name}, {"position_m", {p.x, p.y, p.z}}};
+    text += fmt::format("    {}{}\n", entry.dump(), i + 1 < actuators.size() ? "," : "");
+  }
+  return text + "  ]\n}\n";
+}
+
+std::vector<std::byte> png_of(const MapRaster& raster, const std::vector<MadeActuator>& actuators) {
+  std::vector<std::uint16_t> grey(raster.actuator.size());
+  std::ranges::transform(raster.actuator, grey.begin(), [&](std::uint16_t actuator) {
+    return actuator == 0 ? std::uint16_t{0} : actuators[actuator - 1U].grey;
+  });
+  if (actuators.size() > kMostInEightBits) return grey_png(grey, raster.side, raster.side);
+  return grey_png(std::vector<std::uint8_t>(grey.begin(), grey.end()), raster.side, raster.side);
+}
+
+std::string name_of(const std::vector<MadeActuator>& actuators, std::uint16_t actuator) {
+  return actuator == 0 ? "skin without an actuator" : fmt::format("'{}'", actuators[actuator - 1U].name);
+}
+
+void warn_of(const MapRaster& raster, std::string_view avatar_name, MadeMap& map) {
+  std::size_t texels = 0;
+  auto worst = raster.conflicts.end();
+  for (auto pair = raster.conflicts.begin(); pair != raster.conflicts.end(); ++pair) {
+    texels += pair->second;
+    if (worst == raster.conflicts.end() || pair->second > worst->second) worst = pair;
+  }
+  if (texels > 0)
+    map.warnings.push_back(fmt::format(
+        "{}: its texture coordinates give {} texels to two places of the skin that should fire differently, {} of them "
+        "to {} and {}; both will fire the first. No map can tell them apart: give each its own place in the texture.",
+        avatar_name, texels, worst->second, name_of(map.actuators, worst->first.first),
+        name_of(map.actuators, worst->first.second)));
+  if (raster.triangles_left_out > 0)
+    map.warnings.push_back(
+        fmt::format("{}: {} triangles are not mapped: their texture coordinates are not finite, or cover the texture "
+                    "more than once over.",
+                    avatar_name, raster.triangles_left_out));
+}
+
+}  // namespace
+
+MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& settings, std::string_view name,
+                 std::string_view avatar_name) {
+  require_texture_coordinates(body.avatar(), avatar_name);
+  const std::vector<SkinOfActuator> skin = measure(body, plan);
+  MadeMap map;
+  std::vector<std::uint16_t> number(plan.actuator_count() + 1, 0);
+  for (std::size_t i = 0; i < plan.actuator_count(); ++i) {
+    if (skin[i + 1].area_m2 > 0) {
+      MadeActuator& made = map.actuators.emplace_back();
+      made.name = plan.names()[i];
+      made.area_m2 = skin[i + 1].area_m2;
+      const glm::dvec3 p = plan.given_position_m(i).value_or(skin[i + 1].nearest_m);
+      made.position_m = {rounded(p.x), rounded(p.y), rounded(p.z)};
+      number[i + 1] = static_cast<std::uint16_t>(map.actuators.size());
+    } else if (settings.empty == EmptyRegions::kLeaveOut) {
+      map.left_out.push_back(plan.names()[i]);
+    } else {
+      throw Error(fmt::format("{}, actuator '{}'", name, plan.names()[i]), "no skin belongs to it",
+                  "widen its region, or move it before the regions that take its skin");
+    }
+  }
+  if (map.actuators.empty()) throw Error(name, "no skin of this avatar belongs to any of its regions", "try another");
+  const std::size_t count = map.actuators.size();
+  const std::size_t step = count <= kMostInEightBits ? kMostInEightBits / count : 65535 / count;
+  for (std::size_t i = 0; i < count; ++i) map.actuators[i].grey = static_cast<std::uint16_t>(step * (i + 1));
+  map.raster = rasterise(
+      body.surface(), [&](const SkinPoint& point) { return number[plan.at(point)]; }, settings.side, settings.padding);
+  map.files = {png_of(map.raster, map.actuators), sidecar_of(map.actuators)};
+  warn_of(map.raster, avatar_name, map);
+  return map;
+}
+
+}  // namespace vestige

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+/// A name that is none of those that could stand there. `what()` lists them; who knows better adds what was probably
+/// meant.
+class UnknownName : public Error {
+ public:
+  UnknownName(std::string_view where, std::string_view what, std::string word, std::vector<std::string> known);
+  const std::string& word() const { return word_; }
+  const std::vector<std::string>& known() const { return known_; }
+  /// The same with `hint`, such as "did you mean 'x'? ", before the list of what there is.
+  Error with_hint(const std::string& hint) const;
+
+ private:
+  std::string where_;
+  std::string what_;
+  std::string word_;
+  std::vector<std::string> known_;
+};
+
+/// From `low` up to, but not with, `high`.
+struct Interval {
+  double low = 0;
+  double high = 1;
+};
+
+struct RegionGrid {
+  std::size_t rows = 1;
+  std::size_t columns = 1;
+  std::vector<std::string> names;  ///< row by row, or empty
+};
+
+/// An actuator somewhere on a region: at a point of space (the nearest skin of the region counts), or at a height and
+/// an angle, as the region's own `height` and `angle` count them.
+struct RegionActuator {
+  std::string name;
+  std::optional<glm::dvec3> position_m;
+  double height = 0;
+  double angle_degrees = 0;
+};
+
+/// Some skin, and the actuators on it. A point of the skin belongs to it when it is all that is asked.
+struct RegionSpec {
+  std::string name;
+  std::vector<std::string> parts;   ///< any of these
+  std::vector<std::string> joints;  ///< the strongest joint is one of these; "*" stands for any letters
+  std::vector<std::string> below;   ///< or one that hangs on one of these, or is it
+  std::optional<Interval> height;
+  std::optional<Interval> height_m;
+  std::optional<Interval> angle_degrees;
+  std::vector<std::string> sides;  ///< each of these: "front", "back", "left", "right"
+  std::optional<RegionGrid> grid;
+  std::vector<RegionActuator> actuators;
+  std::optional<double> radius_m;
+};
+
+/// Reads a region file: {"regions": [REGION, …]}. The first region that a point of the skin belongs to has it; regions
+/// of one name are one actuator. A region is an object of
+///
+///     "name": "chest left"             the actuator's name; of several, the beginning of theirs
+///   which skin (without any of these: all of it):
+///     "part": "torso"                  vest (the torso from the hips to the shoulders), torso, neck, head, upper arm,
+///                                      forearm, hand, thigh, shin or foot, each also with " left" or " right";
+///                                      or a list of these
+///     "joints": ["spine*"]             the joint that weighs most is one of these; * stands for any letters
+///     "below": ["upper_arm_left"]      or is one of these or hangs on it
+///   what of it (all that is given must hold):
+///     "height": [0.5, 1]               of that skin, 0 its lowest point and 1 its highest
+///     "height_m": [1.1, 1.3]           metres above the rest pose's y = 0
+///     "angle": [-45, 45]               degrees around the vertical through its middle: 0 front, 90 left, 180 back,
+///                                      270 or -90 right
+///     "side": "front"                  or back, left, right; or a list, such as ["front", "left"]
+///   how many actuators (without any of these: one):
+///     "grid": {"rows": 5, "columns": 4, "names": […]}   equal heights from the top down, equal angles in the angle's
+///                                      direction (in front from right to left, behind from left to right)
+///     "actuators": [{"name": "heart", "position_m": [0.05, 1.3, 0.1]}, {"name": "navel", "height": 0.2, "angle": 0}]
+///                                      each has the skin that is nearest to it along the surface
+///     "radius_m": 0.06                 …, and not farther away than this
+///
+/// `name` stands in errors, which say which region and which of its words: not JSON, a word that is not there, a value
+/// that cannot be.
+std::vector<RegionSpec> parse_region_file(std::string_view json, std::string_view name);
+
+}  // namespace vestige

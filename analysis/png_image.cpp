@@ -1,0 +1,80 @@
+#include "analysis/png_image.hpp"
+
+#include <png.h>
+
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <string>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+/// What libpng's calls share; freed whether or not they throw.
+struct Writer {
+  std::string failure;
+  std::vector<std::byte> bytes;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+
+  ~Writer() { png_destroy_write_struct(&png, &info); }
+};
+
+[[noreturn]] void on_error(png_structp png, png_const_charp message) {
+  static_cast<Writer*>(png_get_error_ptr(png))->failure = message;
+  png_longjmp(png, 1);
+}
+
+void on_warning(png_structp, png_const_charp) {}
+
+void take_bytes(png_structp png, png_bytep bytes, png_size_t count) {
+  auto& writer = *static_cast<Writer*>(png_get_io_ptr(png));
+  const auto* first = reinterpret_cast<const std::byte*>(bytes);
+  writer.bytes.insert(writer.bytes.end(), first, first + count);
+}
+
+/// Nothing with a destructor is made between setjmp and the calls that may jump.
+bool write_rows(Writer& writer, const std::byte* pixels, std::size_t row_bytes, std::uint32_t width,
+                std::uint32_t height, int depth, int colour) {
+  if (setjmp(png_jmpbuf(writer.png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's own way
+  png_set_IHDR(writer.png, writer.info, width, height, depth, colour, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_write_info(writer.png, writer.info);
+  if (depth == 16 && std::endian::native == std::endian::little) png_set_swap(writer.png);
+  for (std::uint32_t row = 0; row < height; ++row)
+    png_write_row(writer.png, reinterpret_cast<png_const_bytep>(pixels + row * row_bytes));
+  png_write_end(writer.png, nullptr);
+  return true;
+}
+
+std::vector<std::byte> write_png(std::span<const std::byte> pixels, std::uint32_t width, std::uint32_t height,
+                                 int depth, int colour) {
+  Writer writer;
+  writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
+  if (writer.png != nullptr) writer.info = png_create_info_struct(writer.png);
+  if (writer.info == nullptr) throw Error("PNG", "libpng has no memory", "make the picture smaller");
+  png_set_write_fn(writer.png, &writer, take_bytes, nullptr);
+  if (!write_rows(writer, pixels.data(), pixels.size() / height, width, height, depth, colour))
+    throw Error("PNG", writer.failure, "make the picture smaller");
+  return std::move(writer.bytes);
+}
+
+}  // namespace
+
+std::vector<std::byte> grey_png(std::span<const std::uint8_t> pixels, std::uint32_t width, std::uint32_t height) {
+  return write_png(std::as_bytes(pixels), width, height, 8, PNG_COLOR_TYPE_GRAY);
+}
+
+std::vector<std::byte> grey_png(std::span<const std::uint16_t> pixels, std::uint32_t width, std::uint32_t height) {
+  return write_png(std::as_bytes(pixels), width, height, 16, PNG_COLOR_TYPE_GRAY);
+}
+
+std::vector<std::byte> colour_png(std::span<const std::array<std::uint8_t, 3>> pixels, std::uint32_t width,
+                                  std::uint32_t height) {
+  return write_png(std::as_bytes(pixels), width, height, 8, PNG_COLOR_TYPE_RGB);
+}
+
+}  // namespace vestige

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace vestige {
+
+// PNG files of width x height pixels, row 0 at the top; the same bytes for the same pixels. Throw `Error` where libpng
+// fails.
+std::vector<std::byte> grey_png(std::span<const std::uint8_t> pixels, std::uint32_t width, std::uint32_t height);
+std::vector<std::byte> grey_png(std::span<const std::uint16_t> pixels, std::uint32_t width, std::uint32_t height);
+std::vector<std::byte> colour_png(std::span<const std::array<std::uint8_t, 3>> pixels, std::uint32_t width,
+                                  std::uint32_t height);
+
+}  // namespace vestige
