@@ -40,7 +40,7 @@ void add_live_options(CLI::App& verb, LiveChoice& choice) {
   verb.add_option("--live", choice.source,
                   "Record what comes in: lines of JSON on standard input (-), or the VMC protocol and colliders by OSC "
                   "on a UDP port (vmc://0.0.0.0:39539), until it ends or Ctrl-C")
-      ->type_name("-|vmc://HOST:PORT");
+      ->type_name("-|URL");
 }
 
 void check_live_choice(const CLI::App& verb, const LiveChoice& choice) {
@@ -76,12 +76,17 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
     warn_of(state.problems(), choice.source, verbosity);
     report_bones(state, humanoid, choice.source, verbosity);
   }
-  if (counts.lost_something())
-    warn(
-        fmt::format(
-            "{}: lost {} frames that came too late, {} {} that could not be read, {} datagrams that nobody took",
-            choice.source, counts.late, counts.malformed, choice.is_lines() ? "lines" : "datagrams", counts.overflowed),
-        verbosity);
+  const std::string source = choice.is_lines() ? "standard input" : choice.source;
+  if (counts.frames == 0)
+    throw Error(source, "no frame came in, so there is no trace",
+                choice.is_lines() ? "give a line of JSON for each frame: see traces/FORMAT.md"
+                                  : "let the sender send to this machine and port, and no firewall forbid it");
+  if (counts.malformed > 0 && choice.is_lines())
+    warn(fmt::format("{}: {} lines could not be read and are left out", source, counts.malformed), verbosity);
+  if (counts.lost_something() && !choice.is_lines())
+    warn(fmt::format("{}: lost {} frames that came too late, {} datagrams that could not be read, {} that nobody took",
+                     source, counts.late, counts.malformed, counts.overflowed),
+         verbosity);
   return counts;
 }
 

@@ -26,7 +26,7 @@ void add_live_options(CLI::App& verb, LiveChoice& choice);
 void check_live_choice(const CLI::App& verb, const LiveChoice& choice);
 
 /// Records until the source or `duration_s` ends, the recorder is full, or the user stops it. What was lost is warned
-/// of. Does not finish the recorder.
+/// of. Does not finish the recorder. Throws `Error` where not one frame came in.
 LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, double rate_hz,
                        std::optional<double> duration_s, const glm::dvec3& origin_m, Verbosity verbosity);
 

@@ -23,6 +23,9 @@ using WhenBehind = RecordingThread::WhenBehind;
 constexpr double kNanosecondsPerSecond = 1e9;
 /// How long nothing is asked at most.
 constexpr std::chrono::milliseconds kLongestWait(20);
+/// How late a frame may be made: about as far as a sender's own frames, and the network's delays, are apart. A busy
+/// machine then costs no frame, each of which would be a gap over which nothing can touch.
+constexpr double kMostLate_s = 0.02;
 constexpr std::string_view kInput = "input";  // traces/FORMAT.md
 
 std::int64_t nanoseconds_since(Clock::time_point start) {
@@ -58,6 +61,7 @@ bool must_stop(RecordingThread& out, const LiveSettings& settings) {
 LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out, const LiveSettings& settings) {
   const Clock::time_point start = Clock::now();
   const double most_ns = settings.duration_s.value_or(INFINITY) * kNanosecondsPerSecond;
+  std::uint64_t frames = 0;
   std::uint64_t noted = 0;
   bool ended = false;
   const auto take = [&](TraceFrame frame) {
@@ -68,6 +72,7 @@ LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out,
     std::vector<RecordingNote> notes;
     note_frames(notes, lines.malformed() - std::exchange(noted, lines.malformed()));
     out.put(std::move(frame), std::move(notes), WhenBehind::kWait);
+    ++frames;
   };
   std::string buffer(std::size_t{64} << 10, '\0');
   while (!ended && !must_stop(out, settings)) {
@@ -88,7 +93,10 @@ LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out,
   std::vector<RecordingNote> rest;
   note_frames(rest, lines.malformed() - noted);
   if (!rest.empty()) out.put(std::move(rest));
-  return {.malformed = lines.malformed()};
+  LiveCounts counts;
+  counts.frames = frames;
+  counts.malformed = lines.malformed();
+  return counts;
 }
 
 namespace {
@@ -141,10 +149,11 @@ class StateRecording {
     return std::llround(static_cast<double>(index) / settings_.rate_hz * kNanosecondsPerSecond);
   }
 
-  /// Frames that can no longer be made: those before the one whose time it is now.
+  /// Frames that can no longer be made: the state is not any more what it was at their time.
   void skip_missed() {
-    const double now_s = static_cast<double>(nanoseconds_since(start_)) / kNanosecondsPerSecond;
-    const auto current = static_cast<std::uint64_t>(std::min(frames_, std::floor(now_s * settings_.rate_hz)));
+    const double late_s = static_cast<double>(nanoseconds_since(start_)) / kNanosecondsPerSecond - kMostLate_s;
+    const double first = std::max(0.0, std::ceil(late_s * settings_.rate_hz));
+    const auto current = static_cast<std::uint64_t>(std::min(frames_, first));
     if (current <= index_) return;
     late_ += current - index_;
     index_ = current;
@@ -161,6 +170,7 @@ class StateRecording {
     ++index_;
     if (out_.put(std::move(frame), notes(), WhenBehind::kDrop)) {
       markers_.clear();
+      ++made_;
       return;
     }
     // Nothing of it was taken: it is for the next frame to tell.
@@ -180,7 +190,7 @@ class StateRecording {
   }
 
   LiveCounts counts() const {
-    return {.late = late_, .malformed = state_.malformed(), .overflowed = datagrams_.overflowed()};
+    return {.frames = made_, .late = late_, .malformed = state_.malformed(), .overflowed = datagrams_.overflowed()};
   }
 
   UdpReceiver& datagrams_;
@@ -192,6 +202,7 @@ class StateRecording {
   bool begun_ = false;
   std::uint64_t index_ = 0;
   std::vector<RecordingNote> markers_;
+  std::uint64_t made_ = 0;
   std::uint64_t late_ = 0;
   Noted noted_;
 };

@@ -24,6 +24,7 @@ struct LiveSettings {
 };
 
 struct LiveCounts {
+  std::uint64_t frames = 0;      ///< handed on
   std::uint64_t late = 0;        ///< frames whose time had passed before they could be made, or that found no room
   std::uint64_t malformed = 0;   ///< lines or datagrams
   std::uint64_t overflowed = 0;  ///< datagrams that the system threw away
@@ -35,7 +36,7 @@ struct LiveCounts {
 LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out, const LiveSettings& settings);
 
 /// Frames of the latest state, at absolute times of `rate_hz` since the first datagram that said something. A frame
-/// whose time has passed by more than its own length is left out and counted as /pose and /colliders, datagrams as
+/// whose time has passed by more than 20 ms is left out and counted as /pose and /colliders, datagrams as
 /// `input`.
 LiveCounts record_state(UdpReceiver& datagrams, VmcState& state, RecordingThread& out, const LiveSettings& settings);
 

@@ -116,7 +116,7 @@ Recorder::Implementation::Implementation(Target target) : target_(std::move(targ
 }
 
 Recorder::Implementation::~Implementation() {
-  if (finished_ || !ring_) return;
+  if (finished_ || !ring_ || ring_->bytes() == 0) return;
   try {
     write_ring();
   } catch (const std::exception&) {

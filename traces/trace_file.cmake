@@ -26,8 +26,6 @@ target_sources(vestige_traces PRIVATE
   definitions.cpp
   frame_gate.cpp
   frame_ring.cpp
-  live_ndjson.cpp
-  live_recording.cpp
   mcap/byte_source.cpp
   mcap/chunk_expander.cpp
   mcap/chunk_check.cpp
@@ -46,9 +44,7 @@ target_sources(vestige_traces PRIVATE
   mcap_output.cpp
   merge.cpp
   message_text.cpp
-  osc_packet.cpp
   recorder.cpp
-  recording_thread.cpp
   recover.cpp
   rewrite.cpp
   trace_check.cpp
@@ -60,8 +56,17 @@ target_sources(vestige_traces PRIVATE
   trace_reader.cpp
   trace_summary.cpp
   trace_writer.cpp
-  udp_receiver.cpp
-  viz_messages.cpp
-  vmc_state.cpp)
+  viz_messages.cpp)
 target_include_directories(vestige_traces SYSTEM PRIVATE ${schema_folder})
-target_link_libraries(vestige_traces PRIVATE vestige_version PkgConfig::LIBLO Threads::Threads)
+target_link_libraries(vestige_traces PRIVATE vestige_version Threads::Threads)
+
+# What comes in live; apart, so that programs that record nothing do not need liblo.
+add_library(vestige_live STATIC
+  live_ndjson.cpp
+  live_recording.cpp
+  osc_packet.cpp
+  recording_thread.cpp
+  udp_receiver.cpp
+  vmc_state.cpp)
+target_link_libraries(vestige_live PUBLIC vestige_traces
+  PRIVATE PkgConfig::LIBLO nlohmann_json::nlohmann_json Threads::Threads)

@@ -152,8 +152,13 @@ TEST_F(Kill, AtAnyInstantLosesAFewMilliseconds) {
       recorder.signal(SIGKILL);
       recorder.wait();
       ::close(input);
-      const std::uint64_t kept = frames_in(trace);
-      ASSERT_GT(kept, 0U);
+      std::uint64_t kept = 0;
+      try {
+        kept = frames_in(trace);
+      } catch (const Error&) {
+        // Not even the head was there.
+        kept = 0;
+      }
       ASSERT_LE(kept, handed_over.size());
       lost_ms.push_back(kept == handed_over.size()
                             ? 0
