@@ -228,7 +228,10 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
   } catch (const Malformed& malformed) {
     leave_out(malformed.what());
   } catch (const nlohmann::json::exception& error) {
-    leave_out(fmt::format("is no JSON: {}", error.what()));
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: …": the number is the library's own.
+    const std::string_view text = error.what();
+    const std::size_t after_number = text.find("] ");
+    leave_out(fmt::format("is no JSON: {}", after_number == text.npos ? text : text.substr(after_number + 2)));
   }
 }
 

@@ -94,6 +94,7 @@ class Recorder::Implementation {
   std::uint64_t parts_ = 0;  ///< begun, or snapshots
   std::optional<std::int64_t> first_ns_;
   std::int64_t split_ns_ = 0;  ///< where the part ends
+  bool has_frame_ = false;     ///< in the ring
   bool finished_ = false;
 };
 
@@ -116,7 +117,7 @@ Recorder::Implementation::Implementation(Target target) : target_(std::move(targ
 }
 
 Recorder::Implementation::~Implementation() {
-  if (finished_ || !ring_ || ring_->bytes() == 0) return;
+  if (finished_ || !ring_ || !has_frame_) return;
   try {
     write_ring();
   } catch (const std::exception&) {
@@ -164,6 +165,7 @@ bool Recorder::Implementation::is_beyond_part(const TraceFrame& frame) const {
 bool Recorder::Implementation::write(const TraceFrame& frame) {
   if (ring_) {
     ring_->push(frame);
+    has_frame_ = true;
     return true;
   }
   if (!first_ns_) {

@@ -80,7 +80,7 @@ TEST_F(Kill, AtAnyInstantLosesLessThanAChunkAndWhatIsLeftCanBeRecovered) {
     std::map<std::string, std::uint64_t> expected;
     for (int i = first; i < std::min(kills(), first + kBatch); ++i) {
       {
-        const char* const compression = i % 3 == 0 ? "none" : i % 3 == 1 ? "lz4" : "zstd";
+        const char* const compression = i % 2 == 0 ? "none" : "zstd";  // the reference library has no lz4 of its own
         test::BackgroundProcess recorder(
             {"vestige", "record", "--duration", "1000", "--compression", compression, "-q", "-o", trace.string()},
             folder_ / "error");

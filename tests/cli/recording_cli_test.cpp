@@ -6,12 +6,12 @@
 #include <csignal>
 #include <fstream>
 #include <thread>
-#include <tuple>
 
 #include "tests/support/background_process.hpp"
 #include "tests/support/command_line.hpp"
 #include "tests/support/osc.hpp"
 #include "tests/support/udp.hpp"
+#include "traces/error.hpp"
 #include "traces/input_file.hpp"
 #include "traces/trace_reader.hpp"
 
@@ -34,6 +34,15 @@ class Recording : public test::CommandLineTest {
     return frames;
   }
 
+  /// Those that are there while it is being written, perhaps none.
+  std::vector<TraceFrame> frames_so_far(const std::string& trace) const {
+    try {
+      return frames_of(trace);
+    } catch (const Error&) {
+      return {};
+    }
+  }
+
   /// Its frames as lines of JSON (traces/FORMAT.md).
   std::string lines_of(const std::string& trace) const {
     std::string lines;
@@ -43,9 +52,14 @@ class Recording : public test::CommandLineTest {
                            frame.pose.origin_m.y, frame.pose.origin_m.z);
       std::vector<std::string> parts;
       for (const NodeLocal& node : frame.pose.nodes) {
-        const auto& [t, r, s] = std::tie(node.translation, node.rotation, node.scale);
-        parts.push_back(
-            fmt::format("[{},{},{},{},{},{},{},{},{},{}]", t.x, t.y, t.z, r.x, r.y, r.z, r.w, s.x, s.y, s.z));
+        const glm::vec3& t = node.translation;
+        const glm::quat& r = node.rotation;
+        std::vector<std::string> numbers;
+        for (const float value : {t.x, t.y, t.z, r.x, r.y, r.z, r.w, node.scale.x, node.scale.y, node.scale.z}) {
+          const std::string text = fmt::format("{}", value);
+          numbers.push_back(text == "-0" ? "-0.0" : text);  // -0 is a whole number, which has no sign
+        }
+        parts.push_back(fmt::format("[{}]", fmt::join(numbers, ",")));
       }
       lines += fmt::format("{}]}},\"colliders\":[", fmt::join(parts, ","));
       parts.clear();
@@ -82,7 +96,7 @@ TEST_F(Recording, InPartsMergesToWhatOneFileWouldHaveBeen) {
   EXPECT_EQ(hash_of("merged2.mcap"), hash_of("whole.mcap"));
 
   // Parts of another recording would be merged with these.
-  expect_failure(scene + "-o part.mcap --split 1", 1, {"part-0001.mcap", "already exists", "--force"});
+  expect_failure(scene + "-o part.mcap --split 1", 1, {"part-0001.mcap", "exists already", "--force"});
   EXPECT_EQ(run(scene + "-o part.mcap --split 1 --force").exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "part-0003.mcap"));
 }
@@ -132,7 +146,7 @@ TEST_F(Recording, OfLinesIsWhatTheyCameFrom) {
   const test::Outcome outcome = run("vestige record --live - -o again.mcap < man.ndjson");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_EQ(hash_of("again.mcap"), hash_of("man.mcap"));
-  EXPECT_EQ(lines_of("again.mcap"), lines_of("man.mcap"));
+  EXPECT_TRUE(lines_of("again.mcap") == lines_of("man.mcap"));
 }
 
 TEST_F(Recording, OfLinesCountsThoseThatItCannotRead) {
@@ -178,12 +192,10 @@ TEST_F(Recording, OfTheVmcProtocolIsWhatWasSent) {
                               test::bone("LeftUpperArm", glm::angleAxis(0.5, glm::dvec3(0, 0, 1))),
                               test::collider(5, x, 2, 3)}));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    std::error_code none;
-    const bool recording = std::filesystem::file_size(folder_ / "vr.mcap", none) > 0 && !none;
-    if (!recording) continue;
-    if (!garbage_sent) sender.send(garbage);
-    garbage_sent = true;
-    if (frames_of("vr.mcap").size() >= 20) break;
+    const std::size_t so_far = frames_so_far("vr.mcap").size();
+    if (so_far > 0 && !garbage_sent) sender.send(garbage);
+    garbage_sent = so_far > 0;
+    if (so_far >= 20) break;
   }
   recorder.signal(SIGINT);
   EXPECT_EQ(recorder.wait(), 3);
