@@ -18,7 +18,11 @@ void record_default_trace(const std::string& path, std::uint32_t colliders, cons
   writing.overwrite = options.overwrite();
   TraceWriter writer(path, {{"argv", nlohmann::json(invocation.argv).dump()}}, scene.avatar, scene.attachments(),
                      writing);
-  record(writer, scene.avatar, animation, *swarm, {}, [](double) { return !interrupted(); });
+  const auto write = [&](const TraceFrame& frame) {
+    writer.write(frame);
+    return true;
+  };
+  record(write, scene.avatar, animation, *swarm, {}, [](double) { return !interrupted(); });
   writer.finish();
 }
 

@@ -39,6 +39,7 @@ nlohmann::ordered_json to_json(const McapSummary& summary) {
                                  {"attachments", attachments},
                                  {"duration_s", summary.duration_s},
                                  {"dropped", summary.dropped},
+                                 {"dropped_by_topic", summary.dropped_by_topic},
                                  {"complete", summary.complete},
                                  {"warnings", summary.warnings}};
   if (summary.session) json["session"] = *summary.session;
@@ -55,7 +56,11 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
                         channel.rate_hz, channel.schema, channel.encoding);
   for (const auto& attachment : summary.attachments)
     text += fmt::format("  {:<20} {:>9} bytes     sha256 {}\n", attachment.name, attachment.bytes, attachment.sha256);
-  if (summary.dropped != 0) text += fmt::format("{} messages were lost while recording\n", summary.dropped);
+  if (summary.dropped != 0) {
+    text += fmt::format("{} messages were lost while recording\n", summary.dropped);
+    for (const auto& [topic, count] : summary.dropped_by_topic)
+      text += fmt::format("  {:<20} {:>9} messages lost\n", topic, count);
+  }
   if (verbose && summary.session)
     for (const auto& [key, value] : *summary.session) text += fmt::format("  {}: {}\n", key, value);
   return text;

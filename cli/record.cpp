@@ -2,15 +2,23 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "analysis/provenance.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/limits_choice.hpp"
+#include "cli/live_choice.hpp"
 #include "cli/scene.hpp"
 #include "cli/scene_choice.hpp"
+#include "cli/snapshots.hpp"
 #include "cli/verbs.hpp"
 #include "traces/colliders.hpp"
 #include "traces/error.hpp"
+#include "traces/recorder.hpp"
 #include "traces/recording.hpp"
 
 namespace vestige::cli {
@@ -21,70 +29,139 @@ constexpr double kMostFrames = 4294967295.0;  // a trace numbers its frames in 3
 
 constexpr double kFarthest_m = 1e7;  // detector/CONTRACT.md, 2
 
+/// When a live recording's chunks are closed, so that with the time until somebody looks nothing waits for 100 ms.
+constexpr double kLiveChunk_s = 0.08;
+
 struct RecordOptions {
   CommonOptions common;
   SceneChoice scene;
+  LimitsChoice limits;
+  LiveChoice live;
   RecordingSettings recording;
+  bool has_duration = false;
   std::string origin = "0,0,0";
   std::string compression = "zstd";
+  bool viz = false;
   std::string output;
 };
 
-void run_record(const RecordOptions& options, Invocation& invocation) {
-  const Verbosity verbosity = options.common.verbosity();
+RecordingSettings settings_of(const RecordOptions& options) {
   RecordingSettings settings = options.recording;
   settings.origin_m = parse_vector(options.origin, "--origin");
   if (settings.rate_hz * settings.duration_s > kMostFrames)
     throw UsageError("--duration", "a trace holds 4294967295 frames at most", "record less, or at a lower --rate");
-  check_outputs({options.output, options.common.json},
-                {options.scene.avatar, options.scene.map, options.scene.colliders}, options.common);
   if (std::max({std::abs(settings.origin_m.x), std::abs(settings.origin_m.y), std::abs(settings.origin_m.z)}) >
       kFarthest_m)
     throw UsageError("--origin", fmt::format("'{}' is farther away than 1e7 m", options.origin),
                      "beyond that, positions are too coarse for contacts");
-  if (options.output == "-") refuse_terminal("-o -");
+  return settings;
+}
 
-  const Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);
-  const Animation* animation = find_animation(scene.avatar, options.scene.animation);
-  const auto colliders = make_colliders(options.scene, scene.avatar, animation, options.common.seed);
-  check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
-
+Session session_of(const RecordOptions& options, const Animation* animation, const Invocation& invocation) {
   Session session;
   const nlohmann::ordered_json origin = provenance(invocation.argv);
   for (const auto& [key, value] : origin.items())
     session[key] = value.is_string() ? value.get<std::string>() : value.dump();
-  session["rate_hz"] = fmt::format("{}", settings.rate_hz);
+  if (options.live.is_live()) {
+    session["live"] = options.live.source;
+    if (!options.live.is_lines()) session["rate_hz"] = fmt::format("{}", options.recording.rate_hz);
+    return session;
+  }
+  session["rate_hz"] = fmt::format("{}", options.recording.rate_hz);
   session["animation"] = animation == nullptr ? "" : animation->name;
   session["colliders"] = options.scene.colliders;
   session["seed"] = fmt::format("{}", options.common.seed);
+  return session;
+}
 
+TraceWriterOptions writing_of(const RecordOptions& options) {
   TraceWriterOptions writing;
   writing.overwrite = options.common.overwrite();
   if (options.compression == "lz4") writing.compression = Compression::kLz4;
   if (options.compression == "none") writing.compression = Compression::kNone;
-  catch_interrupts();
-  const auto start = std::chrono::steady_clock::now();
-  TraceWriter writer(options.output, session, scene.avatar, scene.attachments(), writing);
-  {
-    Progress progress("Recording", verbosity);
-    record(writer, scene.avatar, animation, *colliders, settings, [&](double share) { return progress.update(share); });
+  if (options.viz) writing.viz = Viz::kScene;
+  if (options.limits.sync) writing.sync = ChunkSync::kEach;
+  if (options.live.is_live()) writing.chunk_s = kLiveChunk_s;
+  return writing;
+}
+
+/// Records the scene; false when there was no room for all of it.
+bool record_scene(const RecordOptions& options, const Scene& scene, const Animation* animation,
+                  ColliderSource& colliders, const RecordingSettings& settings, Recorder& recorder) {
+  Progress progress("Recording", options.common.verbosity());
+  bool full = false;
+  const auto write = [&](const TraceFrame& frame) {
+    if (snapshot_wanted()) recorder.snapshot();
+    full = !recorder.write(frame);
+    return !full;
+  };
+  record(write, scene.avatar, animation, colliders, settings, [&](double share) { return progress.update(share); });
+  return !full;
+}
+
+std::string name_of(const std::vector<std::filesystem::path>& files) {
+  if (files.size() == 1) return files.front().string();
+  return fmt::format("{} to {}", files.front().string(), files.back().string());
+}
+
+void run_record(const RecordOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  const RecordingSettings settings = settings_of(options);
+  const RecordingLimits limits = limits_of(options.limits, options.output);
+  check_outputs({limits.splits() ? part_path(options.output, 1).string() : options.output, options.common.json},
+                {options.scene.avatar, options.scene.map, options.scene.colliders}, options.common);
+  if (options.output == "-") refuse_terminal("-o -");
+
+  const Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);
+  const Animation* animation = nullptr;
+  std::unique_ptr<ColliderSource> colliders;
+  if (!options.live.is_live()) {
+    animation = find_animation(scene.avatar, options.scene.animation);
+    colliders = make_colliders(options.scene, scene.avatar, animation, options.common.seed);
+    check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
   }
-  writer.finish();
+
+  catch_interrupts();
+  if (limits.ring_s) catch_snapshots();
+  const auto start = std::chrono::steady_clock::now();
+  Recorder recorder({.path = options.output,
+                     .session = session_of(options, animation, invocation),
+                     .avatar = scene.avatar,
+                     .attachments = scene.attachments(),
+                     .writing = writing_of(options),
+                     .limits = limits});
+  LiveCounts lost;
+  bool full = false;
+  if (options.live.is_live()) {
+    const auto duration_s = options.has_duration ? std::optional(settings.duration_s) : std::nullopt;
+    lost = record_live(options.live, scene, recorder, settings.rate_hz, duration_s, settings.origin_m, verbosity);
+  } else {
+    full = !record_scene(options, scene, animation, *colliders, settings, recorder);
+  }
+  recorder.finish();
   const std::chrono::duration<double> recording = std::chrono::steady_clock::now() - start;
-  if (interrupted())
-    warn(fmt::format("stopped after {} frames; the trace is complete up to there", writer.frame_count()), verbosity);
+  const bool cut_short = interrupted() && !options.live.is_live();
+  if (cut_short || full)
+    warn(fmt::format("stopped {}after {} frames; the trace is complete up to there", full ? "by --max-size " : "",
+                     recorder.frame_count()),
+         verbosity);
+  if (lost.lost_something()) invocation.exit_code = kDataLost;
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;
-  json["frames"] = writer.frame_count();
+  json["files"] = recorder.files();
+  json["frames"] = recorder.frame_count();
   json["recording_s"] = recording.count();
-  json["bytes"] = writer.bytes_written();
+  json["bytes"] = recorder.bytes_written();
+  if (options.live.is_live())
+    json["lost"] = {{"late", lost.late}, {"malformed", lost.malformed}, {"overflowed", lost.overflowed}};
   json["avatar"] = to_json(scene.avatar);
   write_json(options.common.json, json, options.common);
-  print_summary(fmt::format("{}: {} frame{} at {} Hz, {:.1f} MB\n", options.output, writer.frame_count(),
-                            writer.frame_count() == 1 ? "" : "s", settings.rate_hz,
-                            static_cast<double>(writer.bytes_written()) / 1e6),
-                {options.output, options.common.json}, options.common);
+  const std::string rate = options.live.is_lines() ? "" : fmt::format(" at {} Hz", settings.rate_hz);
+  print_summary(
+      fmt::format("{}: {} frame{}{}, {:.1f} MB\n", name_of(recorder.files()), recorder.frame_count(),
+                  recorder.frame_count() == 1 ? "" : "s", rate, static_cast<double>(recorder.bytes_written()) / 1e6),
+      {options.output, options.common.json}, options.common);
 }
 
 }  // namespace
@@ -99,22 +176,30 @@ void add_record(CLI::App& program, Invocation& invocation) {
       ->type_name("HZ")
       ->capture_default_str()
       ->check(help::kPositive);
-  verb->add_option("--duration", options->recording.duration_s, "How long, in seconds")
+  verb->add_option("--duration", options->recording.duration_s,
+                   "How long, in seconds; what comes live, by default until it ends")
       ->type_name("S")
       ->capture_default_str()
       ->check(help::kPositive);
+  add_limits_options(*verb, options->limits);
+  add_live_options(*verb, options->live);
   verb->add_option("--origin", options->origin, "Where in the world the scene stands, in metres")
       ->capture_default_str()
       ->type_name("X,Y,Z");
   verb->add_option("--compression", options->compression, "How the trace's chunks are compressed")
       ->capture_default_str()
       ->check(CLI::IsMember({"zstd", "lz4", "none"}));
+  verb->add_flag("--viz", options->viz,
+                 "Add /viz/tf and /viz/scene, 60 times a second, so that Foxglove and Lichtblick draw skeleton and "
+                 "colliders");
   verb->add_option("-o,--output", options->output, "The trace to write, or '-' for standard output")
       ->required()
       ->type_name("OUT.mcap|-");
   add_common_options(*verb, options->common);
-  verb->callback([options, &invocation] {
+  verb->callback([options, verb, &invocation] {
     check_scene_choice(options->scene);
+    check_live_choice(*verb, options->live);
+    options->has_duration = verb->count("--duration") != 0;
     run_record(*options, invocation);
   });
 }

@@ -31,12 +31,13 @@ class AppendFile {
   void secure();
   /// From now on there is something worth keeping in it.
   void keep() { worth_keeping_ = true; }
+  /// Brings what was written to disk. Throws `Error`.
+  void sync();
   /// Syncs and closes. Throws `Error`.
   void close();
 
  private:
   [[noreturn]] void fail(std::string_view doing, int error_number);
-  void sync();
   std::filesystem::path set_aside();
   bool is_file() const { return !current_path_.empty(); }
 

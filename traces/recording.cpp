@@ -29,14 +29,14 @@ void sample_frame(const Avatar& avatar, const Animation* animation, ColliderSour
   for (ColliderSample& sample : out.colliders) sample.position_m += origin_m;
 }
 
-void record(TraceWriter& writer, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
+void record(const FrameSink& write, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
             const RecordingSettings& settings, const std::function<bool(double)>& progress) {
   const std::uint64_t frames = frame_count(settings);
   const glm::dvec3 origin_m = glm::round(settings.origin_m * kGrid) / kGrid;
   TraceFrame frame;
   for (std::uint64_t index = 0; index < frames; ++index) {
     sample_frame(avatar, animation, colliders, settings.rate_hz, index, origin_m, frame);
-    writer.write(frame);
+    if (!write(frame)) return;
     if (!progress(static_cast<double>(index + 1) / static_cast<double>(frames))) return;
   }
 }

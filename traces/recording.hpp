@@ -6,7 +6,7 @@
 
 #include "traces/avatar.hpp"
 #include "traces/colliders.hpp"
-#include "traces/trace_writer.hpp"
+#include "traces/trace.hpp"
 
 namespace vestige {
 
@@ -24,9 +24,12 @@ std::uint64_t frame_count(const RecordingSettings& settings);
 void sample_frame(const Avatar& avatar, const Animation* animation, ColliderSource& colliders, double rate_hz,
                   std::uint64_t index, const glm::dvec3& origin_m, TraceFrame& out);
 
+/// Where frames go; false: it takes no more.
+using FrameSink = std::function<bool(const TraceFrame&)>;
+
 /// Samples pose and colliders at k / rate and writes them. The animation (null: the avatar rests) loops. `progress` is
-/// told the share done and returns false to stop. Does not call `writer.finish`.
-void record(TraceWriter& writer, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
+/// told the share done and returns false to stop.
+void record(const FrameSink& write, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
             const RecordingSettings& settings, const std::function<bool(double)>& progress);
 
 }  // namespace vestige

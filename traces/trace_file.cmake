@@ -5,13 +5,16 @@ find_program(FLATC flatc REQUIRED)
 # Headers and binary schemas are generated at every build and live in the build tree only.
 set(schema_folder ${PROJECT_BINARY_DIR}/generated_schemas)
 set(schema_headers)
-foreach(schema pose_frame collider_frame event)
-  set(outputs ${schema_folder}/schemas/${schema}_generated.h ${schema_folder}/schemas/${schema}_bfbs_generated.h)
+foreach(schema pose_frame collider_frame event foxglove scene_update frame_transforms)
+  set(outputs ${schema_folder}/schemas/${schema}_generated.h)
+  if(NOT schema STREQUAL foxglove)  # which the two behind it include
+    list(APPEND outputs ${schema_folder}/schemas/${schema}_bfbs_generated.h)
+  endif()
   add_custom_command(
     OUTPUT ${outputs}
     COMMAND ${FLATC} --cpp --cpp-std c++17 --scoped-enums --bfbs-comments --bfbs-gen-embed
       -o ${schema_folder}/schemas ${CMAKE_CURRENT_SOURCE_DIR}/schemas/${schema}.fbs
-    DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/schemas/${schema}.fbs
+    DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/schemas/${schema}.fbs ${CMAKE_CURRENT_SOURCE_DIR}/schemas/foxglove.fbs
     COMMENT "Generating the ${schema} schema"
     VERBATIM)
   list(APPEND schema_headers ${outputs})
@@ -22,6 +25,7 @@ target_sources(vestige_traces PRIVATE
   append_file.cpp
   definitions.cpp
   frame_gate.cpp
+  frame_ring.cpp
   mcap/byte_source.cpp
   mcap/chunk_expander.cpp
   mcap/chunk_check.cpp
@@ -40,6 +44,7 @@ target_sources(vestige_traces PRIVATE
   mcap_output.cpp
   merge.cpp
   message_text.cpp
+  recorder.cpp
   recover.cpp
   rewrite.cpp
   trace_check.cpp
@@ -50,6 +55,18 @@ target_sources(vestige_traces PRIVATE
   trace_index.cpp
   trace_reader.cpp
   trace_summary.cpp
-  trace_writer.cpp)
+  trace_writer.cpp
+  viz_messages.cpp)
 target_include_directories(vestige_traces SYSTEM PRIVATE ${schema_folder})
-target_link_libraries(vestige_traces PRIVATE vestige_version)
+target_link_libraries(vestige_traces PRIVATE vestige_version Threads::Threads)
+
+# What comes in live; apart, so that programs that record nothing do not need liblo.
+add_library(vestige_live STATIC
+  live_ndjson.cpp
+  live_recording.cpp
+  osc_packet.cpp
+  recording_thread.cpp
+  udp_receiver.cpp
+  vmc_state.cpp)
+target_link_libraries(vestige_live PUBLIC vestige_traces
+  PRIVATE PkgConfig::LIBLO nlohmann_json::nlohmann_json Threads::Threads)

@@ -91,7 +91,9 @@ class Gatherer {
 void Gatherer::take_event(Stream stream, mcap::Bytes data) {
   if (stream != Stream::kEvents) return;
   const TraceEvent event = decoder_.event(data);
-  if (event.kind == trace_format::kDroppedKind) summary_.dropped += event.count;
+  if (event.kind != trace_format::kDroppedKind) return;
+  summary_.dropped += event.count;
+  summary_.dropped_by_topic[std::string(event.text)] += event.count;
 }
 
 McapSummary Gatherer::finish(bool has_footer) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -14,6 +15,7 @@
 #include "traces/sha256.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_messages.hpp"
+#include "traces/viz_messages.hpp"
 
 namespace vestige {
 
@@ -51,16 +53,26 @@ mcap::WriterOptions writer_options(const TraceWriterOptions& options) {
 
 class TraceWriter::Implementation {
  public:
+  /// An event until it is written.
+  struct Note {
+    std::string_view kind;  ///< a constant of trace_format
+    std::uint64_t count = 0;
+    std::string text;
+  };
+
   Implementation(const std::filesystem::path& path, Session session, const Avatar& avatar,
                  const TraceAttachments& attachments, const TraceWriterOptions& options);
 
   void write(const TraceFrame& frame);
-  void note(TraceEvent event);
+  void note(Note note);
+  void write_old_chunk();
+  void close_chunk();
   void finish();
   void abandon() noexcept;
 
   std::uint64_t frame_count() const { return frame_count_; }
   std::uint64_t bytes_written() const { return writer_.bytes_written(); }
+  std::uint64_t bytes_if_finished_with(const TraceFrame& frame) const;
 
  private:
   void require_usable() const;
@@ -68,8 +80,11 @@ class TraceWriter::Implementation {
   void define(Stream stream, const mcap::StringMap& metadata);
   void write_message(Stream stream, mcap::Bytes data);
   void write_event(const TraceEvent& event);
-  void close_chunk();
-  void close_full_or_old_chunk();
+  void write_notes();
+  void write_viz(const TraceFrame& frame);
+  void write_message(std::uint16_t channel_id, mcap::Bytes data);
+  void write_open_chunk();
+  bool chunk_is_old() const;
   [[noreturn]] void refuse(const TraceFrame& frame, std::string_view cause) const;
 
   std::filesystem::path path_;
@@ -77,8 +92,11 @@ class TraceWriter::Implementation {
   AppendFile file_;
   mcap::Writer writer_;
   MessageEncoder encoder_;
+  std::optional<VizEncoder> viz_;
+  std::int64_t next_viz_ns_ = 0;
   std::size_t node_count_;
   std::vector<std::uint32_t> ids_;  ///< of one frame, sorted
+  std::vector<Note> notes_;         ///< that wait for their frame
   Clock::time_point chunk_opened_;
   std::uint64_t frame_count_ = 0;
   std::uint32_t sequence_ = 0;  ///< of the last frame
@@ -104,6 +122,11 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
   for (const mcap::Attachment& one : all) writer_.write(one);
   define(Stream::kPose, {{std::string(trace_format::kNodesKey), node_names(avatar)}});
   define(Stream::kColliders, {});
+  if (options.viz == Viz::kScene) {
+    viz_.emplace(avatar);
+    for (const mcap::Schema& schema : viz_format::schemas()) writer_.write(schema);
+    for (const mcap::Channel& channel : viz_format::channels()) writer_.write(channel);
+  }
   file_.secure();
 }
 
@@ -136,13 +159,24 @@ void TraceWriter::Implementation::require_valid(const TraceFrame& frame) {
   if (twice != ids_.end()) refuse(frame, fmt::format("collider {} is in it twice", *twice));
 }
 
-void TraceWriter::Implementation::write_message(Stream stream, mcap::Bytes data) {
+void TraceWriter::Implementation::write_message(std::uint16_t channel_id, mcap::Bytes data) {
   const auto time = static_cast<std::uint64_t>(time_ns_);
-  writer_.write(mcap::Message{.channel_id = trace_format::kStreams.at(static_cast<std::size_t>(stream)).id,
-                              .sequence = sequence_,
-                              .log_time = time,
-                              .publish_time = time,
-                              .data = data});
+  writer_.write(mcap::Message{
+      .channel_id = channel_id, .sequence = sequence_, .log_time = time, .publish_time = time, .data = data});
+}
+
+void TraceWriter::Implementation::write_message(Stream stream, mcap::Bytes data) {
+  write_message(trace_format::kStreams.at(static_cast<std::size_t>(stream)).id, data);
+}
+
+/// At the first frame of each sixtieth of a second.
+void TraceWriter::Implementation::write_viz(const TraceFrame& frame) {
+  if (!viz_ || frame.time_ns < next_viz_ns_) return;
+  constexpr double kNanosecondsPerSecond = 1e9;
+  const double slots = std::floor(static_cast<double>(frame.time_ns) / kNanosecondsPerSecond * viz_format::kRate_hz);
+  next_viz_ns_ = static_cast<std::int64_t>(std::ceil((slots + 1) / viz_format::kRate_hz * kNanosecondsPerSecond));
+  write_message(viz_format::kTransformsId, viz_->transforms(frame));
+  write_message(viz_format::kSceneId, viz_->scene(frame));
 }
 
 void TraceWriter::Implementation::write_event(const TraceEvent& event) {
@@ -158,45 +192,80 @@ void TraceWriter::Implementation::write(const TraceFrame& frame) {
   if (writer_.open_chunk_bytes() == 0) chunk_opened_ = Clock::now();
   sequence_ = static_cast<std::uint32_t>(frame.index);
   time_ns_ = frame.time_ns;
+  write_notes();
   for (const std::uint32_t collider : frame.teleported)
     write_event({.time_ns = time_ns_, .kind = trace_format::kTeleportKind, .collider = collider, .text = {}});
   write_message(Stream::kPose, encoder_.pose(time_ns_, frame.pose));
   write_message(Stream::kColliders, encoder_.colliders(time_ns_, frame.colliders));
+  write_viz(frame);
   ++frame_count_;
-  close_full_or_old_chunk();
+  if (writer_.open_chunk_bytes() >= options_.chunk_bytes || chunk_is_old()) write_open_chunk();
   usable_ = true;
 }
 
-void TraceWriter::Implementation::note(TraceEvent event) {
+void TraceWriter::Implementation::write_notes() {
+  for (const Note& note : notes_)
+    write_event({.time_ns = time_ns_, .kind = note.kind, .count = note.count, .text = note.text});
+  notes_.clear();
+}
+
+void TraceWriter::Implementation::note(Note note) {
   require_usable();
-  usable_ = false;
-  if (writer_.open_chunk_bytes() == 0) chunk_opened_ = Clock::now();
-  event.time_ns = time_ns_;
-  write_event(event);
-  usable_ = true;
+  notes_.push_back(std::move(note));
 }
 
-void TraceWriter::Implementation::close_full_or_old_chunk() {
+bool TraceWriter::Implementation::chunk_is_old() const {
   const std::chrono::duration<double> age = Clock::now() - chunk_opened_;
-  if (writer_.open_chunk_bytes() >= options_.chunk_bytes || age.count() >= options_.chunk_s) close_chunk();
+  return writer_.open_chunk_bytes() > 0 && age.count() >= options_.chunk_s;
+}
+
+void TraceWriter::Implementation::write_open_chunk() {
+  const std::uint64_t before = writer_.bytes_written();
+  writer_.close_chunk();
+  if (frame_count_ > 0) file_.keep();
+  if (options_.sync == ChunkSync::kEach && writer_.bytes_written() > before) file_.sync();
+}
+
+void TraceWriter::Implementation::write_old_chunk() {
+  if (chunk_is_old()) close_chunk();
 }
 
 void TraceWriter::Implementation::close_chunk() {
-  writer_.close_chunk();
-  if (frame_count_ > 0) file_.keep();
+  require_usable();
+  usable_ = false;
+  write_open_chunk();
+  usable_ = true;
+}
+
+std::uint64_t TraceWriter::Implementation::bytes_if_finished_with(const TraceFrame& frame) const {
+  // A FlatBuffer, its message's record and its index entry around what is counted apart.
+  constexpr std::uint64_t kMessageBytes = 192;
+  constexpr std::uint64_t kNodeBytes = 40;
+  constexpr std::uint64_t kColliderBytes = 32;
+  constexpr std::uint64_t kEventsChannelBytes = 4096;  // its schema, twice
+  std::uint64_t bytes = writer_.bytes_if_finished() + 1024;
+  bytes += 2 * kMessageBytes + kNodeBytes * frame.pose.nodes.size() + kColliderBytes * frame.colliders.size();
+  bytes += kMessageBytes * frame.teleported.size();
+  for (const Note& note : notes_) bytes += kMessageBytes + note.text.size();
+  if (viz_ && frame.time_ns >= next_viz_ns_) bytes += viz_->most_bytes(frame);
+  if (!events_defined_ && !(frame.teleported.empty() && notes_.empty())) bytes += kEventsChannelBytes;
+  return bytes;
 }
 
 void TraceWriter::Implementation::finish() {
   require_usable();
   usable_ = false;
-  close_chunk();
+  write_notes();
+  write_open_chunk();
   writer_.finish();
   file_.close();
 }
 
 void TraceWriter::Implementation::abandon() noexcept {
   try {
-    if (usable_) close_chunk();
+    if (!usable_) return;
+    write_notes();
+    write_open_chunk();
   } catch (const std::exception&) {
     // AppendFile has kept what it could; there is nobody left to tell.
     usable_ = false;
@@ -216,11 +285,19 @@ void TraceWriter::write(const TraceFrame& frame) {
 }
 
 void TraceWriter::note_dropped(std::string_view topic, std::uint64_t count) {
-  implementation_->note({.kind = trace_format::kDroppedKind, .count = count, .text = topic});
+  implementation_->note({.kind = trace_format::kDroppedKind, .count = count, .text = std::string(topic)});
 }
 
 void TraceWriter::note_marker(std::string_view text) {
-  implementation_->note({.kind = trace_format::kMarkerKind, .text = text});
+  implementation_->note({.kind = trace_format::kMarkerKind, .text = std::string(text)});
+}
+
+void TraceWriter::write_old_chunk() {
+  implementation_->write_old_chunk();
+}
+
+void TraceWriter::close_chunk() {
+  implementation_->close_chunk();
 }
 
 void TraceWriter::finish() {
@@ -233,6 +310,10 @@ std::uint64_t TraceWriter::frame_count() const {
 
 std::uint64_t TraceWriter::bytes_written() const {
   return implementation_->bytes_written();
+}
+
+std::uint64_t TraceWriter::bytes_if_finished_with(const TraceFrame& frame) const {
+  return implementation_->bytes_if_finished_with(frame);
 }
 
 }  // namespace vestige

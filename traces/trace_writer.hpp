@@ -18,11 +18,20 @@ namespace vestige {
 
 using Compression = mcap::Compression;
 
+/// Whether each chunk is brought to disk when it is written, so that it survives a power cut, or just handed to the
+/// system, which survives the death of the program.
+enum class ChunkSync : std::uint8_t { kNone, kEach };
+
+/// Whether the trace says what a viewer needs to draw it, 60 times a second: see viz_messages.hpp.
+enum class Viz : std::uint8_t { kNone, kScene };
+
 struct TraceWriterOptions {
   Overwrite overwrite = Overwrite::kRefuse;
   Compression compression = Compression::kZstd;
   std::size_t chunk_bytes = std::size_t{1} << 20;  ///< uncompressed size at which a chunk is closed
   double chunk_s = 0.1;                            ///< age, by the wall clock, at which a chunk is closed
+  ChunkSync sync = ChunkSync::kNone;
+  Viz viz = Viz::kNone;
 };
 
 /// What makes a trace one self-contained file. The bytes must stay until the writer has been made.
@@ -56,10 +65,15 @@ class TraceWriter {
   /// local transform for each node of the avatar, every collider id at most once.
   void write(const TraceFrame& frame);
 
-  /// Notes that `count` messages of `topic` were lost since the last frame.
+  /// Notes that `count` messages of `topic` were lost since the last frame. Stands with the next frame, or with the
+  /// last one where none follows.
   void note_dropped(std::string_view topic, std::uint64_t count);
-  /// Notes something that the user wants to find again.
+  /// Notes something that the user wants to find again, at the next frame as above.
   void note_marker(std::string_view text);
+  /// Writes the open chunk if it is older than `chunk_s`. `write` does so too: this is for whoever has no frame.
+  void write_old_chunk();
+  /// Writes the open chunk however young it is.
+  void close_chunk();
 
   /// Writes index and footer and syncs the file.
   void finish();
@@ -67,6 +81,8 @@ class TraceWriter {
   std::uint64_t frame_count() const;
   /// Bytes that are in the file (for limits on its size); what waits in the open chunk does not count.
   std::uint64_t bytes_written() const;
+  /// How large the file is at most if `write(frame)` and then `finish` are called now.
+  std::uint64_t bytes_if_finished_with(const TraceFrame& frame) const;
 
  private:
   class Implementation;

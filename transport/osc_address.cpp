@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
+#include <utility>
 
 #include "traces/error.hpp"
+#include "traces/host_port.hpp"
 
 namespace vestige {
 
@@ -70,43 +71,22 @@ void check_address(const std::string& address) {
 }  // namespace
 
 OscOptions parse_osc_url(std::string_view url) {
-  const auto refuse = [&](const std::string& cause) {
-    return UsageError("--port", fmt::format("'{}' {}", url, cause),
-                      "name a host and a port: osc://127.0.0.1:9000, osc://[::1]:9000");
-  };
-  constexpr std::string_view kScheme = "osc://";
-  if (!url.starts_with(kScheme)) throw refuse("does not begin with osc://");
-  std::string_view rest = url.substr(kScheme.size());
-  if (rest.ends_with('/')) rest.remove_suffix(1);
-  if (rest.find('/') != std::string_view::npos)
-    throw refuse("goes on after the port; what the parameters are called is set by --osc-address");
-  std::string_view host;
-  if (rest.starts_with('[')) {
-    const std::size_t close = rest.find(']');
-    if (close == std::string_view::npos) throw refuse("has a bracket that does not close");
-    host = rest.substr(1, close - 1);
-    rest.remove_prefix(close + 1);
-  } else {
-    const std::size_t colon = std::min(rest.find(':'), rest.size());
-    host = rest.substr(0, colon);
-    rest.remove_prefix(colon);
-    if (rest.find(':', 1) != std::string_view::npos)
-      throw refuse("has more than one colon; an IPv6 address stands in brackets");
-  }
-  if (host.empty()) throw refuse("has no host");
-  if (!rest.starts_with(':')) throw refuse("has no port");
-  rest.remove_prefix(1);
+  const std::string_view place = url.substr(0, url.size() - (url.ends_with('/') ? 1 : 0));
+  const std::size_t host = url.find("://");
+  if (host != std::string_view::npos && place.find('/', host + 3) != std::string_view::npos)
+    throw UsageError(
+        "--port",
+        fmt::format("'{}' goes on after the port; what the parameters are called is set by --osc-address", url),
+        "name a host and a port: osc://127.0.0.1:9000");
+  HostPort parsed = parse_host_port(url, "osc", "--port");
   OscOptions options;
-  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), options.port);
-  if (error != std::errc() || end != rest.data() + rest.size() || options.port == 0)
-    throw refuse(fmt::format("has the port '{}', which is no number from 1 to 65535", rest));
-  options.host = host;
+  options.host = std::move(parsed.host);
+  options.port = parsed.port;
   return options;
 }
 
 std::string osc_url(const OscOptions& options) {
-  const bool is_ipv6 = options.host.find(':') != std::string::npos;
-  return fmt::format("osc://{}:{}", is_ipv6 ? "[" + options.host + "]" : options.host, options.port);
+  return host_port_url("osc", {.host = options.host, .port = options.port});
 }
 
 std::vector<std::string> osc_addresses(std::string_view address_template,

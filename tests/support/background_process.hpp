@@ -14,12 +14,13 @@
 
 namespace vestige::test {
 
-/// One of the built programs, running beside the test; killed at the end if it has not ended.
+/// One of the built programs, or of another folder's, running beside the test; killed at the end if it has not ended.
 class BackgroundProcess {
  public:
   /// Its standard error goes to that file.
-  BackgroundProcess(std::vector<std::string> arguments, const std::filesystem::path& standard_error) {
-    arguments[0] = (std::filesystem::path(VESTIGE_BIN_DIR) / arguments[0]).string();
+  BackgroundProcess(std::vector<std::string> arguments, const std::filesystem::path& standard_error,
+                    const std::filesystem::path& programs = VESTIGE_BIN_DIR) {
+    arguments[0] = (programs / arguments[0]).string();
     std::vector<char*> argv;
     argv.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) argv.push_back(argument.data());

@@ -7,6 +7,17 @@
 
 namespace vestige::mcap {
 
+namespace {
+
+/// Fixed parts of an index record or of statistics, less than this.
+constexpr std::uint64_t kMostIndexBytes = 128;
+/// A channel's entry in them: id and offset, or id and count.
+constexpr std::uint64_t kIndexEntryBytes = 10;
+/// DataEnd, the offsets of six groups, footer and magic: 157.
+constexpr std::uint64_t kMostEndBytes = 160;
+
+}  // namespace
+
 Writer::Writer(Sink sink, const Header& header, const WriterOptions& options)
     : sink_(std::move(sink)), options_(options) {
   append_magic(scratch_);
@@ -29,6 +40,9 @@ void Writer::emit_record(const Record& record) {
 
 template <typename Record>
 void Writer::write_definition(const Record& record) {
+  ByteBuffer encoded;
+  append_record(encoded, record);
+  definition_bytes_ += encoded.size();
   if (options_.chunking == Chunking::kChunks && options_.definitions == DefinitionPlace::kInChunks) {
     append_record(chunk_, record);
   } else {
@@ -81,6 +95,7 @@ void Writer::write(const Attachment& attachment) {
   append_attachment_crc(scratch_, head, attachment.data);
   emit(scratch_);
   index.length = offset_ - index.offset;
+  definition_bytes_ += kMostIndexBytes + index.name.size() + index.media_type.size();
   attachment_indexes_.push_back(std::move(index));
   ++statistics_.attachment_count;
 }
@@ -88,8 +103,19 @@ void Writer::write(const Attachment& attachment) {
 void Writer::write(const Metadata& metadata) {
   const std::uint64_t offset = offset_;
   emit_record(metadata);
+  definition_bytes_ += kMostIndexBytes + metadata.name.size();
   metadata_indexes_.push_back({.offset = offset, .length = offset_ - offset, .name = metadata.name});
   ++statistics_.metadata_count;
+}
+
+std::uint64_t Writer::bytes_if_finished() const {
+  const std::uint64_t index_bytes = kMostIndexBytes + kIndexEntryBytes * channels_.size();
+  std::uint64_t bytes = offset_ + definition_bytes_ + kMostEndBytes + index_bytes * (chunk_indexes_.size() + 1);
+  if (chunk_.empty()) return bytes;
+  // What cannot be compressed grows: zstd by 1/256 and some, LZ4's frames by 4 bytes a block and their header.
+  bytes += chunk_.size() + chunk_.size() / 128 + 1024 + index_bytes;
+  for (const auto& [channel, index] : chunk_message_indexes_) bytes += 32 + 16 * index.entries.size();
+  return bytes;
 }
 
 void Writer::close_chunk() {

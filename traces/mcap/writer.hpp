@@ -55,6 +55,8 @@ class Writer {
   void finish();
 
   std::size_t open_chunk_bytes() const { return chunk_.size(); }
+  /// How large the file is at most if `finish` is called now.
+  std::uint64_t bytes_if_finished() const;
   std::uint64_t bytes_written() const { return offset_; }
   const Statistics& statistics() const { return statistics_; }
 
@@ -69,7 +71,8 @@ class Writer {
   Sink sink_;
   WriterOptions options_;
   std::uint64_t offset_ = 0;
-  std::uint32_t crc_ = 0;  ///< of everything written so far
+  std::uint32_t crc_ = 0;               ///< of everything written so far
+  std::uint64_t definition_bytes_ = 0;  ///< what schemas, channels and indexes take in the summary, at most
   ByteBuffer scratch_;
   ByteBuffer chunk_;  ///< uncompressed records
   ByteBuffer compressed_;

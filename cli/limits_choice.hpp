@@ -1,0 +1,29 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "traces/recorder.hpp"
+
+namespace vestige::cli {
+
+/// The flags that say how a recording ends, goes on in another file, or forgets.
+struct LimitsChoice {
+  std::optional<double> ring_s;
+  std::string max_size;
+  std::string split;
+  bool sync = false;
+};
+
+/// Adds --ring, --max-size, --split and --sync.
+void add_limits_options(CLI::App& verb, LimitsChoice& choice);
+
+/// Throws `UsageError` naming the flag: values that are none, flags that contradict each other or `output`.
+RecordingLimits limits_of(const LimitsChoice& choice, const std::string& output);
+
+/// "1000", "64MiB", "1.5GB": bytes, at least 1. Throws `UsageError` naming `flag`.
+std::uint64_t parse_size(const std::string& text, const std::string& flag);
+
+}  // namespace vestige::cli

@@ -1,0 +1,253 @@
+// Recording in the field, as a user does it: limits, parts, the ring, live input.
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <thread>
+
+#include "tests/support/background_process.hpp"
+#include "tests/support/command_line.hpp"
+#include "tests/support/osc.hpp"
+#include "tests/support/udp.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+#include "traces/trace_reader.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Recording : public test::CommandLineTest {
+ protected:
+  std::string hash_of(const std::string& trace) const {
+    return json_of("vestige replay " + trace + " --detector cpu --json -")["texture_hash"];
+  }
+
+  std::vector<TraceFrame> frames_of(const std::string& trace) const {
+    TraceReader reader(folder_ / trace);
+    std::vector<TraceFrame> frames;
+    TraceFrame frame;
+    while (reader.next(frame)) frames.push_back(frame);
+    return frames;
+  }
+
+  /// Those that are there while it is being written, perhaps none.
+  std::vector<TraceFrame> frames_so_far(const std::string& trace) const {
+    try {
+      return frames_of(trace);
+    } catch (const Error&) {
+      return {};
+    }
+  }
+
+  /// Its frames as lines of JSON (traces/FORMAT.md).
+  std::string lines_of(const std::string& trace) const {
+    std::string lines;
+    for (const TraceFrame& frame : frames_of(trace)) {
+      lines += fmt::format(R"({{"frame":{},"time_s":{}.{:09},"pose":{{"origin":[{},{},{}],"nodes":[)", frame.index,
+                           frame.time_ns / 1'000'000'000, frame.time_ns % 1'000'000'000, frame.pose.origin_m.x,
+                           frame.pose.origin_m.y, frame.pose.origin_m.z);
+      std::vector<std::string> parts;
+      for (const NodeLocal& node : frame.pose.nodes) {
+        const glm::vec3& t = node.translation;
+        const glm::quat& r = node.rotation;
+        std::vector<std::string> numbers;
+        for (const float value : {t.x, t.y, t.z, r.x, r.y, r.z, r.w, node.scale.x, node.scale.y, node.scale.z}) {
+          const std::string text = fmt::format("{}", value);
+          numbers.push_back(text == "-0" ? "-0.0" : text);  // -0 is a whole number, which has no sign
+        }
+        parts.push_back(fmt::format("[{}]", fmt::join(numbers, ",")));
+      }
+      lines += fmt::format("{}]}},\"colliders\":[", fmt::join(parts, ","));
+      parts.clear();
+      for (const ColliderSample& collider : frame.colliders)
+        parts.push_back(fmt::format(R"({{"id":{},"position":[{},{},{}]}})", collider.id, collider.position_m.x,
+                                    collider.position_m.y, collider.position_m.z));
+      lines += fmt::format("{}]", fmt::join(parts, ","));
+      if (!frame.teleported.empty()) lines += fmt::format(",\"teleported\":[{}]", fmt::join(frame.teleported, ","));
+      lines += "}\n";
+    }
+    return lines;
+  }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+};
+
+TEST_F(Recording, InPartsMergesToWhatOneFileWouldHaveBeen) {
+  const std::string scene = "vestige record --colliders rain --count 40 --rate 200 --duration 2 ";
+  ASSERT_EQ(run(scene + "-o whole.mcap").exit_code, 0);
+  const auto json = json_of(scene + "-o part.mcap --split 0.5 --json -");
+  EXPECT_EQ(json["files"].size(), 4U);
+  EXPECT_EQ(json["frames"], 400);
+  EXPECT_EQ(run("vestige inspect part-0003.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige merge part-*.mcap -o merged.mcap").exit_code, 0);
+  EXPECT_EQ(hash_of("merged.mcap"), hash_of("whole.mcap"));
+
+  ASSERT_EQ(run(scene + "-o sized.mcap --split 400kB").exit_code, 0);
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+    if (entry.path().filename().string().starts_with("sized-")) {
+      EXPECT_LE(entry.file_size(), 400'000U);
+    }
+  }
+  ASSERT_EQ(run("vestige merge sized-*.mcap -o merged2.mcap").exit_code, 0);
+  EXPECT_EQ(hash_of("merged2.mcap"), hash_of("whole.mcap"));
+
+  // Parts of another recording would be merged with these.
+  expect_failure(scene + "-o part.mcap --split 1", 1, {"part-0001.mcap", "exists already", "--force"});
+  EXPECT_EQ(run(scene + "-o part.mcap --split 1 --force").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "part-0003.mcap"));
+}
+
+TEST_F(Recording, StopsBeforeTheFileIsLargerThanAllowed) {
+  const test::Outcome outcome = run("vestige record --max-size 1MB --duration 20 -o small.mcap");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("stopped by --max-size after"));
+  EXPECT_LE(std::filesystem::file_size(folder_ / "small.mcap"), 1'000'000U);
+  EXPECT_EQ(json_of("vestige inspect small.mcap --json -")["complete"], true);
+  expect_failure("vestige record --max-size 10kB -o tiny.mcap", 1, {"tiny.mcap", "too few"}, "tiny.mcap");
+}
+
+TEST_F(Recording, OfARingIsItsLastSeconds) {
+  ASSERT_EQ(run("vestige record --ring 0.25 --rate 100 --duration 3 -o last.mcap").exit_code, 0);
+  const auto frames = frames_of("last.mcap");
+  ASSERT_EQ(frames.size(), 26U);
+  EXPECT_EQ(frames.front().index, 274U);
+  EXPECT_EQ(frames.back().index, 299U);
+}
+
+TEST_F(Recording, RefusesFlagsThatContradictEachOther) {
+  for (const auto& [flags, named] : std::vector<std::pair<std::string, std::string>>{
+           {"--ring 5 --split 5", "--split"},
+           {"--ring 5 --sync", "--sync"},
+           {"--split 1MB --max-size 1MB", "--max-size"},
+           {"--ring 5 --max-size 1kB", "--max-size"},
+           {"--max-size nothing", "--max-size"},
+           {"--max-size -5", "--max-size"},
+           {"--split 5parsec", "--split"},
+           {"--ring -1", "--ring"},
+           {"--live vmc://nowhere", "--live"},
+           {"--live tcp://127.0.0.1:5", "--live"},
+           {"--live - --rate 60", "--rate"},
+           {"--live - --colliders rain", "--colliders"},
+           {"--live - --count 5", "--count"},
+           {"--live vmc://127.0.0.1:39539 --animation walk", "--animation"}})
+    expect_failure("vestige record -o a.mcap " + flags, 2, {named}, "a.mcap");
+  expect_failure("vestige record --split 5 -o -", 2, {"--split"});
+}
+
+TEST_F(Recording, OfLinesIsWhatTheyCameFrom) {
+  ASSERT_EQ(
+      run("vestige record --colliders rain --count 40 --rate 200 --duration 1 --origin 7,0,-3 -o man.mcap").exit_code,
+      0);
+  write("man.ndjson", lines_of("man.mcap"));
+  const test::Outcome outcome = run("vestige record --live - -o again.mcap < man.ndjson");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_EQ(hash_of("again.mcap"), hash_of("man.mcap"));
+  EXPECT_TRUE(lines_of("again.mcap") == lines_of("man.mcap"));
+}
+
+TEST_F(Recording, OfLinesCountsThoseThatItCannotRead) {
+  ASSERT_EQ(run("vestige record --rate 50 --duration 1 -o man.mcap").exit_code, 0);
+  write("man.ndjson", lines_of("man.mcap") + "nonsense\n{\"frame\":3}\n{\"time_s\":5}\n");
+  const test::Outcome outcome = run("vestige record --live - -o again.mcap < man.ndjson");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("line 51: "));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("2 lines could not be read"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("51 frames"));
+  const auto json = json_of("vestige inspect again.mcap --json -");
+  EXPECT_EQ(json["dropped"], 4);
+  EXPECT_EQ(json["dropped_by_topic"]["/pose"], 2);
+  EXPECT_THAT(run("vestige inspect again.mcap").standard_output, HasSubstr("4 messages were lost while recording"));
+}
+
+TEST_F(Recording, OfNothingIsNoTrace) {
+  expect_failure("vestige record --live - -o a.mcap < /dev/null", 1, {"standard input", "no frame came in"}, "a.mcap");
+  expect_failure("echo nonsense | vestige record --live - --ring 5 -q -o a.mcap", 1, {"no frame came in"}, "a.mcap");
+}
+
+/// The source stalls: what it sent is in the file before it goes on, or ends.
+TEST_F(Recording, OfASourceThatStallsIsOnDiskMeanwhile) {
+  const test::Outcome outcome =
+      run("{ printf '{}\\n{}\\n{}\\n'; for i in $(seq 100); do sleep 0.1; "
+          "vestige inspect live.mcap --json - 2>/dev/null | grep -q '\"messages\": 6' && exec touch seen; done; } | "
+          "vestige record --live - -o live.mcap");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "seen"));
+}
+
+TEST_F(Recording, OfTheVmcProtocolIsWhatWasSent) {
+  const std::uint16_t port = test::free_udp_port();
+  test::BackgroundProcess recorder({"vestige", "record", "--live", fmt::format("vmc://127.0.0.1:{}", port), "--rate",
+                                    "100", "-v", "-o", (folder_ / "vr.mcap").string()},
+                                   folder_ / "error");
+  const test::UdpSender sender(port);
+  const std::vector<std::byte> garbage(5, std::byte{'/'});
+  bool garbage_sent = false;
+  for (int i = 0; i < 3000; ++i) {
+    const auto x = static_cast<float>(i);
+    sender.send(test::bundle({test::bone("Hips", {1, 0, 0, 0}, {0, 0.95, 0}), test::bone("Tail", {1, 0, 0, 0}),
+                              test::bone("LeftUpperArm", glm::angleAxis(0.5, glm::dvec3(0, 0, 1))),
+                              test::collider(5, x, 2, 3)}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const std::size_t so_far = frames_so_far("vr.mcap").size();
+    if (so_far > 0 && !garbage_sent) sender.send(garbage);
+    garbage_sent = so_far > 0;
+    if (so_far >= 20) break;
+  }
+  recorder.signal(SIGINT);
+  EXPECT_EQ(recorder.wait(), 3);
+  const std::string error = read_text_file(folder_ / "error");
+  EXPECT_THAT(error, HasSubstr("1 datagrams that could not be read"));
+  EXPECT_THAT(error, HasSubstr("Hips, LeftUpperArm"));
+  EXPECT_THAT(error, HasSubstr("lacks: Tail"));
+  const auto frames = frames_of("vr.mcap");
+  ASSERT_GE(frames.size(), 20U);
+  float last = -1;
+  for (const TraceFrame& frame : frames) {
+    EXPECT_EQ(frame.time_ns, static_cast<std::int64_t>(frame.index) * 10'000'000);
+    ASSERT_EQ(frame.colliders.size(), 1U);
+    EXPECT_EQ(frame.colliders[0].id, 5U);
+    EXPECT_GE(frame.colliders[0].position_m.x, double{last});
+    last = static_cast<float>(frame.colliders[0].position_m.x);
+  }
+  EXPECT_GT(last, 5) << "the state moves on";
+  const auto json = json_of("vestige inspect vr.mcap --json -");
+  EXPECT_EQ(json["complete"], true);
+  EXPECT_EQ(json["dropped_by_topic"]["input"], 1);
+}
+
+TEST_F(Recording, OfARingGivesASnapshotWhenAsked) {
+  const std::uint16_t port = test::free_udp_port();
+  test::BackgroundProcess recorder({"vestige", "record", "--live", fmt::format("vmc://127.0.0.1:{}", port), "--rate",
+                                    "100", "--ring", "60", "-o", (folder_ / "last.mcap").string()},
+                                   folder_ / "error");
+  const test::UdpSender sender(port);
+  for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "last-0001.mcap"); ++i) {
+    sender.send(test::collider(5, 1, 2, 3));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    // Before it listens, the signal would end it.
+    if (i % 50 == 49 && read_text_file(folder_ / "error").find("listening") != std::string::npos)
+      recorder.signal(SIGUSR1);
+  }
+  recorder.signal(SIGTERM);
+  static_cast<void>(recorder.wait());
+  EXPECT_GT(frames_of("last-0001.mcap").size(), 0U);
+  EXPECT_GE(frames_of("last.mcap").size(), frames_of("last-0001.mcap").size());
+}
+
+TEST_F(Recording, WithVizReplaysToTheSame) {
+  const std::string scene = "vestige record --count 20 --rate 200 --duration 1 ";
+  ASSERT_EQ(run(scene + "-o plain.mcap && " + scene + "--viz -o seen.mcap").exit_code, 0);
+  EXPECT_EQ(hash_of("seen.mcap"), hash_of("plain.mcap"));
+  const auto channels = json_of("vestige inspect seen.mcap --json -")["channels"];
+  ASSERT_EQ(channels.size(), 4U);
+  EXPECT_EQ(channels[2]["schema"], "foxglove.FrameTransforms");
+  EXPECT_EQ(channels[3]["messages"], 60);
+  EXPECT_EQ(run("vestige doctor seen.mcap").exit_code, 0);
+}
+
+}  // namespace
+}  // namespace vestige

@@ -1,0 +1,39 @@
+#include <algorithm>
+#include <cmath>
+
+#include "tests/fuzz/require.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/humanoid.hpp"
+#include "traces/vmc_state.hpp"
+
+// Whatever comes over the network, the state stays one that can be recorded: finite, each collider once. The input is
+// several datagrams: two bytes of length, then so many bytes.
+
+using vestige::fuzz::require;
+
+// NOLINTNEXTLINE(readability-identifier-naming): libFuzzer's hook
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace vestige;  // NOLINT(google-build-using-namespace)
+  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  static const Humanoid humanoid = find_humanoid(avatar, builtin_avatar_glb());
+  VmcState state(avatar, humanoid, glm::dvec3(0));
+  std::span<const std::byte> input(reinterpret_cast<const std::byte*>(data), size);
+  std::uint64_t datagrams = 0;
+  while (input.size() >= 2) {
+    const std::size_t said = 256 * std::to_integer<std::size_t>(input[0]) + std::to_integer<std::size_t>(input[1]);
+    const std::size_t length = std::min(said, input.size() - 2);
+    state.take(input.subspan(2, length));
+    input = input.subspan(2 + length);
+    ++datagrams;
+  }
+  TraceFrame frame;
+  state.show(frame);
+  require(state.malformed() <= datagrams, "a datagram is malformed once");
+  require(frame.pose.nodes.size() == avatar.nodes.size(), "a pose fits the avatar");
+  for (const NodeLocal& node : frame.pose.nodes)
+    require(std::isfinite(glm::dot(node.rotation, node.rotation)), "rotations are finite");
+  for (std::size_t i = 1; i < frame.colliders.size(); ++i)
+    require(frame.colliders[i - 1].id < frame.colliders[i].id, "each collider is there once");
+  return 0;
+}

@@ -1,0 +1,386 @@
+// Live input: lines of JSON, and the VMC protocol.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/osc.hpp"
+#include "tests/traces/trace_fixture.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/error.hpp"
+#include "traces/humanoid.hpp"
+#include "traces/live_ndjson.hpp"
+#include "traces/mcap/decode.hpp"
+#include "traces/osc_packet.hpp"
+#include "traces/vmc_state.hpp"
+
+namespace vestige {
+namespace {
+
+using test::bone;
+using test::bundle;
+using test::bytes_of;
+using test::collider;
+using test::OscBuilder;
+using test::placement;
+using test::with_id;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::SizeIs;
+
+// Lines of JSON.
+
+class LiveLines : public ::testing::Test {
+ protected:
+  std::vector<TraceFrame> read(std::string_view text, std::size_t piece = 1 << 20, std::int64_t now_ns = 7) {
+    lines_ = std::make_unique<LiveNdjson>(avatar_, glm::dvec3(1, 2, 3));
+    std::vector<TraceFrame> frames;
+    const auto take = [&](TraceFrame frame) { frames.push_back(std::move(frame)); };
+    for (std::size_t at = 0; at < text.size(); at += piece) lines_->push(text.substr(at, piece), now_ns, take);
+    lines_->finish(now_ns, take);
+    return frames;
+  }
+
+  const Avatar avatar_ = test::skeleton(2);
+  std::unique_ptr<LiveNdjson> lines_;
+};
+
+constexpr std::string_view kWhole =
+    R"({"frame":4,"time_s":0.5,"pose":{"origin":[0.1,-0.0,1e300],"nodes":[[1,2,3,0,0,0,1,1,1,1],)"
+    R"([0.1,-0.0,"inf",0.5,0.5,0.5,0.5,"nan",2,3]]},"colliders":[{"id":3,"position":[0.2,1.1,0.4]}],"teleported":[3]})"
+    "\n";
+
+TEST_F(LiveLines, AreFramesToTheBit) {
+  for (const std::size_t piece : {std::size_t{1}, std::size_t{7}, kWhole.size()}) {
+    const auto frames = read(kWhole, piece);
+    ASSERT_EQ(frames.size(), 1U) << piece;
+    const TraceFrame& frame = frames[0];
+    EXPECT_EQ(frame.index, 4U);
+    EXPECT_EQ(frame.time_ns, 500'000'000);
+    EXPECT_TRUE(test::same_bits(frame.pose.origin_m, glm::dvec3(0.1, -0.0, 1e300)));
+    EXPECT_EQ(frame.pose.nodes[1].translation.x, 0.1F);
+    EXPECT_TRUE(std::signbit(frame.pose.nodes[1].translation.y));
+    EXPECT_TRUE(std::isinf(frame.pose.nodes[1].translation.z));
+    EXPECT_TRUE(std::isnan(frame.pose.nodes[1].scale.x));
+    ASSERT_EQ(frame.colliders.size(), 1U);
+    EXPECT_EQ(frame.colliders[0].id, 3U);
+    EXPECT_EQ(frame.colliders[0].position_m.y, 1.1);
+    EXPECT_THAT(frame.teleported, ElementsAre(3U));
+    EXPECT_EQ(lines_->malformed(), 0U);
+  }
+}
+
+TEST_F(LiveLines, MayLeaveOutAllButTheBraces) {
+  const auto frames = read("{}\r\n\n{\"pose\":{\"joints\":{\"" + std::string("node 1 \\\"\\u00e9\\\"") +
+                           "\":{\"t\":[0,5,0]}}}}\n{\"time_s\":1}");
+  ASSERT_EQ(frames.size(), 3U) << ::testing::PrintToString(lines_->problems());
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(frames[i].index, i);
+  EXPECT_EQ(frames[0].time_ns, 7) << "when the line came";
+  EXPECT_EQ(frames[0].pose.origin_m, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(frames[1].pose.nodes[1].translation.y, 5.0F);
+  EXPECT_EQ(frames[2].pose.nodes[1].translation.y, 5.0F) << "as the line before";
+  EXPECT_EQ(frames[2].time_ns, 1'000'000'000);
+}
+
+TEST_F(LiveLines, ThatAreWrongAreLeftOutAndCounted) {
+  const std::string long_line = std::string(17 << 20, 'x') + "\n";
+  const std::vector<std::string> wrong = {
+      "nonsense\n",
+      "[1,2]\n",
+      "{\"frame\":-1}\n",
+      "{\"frame\":4294967296}\n",
+      "{\"time_s\":-1}\n",
+      "{\"time_s\":\"inf\"}\n",
+      "{\"time_s\":1e300}\n",
+      "{\"pose\":5}\n",
+      "{\"pose\":{}}\n",
+      "{\"pose\":{\"nodes\":[]}}\n",
+      "{\"pose\":{\"nodes\":[[1,2],[3]]}}\n",
+      "{\"pose\":{\"joints\":{\"nobody\":{}}}}\n",
+      "{\"colliders\":5}\n",
+      "{\"colliders\":[5]}\n",
+      "{\"colliders\":[{\"id\":-1,\"position\":[0,0,0]}]}\n",
+      "{\"colliders\":[{\"id\":1,\"position\":[0,0]}]}\n",
+      "{\"colliders\":[{\"id\":1,\"position\":[0,0,0]},{\"id\":1,\"position\":[0,0,0]}]}\n",
+      "{\"teleported\":{}}\n",
+      "{\"frame\":0}\n",
+      "{\"time_s\":0.4}\n",
+      long_line,
+  };
+  for (const std::string& line : wrong) {
+    const auto frames = read(std::string(kWhole) + line + "{}\n");
+    EXPECT_EQ(frames.size(), 2U) << line.substr(0, 80);
+    EXPECT_EQ(lines_->malformed(), 1U) << line.substr(0, 80);
+    ASSERT_THAT(lines_->problems(), SizeIs(1));
+    EXPECT_THAT(lines_->problems()[0], HasSubstr("line 2: ")) << line.substr(0, 80);
+    EXPECT_EQ(frames.back().index, 5U);
+  }
+}
+
+// Open Sound Control.
+
+TEST(OscPacket, HoldsMessagesOfBundlesWithinBundles) {
+  const auto packet =
+      bundle({collider(1, 0, 0, 0), bundle({collider(2, 0, 0, 0), bundle({})}), collider(3, 0.5F, 0, 0)});
+  const auto messages = decode_osc_packet(packet);
+  ASSERT_EQ(messages.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(messages[i].address, "/vestige/collider");
+    EXPECT_EQ(std::get<std::int32_t>(messages[i].arguments[0]), static_cast<std::int32_t>(i + 1));
+  }
+  EXPECT_EQ(std::get<float>(messages[2].arguments[1]), 0.5F);
+}
+
+TEST(OscPacket, CutAnywhereOrFlippedAnywhereIsRefusedOrRead) {
+  const auto packet = bundle({bone("Hips", {1, 0, 0, 0}), bundle({collider(2, 1, 2, 3)})});
+  for (std::size_t length = 0; length < packet.size(); ++length) {
+    // A bundle may end after its time, or after any element.
+    try {
+      EXPECT_LT(decode_osc_packet(std::span(packet).first(length)).size(), 2U) << length;
+    } catch (const mcap::Malformed&) {
+      continue;
+    }
+  }
+  for (std::size_t at = 0; at < packet.size(); ++at) {
+    for (int flip = 1; flip < 256; flip += flip < 8 ? 1 : 31) {
+      auto damaged = packet;
+      damaged[at] ^= static_cast<std::byte>(flip);
+      try {
+        EXPECT_LE(decode_osc_packet(damaged).size(), 2U);
+      } catch (const mcap::Malformed&) {
+        continue;
+      }
+    }
+  }
+}
+
+TEST(OscPacket, NestedWithoutEndIsRefused) {
+  std::vector<std::byte> packet = bundle({});
+  for (int i = 0; i < 100; ++i) packet = bundle({packet});
+  EXPECT_THROW(decode_osc_packet(packet), mcap::Malformed);
+}
+
+// The body.
+
+TEST(Humanoid, KnowsTheNamesOfTheUsualTools) {
+  EXPECT_EQ(humanoid_bone("mixamorig:LeftUpLeg"), "LeftUpperLeg");
+  EXPECT_EQ(humanoid_bone("mixamorig:LeftLeg"), "LeftLowerLeg");
+  EXPECT_EQ(humanoid_bone("mixamorig:Spine2"), "UpperChest");
+  EXPECT_EQ(humanoid_bone("mixamorig:RightHandIndex2"), "RightIndexIntermediate");
+  EXPECT_EQ(humanoid_bone("upperarm_l"), "LeftUpperArm");
+  EXPECT_EQ(humanoid_bone("thumb_03_r"), "RightThumbDistal");
+  EXPECT_EQ(humanoid_bone("clavicle_r"), "RightShoulder");
+  EXPECT_EQ(humanoid_bone("upper_arm.L"), "LeftUpperArm");
+  EXPECT_EQ(humanoid_bone("shin.R"), "RightLowerLeg");
+  EXPECT_EQ(humanoid_bone("LeftLowerArm"), "LeftLowerArm");
+  EXPECT_EQ(humanoid_bone("Hips"), "Hips");
+  EXPECT_EQ(humanoid_bone("Sword"), "");
+  EXPECT_EQ(humanoid_bone(""), "");
+}
+
+TEST(Humanoid, OfTheBuiltInAvatarIsWhole) {
+  const Humanoid humanoid = find_humanoid(test::builtin_avatar(), builtin_avatar_glb());
+  EXPECT_EQ(humanoid.node_of.size(), 21U);
+  for (const char* name : {"Hips", "Spine", "Chest", "Neck", "Head", "LeftUpperArm", "RightLowerLeg", "LeftToes"})
+    EXPECT_TRUE(humanoid.node_of.contains(name)) << name;
+}
+
+std::vector<std::byte> glb_of(std::string json) {
+  while (json.size() % 4 != 0) json += ' ';
+  const auto size = static_cast<std::uint32_t>(json.size());
+  const std::uint32_t head[] = {0x46546C67, 2, 20 + size, size, 0x4E4F534A};
+  std::vector<std::byte> glb(sizeof head + json.size());
+  std::memcpy(glb.data(), head, sizeof head);
+  std::memcpy(glb.data() + sizeof head, json.data(), json.size());
+  return glb;
+}
+
+TEST(Humanoid, IsWhatVrmSays) {
+  const Avatar avatar = test::skeleton(4);
+  const Humanoid one =
+      find_humanoid(avatar, glb_of(R"({"extensions":{"VRMC_vrm":{"humanoid":{"humanBones":{"hips":{"node":2},)"
+                                   R"("leftThumbMetacarpal":{"node":3},"head":{"node":99},"jaw":5}}}}})"));
+  EXPECT_EQ(one.source, Humanoid::Source::kVrm);
+  EXPECT_EQ(one.facing, Humanoid::Facing::kPlusZ);
+  EXPECT_EQ(one.node_of, (decltype(one.node_of){{"Hips", 2}, {"LeftThumbProximal", 3}}));
+  const Humanoid zero = find_humanoid(
+      avatar, glb_of(R"({"extensions":{"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1},{"bone":7},5,)"
+                     R"({"bone":"leftUpperArm","node":0}]}}}})"));
+  EXPECT_EQ(zero.facing, Humanoid::Facing::kMinusZ);
+  EXPECT_EQ(zero.node_of, (decltype(zero.node_of){{"Hips", 1}, {"LeftUpperArm", 0}}));
+}
+
+// VMC.
+
+class Vmc : public ::testing::Test {
+ protected:
+  /// World positions of nodes in the state's pose, without the origin.
+  std::vector<glm::dvec3> joints(VmcState& state) const {
+    TraceFrame frame;
+    state.show(frame);
+    std::vector<glm::dmat4> world;
+    world_matrices(avatar_, frame.pose, world);
+    std::vector<glm::dvec3> positions;
+    for (const glm::dmat4& matrix : world) positions.emplace_back(matrix[3]);
+    return positions;
+  }
+  std::size_t node(const char* name) const { return humanoid_.node_of.find(name)->second; }
+
+  const Avatar avatar_ = test::builtin_avatar();
+  const Humanoid humanoid_ = find_humanoid(avatar_, builtin_avatar_glb());
+};
+
+glm::dquat about(const glm::dvec3& axis, double degrees) {
+  return glm::angleAxis(degrees * std::numbers::pi / 180, axis);
+}
+
+void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-6) {
+  EXPECT_LT(glm::length(a - b), tolerance)
+      << fmt::format("({}, {}, {}) is not ({}, {}, {})", a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+TEST_F(Vmc, ASenderInItsRestPoseLeavesTheAvatarInItsOwn) {
+  VmcState state(avatar_, humanoid_, glm::dvec3(5, 6, 7));
+  std::vector<std::vector<std::byte>> all = {placement("/VMC/Ext/Root/Pos", "root", {}, {1, 0, 0, 0})};
+  for (const auto& [name, index] : humanoid_.node_of)
+    if (name != "Hips") all.push_back(bone(name.c_str(), {1, 0, 0, 0}, {9, 9, 9}));
+  EXPECT_TRUE(state.take(bundle(all)));
+  TraceFrame frame;
+  state.show(frame);
+  EXPECT_EQ(frame.pose.origin_m, glm::dvec3(5, 6, 7));
+  const Pose rest = rest_pose(avatar_);
+  for (std::size_t i = 0; i < rest.nodes.size(); ++i) {
+    expect_near(frame.pose.nodes[i].translation, rest.nodes[i].translation);
+    EXPECT_NEAR(std::abs(glm::dot(glm::dquat(frame.pose.nodes[i].rotation), glm::dquat(rest.nodes[i].rotation))), 1,
+                1e-6);
+  }
+  EXPECT_EQ(state.bones().size(), 20U);
+}
+
+/// In Unity a left arm points to -X. Turned by +90 degrees about +Z there, which in left-handed axes is clockwise seen
+/// from the front of the axis, it points to -Y: down.
+TEST_F(Vmc, ALeftArmThatGoesDownInUnityGoesDownHere) {
+  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  const auto before = joints(state);
+  state.take(bone("LeftUpperArm", about({0, 0, 1}, 90)));
+  const auto after = joints(state);
+  const glm::dvec3 arm_before = before[node("LeftLowerArm")] - before[node("LeftUpperArm")];
+  const glm::dvec3 arm_after = after[node("LeftLowerArm")] - after[node("LeftUpperArm")];
+  EXPECT_GT(arm_before.x, 0) << "an avatar that looks along +Z has its left at +X";
+  expect_near(arm_after, {arm_before.y, -arm_before.x, arm_before.z});
+  // The right arm and the legs are where they were.
+  expect_near(after[node("RightHand")], before[node("RightHand")]);
+}
+
+TEST_F(Vmc, AHeadThatTurnsToItsLeftInUnityTurnsToItsLeftHere) {
+  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  // Left is -X in Unity and +X here: looking along +Z, it turns by -90 degrees about Unity's +Y.
+  state.take(bone("Head", about({0, 1, 0}, -90)));
+  TraceFrame frame;
+  state.show(frame);
+  std::vector<glm::dmat4> rest;
+  std::vector<glm::dmat4> world;
+  world_matrices(avatar_, rest_pose(avatar_), rest);
+  world_matrices(avatar_, frame.pose, world);
+  const glm::dmat4 turn = world[node("Head")] * glm::inverse(rest[node("Head")]);
+  expect_near(glm::dvec3(turn * glm::dvec4(0, 0, 1, 0)), {1, 0, 0});
+}
+
+TEST_F(Vmc, RootAndHipsMoveTheWholeBody) {
+  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  const auto before = joints(state);
+  const glm::dvec3 hips = before[node("Hips")];
+  // The hips stay where they are in the sender's model; the model stands 2 m to Unity's right and looks to its right.
+  state.take(bundle({bone("Hips", {1, 0, 0, 0}, {-hips.x, hips.y, hips.z}),
+                     placement("/VMC/Ext/Root/Pos", "root", {2, 0, 0}, about({0, 1, 0}, 90))}));
+  const auto after = joints(state);
+  for (const char* name : {"Hips", "Head", "LeftHand", "RightToes"}) {
+    const glm::dvec3 p = before[node(name)];
+    // Here that is 2 m to -X, looking to -X: forward (+Z) has become -X, and left (+X) +Z.
+    expect_near(after[node(name)], {-2 - p.z, p.y, p.x});
+  }
+}
+
+TEST_F(Vmc, AvatarsOfVrm0LookTheOtherWay) {
+  Humanoid humanoid = humanoid_;
+  humanoid.facing = Humanoid::Facing::kMinusZ;
+  VmcState state(avatar_, humanoid, glm::dvec3(0));
+  state.take(placement("/VMC/Ext/Root/Pos", "root", {1, 2, 3}, {1, 0, 0, 0}));
+  const auto after = joints(state);
+  VmcState resting(avatar_, humanoid, glm::dvec3(0));
+  const auto before = joints(resting);
+  expect_near(after[node("Head")] - before[node("Head")], {1, 2, -3});
+}
+
+/// A node whose own rest frame is turned: what is sent is meant in a skeleton without such turns.
+TEST_F(Vmc, RotationsAreTurnedIntoEachNodesOwnFrame) {
+  Avatar avatar = test::skeleton(2);
+  avatar.nodes[0].rest.rotation = glm::quat(about({0, 0, 1}, 90));
+  avatar.nodes[1].rest.translation = glm::vec3(0, -1, 0);  // to +X, in the avatar's frame
+  avatar.nodes[1].rest.rotation = glm::quat(about({1, 0, 0}, 30));
+  Humanoid humanoid;
+  humanoid.node_of = {{"Hips", 0}, {"Spine", 1}};
+  VmcState state(avatar, humanoid, glm::dvec3(0));
+  state.take(bone("Spine", about({0, 1, 0}, -90)));  // here +90 degrees about +Y
+  TraceFrame frame;
+  state.show(frame);
+  std::vector<glm::dmat4> rest;
+  std::vector<glm::dmat4> world;
+  world_matrices(avatar, rest_pose(avatar), rest);
+  world_matrices(avatar, frame.pose, world);
+  const glm::dmat4 turn = world[1] * glm::inverse(rest[1]);
+  expect_near(glm::dvec3(turn * glm::dvec4(0, 0, 1, 0)), {1, 0, 0});
+  expect_near(glm::dvec3(turn * glm::dvec4(0, 1, 0, 0)), {0, 1, 0});
+}
+
+TEST_F(Vmc, CollidersComeGoAndJump) {
+  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  state.take(bundle({collider(7, 1, 2, 3), collider(2, 4, 5, 6), with_id("/vestige/teleport", 7)}));
+  TraceFrame frame;
+  state.show(frame);
+  ASSERT_EQ(frame.colliders.size(), 2U);
+  EXPECT_EQ(frame.colliders[1].id, 7U);
+  EXPECT_EQ(frame.colliders[1].position_m, glm::dvec3(1, 2, 3)) << "glTF's axes, as they are";
+  EXPECT_THAT(frame.teleported, ElementsAre(7U));
+  state.take(with_id("/vestige/collider/remove", 2));
+  state.show(frame);
+  ASSERT_EQ(frame.colliders.size(), 1U);
+  EXPECT_TRUE(frame.teleported.empty());
+}
+
+TEST_F(Vmc, AMalformedDatagramChangesNothingAndIsCounted) {
+  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  const auto before = joints(state);
+  OscBuilder text(lo_message_new());
+  lo_message_add_string(text.get(), "LeftUpperArm");
+  const std::vector<std::vector<std::byte>> wrong = {
+      {},
+      std::vector<std::byte>(3, std::byte{'x'}),
+      bundle({collider(1, 0, 0, 0), bytes_of("/VMC/Ext/Bone/Pos", text)}),
+      bundle({collider(1, 0, 0, 0), bone("LeftUpperArm", {0, 0, 0, 0})}),
+      bundle({collider(1, 0, 0, 0), bone("LeftUpperArm", {1, 0, 0, 0}, {INFINITY, 0, 0})}),
+      bundle({collider(1, 0, 0, 0), collider(-1, 0, 0, 0)}),
+      bundle({collider(1, 0, 0, 0), collider(2, NAN, 0, 0)}),
+  };
+  for (const auto& datagram : wrong) EXPECT_FALSE(state.take(datagram));
+  EXPECT_EQ(state.malformed(), wrong.size());
+  EXPECT_EQ(state.problems().size(), wrong.size());
+  EXPECT_EQ(joints(state), before);
+  TraceFrame frame;
+  state.show(frame);
+  EXPECT_TRUE(frame.colliders.empty());
+  EXPECT_FALSE(state.take(with_id("/somebody/else", 1))) << "other addresses are nobody's fault";
+  EXPECT_EQ(state.malformed(), wrong.size());
+}
+
+TEST_F(Vmc, AnAvatarWithoutABodyIsRefused) {
+  EXPECT_THROW(VmcState(test::skeleton(3), Humanoid(), glm::dvec3(0)), Error);
+}
+
+}  // namespace
+}  // namespace vestige

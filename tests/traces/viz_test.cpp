@@ -1,0 +1,135 @@
+// What viewers draw, decoded by Foxglove's own schemas.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/npm.hpp"
+#include "tests/support/test_data.hpp"
+#include "tests/traces/trace_fixture.hpp"
+#include "traces/trace_reader.hpp"
+
+namespace vestige {
+namespace {
+
+using nlohmann::json;
+
+glm::dvec3 vector_of(const json& v) {
+  return {v["x"].get<double>(), v["y"].get<double>(), v["z"].get<double>()};
+}
+
+glm::dmat4 matrix_of(const json& transform) {
+  const json& q = transform["rotation"];
+  const glm::dquat rotation(q["w"].get<double>(), q["x"].get<double>(), q["y"].get<double>(), q["z"].get<double>());
+  glm::dmat4 matrix = glm::mat4_cast(rotation);
+  matrix[3] = glm::dvec4(vector_of(transform["translation"]), 1);
+  return matrix;
+}
+
+class VizTest : public ::testing::Test {
+ protected:
+  void SetUp() override { VESTIGE_REQUIRE_DATA(test::npm_package("@foxglove/schemas")); }
+
+  TraceFrame frame(std::uint64_t index) const {
+    TraceFrame frame;
+    frame.index = index;
+    frame.time_ns = static_cast<std::int64_t>(index) * 1'000'000;
+    frame.pose = looped_pose(avatar_, &avatar_.animations.front(), static_cast<double>(index) / 1000);
+    frame.pose.origin_m = {10, 0, -5};
+    frame.pose.nodes[1].scale = glm::vec3(1.5F);  // whoever is scaled carries those below away from it
+    for (std::uint32_t id = 0; id < 3; ++id)
+      if (index < 50 || id != 1) frame.colliders.push_back({id + 7, {id, 1.5, static_cast<double>(index)}});
+    return frame;
+  }
+
+  json record(std::uint64_t frames) const {
+    TraceWriterOptions options = test::steady_options(100'000);
+    options.viz = Viz::kScene;
+    TraceWriter writer(folder_ / "a.mcap", {}, avatar_, {.avatar_glb = builtin_avatar_glb()}, options);
+    for (std::uint64_t i = 0; i < frames; ++i) writer.write(frame(i));
+    writer.finish();
+    return json::parse(test::run_node("read_viz.mjs", folder_ / "a.mcap"));
+  }
+
+  const test::TemporaryFolder folder_;
+  const Avatar avatar_ = test::builtin_avatar();
+};
+
+TEST_F(VizTest, TransformsPutEveryNodeWhereTheReferenceSkinningDoes) {
+  const json seen = record(200);
+  const json& tf = seen["/viz/tf"];
+  EXPECT_EQ(tf["schema"], "foxglove.FrameTransforms");
+  EXPECT_EQ(tf["messages"].size(), 12U) << "sixty a second, of 0.2 s";
+  for (const json& message : tf["messages"]) {
+    const auto index = message["log_time"].get<std::uint64_t>() / 1'000'000;
+    std::vector<glm::dmat4> expected;
+    const TraceFrame as_recorded = frame(index);
+    world_matrices(avatar_, as_recorded.pose, expected);
+    std::map<std::string, glm::dmat4> world = {{"world", glm::dmat4(1)}};
+    for (const json& transform : message["transforms"]) {
+      EXPECT_EQ(transform["timestamp"]["nsec"], index * 1'000'000);
+      const auto parent = world.find(transform["parent_frame_id"].get<std::string>());
+      ASSERT_NE(parent, world.end()) << transform << " comes before its parent";
+      EXPECT_TRUE(
+          world.emplace(transform["child_frame_id"].get<std::string>(), parent->second * matrix_of(transform)).second);
+    }
+    EXPECT_EQ(world.size(), avatar_.nodes.size() + 2);
+    for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
+      const glm::dvec3 place = as_recorded.pose.origin_m + glm::dvec3(expected[i][3]);
+      EXPECT_LT(glm::length(glm::dvec3(world.at(avatar_.nodes[i].name)[3]) - place), 1e-6) << avatar_.nodes[i].name;
+    }
+  }
+}
+
+TEST_F(VizTest, TheSceneHasASphereForEveryColliderAndLinesForTheSkeleton) {
+  const json seen = record(100);
+  const json& scene = seen["/viz/scene"];
+  EXPECT_EQ(scene["schema"], "foxglove.SceneUpdate");
+  ASSERT_EQ(scene["messages"].size(), 6U);
+  std::size_t deletions = 0;
+  for (const json& message : scene["messages"]) {
+    const auto index = message["log_time"].get<std::uint64_t>() / 1'000'000;
+    const TraceFrame as_recorded = frame(index);
+    std::map<std::string, json> entities;
+    for (const json& entity : message["entities"]) {
+      entities[entity["id"].get<std::string>()] = entity;
+      EXPECT_EQ(entity["timestamp"]["nsec"], index * 1'000'000);
+    }
+    EXPECT_EQ(entities.size(), as_recorded.colliders.size() + 1);
+    for (const ColliderSample& collider : as_recorded.colliders) {
+      const json& entity = entities[fmt::format("collider {}", collider.id)];
+      EXPECT_EQ(entity["frame_id"], "world");
+      ASSERT_EQ(entity["spheres"].size(), 1U);
+      EXPECT_EQ(vector_of(entity["spheres"][0]["pose"]["position"]), collider.position_m);
+      EXPECT_EQ(entity["spheres"][0]["pose"]["orientation"]["w"], 1.0);
+      EXPECT_EQ(entity["spheres"][0]["color"]["a"], 1.0);
+      EXPECT_GT(entity["spheres"][0]["size"]["x"], 0.001);
+    }
+    const json& skeleton = entities["skeleton"];
+    EXPECT_EQ(skeleton["frame_id"], "avatar");
+    EXPECT_EQ(skeleton["lines"][0]["type"], 2) << "LINE_LIST";
+    std::size_t bones = 0;
+    for (const Node& node : avatar_.nodes) bones += node.parent >= 0 ? 1U : 0U;
+    EXPECT_EQ(skeleton["lines"][0]["points"].size(), 2 * bones);
+    for (const json& deletion : message["deletions"]) {
+      ++deletions;
+      EXPECT_EQ(deletion["id"], "collider 8");
+    }
+  }
+  EXPECT_EQ(deletions, 1U) << "collider 8 leaves once";
+}
+
+TEST_F(VizTest, ReadersOfTracesPassItOver) {
+  record(60);
+  TraceReader reader(folder_ / "a.mcap");
+  const auto frames = test::read_frames(reader);
+  ASSERT_EQ(frames.size(), 60U);
+  for (const TraceFrame& read : frames) EXPECT_TRUE(test::same_bits(read, frame(read.index)));
+  EXPECT_TRUE(reader.complete());
+}
+
+}  // namespace
+}  // namespace vestige

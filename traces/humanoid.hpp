@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "traces/avatar.hpp"
+
+namespace vestige {
+
+/// Which of an avatar's nodes are the bones of a human body, by the names of Unity's HumanBodyBones ("Hips",
+/// "LeftUpperArm"), which VRM and the VMC protocol share.
+struct Humanoid {
+  enum class Source { kVrm, kNames };
+  /// Which way the avatar's face looks in its rest pose: VRM 0.x looks along -Z, all others along +Z as glTF asks.
+  enum class Facing { kPlusZ, kMinusZ };
+
+  std::map<std::string, std::size_t, std::less<>> node_of;
+  Source source = Source::kNames;
+  Facing facing = Facing::kPlusZ;
+};
+
+/// By the extensions VRM or VRMC_vrm of its file `glb` where there is one, else by the nodes' names: those of Unity,
+/// VRM, Mixamo, Unreal, Blender's Rigify and of the built-in avatar. May find none. Never fails: `glb` has been read as
+/// `avatar` before.
+Humanoid find_humanoid(const Avatar& avatar, std::span<const std::byte> glb);
+
+/// The bone that a joint's name stands for; empty: none.
+std::string humanoid_bone(std::string_view joint_name);
+
+}  // namespace vestige

@@ -1,0 +1,238 @@
+#include "traces/live_ndjson.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "traces/mcap/decode.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::Malformed;
+using Json = nlohmann::json;
+/// Numbers are read as floats at once: by way of double, some would be rounded twice.
+using FloatJson = nlohmann::basic_json<std::map, std::vector, std::string, bool, std::int64_t, std::uint64_t, float>;
+
+constexpr std::size_t kMostLineBytes = std::size_t{16} << 20;
+constexpr std::size_t kMostProblems = 10;
+constexpr double kNanosecondsPerSecond = 1e9;
+constexpr double kMost_s = 9e9;  ///< nanoseconds in 63 bits
+
+std::map<std::string, std::size_t, std::less<>> nodes_by_name(const Avatar& avatar) {
+  std::map<std::string, std::size_t, std::less<>> nodes;
+  for (std::size_t i = 0; i < avatar.nodes.size(); ++i) nodes.emplace(avatar.nodes[i].name, i);
+  return nodes;
+}
+
+template <typename Number, typename AnyJson>
+Number number_of(const AnyJson& json) {
+  constexpr Number kInfinity = std::numeric_limits<Number>::infinity();
+  if (json.is_number()) return json.template get<Number>();
+  if (json.is_string()) {
+    const auto& text = json.template get_ref<const std::string&>();
+    if (text == "nan") return std::numeric_limits<Number>::quiet_NaN();
+    if (text == "inf") return kInfinity;
+    if (text == "-inf") return -kInfinity;
+  }
+  throw Malformed("something that must be a number is none");
+}
+
+template <typename AnyJson>
+void require_array(const AnyJson& json, std::size_t size, std::string_view name) {
+  if (!json.is_array() || json.size() != size) throw Malformed(fmt::format("'{}' is no array of {}", name, size));
+}
+
+glm::dvec3 position_of(const Json& json, std::string_view name) {
+  require_array(json, 3, name);
+  return {number_of<double>(json[0]), number_of<double>(json[1]), number_of<double>(json[2])};
+}
+
+glm::vec3 vector_of(const FloatJson& json, std::size_t at) {
+  return {number_of<float>(json[at]), number_of<float>(json[at + 1]), number_of<float>(json[at + 2])};
+}
+
+glm::quat rotation_of(const FloatJson& json, std::size_t at) {
+  return {number_of<float>(json[at + 3]), number_of<float>(json[at]), number_of<float>(json[at + 1]),
+          number_of<float>(json[at + 2])};
+}
+
+std::uint32_t id_of(const Json& json) {
+  if (!json.is_number_unsigned() || json.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
+    throw Malformed("a collider's id is no whole number of 32 bits");
+  return json.get<std::uint32_t>();
+}
+
+/// The line's pose once more. A line with a number that no float can hold, which is none of a node's, is converted
+/// instead: where that rounds twice, by one bit in some hundred million numbers, it hardly matters so far out.
+FloatJson pose_in_floats(std::string_view line, const Json& pose) {
+  try {
+    return FloatJson::parse(line).at("pose");
+  } catch (const nlohmann::json::exception&) {
+    return FloatJson(pose);
+  }
+}
+
+void read_nodes(const FloatJson& nodes, Pose& pose) {
+  require_array(nodes, pose.nodes.size(), "nodes");
+  for (std::size_t i = 0; i < pose.nodes.size(); ++i) {
+    require_array(nodes[i], 10, "nodes' element");
+    pose.nodes[i] = {
+        .translation = vector_of(nodes[i], 0), .rotation = rotation_of(nodes[i], 3), .scale = vector_of(nodes[i], 7)};
+  }
+}
+
+void read_joint(const FloatJson& joint, NodeLocal& node) {
+  if (!joint.is_object()) throw Malformed("a joint is no object");
+  if (const auto t = joint.find("t"); t != joint.end()) {
+    require_array(*t, 3, "t");
+    node.translation = vector_of(*t, 0);
+  }
+  if (const auto r = joint.find("r"); r != joint.end()) {
+    require_array(*r, 4, "r");
+    node.rotation = rotation_of(*r, 0);
+  }
+  if (const auto s = joint.find("s"); s != joint.end()) {
+    require_array(*s, 3, "s");
+    node.scale = vector_of(*s, 0);
+  }
+}
+
+std::vector<ColliderSample> colliders_of(const Json& json) {
+  if (!json.is_array()) throw Malformed("'colliders' is no array");
+  std::vector<ColliderSample> colliders;
+  colliders.reserve(json.size());
+  for (const Json& one : json) {
+    if (!one.is_object() || !one.contains("id") || !one.contains("position"))
+      throw Malformed("a collider has no id or no position");
+    colliders.push_back({.id = id_of(one["id"]), .position_m = position_of(one["position"], "position")});
+  }
+  std::vector<std::uint32_t> ids;
+  for (const ColliderSample& collider : colliders) ids.push_back(collider.id);
+  std::sort(ids.begin(), ids.end());
+  if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
+    throw Malformed(fmt::format("collider {} is in it twice", *twice));
+  return colliders;
+}
+
+std::vector<std::uint32_t> teleported_of(const Json& json) {
+  if (!json.is_array()) throw Malformed("'teleported' is no array");
+  std::vector<std::uint32_t> ids;
+  for (const Json& id : json) ids.push_back(id_of(id));
+  return ids;
+}
+
+std::int64_t time_of(const Json& json, std::int64_t last_ns) {
+  const auto time_s = number_of<double>(json);
+  if (!(time_s >= 0 && time_s < kMost_s)) throw Malformed(fmt::format("'time_s' is {}, which is no time", time_s));
+  const std::int64_t time_ns = std::llround(time_s * kNanosecondsPerSecond);
+  if (time_ns < last_ns) throw Malformed(fmt::format("'time_s' is {}, before the line before", time_s));
+  return time_ns;
+}
+
+}  // namespace
+
+LiveNdjson::LiveNdjson(const Avatar& avatar, const glm::dvec3& origin_m)
+    : node_of_(nodes_by_name(avatar)),
+      rest_([&] {
+        Pose rest = rest_pose(avatar);
+        rest.origin_m = origin_m;
+        return rest;
+      }()),
+      pose_(rest_) {}
+
+void LiveNdjson::leave_out(std::string_view cause) {
+  ++malformed_;
+  if (problems_.size() < kMostProblems) problems_.push_back(fmt::format("line {}: {}", lines_, cause));
+}
+
+void LiveNdjson::push(std::string_view bytes, std::int64_t now_ns, const TakeFrame& take) {
+  while (!bytes.empty()) {
+    const std::size_t end = bytes.find('\n');
+    const std::string_view piece = bytes.substr(0, end);
+    bytes.remove_prefix(std::min(bytes.size(), end == std::string_view::npos ? end : end + 1));
+    if (line_.size() + piece.size() > kMostLineBytes) too_long_ = true;
+    if (end == std::string_view::npos) {
+      if (too_long_) {
+        line_.clear();
+      } else {
+        line_ += piece;
+      }
+      return;
+    }
+    ++lines_;
+    if (too_long_) {
+      leave_out("is longer than 16 MiB");
+    } else if (line_.empty()) {
+      take_line(piece, now_ns, take);
+    } else {
+      line_ += piece;
+      take_line(line_, now_ns, take);
+    }
+    line_.clear();
+    too_long_ = false;
+  }
+}
+
+void LiveNdjson::finish(std::int64_t now_ns, const TakeFrame& take) {
+  if (line_.empty() && !too_long_) return;
+  push("\n", now_ns, take);
+}
+
+void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const TakeFrame& take) {
+  if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
+  try {
+    const Json json = Json::parse(line);
+    if (!json.is_object()) throw Malformed("is no JSON object");
+    TraceFrame frame;
+    frame.index = next_index_;
+    if (const auto number = json.find("frame"); number != json.end()) {
+      if (!number->is_number_unsigned()) throw Malformed("'frame' is no whole number");
+      frame.index = number->get<std::uint64_t>();
+      if (frame.index < next_index_) throw Malformed(fmt::format("frame {} comes again, or too late", frame.index));
+      if (frame.index > std::numeric_limits<std::uint32_t>::max()) throw Malformed("'frame' has more than 32 bits");
+    }
+    const auto time = json.find("time_s");
+    frame.time_ns = time == json.end() ? std::max(now_ns, last_ns_) : time_of(*time, last_ns_);
+    frame.pose = pose_;
+    if (const auto pose = json.find("pose"); pose != json.end()) {
+      if (!pose->is_object()) throw Malformed("'pose' is no object");
+      frame.pose.origin_m = pose->contains("origin") ? position_of((*pose)["origin"], "origin") : rest_.origin_m;
+      const FloatJson floats = pose_in_floats(line, *pose);
+      if (const auto nodes = floats.find("nodes"); nodes != floats.end()) {
+        read_nodes(*nodes, frame.pose);
+      } else if (const auto joints = floats.find("joints"); joints != floats.end() && joints->is_object()) {
+        frame.pose.nodes = rest_.nodes;
+        for (const auto& [name, joint] : joints->items()) {
+          const auto node = node_of_.find(name);
+          if (node == node_of_.end()) throw Malformed(fmt::format("the avatar has no node '{}'", name));
+          read_joint(joint, frame.pose.nodes[node->second]);
+        }
+      } else {
+        throw Malformed("'pose' has neither 'nodes' nor 'joints'");
+      }
+    }
+    if (const auto colliders = json.find("colliders"); colliders != json.end())
+      frame.colliders = colliders_of(*colliders);
+    if (const auto teleported = json.find("teleported"); teleported != json.end())
+      frame.teleported = teleported_of(*teleported);
+    pose_ = frame.pose;
+    last_ns_ = frame.time_ns;
+    next_index_ = frame.index + 1;
+    take(std::move(frame));
+  } catch (const Malformed& malformed) {
+    leave_out(malformed.what());
+  } catch (const nlohmann::json::exception& error) {
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: …": the number is the library's own.
+    const std::string_view text = error.what();
+    const std::size_t after_number = text.find("] ");
+    leave_out(fmt::format("is no JSON: {}", after_number == text.npos ? text : text.substr(after_number + 2)));
+  }
+}
+
+}  // namespace vestige

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "traces/avatar.hpp"
+#include "traces/trace.hpp"
+
+namespace vestige {
+
+/// Reads frames from lines of JSON as they come (traces/FORMAT.md, "Frames as text"). Whatever the bytes are, it goes
+/// on with the next line: a line that is no frame, or contradicts the one before, is counted and left out.
+class LiveNdjson {
+ public:
+  using TakeFrame = std::function<void(TraceFrame)>;
+
+  /// A line that gives no origin stands at `origin_m`.
+  LiveNdjson(const Avatar& avatar, const glm::dvec3& origin_m);
+
+  /// Bytes in whatever pieces. `now_ns`, since the start, is the time of lines that give none.
+  void push(std::string_view bytes, std::int64_t now_ns, const TakeFrame& take);
+  /// No more bytes: a last line without its end counts.
+  void finish(std::int64_t now_ns, const TakeFrame& take);
+
+  std::uint64_t malformed() const { return malformed_; }  ///< lines left out
+  /// Why the first few were, one sentence each.
+  const std::vector<std::string>& problems() const { return problems_; }
+
+ private:
+  void take_line(std::string_view line, std::int64_t now_ns, const TakeFrame& take);
+  void leave_out(std::string_view cause);
+
+  const std::map<std::string, std::size_t, std::less<>> node_of_;
+  const Pose rest_;
+  Pose pose_;         ///< of the last frame
+  std::string line_;  ///< its beginning
+  bool too_long_ = false;
+  std::uint64_t lines_ = 0;
+  std::uint64_t next_index_ = 0;
+  std::int64_t last_ns_ = 0;
+  std::uint64_t malformed_ = 0;
+  std::vector<std::string> problems_;
+};
+
+}  // namespace vestige

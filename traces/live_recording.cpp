@@ -1,0 +1,216 @@
+#include "traces/live_recording.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using WhenBehind = RecordingThread::WhenBehind;
+
+constexpr double kNanosecondsPerSecond = 1e9;
+/// How long nothing is asked at most.
+constexpr std::chrono::milliseconds kLongestWait(20);
+/// How late a frame may be made: about as far as a sender's own frames, and the network's delays, are apart. A busy
+/// machine then costs no frame, each of which would be a gap over which nothing can touch.
+constexpr double kMostLate_s = 0.02;
+constexpr std::string_view kInput = "input";  // traces/FORMAT.md
+
+std::int64_t nanoseconds_since(Clock::time_point start) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
+}
+
+/// Whether there is something to read, after at most `timeout`.
+bool await(int descriptor, std::chrono::nanoseconds timeout) {
+  pollfd place = {.fd = descriptor, .events = POLLIN, .revents = 0};
+  const auto wait = std::clamp<std::chrono::nanoseconds>(timeout, std::chrono::nanoseconds(0), kLongestWait);
+  const timespec time = {.tv_sec = 0, .tv_nsec = wait.count()};
+  return ::ppoll(&place, 1, &time, nullptr) > 0;
+}
+
+void note(std::vector<RecordingNote>& notes, std::string_view topic, std::uint64_t count) {
+  if (count > 0) notes.push_back({.kind = RecordingNote::Kind::kDropped, .count = count, .text = std::string(topic)});
+}
+
+void note_frames(std::vector<RecordingNote>& notes, std::uint64_t count) {
+  note(notes, "/pose", count);
+  note(notes, "/colliders", count);
+}
+
+/// Serves what is asked; true: stop.
+bool must_stop(RecordingThread& out, const LiveSettings& settings) {
+  const LiveRequest request = settings.asked();
+  if (request == LiveRequest::kSnapshot) out.snapshot();
+  return request == LiveRequest::kStop || out.is_full();
+}
+
+}  // namespace
+
+LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out, const LiveSettings& settings) {
+  const Clock::time_point start = Clock::now();
+  const double most_ns = settings.duration_s.value_or(INFINITY) * kNanosecondsPerSecond;
+  std::uint64_t frames = 0;
+  std::uint64_t noted = 0;
+  bool ended = false;
+  const auto take = [&](TraceFrame frame) {
+    if (ended || static_cast<double>(frame.time_ns) >= most_ns) {
+      ended = true;
+      return;
+    }
+    std::vector<RecordingNote> notes;
+    note_frames(notes, lines.malformed() - std::exchange(noted, lines.malformed()));
+    out.put(std::move(frame), std::move(notes), WhenBehind::kWait);
+    ++frames;
+  };
+  std::string buffer(std::size_t{64} << 10, '\0');
+  while (!ended && !must_stop(out, settings)) {
+    if (!await(descriptor, kLongestWait)) {
+      ended = static_cast<double>(nanoseconds_since(start)) >= most_ns;
+      continue;
+    }
+    const ssize_t count = ::read(descriptor, buffer.data(), buffer.size());
+    if (count < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+    if (count < 0) throw Error("standard input", std::string("could not be read: ") + std::strerror(errno), "");
+    const std::int64_t now_ns = nanoseconds_since(start);
+    if (count == 0) {
+      lines.finish(now_ns, take);
+      break;
+    }
+    lines.push(std::string_view(buffer).substr(0, static_cast<std::size_t>(count)), now_ns, take);
+  }
+  std::vector<RecordingNote> rest;
+  note_frames(rest, lines.malformed() - noted);
+  if (!rest.empty()) out.put(std::move(rest));
+  LiveCounts counts;
+  counts.frames = frames;
+  counts.malformed = lines.malformed();
+  return counts;
+}
+
+namespace {
+
+/// One recording from a state.
+class StateRecording {
+ public:
+  StateRecording(UdpReceiver& datagrams, VmcState& state, RecordingThread& out, const LiveSettings& settings)
+      : datagrams_(datagrams),
+        state_(state),
+        out_(out),
+        settings_(settings),
+        frames_(settings.duration_s ? std::max(1.0, std::round(*settings.duration_s * settings.rate_hz)) : INFINITY) {}
+
+  LiveCounts run() {
+    await_beginning();
+    while (begun_ && static_cast<double>(index_) < frames_ && !must_stop(out_, settings_)) {
+      const std::int64_t left_ns = time_of(index_) - nanoseconds_since(start_);
+      if (left_ns > 0) {
+        if (await(datagrams_.descriptor(), std::chrono::nanoseconds(left_ns))) receive();
+        continue;
+      }
+      receive();  // what has come until now belongs to this frame
+      skip_missed();
+      if (static_cast<double>(index_) < frames_) make_frame();
+    }
+    std::vector<RecordingNote> rest = notes();
+    if (!rest.empty()) out_.put(std::move(rest));
+    return counts();
+  }
+
+ private:
+  /// What the trace has been told of.
+  struct Noted {
+    std::uint64_t late = 0;
+    std::uint64_t input = 0;
+  };
+
+  void await_beginning() {
+    while (!begun_ && !must_stop(out_, settings_))
+      if (await(datagrams_.descriptor(), kLongestWait)) receive();
+    start_ = Clock::now();
+  }
+
+  void receive() {
+    while (const auto datagram = datagrams_.next()) begun_ = state_.take(*datagram) || begun_;
+  }
+
+  std::int64_t time_of(std::uint64_t index) const {
+    return std::llround(static_cast<double>(index) / settings_.rate_hz * kNanosecondsPerSecond);
+  }
+
+  /// Frames that can no longer be made: the state is not any more what it was at their time.
+  void skip_missed() {
+    const double late_s = static_cast<double>(nanoseconds_since(start_)) / kNanosecondsPerSecond - kMostLate_s;
+    const double first = std::max(0.0, std::ceil(late_s * settings_.rate_hz));
+    const auto current = static_cast<std::uint64_t>(std::min(frames_, first));
+    if (current <= index_) return;
+    late_ += current - index_;
+    index_ = current;
+  }
+
+  void make_frame() {
+    TraceFrame frame;
+    frame.index = index_;
+    frame.time_ns = time_of(index_);
+    state_.show(frame);
+    for (RecordingNote& marker : state_.take_markers()) markers_.push_back(std::move(marker));
+    const Noted before = noted_;
+    std::vector<std::uint32_t> teleported = frame.teleported;
+    ++index_;
+    if (out_.put(std::move(frame), notes(), WhenBehind::kDrop)) {
+      markers_.clear();
+      ++made_;
+      return;
+    }
+    // Nothing of it was taken: it is for the next frame to tell.
+    state_.mark_teleported(std::move(teleported));
+    noted_ = before;
+    ++late_;
+  }
+
+  /// What has been lost since it was noted before, and markers.
+  std::vector<RecordingNote> notes() {
+    std::vector<RecordingNote> notes = markers_;
+    const Noted now = {.late = late_, .input = state_.malformed() + datagrams_.overflowed()};
+    note_frames(notes, now.late - noted_.late);
+    note(notes, kInput, now.input - noted_.input);
+    noted_ = now;
+    return notes;
+  }
+
+  LiveCounts counts() const {
+    return {.frames = made_, .late = late_, .malformed = state_.malformed(), .overflowed = datagrams_.overflowed()};
+  }
+
+  UdpReceiver& datagrams_;
+  VmcState& state_;
+  RecordingThread& out_;
+  const LiveSettings& settings_;
+  double frames_;  ///< may be infinite
+  Clock::time_point start_;
+  bool begun_ = false;
+  std::uint64_t index_ = 0;
+  std::vector<RecordingNote> markers_;
+  std::uint64_t made_ = 0;
+  std::uint64_t late_ = 0;
+  Noted noted_;
+};
+
+}  // namespace
+
+LiveCounts record_state(UdpReceiver& datagrams, VmcState& state, RecordingThread& out, const LiveSettings& settings) {
+  return StateRecording(datagrams, state, out, settings).run();
+}
+
+}  // namespace vestige

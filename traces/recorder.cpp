@@ -1,0 +1,281 @@
+#include "traces/recorder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <future>
+#include <utility>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr double kNanosecondsPerSecond = 1e9;
+
+void note_in(TraceWriter& writer, const RecordingNote& note) {
+  if (note.kind == RecordingNote::Kind::kDropped) {
+    writer.note_dropped(note.text, note.count);
+  } else {
+    writer.note_marker(note.text);
+  }
+}
+
+Error too_small(const std::filesystem::path& path, std::uint64_t limit, std::uint64_t needed) {
+  return Error(path.string(),
+               fmt::format("{} bytes are too few: with avatar and map, one frame takes up to {}", limit, needed),
+               "allow more bytes a file");
+}
+
+}  // namespace
+
+std::filesystem::path part_path(const std::filesystem::path& path, std::uint64_t number) {
+  std::filesystem::path part = path;
+  part.replace_filename(fmt::format("{}-{:04}{}", path.stem().string(), number, path.extension().string()));
+  return part;
+}
+
+std::vector<std::filesystem::path> existing_parts(const std::filesystem::path& path) {
+  const std::string stem = path.stem().string() + "-";
+  const std::string extension = path.extension().string();
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+  std::vector<std::filesystem::path> parts;
+  std::error_code none;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(stem) || entry.path().extension() != extension) continue;
+    const std::string_view number =
+        std::string_view(name).substr(stem.size(), name.size() - stem.size() - extension.size());
+    const bool is_number = number.size() >= 4 && std::all_of(number.begin(), number.end(), [](char letter) {
+                             return letter >= '0' && letter <= '9';
+                           });
+    if (is_number) parts.push_back(path.parent_path() / name);
+  }
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
+class Recorder::Implementation {
+ public:
+  explicit Implementation(Target target);
+  ~Implementation();
+  Implementation(const Implementation&) = delete;
+  Implementation& operator=(const Implementation&) = delete;
+
+  bool write(const TraceFrame& frame);
+  void note(RecordingNote note);
+  void write_old_chunk();
+  void snapshot();
+  void finish();
+  std::uint64_t frame_count() const { return finished_frames_ + (writer_ ? writer_->frame_count() : 0); }
+  std::uint64_t bytes_written() const { return finished_bytes_ + (writer_ ? writer_->bytes_written() : 0); }
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+
+ private:
+  std::unique_ptr<TraceWriter> open(const std::filesystem::path& path) const;
+  void open_next();
+  void finish_writer();
+  bool has_room_for(const TraceFrame& frame);
+  bool is_beyond_part(const TraceFrame& frame) const;
+  std::optional<std::uint64_t> most_bytes() const;
+  void write_ring();
+  void await_snapshot();
+  void remove_stale_parts() const;
+
+  Target target_;
+  std::unique_ptr<TraceWriter> writer_;
+  std::optional<FrameRing> ring_;
+  std::future<void> snapshot_;
+  std::vector<std::filesystem::path> files_;
+  std::uint64_t finished_frames_ = 0;
+  std::uint64_t finished_bytes_ = 0;
+  std::uint64_t parts_ = 0;  ///< begun, or snapshots
+  std::optional<std::int64_t> first_ns_;
+  std::int64_t split_ns_ = 0;  ///< where the part ends
+  bool has_frame_ = false;     ///< in the ring
+  bool finished_ = false;
+};
+
+Recorder::Implementation::Implementation(Target target) : target_(std::move(target)) {
+  const RecordingLimits& limits = target_.limits;
+  if (limits.splits() && target_.writing.overwrite == Overwrite::kRefuse) {
+    const auto parts = existing_parts(target_.path);
+    if (!parts.empty())
+      throw Error(parts.front().string(), "already exists",
+                  "choose another name, or give --force to replace all parts");
+  }
+  if (limits.ring_s) {
+    refuse_overwrite(target_.path, target_.writing.overwrite);
+    FrameRing::Limits most = {.seconds = *limits.ring_s};
+    if (limits.max_bytes) most.bytes = *limits.max_bytes;
+    ring_.emplace(most);
+  } else {
+    open_next();
+  }
+}
+
+Recorder::Implementation::~Implementation() {
+  if (finished_ || !ring_ || !has_frame_) return;
+  try {
+    write_ring();
+  } catch (const std::exception&) {
+    // What failed before has been told; there is nobody left to tell of this.
+    return;
+  }
+}
+
+std::unique_ptr<TraceWriter> Recorder::Implementation::open(const std::filesystem::path& path) const {
+  return std::make_unique<TraceWriter>(path, target_.session, target_.avatar, target_.attachments, target_.writing);
+}
+
+void Recorder::Implementation::open_next() {
+  const std::filesystem::path path = target_.limits.splits() ? part_path(target_.path, ++parts_) : target_.path;
+  writer_ = open(path);
+  files_.push_back(path);
+}
+
+void Recorder::Implementation::finish_writer() {
+  writer_->finish();
+  finished_frames_ += writer_->frame_count();
+  finished_bytes_ += writer_->bytes_written();
+  writer_.reset();
+}
+
+std::optional<std::uint64_t> Recorder::Implementation::most_bytes() const {
+  return target_.limits.split_bytes ? target_.limits.split_bytes : target_.limits.max_bytes;
+}
+
+bool Recorder::Implementation::has_room_for(const TraceFrame& frame) {
+  const auto most = most_bytes();
+  if (!most || writer_->bytes_if_finished_with(frame) <= *most) return true;
+  // The bound takes the open chunk as if it could not be compressed: closed, it is known.
+  writer_->close_chunk();
+  const std::uint64_t needed = writer_->bytes_if_finished_with(frame);
+  if (needed <= *most) return true;
+  if (writer_->frame_count() == 0) throw too_small(files_.back(), *most, needed);
+  return false;
+}
+
+bool Recorder::Implementation::is_beyond_part(const TraceFrame& frame) const {
+  return target_.limits.split_s && writer_->frame_count() > 0 && frame.time_ns >= split_ns_;
+}
+
+bool Recorder::Implementation::write(const TraceFrame& frame) {
+  if (ring_) {
+    ring_->push(frame);
+    has_frame_ = true;
+    return true;
+  }
+  if (!first_ns_) {
+    first_ns_ = frame.time_ns;
+    split_ns_ = frame.time_ns;
+  }
+  const bool beyond = is_beyond_part(frame);
+  if (beyond || !has_room_for(frame)) {
+    if (!target_.limits.splits()) return false;
+    finish_writer();
+    open_next();
+    static_cast<void>(has_room_for(frame));  // throws where not even one fits
+  }
+  if (target_.limits.split_s && frame.time_ns >= split_ns_) {
+    const double length_ns = *target_.limits.split_s * kNanosecondsPerSecond;
+    const double parts = std::floor(static_cast<double>(frame.time_ns - *first_ns_) / length_ns) + 1;
+    split_ns_ = *first_ns_ + std::llround(parts * length_ns);
+  }
+  writer_->write(frame);
+  return true;
+}
+
+void Recorder::Implementation::note(RecordingNote note) {
+  if (ring_) {
+    ring_->push(note);
+  } else {
+    note_in(*writer_, note);
+  }
+}
+
+void Recorder::Implementation::write_old_chunk() {
+  if (writer_) writer_->write_old_chunk();
+}
+
+void Recorder::Implementation::await_snapshot() {
+  if (snapshot_.valid()) snapshot_.get();
+}
+
+void Recorder::Implementation::snapshot() {
+  if (!ring_) return;
+  await_snapshot();
+  std::filesystem::path path = part_path(target_.path, ++parts_);
+  if (target_.writing.overwrite == Overwrite::kRefuse)
+    while (std::filesystem::exists(path)) path = part_path(target_.path, ++parts_);
+  files_.push_back(path);
+  snapshot_ = std::async(std::launch::async, [this, path, contents = ring_->contents()] {
+    const auto writer = open(path);
+    contents.for_each([&](const RecordingNote& note) { note_in(*writer, note); },
+                      [&](const TraceFrame& frame) {
+                        writer->write(frame);
+                        return true;
+                      });
+    writer->finish();
+  });
+}
+
+void Recorder::Implementation::write_ring() {
+  await_snapshot();
+  writer_ = open(target_.path);
+  files_.push_back(target_.path);
+  ring_->contents().for_each([&](const RecordingNote& note) { note_in(*writer_, note); },
+                             [&](const TraceFrame& frame) {
+                               writer_->write(frame);
+                               return true;
+                             });
+  finish_writer();
+}
+
+void Recorder::Implementation::remove_stale_parts() const {
+  for (const auto& part : existing_parts(target_.path))
+    if (std::find(files_.begin(), files_.end(), part) == files_.end()) std::filesystem::remove(part);
+}
+
+void Recorder::Implementation::finish() {
+  finished_ = true;
+  if (ring_) {
+    write_ring();
+  } else {
+    finish_writer();
+  }
+  // Left in place, parts of an earlier recording would be merged with the new ones.
+  if (target_.limits.splits()) remove_stale_parts();
+}
+
+Recorder::Recorder(Target target) : implementation_(std::make_unique<Implementation>(std::move(target))) {}
+Recorder::~Recorder() = default;
+
+bool Recorder::write(const TraceFrame& frame) {
+  return implementation_->write(frame);
+}
+void Recorder::note(RecordingNote note) {
+  implementation_->note(std::move(note));
+}
+void Recorder::write_old_chunk() {
+  implementation_->write_old_chunk();
+}
+void Recorder::snapshot() {
+  implementation_->snapshot();
+}
+void Recorder::finish() {
+  implementation_->finish();
+}
+std::uint64_t Recorder::frame_count() const {
+  return implementation_->frame_count();
+}
+std::uint64_t Recorder::bytes_written() const {
+  return implementation_->bytes_written();
+}
+const std::vector<std::filesystem::path>& Recorder::files() const {
+  return implementation_->files();
+}
+
+}  // namespace vestige

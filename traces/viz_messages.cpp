@@ -1,0 +1,228 @@
+#include "traces/viz_messages.hpp"
+
+#include <fmt/format.h>
+#include <schemas/frame_transforms_bfbs_generated.h>
+#include <schemas/frame_transforms_generated.h>
+#include <schemas/scene_update_bfbs_generated.h>
+#include <schemas/scene_update_generated.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
+#include <span>
+#include <utility>
+
+#include "traces/trace_format.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr const char* kWorld = "world";
+constexpr const char* kAvatar = "avatar";
+constexpr double kCollider_m = 0.02;  ///< diameter: a point has none, but must be seen
+constexpr double kBone_m = 0.008;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+
+template <typename BinarySchema>
+std::vector<std::byte> compiled() {
+  const auto bytes = std::as_bytes(std::span(BinarySchema::data(), BinarySchema::size()));
+  return {bytes.begin(), bytes.end()};
+}
+
+foxglove::Time time_of(std::int64_t time_ns) {
+  return {static_cast<std::uint32_t>(time_ns / kSecond_ns), static_cast<std::uint32_t>(time_ns % kSecond_ns)};
+}
+
+/// A node's frame: where it is and how it is turned, in its tree's.
+struct Placement {
+  glm::dvec3 position = glm::dvec3(0);
+  glm::dquat rotation = glm::dquat(1, 0, 0, 0);
+};
+
+/// A node that is scaled to nothing, or mirrored, is not turned at all.
+Placement placement_of(const glm::dmat4& matrix) {
+  Placement placement = {.position = glm::dvec3(matrix[3])};
+  const glm::dmat3 axes(matrix);
+  const glm::dvec3 lengths(glm::length(axes[0]), glm::length(axes[1]), glm::length(axes[2]));
+  if (!(std::min({lengths.x, lengths.y, lengths.z}) > 0) || !(glm::determinant(axes) > 0)) return placement;
+  const glm::dquat rotation = glm::quat_cast(glm::dmat3(axes[0] / lengths.x, axes[1] / lengths.y, axes[2] / lengths.z));
+  const double length = glm::length(rotation);
+  if (std::isfinite(length) && length > 0) placement.rotation = rotation / length;
+  return placement;
+}
+
+std::vector<std::string> frame_names(const Avatar& avatar) {
+  std::set<std::string> taken = {kWorld, kAvatar};
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < avatar.nodes.size(); ++i) {
+    std::string name = avatar.nodes[i].name;
+    if (name.empty() || taken.contains(name)) name = fmt::format("{}#{}", name, i);
+    while (!taken.insert(name).second) name += '_';
+    names.push_back(std::move(name));
+  }
+  return names;
+}
+
+}  // namespace
+
+namespace viz_format {
+
+std::vector<mcap::Schema> schemas() {
+  const std::string encoding(trace_format::kEncoding);
+  return {{.id = kTransformsId,
+           .name = "foxglove.FrameTransforms",
+           .encoding = encoding,
+           .data = compiled<foxglove::FrameTransformsBinarySchema>()},
+          {.id = kSceneId,
+           .name = "foxglove.SceneUpdate",
+           .encoding = encoding,
+           .data = compiled<foxglove::SceneUpdateBinarySchema>()}};
+}
+
+std::vector<mcap::Channel> channels() {
+  const std::string encoding(trace_format::kEncoding);
+  return {{.id = kTransformsId,
+           .schema_id = kTransformsId,
+           .topic = kTransformsTopic,
+           .message_encoding = encoding,
+           .metadata = {}},
+          {.id = kSceneId, .schema_id = kSceneId, .topic = kSceneTopic, .message_encoding = encoding, .metadata = {}}};
+}
+
+}  // namespace viz_format
+
+struct VizEncoder::Builder {
+  flatbuffers::FlatBufferBuilder buffer;
+
+  // A reader with schemas of its own takes its own defaults: everything is written.
+  Builder() { buffer.ForceDefaults(true); }
+
+  auto vector(const glm::dvec3& v) { return foxglove::CreateVector3(buffer, v.x, v.y, v.z); }
+  auto point(const glm::dvec3& v) { return foxglove::CreatePoint3(buffer, v.x, v.y, v.z); }
+  auto quaternion(const glm::dquat& q) { return foxglove::CreateQuaternion(buffer, q.x, q.y, q.z, q.w); }
+  auto pose(const glm::dvec3& position) {
+    const auto p = vector(position);
+    return foxglove::CreatePose(buffer, p, quaternion(glm::dquat(1, 0, 0, 0)));
+  }
+  auto transform(const foxglove::Time& time, const std::string& parent, const std::string& child,
+                 const Placement& placement) {
+    const auto parent_id = buffer.CreateSharedString(parent);
+    const auto child_id = buffer.CreateSharedString(child);
+    const auto translation = vector(placement.position);
+    const auto rotation = quaternion(placement.rotation);
+    return foxglove::CreateFrameTransform(buffer, &time, parent_id, child_id, translation, rotation);
+  }
+  mcap::Bytes finished() {
+    return std::as_bytes(std::span<const std::uint8_t>(buffer.GetBufferPointer(), buffer.GetSize()));
+  }
+};
+
+VizEncoder::VizEncoder(const Avatar& avatar) : builder_(std::make_unique<Builder>()), frames_(frame_names(avatar)) {
+  skeleton_.nodes = avatar.nodes;
+  skeleton_.node_order = avatar.node_order;
+  for (const std::string& name : frames_) name_bytes_ += name.size();
+}
+
+VizEncoder::~VizEncoder() = default;
+
+void VizEncoder::place_nodes(const TraceFrame& frame) {
+  world_matrices(skeleton_, frame.pose, world_);
+}
+
+mcap::Bytes VizEncoder::transforms(const TraceFrame& frame) {
+  flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
+  buffer.Clear();
+  place_nodes(frame);
+  const foxglove::Time time = time_of(frame.time_ns);
+  std::vector<flatbuffers::Offset<foxglove::FrameTransform>> transforms;
+  transforms.push_back(builder_->transform(time, kWorld, kAvatar, {.position = frame.pose.origin_m}));
+  std::vector<Placement> placements(world_.size());
+  for (const int index : skeleton_.node_order) {
+    const auto i = static_cast<std::size_t>(index);
+    placements[i] = placement_of(world_[i]);
+    const int parent = skeleton_.nodes[i].parent;
+    if (parent < 0) {
+      transforms.push_back(builder_->transform(time, kAvatar, frames_[i], placements[i]));
+      continue;
+    }
+    const Placement& from = placements[static_cast<std::size_t>(parent)];
+    const glm::dquat back = glm::conjugate(from.rotation);
+    transforms.push_back(builder_->transform(
+        time, frames_[static_cast<std::size_t>(parent)], frames_[i],
+        {.position = back * (placements[i].position - from.position), .rotation = back * placements[i].rotation}));
+  }
+  const auto all = buffer.CreateVector(transforms);
+  buffer.Finish(foxglove::CreateFrameTransforms(buffer, all));
+  return builder_->finished();
+}
+
+mcap::Bytes VizEncoder::scene(const TraceFrame& frame) {
+  flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
+  buffer.Clear();
+  place_nodes(frame);
+  const foxglove::Time time = time_of(frame.time_ns);
+  const foxglove::Duration for_ever(0, 0);
+  std::vector<flatbuffers::Offset<foxglove::SceneEntity>> entities;
+  const auto add_entity = [&](const char* frame_id, const std::string& id, auto fill) {
+    const auto frame_name = buffer.CreateSharedString(frame_id);
+    const auto name = buffer.CreateString(id);
+    foxglove::SceneEntityBuilder entity(buffer);
+    entity.add_timestamp(&time);
+    entity.add_frame_id(frame_name);
+    entity.add_id(name);
+    entity.add_lifetime(&for_ever);
+    entity.add_frame_locked(true);
+    fill(entity);
+    entities.push_back(entity.Finish());
+  };
+
+  std::vector<flatbuffers::Offset<foxglove::Point3>> ends;
+  for (std::size_t i = 0; i < world_.size(); ++i) {
+    const int parent = skeleton_.nodes[i].parent;
+    if (parent < 0) continue;
+    ends.push_back(builder_->point(glm::dvec3(world_[static_cast<std::size_t>(parent)][3])));
+    ends.push_back(builder_->point(glm::dvec3(world_[i][3])));
+  }
+  const auto points = buffer.CreateVector(ends);
+  const auto bone_pose = builder_->pose(glm::dvec3(0));
+  const auto bone_colour = foxglove::CreateColor(buffer, 0.35, 0.55, 0.85, 1.0);
+  const auto bones = foxglove::CreateLinePrimitive(buffer, foxglove::LineType::LINE_LIST, bone_pose, kBone_m, false,
+                                                   points, bone_colour);
+  const auto lines = buffer.CreateVector(&bones, 1);
+  add_entity(kAvatar, "skeleton", [&](auto& entity) { entity.add_lines(lines); });
+
+  const auto colour = foxglove::CreateColor(buffer, 0.9, 0.35, 0.2, 1.0);
+  const auto size = builder_->vector(glm::dvec3(kCollider_m));
+  std::set<std::uint32_t> shown;
+  for (const ColliderSample& collider : frame.colliders) {
+    shown.insert(collider.id);
+    const auto sphere = foxglove::CreateSpherePrimitive(buffer, builder_->pose(collider.position_m), size, colour);
+    const auto spheres = buffer.CreateVector(&sphere, 1);
+    add_entity(kWorld, fmt::format("collider {}", collider.id), [&](auto& entity) { entity.add_spheres(spheres); });
+  }
+
+  std::vector<flatbuffers::Offset<foxglove::SceneEntityDeletion>> deletions;
+  for (const std::uint32_t id : shown_) {
+    if (shown.contains(id)) continue;
+    const auto name = buffer.CreateString(fmt::format("collider {}", id));
+    deletions.push_back(
+        foxglove::CreateSceneEntityDeletion(buffer, &time, foxglove::SceneEntityDeletionType::MATCHING_ID, name));
+  }
+  shown_ = std::move(shown);
+  const auto all_deletions = buffer.CreateVector(deletions);
+  const auto all_entities = buffer.CreateVector(entities);
+  buffer.Finish(foxglove::CreateSceneUpdate(buffer, all_deletions, all_entities));
+  return builder_->finished();
+}
+
+std::uint64_t VizEncoder::most_bytes(const TraceFrame& frame) const {
+  constexpr std::uint64_t kFixedBytes = 2048;
+  constexpr std::uint64_t kNodeBytes = 384;
+  constexpr std::uint64_t kColliderBytes = 448;
+  return kFixedBytes + 2 * name_bytes_ + kNodeBytes * frames_.size() +
+         kColliderBytes * (frame.colliders.size() + shown_.size());
+}
+
+}  // namespace vestige

@@ -1,0 +1,197 @@
+#include "traces/vmc_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/mat3x3.hpp>
+#include <glm/mat4x4.hpp>
+#include <utility>
+
+#include "traces/error.hpp"
+#include "traces/mcap/decode.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::Malformed;
+
+constexpr std::size_t kMostProblems = 10;
+constexpr std::size_t kMostUnknownBones = 64;
+constexpr std::size_t kMostColliders = 1'000'000;  // as many as a scenario may have
+constexpr std::size_t kMostMarkers = 1000;
+constexpr double kShortestQuaternion = 1e-6;
+
+double number(const OscMessage& message, std::size_t at) {
+  if (at >= message.arguments.size()) throw Malformed(fmt::format("{} has too few arguments", message.address));
+  double value = 0;
+  if (const auto* single = std::get_if<float>(&message.arguments[at])) {
+    value = double{*single};
+  } else if (const auto* twice = std::get_if<double>(&message.arguments[at])) {
+    value = *twice;
+  } else {
+    throw Malformed(fmt::format("{}: argument {} is no float", message.address, at + 1));
+  }
+  if (!std::isfinite(value)) throw Malformed(fmt::format("{}: argument {} is not finite", message.address, at + 1));
+  return value;
+}
+
+std::uint32_t id(const OscMessage& message) {
+  const auto* value = message.arguments.empty() ? nullptr : std::get_if<std::int32_t>(&message.arguments[0]);
+  if (value == nullptr || *value < 0) throw Malformed(fmt::format("{}: its id is no whole number", message.address));
+  return static_cast<std::uint32_t>(*value);
+}
+
+const std::string& text(const OscMessage& message) {
+  const auto* value = message.arguments.empty() ? nullptr : std::get_if<std::string>(&message.arguments[0]);
+  if (value == nullptr) throw Malformed(fmt::format("{}: its first argument is no text", message.address));
+  return *value;
+}
+
+/// Rotations of all nodes in the rest pose, relative to the avatar.
+std::vector<glm::dquat> rest_rotations(const Avatar& avatar) {
+  std::vector<glm::dquat> world(avatar.nodes.size(), glm::dquat(1, 0, 0, 0));
+  for (const int index : avatar.node_order) {
+    const auto i = static_cast<std::size_t>(index);
+    const Node& node = avatar.nodes[i];
+    glm::dquat local(node.rest.rotation);
+    if (node.fixed_matrix) {
+      const glm::dmat4& matrix = *node.fixed_matrix;
+      local = glm::quat_cast(glm::dmat3(glm::normalize(glm::dvec3(matrix[0])), glm::normalize(glm::dvec3(matrix[1])),
+                                        glm::normalize(glm::dvec3(matrix[2]))));
+    }
+    const glm::dquat parent = node.parent < 0 ? glm::dquat(1, 0, 0, 0) : world[static_cast<std::size_t>(node.parent)];
+    world[i] = glm::normalize(parent * glm::normalize(local));
+  }
+  return world;
+}
+
+std::size_t outermost(const Avatar& avatar, std::size_t node) {
+  while (avatar.nodes[node].parent >= 0) node = static_cast<std::size_t>(avatar.nodes[node].parent);
+  return node;
+}
+
+}  // namespace
+
+VmcState::VmcState(const Avatar& avatar, const Humanoid& humanoid, const glm::dvec3& origin_m)
+    : pose_(rest_pose(avatar)), facing_(humanoid.facing) {
+  if (humanoid.node_of.empty())
+    throw Error("--avatar", "none of its joints is known as a bone of a human body, so nothing can move it",
+                "take a VRM file, or one whose joints are called as in Unity, Mixamo, Unreal or Blender");
+  for (const NodeLocal& node : pose_.nodes) rest_.push_back(glm::normalize(glm::dquat(node.rotation)));
+  pose_.origin_m = origin_m;
+  std::vector<glm::dmat4> world;
+  Pose at_zero = rest_pose(avatar);
+  world_matrices(avatar, at_zero, world);
+  const std::vector<glm::dquat> rotation = rest_rotations(avatar);
+  for (const auto& [name, node] : humanoid.node_of) {
+    Bone bone{.node = node};
+    if (const int parent = avatar.nodes[node].parent; parent >= 0) {
+      bone.parent_rest = rotation[static_cast<std::size_t>(parent)];
+      bone.parent_from_avatar = glm::inverse(world[static_cast<std::size_t>(parent)]);
+    }
+    bone_of_.emplace(name, bone);
+  }
+  const auto hips = bone_of_.find("Hips");
+  top_ = outermost(avatar, hips == bone_of_.end() ? bone_of_.begin()->second.node : hips->second.node);
+  top_local_ = pose_.nodes[top_];
+}
+
+bool VmcState::take(std::span<const std::byte> datagram) {
+  try {
+    const std::vector<OscMessage> messages = decode_osc_packet(datagram);
+    // All must be right before one of them counts.
+    for (const OscMessage& message : messages) {
+      if (message.address == "/VMC/Ext/Bone/Pos" || message.address == "/VMC/Ext/Root/Pos") {
+        text(message);
+        placement_of(message);
+      } else if (message.address == "/vestige/collider") {
+        id(message);
+        for (std::size_t i = 1; i <= 3; ++i) number(message, i);
+      } else if (message.address == "/vestige/collider/remove" || message.address == "/vestige/teleport") {
+        id(message);
+      } else if (message.address == "/vestige/marker") {
+        text(message);
+      }
+    }
+    bool changed = false;
+    for (const OscMessage& message : messages) changed = apply(message) || changed;
+    return changed;
+  } catch (const Malformed& malformed) {
+    ++malformed_;
+    if (problems_.size() < kMostProblems) problems_.emplace_back(malformed.what());
+    return false;
+  }
+}
+
+VmcState::Placement VmcState::placement_of(const OscMessage& message) const {
+  double values[7] = {};
+  for (std::size_t i = 0; i < std::size(values); ++i) values[i] = number(message, i + 1);
+  const auto [x, y, z, qx, qy, qz, qw] = values;
+  // Mirrored so that the avatar looks where its file has it look: across x for those that look along +Z, across z else.
+  const bool plus_z = facing_ == Humanoid::Facing::kPlusZ;
+  const Placement placement = {.position = plus_z ? glm::dvec3(-x, y, z) : glm::dvec3(x, y, -z),
+                               .rotation = plus_z ? glm::dquat(qw, qx, -qy, -qz) : glm::dquat(qw, -qx, -qy, qz)};
+  const double length = glm::length(placement.rotation);
+  if (!(length > kShortestQuaternion))
+    throw Malformed(fmt::format("{}: its rotation is no quaternion", message.address));
+  return {.position = placement.position, .rotation = placement.rotation / length};
+}
+
+bool VmcState::apply(const OscMessage& message) {
+  if (message.address == "/VMC/Ext/Bone/Pos") return move_bone(text(message), placement_of(message));
+  if (message.address == "/VMC/Ext/Root/Pos") {
+    root_ = placement_of(message);
+    return true;
+  }
+  if (message.address == "/vestige/collider") {
+    if (colliders_.size() >= kMostColliders && !colliders_.contains(id(message)))
+      throw Malformed("there are a million colliders already");
+    colliders_[id(message)] = {number(message, 1), number(message, 2), number(message, 3)};
+    return true;
+  }
+  if (message.address == "/vestige/collider/remove") return colliders_.erase(id(message)) > 0;
+  if (message.address == "/vestige/teleport") {
+    if (std::find(teleported_.begin(), teleported_.end(), id(message)) == teleported_.end() &&
+        colliders_.contains(id(message)))
+      teleported_.push_back(id(message));
+    return true;
+  }
+  if (message.address == "/vestige/marker" && markers_.size() < kMostMarkers)
+    markers_.push_back({.kind = RecordingNote::Kind::kMarker, .text = text(message)});
+  return false;
+}
+
+bool VmcState::move_bone(const std::string& name, const Placement& placement) {
+  const auto found = bone_of_.find(name);
+  if (found == bone_of_.end()) {
+    if (unknown_bones_.size() < kMostUnknownBones) unknown_bones_.insert(name);
+    return false;
+  }
+  bones_.insert(name);
+  const Bone& bone = found->second;
+  NodeLocal& local = bone.node == top_ ? top_local_ : pose_.nodes[bone.node];
+  local.rotation = glm::quat(
+      glm::normalize(glm::conjugate(bone.parent_rest) * placement.rotation * bone.parent_rest * rest_[bone.node]));
+  if (name == "Hips")
+    local.translation = glm::vec3(glm::dvec3(bone.parent_from_avatar * glm::dvec4(placement.position, 1)));
+  return true;
+}
+
+void VmcState::show(TraceFrame& frame) {
+  NodeLocal& top = pose_.nodes[top_];
+  top = top_local_;
+  top.translation = glm::vec3(root_.position + root_.rotation * glm::dvec3(top_local_.translation));
+  top.rotation = glm::quat(glm::normalize(root_.rotation * glm::normalize(glm::dquat(top_local_.rotation))));
+  frame.pose = pose_;
+  frame.colliders.clear();
+  for (const auto& [collider, position_m] : colliders_) frame.colliders.push_back({collider, position_m});
+  frame.teleported = std::exchange(teleported_, {});
+}
+
+std::vector<RecordingNote> VmcState::take_markers() {
+  return std::exchange(markers_, {});
+}
+
+}  // namespace vestige
