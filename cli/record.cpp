@@ -37,14 +37,16 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   if (settings.rate_hz * settings.duration_s > kMostFrames)
     throw UsageError("--duration", "a trace holds 4294967295 frames at most", "record less, or at a lower --rate");
   check_outputs({options.output, options.common.json},
-                {options.scene.avatar, options.scene.map, options.scene.colliders}, options.common);
+                {options.scene.avatar, options.scene.map, options.scene.colliders, options.scene.animation},
+                options.common);
   if (std::max({std::abs(settings.origin_m.x), std::abs(settings.origin_m.y), std::abs(settings.origin_m.z)}) >
       kFarthest_m)
     throw UsageError("--origin", fmt::format("'{}' is farther away than 1e7 m", options.origin),
                      "beyond that, positions are too coarse for contacts");
   if (options.output == "-") refuse_terminal("-o -");
 
-  const Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);
+  Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);
+  load_motion(options.scene, scene.avatar, verbosity);
   const Animation* animation = find_animation(scene.avatar, options.scene.animation);
   const auto colliders = make_colliders(options.scene, scene.avatar, animation, options.common.seed);
   check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
