@@ -193,7 +193,8 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
                 options.common);
 
   catch_interrupts();
-  const Scene scene = load_scene(options.scene.avatar, options.scene.map, options.common.verbosity());
+  Scene scene = load_scene(options.scene.avatar, options.scene.map, options.common.verbosity());
+  load_motion(options.scene, scene.avatar, options.common.verbosity());
   const Measurement measurement(options, scene, rates_hz);
   std::vector<AccuracyScene> scenes;
   scenes.reserve(choices.size());

@@ -67,6 +67,8 @@ int run(int argc, char** argv) {
   add_trim(program, invocation);
   add_merge(program, invocation);
   add_cat(program, invocation);
+  add_export(program, invocation);
+  add_import(program, invocation);
   add_avatar(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);

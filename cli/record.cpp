@@ -109,13 +109,15 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   const RecordingSettings settings = settings_of(options);
   const RecordingLimits limits = limits_of(options.limits, options.output);
   check_outputs({limits.splits() ? part_path(options.output, 1).string() : options.output, options.common.json},
-                {options.scene.avatar, options.scene.map, options.scene.colliders}, options.common);
+                {options.scene.avatar, options.scene.map, options.scene.colliders, options.scene.animation},
+                options.common);
   if (options.output == "-") refuse_terminal("-o -");
 
-  const Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);
+  Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);
   const Animation* animation = nullptr;
   std::unique_ptr<ColliderSource> colliders;
   if (!options.live.is_live()) {
+    load_motion(options.scene, scene.avatar, verbosity);
     animation = find_animation(scene.avatar, options.scene.animation);
     colliders = make_colliders(options.scene, scene.avatar, animation, options.common.seed);
     check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);

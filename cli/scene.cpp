@@ -22,20 +22,28 @@ void warn_all(const std::vector<std::string>& warnings, Verbosity verbosity) {
 }  // namespace
 
 Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity) {
-  Scene scene;
-  scene.avatar_glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
-  scene.avatar = parse_avatar_glb(scene.avatar_glb, avatar);
-  warn_all(scene.avatar.warnings, verbosity);
   const std::string default_map = avatar == "builtin" ? "builtin" : "none";
+  std::vector<std::byte> avatar_glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
   const std::string& chosen_map = map.empty() ? default_map : map;
   ActuatorMapFiles files = read_actuator_map_files(chosen_map);
-  if (!files.png.empty()) scene.map = parse_actuator_map(files.png, files.json, chosen_map);
-  scene.map_png = std::move(files.png);
-  scene.map_json = std::move(files.json);
+  return make_scene(std::move(avatar_glb), std::move(files.png), std::move(files.json), {avatar, chosen_map},
+                    verbosity);
+}
+
+Scene make_scene(std::vector<std::byte> avatar_glb, std::vector<std::byte> map_png, std::string map_json,
+                 const SceneNames& names, Verbosity verbosity) {
+  Scene scene;
+  scene.avatar_glb = std::move(avatar_glb);
+  scene.avatar = parse_avatar_glb(scene.avatar_glb, names.avatar);
+  warn_all(scene.avatar.warnings, verbosity);
+  if (!map_png.empty()) scene.map = parse_actuator_map(map_png, map_json, names.map);
+  scene.map_png = std::move(map_png);
+  scene.map_json = std::move(map_json);
   warn_all(scene.map.warnings, verbosity);
   const auto& coordinates = scene.avatar.texture_coordinate;
   if (!scene.map_png.empty() && std::ranges::count(coordinates, coordinates.front()) == std::ssize(coordinates))
-    warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", avatar), verbosity);
+    warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", names.avatar),
+         verbosity);
   if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
   return scene;
 }

@@ -28,6 +28,16 @@ struct Scene {
 /// if there is one; empty: "builtin" for the built-in avatar, else "none". Warnings go to standard error.
 Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity);
 
+/// What errors and warnings call them.
+struct SceneNames {
+  std::string avatar;
+  std::string map;
+};
+
+/// The same of files that are read already.
+Scene make_scene(std::vector<std::byte> avatar_glb, std::vector<std::byte> map_png, std::string map_json,
+                 const SceneNames& names, Verbosity verbosity);
+
 /// A trace, with the avatar and map that it carries.
 struct OpenTrace {
   OpenTrace(const std::string& path, Verbosity verbosity);

@@ -9,6 +9,7 @@
 
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/motion.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::cli {
@@ -19,7 +20,7 @@ UsageError no_scenario(const std::string& name) {
   std::vector<std::string_view> names;
   for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
   return {"--colliders", fmt::format("there is no scenario '{}'", name),
-          fmt::format("{}the scenarios are: {}; or name a .csv file", help::did_you_mean(name, names),
+          fmt::format("{}the scenarios are: {}; or name a .csv or .glb file", help::did_you_mean(name, names),
                       fmt::join(names, ", "))};
 }
 
@@ -27,7 +28,7 @@ std::string describe_colliders() {
   std::string text = "Where the colliders come from:";
   for (const Scenario& scenario : scenarios())
     fmt::format_to(std::back_inserter(text), "\n  {:<6} {}", scenario.name, scenario.summary);
-  return text + "\nor a file of rows time_s,id,x,y,z";
+  return text + "\nor a file of rows time_s,id,x,y,z, or the animated nodes of a glTF file";
 }
 
 std::string describe_count() {
@@ -60,26 +61,38 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->capture_default_str()
       ->type_name("builtin|FILE");
   verb.add_option("--animation", choice.animation,
-                  "Its animation, looping: a name, an index, or none [default: the first]")
-      ->type_name("NAME|INDEX|none");
+                  "Its animation, looping: a name, an index, none, or motion capture that its joints follow as far as "
+                  "their names tell ('vestige import' reports more) [default: the first]")
+      ->type_name("NAME|INDEX|none|FILE.bvh");
   verb.add_option("--map", choice.map,
                   "The actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
                   "[default: builtin for the built-in avatar, else none]")
       ->type_name("builtin|none|FILE.png");
   verb.add_option("--colliders", choice.colliders, describe_colliders())
       ->capture_default_str()
-      ->type_name("SCENARIO|FILE.csv");
+      ->type_name("SCENARIO|FILE.csv|FILE.glb");
+  verb.add_option("--nodes", choice.nodes,
+                  "Which nodes of a glTF file are colliders, as a pattern of names: 'ball*' [default: those named "
+                  "collider…, or else all whose translation is animated]")
+      ->type_name("PATTERN");
   verb.add_option("--count", choice.count, describe_count())->check(help::whole_number(1, 1000000));
 }
 
 void check_scene_choice(const SceneChoice& choice) {
   if (!choice.from_file() && find_scenario(choice.colliders) == nullptr) throw no_scenario(choice.colliders);
+  if (!choice.nodes.empty() && !choice.from_gltf())
+    throw UsageError("--nodes", "the colliders come from no glTF file", "leave it out, or name a .glb as --colliders");
   if (choice.count && choice.from_file())
     throw UsageError("--count", "a file has the colliders that it has", "leave --count out");
 }
 
+void load_motion(const SceneChoice& choice, Avatar& avatar, Verbosity verbosity) {
+  if (is_motion_file(choice.animation)) add_motion(avatar, choice.animation, "auto", verbosity);
+}
+
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
                                                const Animation* animation, std::uint64_t seed) {
+  if (choice.from_gltf()) return read_collider_gltf(choice.colliders, choice.nodes);
   if (choice.from_file()) return read_collider_csv(choice.colliders);
   return find_scenario(choice.colliders)->make(avatar, animation, {choice.collider_count(), seed});
 }

@@ -18,18 +18,24 @@ struct SceneChoice {
   std::string animation;
   std::string map;
   std::string colliders = "swarm";
+  std::string nodes;                   ///< of a glTF of colliders: a pattern of names
   std::optional<std::uint32_t> count;  ///< of a scenario; none: what it has by default
 
-  bool from_file() const { return colliders.ends_with(".csv"); }
+  bool from_file() const { return colliders.ends_with(".csv") || from_gltf(); }
+  bool from_gltf() const { return colliders.ends_with(".glb") || colliders.ends_with(".gltf"); }
   /// Of a scenario.
   std::uint32_t collider_count() const;
 };
 
-/// Adds --avatar, --animation, --map, --colliders and --count.
+/// Adds --avatar, --animation, --map, --colliders, --nodes and --count.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
-/// Throws `UsageError` for a scenario that does not exist, and for a --count of colliders that come from a file.
+/// Throws `UsageError` for a scenario that does not exist, and for flags that do nothing: a --count of colliders that
+/// come from a file, --nodes where they come from no glTF.
 void check_scene_choice(const SceneChoice& choice);
+
+/// Where --animation names a motion file: adds it to the avatar's animations under that name.
+void load_motion(const SceneChoice& choice, Avatar& avatar, Verbosity verbosity);
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
                                                const Animation* animation, std::uint64_t seed);

@@ -21,6 +21,8 @@ void add_recover(CLI::App& program, Invocation& invocation);
 void add_recompress(CLI::App& program, Invocation& invocation);
 void add_trim(CLI::App& program, Invocation& invocation);
 void add_merge(CLI::App& program, Invocation& invocation);
+void add_export(CLI::App& program, Invocation& invocation);
+void add_import(CLI::App& program, Invocation& invocation);
 void add_cat(CLI::App& program, Invocation& invocation);
 void add_stream(CLI::App& program, Invocation& invocation);
 void add_vest(CLI::App& program, Invocation& invocation);

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "detector/contact_description.hpp"
-#include "detector/gl/shared_library.hpp"
 #include "detector/skin_motion.hpp"
 #include "traces/error.hpp"
+#include "traces/shared_library.hpp"
 
 namespace vestige {
 

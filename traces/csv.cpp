@@ -20,6 +20,30 @@ CsvLines::CsvLines(std::string_view text, std::string name, std::string_view hea
   }
 }
 
+CsvLines::CsvLines(LineReader& reader, std::string_view remedy)
+    : reader_(&reader), name_(reader.name()), remedy_(remedy) {}
+
+std::vector<std::string> CsvLines::take_header() {
+  if (!next_line()) throw Error(name_, "is empty", remedy_);
+  if (row_.starts_with("\xEF\xBB\xBF")) row_.remove_prefix(3);
+  std::vector<std::string> fields(1);
+  for (std::size_t i = 0; i < row_.size();) {
+    const bool quoted = row_[i] == '"' && fields.back().empty();
+    if (quoted) {
+      for (++i; i < row_.size() && (row_[i] != '"' || row_.substr(i).starts_with("\"\"")); ++i) {
+        fields.back() += row_[i];
+        if (row_[i] == '"') ++i;
+      }
+      if (i++ == row_.size()) throw error("a quote is not closed");
+    }
+    for (; i < row_.size() && row_[i] != ','; ++i) fields.back() += row_[i];
+    if (i == row_.size()) break;
+    fields.emplace_back();
+    ++i;
+  }
+  return fields;
+}
+
 bool CsvLines::has_header(std::string_view text, std::string_view header) {
   CsvLines lines(text, "", "");
   return lines.next_line() && lines.row_ == header;
@@ -35,13 +59,18 @@ bool CsvLines::take_text(std::string_view& field) {
 }
 
 bool CsvLines::next_line() {
+  at_end_ = false;
+  if (reader_ != nullptr) {
+    const bool more = reader_->next(row_);
+    line_ = reader_->line();
+    return more;
+  }
   if (text_.empty()) return false;
   ++line_;
   const std::size_t end = std::min(text_.find('\n'), text_.size());
   row_ = text_.substr(0, end);
   text_.remove_prefix(std::min(end + 1, text_.size()));
   if (row_.ends_with('\r')) row_.remove_suffix(1);
-  at_end_ = false;
   return true;
 }
 
@@ -53,6 +82,17 @@ bool CsvLines::next() {
 
 Error CsvLines::error(std::string_view cause, std::string_view remedy) const {
   return Error(fmt::format("{}, line {}", name_, line_), cause, remedy);
+}
+
+std::string csv_field(std::string_view text) {
+  std::string field(text);
+  for (char& one : field)
+    if (one == '\n' || one == '\r') one = ' ';
+  if (field.find_first_of(",\"") == std::string::npos && !field.starts_with(' ') && !field.ends_with(' ')) return field;
+  std::string quoted(1, '"');
+  for (const char one : field) quoted.append(one == '"' ? 2 : 1, one);
+  quoted += '"';
+  return quoted;
 }
 
 }  // namespace vestige

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "traces/error.hpp"
+#include "traces/line_reader.hpp"
 
 namespace vestige {
 
@@ -18,6 +20,13 @@ class CsvLines {
 
   /// Without a header.
   CsvLines(std::string_view text, std::string name, std::string_view remedy);
+
+  /// Of a file that is read line by line, with any header: `take_header` is to be called first. `reader` must stay.
+  CsvLines(LineReader& reader, std::string_view remedy);
+
+  /// The first line's fields, unquoted where they are quoted (RFC 4180, though on one line). Throws `Error` where there
+  /// is none.
+  std::vector<std::string> take_header();
 
   /// Whether the first line of `text` is `header`.
   static bool has_header(std::string_view text, std::string_view header);
@@ -50,11 +59,16 @@ class CsvLines {
   bool next_line();
 
   std::string_view text_;
+  LineReader* reader_ = nullptr;  ///< in place of `text_`
   std::string name_;
   std::string_view remedy_;
   std::string_view row_;
   std::size_t line_ = 0;
   bool at_end_ = true;
 };
+
+/// A field as CSV has it: in quotes where it holds a comma, a quote or white space at its ends. Line ends become
+/// spaces.
+std::string csv_field(std::string_view text);
 
 }  // namespace vestige

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <utility>
 
 #include "traces/input_file.hpp"
+#include "traces/number_text.hpp"
 
 namespace vestige {
 
@@ -19,27 +19,6 @@ using trace_format::Stream;
 
 std::string json_text(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
-template <typename Number>
-void append_number(std::string& out, Number value) {
-  if (!std::isfinite(value)) {
-    out += std::isnan(value) ? "\"nan\"" : value > 0 ? "\"inf\"" : "\"-inf\"";
-  } else if (value == 0 && std::signbit(value)) {
-    out += "-0.0";  // -0 would be read as a whole number, which has no sign
-  } else {
-    fmt::format_to(std::back_inserter(out), "{}", value);
-  }
-}
-
-void append_vector(std::string& out, const glm::dvec3& vector) {
-  out += '[';
-  append_number(out, vector.x);
-  out += ',';
-  append_number(out, vector.y);
-  out += ',';
-  append_number(out, vector.z);
-  out += ']';
 }
 
 /// RFC 4648, section 4.
@@ -83,33 +62,14 @@ void MessageText::append_data(const mcap::Message& message, const mcap::Channel&
 
 void MessageText::append_pose(mcap::Bytes data) {
   decoder_.pose(data, pose_);
-  text_ += R"("data":{"origin":)";
-  append_vector(text_, pose_.origin_m);
-  text_ += R"(,"nodes":[)";
-  for (std::size_t i = 0; i < pose_.nodes.size(); ++i) {
-    const NodeLocal& node = pose_.nodes[i];
-    const float numbers[] = {node.translation.x, node.translation.y, node.translation.z, node.rotation.x,
-                             node.rotation.y,    node.rotation.z,    node.rotation.w,    node.scale.x,
-                             node.scale.y,       node.scale.z};
-    text_ += i == 0 ? "[" : ",[";
-    for (std::size_t k = 0; k < std::size(numbers); ++k) {
-      if (k > 0) text_ += ',';
-      append_number(text_, numbers[k]);
-    }
-    text_ += ']';
-  }
-  text_ += "]}";
+  text_ += R"("data":)";
+  append_json(text_, pose_);
 }
 
 void MessageText::append_colliders(mcap::Bytes data) {
   decoder_.colliders(data, colliders_);
-  text_ += R"("data":[)";
-  for (std::size_t i = 0; i < colliders_.size(); ++i) {
-    fmt::format_to(std::back_inserter(text_), R"({}{{"id":{},"position":)", i == 0 ? "" : ",", colliders_[i].id);
-    append_vector(text_, colliders_[i].position_m);
-    text_ += '}';
-  }
-  text_ += ']';
+  text_ += R"("data":)";
+  append_json(text_, colliders_);
 }
 
 void MessageText::append_event(mcap::Bytes data) {

@@ -137,20 +137,24 @@ void OutputFile::commit() {
   if (temporary_path_.empty()) return;
   if (::fsync(descriptor_) != 0) throw system_error(path_, "could not write", errno);
   if (::close(std::exchange(descriptor_, -1)) != 0) throw system_error(path_, "could not write", errno);
-  if (overwrite_ == Overwrite::kRefuse) {
-    // link() refuses an existing name, where rename() would replace a file made meanwhile.
-    if (::link(temporary_path_.c_str(), path_.c_str()) == 0) {
-      ::unlink(temporary_path_.c_str());
-    } else if (errno == EEXIST) {
-      throw Error(path_.string(), "was made by another program meanwhile", "choose another name, or add --force");
-    } else if (::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
-      throw system_error(path_, "could not give the finished file its name", errno);
-    }
-  } else if (::rename(temporary_path_.c_str(), path_.c_str()) != 0) {
-    throw system_error(path_, "could not give the finished file its name", errno);
-  }
+  give_name(temporary_path_, path_, overwrite_);
   temporary_path_.clear();
-  sync_folder(path_);
+}
+
+void give_name(const std::filesystem::path& temporary_path, const std::filesystem::path& path, Overwrite overwrite) {
+  if (overwrite == Overwrite::kRefuse) {
+    // link() refuses an existing name, where rename() would replace a file made meanwhile.
+    if (::link(temporary_path.c_str(), path.c_str()) == 0) {
+      ::unlink(temporary_path.c_str());
+    } else if (errno == EEXIST) {
+      throw Error(path.string(), "was made by another program meanwhile", "choose another name, or add --force");
+    } else if (::rename(temporary_path.c_str(), path.c_str()) != 0) {
+      throw system_error(path, "could not give the finished file its name", errno);
+    }
+  } else if (::rename(temporary_path.c_str(), path.c_str()) != 0) {
+    throw system_error(path, "could not give the finished file its name", errno);
+  }
+  sync_folder(path);
 }
 
 }  // namespace vestige

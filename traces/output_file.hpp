@@ -41,6 +41,10 @@ class OutputFile {
   std::string buffer_;
 };
 
+/// Gives a finished, synced file its name, in the same folder. Throws `Error`, also where `path` exists by now and may
+/// not be overwritten; then the file keeps its temporary name.
+void give_name(const std::filesystem::path& temporary_path, const std::filesystem::path& path, Overwrite overwrite);
+
 /// Throws `Error` when `path` exists and may not be overwritten: to be called before long work, not after it.
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite);
 

@@ -6,8 +6,8 @@
 
 #include <array>
 
-#include "detector/gl/shared_library.hpp"
 #include "traces/error.hpp"
+#include "traces/shared_library.hpp"
 
 namespace vestige {
 

@@ -18,7 +18,7 @@ class SharedLibrary {
     if (handle_ == nullptr) throw Error(name_, fmt::format("cannot be opened: {}", ::dlerror()), "");
   }
 
-  /// Throws `Error` when the library has no such function.
+  /// Throws `Error` when the library has no such function, or variable.
   template <typename Function>
   void find(const char* symbol, Function& function) const {
     function = reinterpret_cast<Function>(::dlsym(handle_, symbol));

@@ -1,0 +1,227 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "cli/help/validators.hpp"
+#include "cli/scene.hpp"
+#include "cli/verbs.hpp"
+#include "traces/error.hpp"
+#include "traces/frame_file.hpp"
+#include "traces/frame_thinning.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct ExportOptions {
+  CommonOptions common;
+  std::string file;
+  std::string output;
+  std::string format;
+  std::string what = "all";
+  std::optional<double> rate_hz;
+};
+
+struct Format {
+  const char* name;
+  std::vector<std::string> ends;
+};
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> all = {{"csv", {".csv"}},
+                                          {"ndjson", {".ndjson", ".jsonl"}},
+                                          {"hdf5", {".h5", ".hdf5"}},
+                                          {"gltf", {".glb"}},
+                                          {"paraview", {".pvd"}}};
+  return all;
+}
+
+/// By --format, or by the name's end; a name without one is a folder of CSV files.
+std::string format_of(const ExportOptions& options) {
+  if (!options.format.empty()) return options.format;
+  if (options.output == "-")
+    throw UsageError("-o -", "nothing says in which format", "add --format ndjson, or --format csv --what poses");
+  for (const Format& format : formats())
+    for (const std::string& end : format.ends)
+      if (options.output.ends_with(end)) return format.name;
+  if (!std::filesystem::path(options.output).has_extension() || std::filesystem::is_directory(options.output))
+    return "csv";
+  throw UsageError("-o", fmt::format("'{}' does not tell the format", options.output),
+                   "end it in .csv, .ndjson, .h5, .glb or .pvd, name a folder (for CSV), or add --format");
+}
+
+struct Attachment {
+  std::string path;
+  std::span<const std::byte> bytes;
+};
+
+/// The frames' files beside the avatar and its map, so that `import` finds all of it.
+class CsvFolder {
+ public:
+  CsvFolder(const std::string& folder, const TraceReader& trace) {
+    const auto inside = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
+    poses = inside("poses.csv");
+    colliders = inside("colliders.csv");
+    attachments.push_back({inside("avatar.glb"), trace.avatar_glb()});
+    if (!trace.actuator_map_png().empty())
+      attachments.push_back({inside("actuator_map.png"), trace.actuator_map_png()});
+    if (!trace.actuator_map_json().empty())
+      attachments.push_back({inside("actuator_map.json"), trace.actuator_map_json()});
+  }
+  std::vector<std::string> paths() const {
+    std::vector<std::string> all = {poses, colliders};
+    for (const Attachment& attachment : attachments) all.push_back(attachment.path);
+    return all;
+  }
+
+  std::string poses;
+  std::string colliders;
+  std::vector<Attachment> attachments;
+};
+
+void check_flags(const ExportOptions& options, const std::string& format) {
+  if (options.what != "all" && format != "csv")
+    throw UsageError("--what", fmt::format("{} holds poses and colliders together", format), "leave --what out");
+  const bool is_file = options.output == "-" || options.output.ends_with(".csv");
+  if (format == "csv" && options.what == "all" && is_file)
+    throw UsageError("-o", "poses and colliders are two tables",
+                     "add --what poses or --what colliders, or name a folder");
+  if (options.output == "-" && (format == "hdf5" || format == "gltf")) refuse_terminal("-o -");
+  if (format == "paraview" && (options.rate_hz || options.output == "-" || options.file == "-"))
+    throw UsageError("--format paraview", "'vestige plot paraview' reads a file and writes a file, all frames of it",
+                     "leave --rate out, and name both");
+  if (format == "paraview" && !options.common.json.empty())
+    throw UsageError("--json", "'vestige plot paraview' does not say what it wrote", "leave --json out");
+}
+
+void write_attachments(const std::vector<Attachment>& attachments, const CommonOptions& options) {
+  for (const Attachment& attachment : attachments) {
+    OutputFile file(attachment.path, options.overwrite());
+    file.write(attachment.bytes);
+    file.commit();
+  }
+}
+
+void run_export(const ExportOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  const std::string format = format_of(options);
+  check_flags(options, format);
+  if (format == "paraview") {
+    check_outputs({options.output}, {options.file}, options.common);
+    std::vector<std::string> arguments = {"paraview", options.file, "-o", options.output};
+    if (options.common.force) arguments.emplace_back("--force");
+    if (options.common.quiet) arguments.emplace_back("-q");
+    invocation.exit_code = run_plot(arguments);
+    return;
+  }
+  const bool is_folder = format == "csv" && options.what == "all";
+  if (!is_folder) check_outputs({options.output, options.common.json}, {options.file}, options.common);
+  OpenTrace trace(options.file, verbosity);
+  TraceReader& reader = trace.reader;
+  std::optional<CsvFolder> folder;
+  std::vector<std::string> outputs = {options.output};
+  if (is_folder) {
+    folder.emplace(options.output, reader);
+    outputs = folder->paths();
+    std::vector<std::string> all = outputs;
+    all.push_back(options.common.json);
+    make_folder(options.output, "-o");
+    check_outputs(all, {options.file}, options.common);
+  }
+  catch_interrupts();
+  const std::uint64_t total = reader.frame_count();
+  const Overwrite overwrite = options.common.overwrite();
+  std::vector<std::unique_ptr<FrameFile>> files;
+  if (is_folder) {
+    files.push_back(make_pose_csv(folder->poses, overwrite, reader.node_names()));
+    files.push_back(make_collider_csv(folder->colliders, overwrite));
+  } else if (format == "csv") {
+    files.push_back(options.what == "poses" ? make_pose_csv(options.output, overwrite, reader.node_names())
+                                            : make_collider_csv(options.output, overwrite));
+  } else if (format == "ndjson") {
+    files.push_back(make_frame_ndjson(options.output, overwrite));
+  } else if (format == "hdf5") {
+    files.push_back(make_frame_hdf5(options.output, overwrite, reader));
+  } else {
+    files.push_back(
+        make_frame_gltf(options.output, overwrite, trace.avatar, reader.avatar_glb(), reader.collider_ids()));
+  }
+
+  std::optional<FrameThinning> thinning;
+  if (options.rate_hz) thinning.emplace(*options.rate_hz);
+  std::uint64_t read = 0;
+  std::uint64_t written = 0;
+  {
+    Progress progress("Exporting", verbosity);
+    TraceFrame frame;
+    while (reader.next(frame)) {
+      ++read;
+      if (!thinning || thinning->keep(frame)) {
+        for (const auto& file : files) file->write(frame);
+        ++written;
+      }
+      if (!progress.update(static_cast<double>(read) / static_cast<double>(total)))
+        throw Error(options.output, "exporting was stopped", "");
+    }
+  }
+  std::vector<std::string> losses;
+  for (const auto& file : files) {
+    const auto some = file->losses();
+    losses.insert(losses.end(), some.begin(), some.end());
+  }
+  if (folder) write_attachments(folder->attachments, options.common);
+  for (const auto& file : files) file->commit();
+  for (const std::string& loss : losses) warn(fmt::format("{}: {}", options.output, loss), verbosity);
+  invocation.exit_code = report_damage(reader, options.file, verbosity);
+  if (!losses.empty()) invocation.exit_code = kDataLost;
+
+  write_json(options.common.json,
+             {{"trace", options.file},
+              {"format", format},
+              {"outputs", outputs},
+              {"frames", written},
+              {"frames_in_trace", total},
+              {"colliders", reader.collider_ids().size()},
+              {"losses", losses},
+              {"complete", reader.complete()}},
+             options.common);
+  print_summary(fmt::format("{}: {} frame{} of {} colliders and {} nodes\n", options.output, written,
+                            written == 1 ? "" : "s", reader.collider_ids().size(), reader.node_names().size()),
+                {options.output, options.common.json}, options.common);
+}
+
+}  // namespace
+
+void add_export(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<ExportOptions>();
+  CLI::App* verb = add_verb(program, "export", "Write a trace for other programs: CSV, NDJSON, HDF5, glTF, ParaView",
+                            "  vestige export man.mcap -o man_animated.glb\n"
+                            "  vestige export man.mcap -o - --format csv --what colliders --rate 10\n");
+  verb->add_option("FILE", options->file, "The trace, or '-' for standard input")->required();
+  verb->add_option("-o,--output", options->output,
+                   "What to write; its end says the format. A name without one is a folder: poses.csv, colliders.csv, "
+                   "the avatar and its map. '-' is standard output")
+      ->required()
+      ->type_name("OUT|-");
+  verb->add_option("--format", options->format,
+                   "The format [default: by the name's end]:\n"
+                   "  csv       poses, a row a frame; colliders, a row each and frame; lossless\n"
+                   "  ndjson    a line of JSON a frame, as 'record --live' reads it; lossless\n"
+                   "  hdf5      (.h5) for Python, MATLAB and others; lossless\n"
+                   "  gltf      (.glb) the avatar's animation and a sphere for each collider; fp32\n"
+                   "  paraview  (.pvd) posed surfaces, by 'vestige plot paraview'")
+      ->check(CLI::IsMember({"csv", "ndjson", "hdf5", "gltf", "paraview"}));
+  verb->add_option("--what", options->what, "Which of the two tables; CSV only")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"all", "poses", "colliders"}));
+  verb->add_option("--rate", options->rate_hz, "At most so many frames a second, numbered anew [default: all frames]")
+      ->type_name("HZ")
+      ->check(help::kPositive);
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_export(*options, invocation); });
+}
+
+}  // namespace vestige::cli

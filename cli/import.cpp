@@ -1,0 +1,288 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "analysis/provenance.hpp"
+#include "cli/help/validators.hpp"
+#include "cli/motion.hpp"
+#include "cli/scene.hpp"
+#include "cli/verbs.hpp"
+#include "traces/collider_rows.hpp"
+#include "traces/colliders.hpp"
+#include "traces/error.hpp"
+#include "traces/input_file.hpp"
+#include "traces/pose_csv.hpp"
+#include "traces/staged_trace.hpp"
+#include "traces/trace_hdf5.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+struct ImportOptions {
+  CommonOptions common;
+  std::string from;
+  std::string motion;
+  std::string poses;
+  std::string colliders;
+  std::string nodes;
+  std::string avatar;
+  std::string map;
+  std::string unit = "auto";
+  std::optional<double> rate_hz;
+  std::string compression = "zstd";
+  std::string output;
+};
+
+/// Gives frame after frame: first whoever knows index, time and pose, then whoever knows the colliders.
+struct Frames {
+  std::function<bool(TraceFrame&)> next_pose;
+  std::function<void(TraceFrame&)> add_colliders = [](TraceFrame&) {};
+  std::function<void()> finish = [] {};
+  std::function<double()> share;
+};
+
+bool is_hdf5(const std::string& path) {
+  return path.ends_with(".h5") || path.ends_with(".hdf5");
+}
+
+/// What `export` wrote stands for all of its parts: none may be named beside it.
+void refuse_parts(const ImportOptions& options) {
+  const std::pair<const char*, bool> parts[] = {{"--motion", !options.motion.empty()},
+                                                {"--poses", !options.poses.empty()},
+                                                {"--colliders", !options.colliders.empty()},
+                                                {"--avatar", !options.avatar.empty()},
+                                                {"--map", !options.map.empty()},
+                                                {"--nodes", !options.nodes.empty()},
+                                                {"--rate", options.rate_hz.has_value()},
+                                                {"--unit", options.unit != "auto"}};
+  for (const auto& [flag, is_named] : parts)
+    if (is_named)
+      throw UsageError(flag, fmt::format("'{}' has poses, colliders, avatar and map", options.from),
+                       "leave it out, or name the parts by their flags");
+}
+
+/// The files in a folder that `export` wrote.
+void expand_folder(ImportOptions& options) {
+  const std::filesystem::path folder(options.from);
+  if (!std::filesystem::is_directory(folder))
+    throw Error(options.from,
+                std::filesystem::exists(folder) ? "is neither a folder nor .h5" : "there is no such folder",
+                "name what 'vestige export' wrote, or name --poses or --motion");
+  const auto take = [&](const char* name, std::string& option) {
+    if (std::filesystem::exists(folder / name)) option = (folder / name).string();
+  };
+  take("poses.csv", options.poses);
+  take("colliders.csv", options.colliders);
+  take("avatar.glb", options.avatar);
+  take("actuator_map.png", options.map);
+  if (options.poses.empty())
+    throw Error(options.from, "holds no poses.csv", "name a folder that 'vestige export' wrote");
+  if (options.map.empty()) options.map = "none";
+}
+
+void check_flags(const ImportOptions& options) {
+  if (options.motion.empty() == options.poses.empty())
+    throw UsageError("import", options.motion.empty() ? "nothing says how the avatar moves" : "two say how it moves",
+                     "name --motion FILE.bvh, or --poses FILE.csv, or a folder that 'vestige export' wrote");
+  if (options.motion.empty() && options.rate_hz)
+    throw UsageError("--rate", "a file of poses has its frames", "leave it out, or name a --motion");
+  if (options.motion.empty() && options.unit != "auto")
+    throw UsageError("--unit", "a file of poses is in metres", "leave it out, or name a --motion");
+  const bool from_gltf = options.colliders.ends_with(".glb") || options.colliders.ends_with(".gltf");
+  if (!options.nodes.empty() && !from_gltf)
+    throw UsageError("--nodes", "the colliders come from no glTF file", "leave it out, or name a .glb as --colliders");
+  if (options.poses == "-" && options.colliders == "-")
+    throw UsageError("-", "two files cannot share standard input", "give one of them a name");
+}
+
+double seconds(const TraceFrame& frame) {
+  return static_cast<double>(frame.time_ns) / 1e9;
+}
+
+void read_colliders(const ImportOptions& options, Frames& frames) {
+  const std::string& path = options.colliders;
+  if (path.empty()) return;
+  const auto sample_from = [&](std::shared_ptr<ColliderSource> source) {
+    for (const std::string& warning : source->warnings())
+      warn(fmt::format("--colliders {}: {}", path, warning), options.common.verbosity());
+    frames.add_colliders = [source](TraceFrame& frame) {
+      source->sample(seconds(frame), frame.colliders);
+      frame.teleported = source->teleported();
+    };
+  };
+  if (path.ends_with(".glb") || path.ends_with(".gltf")) {
+    sample_from(read_collider_gltf(path, options.nodes));
+    return;
+  }
+  if (!options.poses.empty()) {
+    // Rows that say their frame go to it, and nothing is made up between them.
+    auto rows = std::make_shared<ColliderFrames>(path);
+    if (rows->columns() == ColliderColumns::kFrames) {
+      frames.add_colliders = [rows](TraceFrame& frame) { rows->fill(frame); };
+      frames.finish = [rows] { rows->expect_end(); };
+      return;
+    }
+    if (path == "-")
+      throw UsageError("--colliders -", "these rows do not say their frame",
+                       "put them into a file, which is read twice");
+  }
+  sample_from(read_collider_csv(path));
+}
+
+/// Each frame of the motion once, or at a rate of one's own.
+void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional<double> rate_hz, Frames& frames) {
+  const double duration_s = static_cast<double>(motion.frame_count - 1) * motion.frame_time_s;
+  const double step_s = rate_hz ? 1 / *rate_hz : motion.frame_time_s;
+  // The last frame is there even where division has left a little too much.
+  const std::uint64_t count =
+      rate_hz ? static_cast<std::uint64_t>(std::floor(duration_s * *rate_hz + 1e-6)) + 1 : motion.frame_count;
+  const auto next = std::make_shared<std::uint64_t>(0);
+  frames.next_pose = [&avatar, step_s, count, next](TraceFrame& frame) {
+    if (*next == count) return false;
+    frame.index = *next;
+    const double time_s = static_cast<double>((*next)++) * step_s;
+    frame.time_ns = std::llround(time_s * 1e9);
+    // Keys are at times of fp32: on them, nothing is interpolated.
+    frame.pose = sample_animation(avatar, avatar.animations.back(), double{static_cast<float>(time_s)});
+    return true;
+  };
+  frames.share = [count, next] { return static_cast<double>(*next) / static_cast<double>(count); };
+}
+
+void run_import(ImportOptions options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  if (!options.from.empty()) refuse_parts(options);
+  const bool from_hdf5 = is_hdf5(options.from);
+  if (!options.from.empty() && !from_hdf5) expand_folder(options);
+  if (!from_hdf5) check_flags(options);
+  if (options.avatar.empty() && !from_hdf5) options.avatar = "builtin";
+  check_outputs({options.output, options.common.json},
+                {options.from, options.motion, options.poses, options.colliders, options.avatar, options.map},
+                options.common);
+  if (options.output == "-") refuse_terminal("-o -");
+
+  Frames frames;
+  Scene scene;
+  if (from_hdf5) {
+    const auto file = std::make_shared<TraceHdf5>(options.from);
+    scene = make_scene(file->avatar_glb(), file->actuator_map_png(), std::string(text_of(file->actuator_map_json())),
+                       {options.from + ", avatar.glb", options.from + ", actuator_map.png"}, verbosity);
+    frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
+    frames.share = [file] { return file->share(); };
+  } else {
+    scene = load_scene(options.avatar, options.map, verbosity);
+  }
+  std::optional<LoadedMotion> motion;
+  Session session;
+  const nlohmann::ordered_json origin = provenance(invocation.argv);
+  for (const auto& [key, value] : origin.items())
+    session[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  session["colliders"] = options.colliders;
+  if (!options.motion.empty()) {
+    motion = add_motion(scene.avatar, options.motion, options.unit, verbosity);
+    play_motion(scene.avatar, *motion, options.rate_hz, frames);
+    session["animation"] = options.motion;
+    session["rate_hz"] = fmt::format("{}", options.rate_hz.value_or(1 / motion->frame_time_s));
+  } else if (!from_hdf5) {
+    const auto reader = std::make_shared<PoseCsvReader>(options.poses, scene.avatar);
+    if (!reader->resting().empty())
+      warn(fmt::format("{}: these nodes of the avatar keep their rest: {}", options.poses,
+                       fmt::join(reader->resting(), ", ")),
+           verbosity);
+    frames.next_pose = [reader](TraceFrame& frame) { return reader->next(frame); };
+    frames.share = [reader] { return reader->share(); };
+    session["animation"] = options.poses;
+  }
+  read_colliders(options, frames);
+
+  TraceWriterOptions writing;
+  writing.overwrite = options.common.overwrite();
+  if (options.compression == "lz4") writing.compression = Compression::kLz4;
+  if (options.compression == "none") writing.compression = Compression::kNone;
+  catch_interrupts();
+  TraceFrame frame;
+  // The first frame is read before a file is begun: most mistakes show there.
+  bool more = frames.next_pose(frame);
+  if (more) frames.add_colliders(frame);
+  StagedTrace trace(options.output, session, scene.avatar, scene.attachments(), writing);
+  {
+    Progress progress("Importing", verbosity);
+    while (more) {
+      trace.writer().write(frame);
+      if (!progress.update(frames.share())) throw Error(options.output, "importing was stopped", "");
+      more = frames.next_pose(frame);
+      if (more) frames.add_colliders(frame);
+    }
+  }
+  frames.finish();
+  trace.commit();
+
+  nlohmann::ordered_json json = provenance(invocation.argv);
+  json["trace"] = options.output;
+  json["frames"] = trace.writer().frame_count();
+  json["bytes"] = trace.writer().bytes_written();
+  if (motion) json["motion"] = to_json(*motion);
+  json["avatar"] = to_json(scene.avatar);
+  write_json(options.common.json, json, options.common);
+  std::string text = fmt::format("{}: {} frame{} of {} s, {:.1f} MB\n", options.output, trace.writer().frame_count(),
+                                 trace.writer().frame_count() == 1 ? "" : "s", seconds(frame),
+                                 static_cast<double>(trace.writer().bytes_written()) / 1e6);
+  if (motion) text += describe(*motion);
+  print_summary(text, {options.output, options.common.json}, options.common);
+}
+
+}  // namespace
+
+void add_import(CLI::App& program, Invocation& invocation) {
+  auto options = std::make_shared<ImportOptions>();
+  CLI::App* verb = add_verb(program, "import", "Make a trace of motion capture, or of what other programs wrote",
+                            "  vestige import --motion walk.bvh -o walk.mcap\n"
+                            "  vestige import man_csv -o man_again.mcap\n");
+  verb->add_option("FROM", options->from,
+                   "What 'vestige export' wrote: a folder of CSV files, or an .h5: poses, colliders, avatar and map");
+  verb->add_option("--motion", options->motion,
+                   "Motion capture (BVH), which the avatar follows as far as the joints' names tell, frame by frame")
+      ->type_name("FILE.bvh");
+  verb->add_option("--poses", options->poses,
+                   "Poses of the avatar's own nodes, in rows time_s, NODE.tx … NODE.sz; '-' is standard input")
+      ->type_name("FILE.csv|-");
+  verb->add_option("--colliders", options->colliders,
+                   "Colliders: rows time_s,id,x,y,z or what 'export' writes; or the animated nodes of a glTF file "
+                   "[default: none]")
+      ->type_name("FILE.csv|FILE.glb");
+  verb->add_option("--nodes", options->nodes,
+                   "Which nodes of a glTF file are colliders, as a pattern of names: 'ball*' [default: those named "
+                   "collider…, or else all whose translation is animated]")
+      ->type_name("PATTERN");
+  verb->add_option("--avatar", options->avatar,
+                   "The avatar that moves: the built-in one, or a glTF file (.glb, .gltf, .vrm) [default: builtin]")
+      ->type_name("builtin|FILE");
+  verb->add_option("--map", options->map,
+                   "The actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
+                   "[default: builtin for the built-in avatar, else none]")
+      ->type_name("builtin|none|FILE.png");
+  verb->add_option("--unit", options->unit,
+                   "How far the motion travels: auto scales it by the heights of both hips, so that feet do not slide; "
+                   "a unit keeps true distances")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "mm", "cm", "inch", "m"}));
+  verb->add_option("--rate", options->rate_hz, "Frames per second of a motion [default: its own]")
+      ->type_name("HZ")
+      ->check(help::kPositive);
+  verb->add_option("--compression", options->compression, "How the trace's chunks are compressed")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"zstd", "lz4", "none"}));
+  verb->add_option("-o,--output", options->output, "The trace to write, or '-' for standard output")
+      ->required()
+      ->type_name("OUT.mcap|-");
+  add_common_options(*verb, options->common);
+  verb->callback([options, &invocation] { run_import(*options, invocation); });
+}
+
+}  // namespace vestige::cli

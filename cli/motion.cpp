@@ -1,0 +1,67 @@
+#include "cli/motion.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace vestige::cli {
+
+namespace {
+
+void say_what_matched(const RetargetReport& report, const std::string& path, Verbosity verbosity) {
+  if (!report.unmatched_joints.empty())
+    warn(fmt::format("{}: nothing follows these joints: {}", path, fmt::join(report.unmatched_joints, ", ")),
+         verbosity);
+  if (!report.unmatched_nodes.empty())
+    warn(fmt::format("{}: these joints of the avatar keep their rest: {}", path,
+                     fmt::join(report.unmatched_nodes, ", ")),
+         verbosity);
+  if (verbosity != Verbosity::kVerbose) return;
+  for (const JointMatch& match : report.matched) warn(fmt::format("{} leads {}", match.joint, match.node), verbosity);
+}
+
+}  // namespace
+
+std::optional<double> metres_of_unit(const std::string& unit) {
+  static const std::map<std::string, double> metres = {{"mm", 0.001}, {"cm", 0.01}, {"inch", 0.0254}, {"m", 1.0}};
+  const auto known = metres.find(unit);
+  return known == metres.end() ? std::nullopt : std::optional(known->second);
+}
+
+LoadedMotion add_motion(Avatar& avatar, const std::string& path, const std::string& unit, Verbosity verbosity) {
+  const BvhMotion motion = read_bvh(path);
+  LoadedMotion loaded = {motion.frame_time_s, motion.frame_count, motion.joints.size(), {}};
+  Animation animation = retarget(motion, avatar, metres_of_unit(unit), path, loaded.report);
+  animation.name = path;
+  avatar.animations.push_back(std::move(animation));
+  say_what_matched(loaded.report, path, verbosity);
+  return loaded;
+}
+
+std::string describe(const LoadedMotion& motion) {
+  const RetargetReport& report = motion.report;
+  const std::string tall = fmt::format("its skeleton is {:.4g} units tall", report.height);
+  return fmt::format("{} nodes follow {} of {} joints; {}{}; 1 unit is {:.4g} m here\n", report.matched.size(),
+                     motion.joint_count - report.unmatched_joints.size(), motion.joint_count, tall,
+                     report.likely_unit.empty() ? ", a person's height in no usual unit"
+                                                : fmt::format(", likely {}", report.likely_unit),
+                     report.metres_per_unit);
+}
+
+nlohmann::ordered_json to_json(const LoadedMotion& motion) {
+  const RetargetReport& report = motion.report;
+  nlohmann::ordered_json matched = nlohmann::ordered_json::array();
+  for (const JointMatch& match : report.matched)
+    matched.push_back(
+        {{"joint", match.joint}, {"node", match.node}, {"by", match.how == JointMatch::How::kName ? "name" : "role"}});
+  return {{"frames", motion.frame_count},
+          {"frame_time_s", motion.frame_time_s},
+          {"matched", matched},
+          {"unmatched_joints", report.unmatched_joints},
+          {"unmatched_nodes", report.unmatched_nodes},
+          {"height", report.height},
+          {"likely_unit", report.likely_unit},
+          {"metres_per_unit", report.metres_per_unit}};
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,178 @@
+// Motion capture on other bodies than the one that was captured.
+
+#include "traces/retarget.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/test_data.hpp"
+#include "tests/traces/bvh_text.hpp"
+#include "traces/avatar_gltf.hpp"
+#include "traces/body_roles.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/error.hpp"
+
+namespace vestige {
+namespace {
+
+const Avatar& mannequin() {
+  static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  return avatar;
+}
+
+/// Where nodes are while an animation plays.
+class Stage {
+ public:
+  Stage(const Avatar& avatar, const Animation& animation, double time_s) : avatar_(avatar) {
+    world_matrices(avatar, sample_animation(avatar, animation, time_s), matrices_);
+  }
+  explicit Stage(const Avatar& avatar) : avatar_(avatar) { world_matrices(avatar, rest_pose(avatar), matrices_); }
+  glm::dvec3 operator[](const std::string& name) const {
+    const auto node = std::ranges::find(avatar_.nodes, name, &Node::name);
+    EXPECT_NE(node, avatar_.nodes.end()) << name;
+    return glm::dvec3(matrices_[static_cast<std::size_t>(node - avatar_.nodes.begin())][3]);
+  }
+  glm::dvec3 direction(const std::string& from, const std::string& to) const {
+    return glm::normalize((*this)[to] - (*this)[from]);
+  }
+
+ private:
+  const Avatar& avatar_;
+  std::vector<glm::dmat4> matrices_;
+};
+
+void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance, const char* what) {
+  EXPECT_LT(glm::length(a - b), tolerance)
+      << what << ": " << a.x << " " << a.y << " " << a.z << " instead of " << b.x << " " << b.y << " " << b.z;
+}
+
+BvhMotion person(const std::string& frames, std::size_t count) {
+  return parse_bvh(test::bvh_person(fmt::format("\nFrames: {}\nFrame Time: 0.5\n", count) + frames), "person.bvh");
+}
+
+TEST(Retarget, LimbsPointWhereTheMotionsDoWhateverTheRestPose) {
+  const BvhMotion motion = person(test::bvh_frame("0 95 0") + test::bvh_frame("0 95 0", test::kLeftArmZ, 90) +
+                                      test::bvh_frame("0 95 0", test::kLeftThighX, -90),
+                                  3);
+  RetargetReport report;
+  const Animation animation = retarget(motion, mannequin(), {}, "person.bvh", report);
+  EXPECT_EQ(report.matched.size(), 17U) << "two spines follow the one";
+  EXPECT_TRUE(report.unmatched_joints.empty()) << ::testing::PrintToString(report.unmatched_joints);
+
+  const Stage rest(mannequin(), animation, 0);
+  expect_near(rest.direction("upper_arm_left", "forearm_left"), {1, 0, 0}, 1e-4, "the T pose");
+  expect_near(rest.direction("forearm_right", "hand_right"), {-1, 0, 0}, 1e-4, "the T pose");
+  expect_near(rest.direction("thigh_left", "shin_left"), {0, -1, 0}, 1e-4, "standing");
+  const Stage raised(mannequin(), animation, 0.5);
+  expect_near(raised.direction("upper_arm_left", "forearm_left"), {0, 1, 0}, 1e-4, "an arm raised");
+  expect_near(raised.direction("forearm_left", "hand_left"), {0, 1, 0}, 1e-4, "and what hangs from it");
+  expect_near(raised.direction("forearm_right", "hand_right"), {-1, 0, 0}, 1e-4, "the other arm");
+  const Stage kicking(mannequin(), animation, 1);
+  expect_near(kicking.direction("thigh_left", "shin_left"), {0, 0, 1}, 1e-4, "a thigh raised to the front");
+}
+
+TEST(Retarget, TheHipsTravelByTheRatioOfTheirHeightsOrInTrueMetres) {
+  const BvhMotion motion = person(test::bvh_frame("50 95 0") + test::bvh_frame("50 105 100"), 2);
+  RetargetReport report;
+  const Stage at_rest(mannequin());
+  const double ratio = (at_rest["pelvis"].y - at_rest["foot_left"].y) / 95;
+  const Animation fitted = retarget(motion, mannequin(), {}, "person.bvh", report);
+  EXPECT_NEAR(report.metres_per_unit, ratio, 1e-9);
+  EXPECT_EQ(report.likely_unit, "cm");
+  expect_near(Stage(mannequin(), fitted, 0)["pelvis"], at_rest["pelvis"], 1e-5, "it starts at the avatar's place");
+  expect_near(Stage(mannequin(), fitted, 0.5)["pelvis"], at_rest["pelvis"] + ratio * glm::dvec3(0, 10, 100), 1e-5,
+              "and travels");
+  const Animation metric = retarget(motion, mannequin(), 0.01, "person.bvh", report);
+  expect_near(Stage(mannequin(), metric, 0.5)["pelvis"], at_rest["pelvis"] + glm::dvec3(0, 0.1, 1), 1e-5, "in metres");
+}
+
+TEST(Retarget, OtherSkeletonsAreRefusedByName) {
+  const BvhMotion dog =
+      parse_bvh("HIERARCHY\nROOT tail\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0\n",
+                "dog.bvh");
+  RetargetReport report;
+  EXPECT_THROW(retarget(dog, mannequin(), {}, "dog.bvh", report), Error);
+}
+
+/// All real motions on all real avatars that have a person's joints: upright, in one piece, feet near the floor.
+TEST(Retarget, RealMotionsStandUprightOnRealAvatars) {
+  VESTIGE_REQUIRE_DATA(test::data("avatars/motion"));
+  struct Body {
+    std::string name;
+    Avatar avatar;
+    const char *hips, *head, *foot, *other_foot, *hand;
+  };
+  const auto load = [](const char* name) {
+    const auto path = test::data("avatars/avatars") / name;
+    return parse_avatar_glb(read_avatar_glb(path), name);
+  };
+  const Body bodies[] = {
+      {"mannequin", mannequin(), "pelvis", "head", "foot_left", "foot_right", "hand_left"},
+      {"CesiumMan", load("CesiumMan.glb"), "Skeleton_torso_joint_1", "Skeleton_neck_joint_2", "leg_joint_L_3",
+       "leg_joint_R_3", "Skeleton_arm_joint_L__2_"},
+      {"Knight", load("KayKit_Knight.glb"), "hips", "head", "foot.l", "foot.r", "hand.l"},
+      {"MakeHuman", load("MakeHumanBase_cc0_8inf.glb"), "root", "head", "foot.L", "foot.R", "wrist.L"}};
+  for (const char* name : {"cmu_01_01.bvh", "mh_walk1.bvh", "mh_zombieWalk1.bvh"}) {
+    BvhMotion motion = read_bvh(test::data("avatars/motion") / name);
+    for (const Body& body : bodies) {
+      SCOPED_TRACE(std::string(name) + " on " + body.name);
+      RetargetReport report;
+      const Animation animation = retarget(motion, body.avatar, {}, name, report);
+      EXPECT_GE(report.matched.size(), 14U);
+      const Stage rest(body.avatar);
+      const double height = rest[body.head].y - rest[body.foot].y;
+      const double floor = std::min(rest[body.foot].y, rest[body.other_foot].y);
+      double lowest = 1e9;
+      // The CMU actor climbs and jumps later on.
+      for (double time_s = 0; time_s < std::min(animation.duration_s, 3.0); time_s += 0.05) {
+        const Stage stage(body.avatar, animation, time_s);
+        EXPECT_GT(stage[body.head].y - stage[body.hips].y, 0.3 * (rest[body.head].y - rest[body.hips].y)) << time_s;
+        EXPECT_GT(stage[body.hips].y - std::min(stage[body.foot].y, stage[body.other_foot].y), 0.2 * height) << time_s;
+        lowest = std::min({lowest, stage[body.foot].y, stage[body.other_foot].y});
+      }
+      EXPECT_NEAR(lowest, floor, 0.12 * height) << "feet on the floor";
+    }
+  }
+}
+
+TEST(BodyRoles, AreFoundInTheNamesOfManyPrograms) {
+  struct Case {
+    const char* name;
+    BodyPart part;
+    BodySide side;
+  };
+  const Case cases[] = {{"mixamorig:LeftUpLeg", BodyPart::kUpperLeg, BodySide::kLeft},
+                        {"mixamorig:RightForeArm", BodyPart::kLowerArm, BodySide::kRight},
+                        {"J_Bip_L_UpperArm", BodyPart::kUpperArm, BodySide::kLeft},
+                        {"leftUpperArm", BodyPart::kUpperArm, BodySide::kLeft},
+                        {"Bip01 R Calf", BodyPart::kLowerLeg, BodySide::kRight},
+                        {"Character1_LeftLeg", BodyPart::kLowerLeg, BodySide::kLeft},
+                        {"lShldr", BodyPart::kUpperArm, BodySide::kLeft},
+                        {"rForeArm", BodyPart::kLowerArm, BodySide::kRight},
+                        {"LeftElbow", BodyPart::kLowerArm, BodySide::kLeft},
+                        {"thigh.R", BodyPart::kUpperLeg, BodySide::kRight},
+                        {"DEF-foot.L", BodyPart::kFoot, BodySide::kLeft},
+                        {"CC_Base_R_Hand", BodyPart::kHand, BodySide::kRight},
+                        {"upper_arm_left", BodyPart::kUpperArm, BodySide::kLeft},
+                        {"LoArm_R", BodyPart::kLowerArm, BodySide::kRight},
+                        {"Hips", BodyPart::kHips, BodySide::kNone},
+                        {"Bip01 Pelvis", BodyPart::kHips, BodySide::kNone},
+                        {"LeftToeBase", BodyPart::kToes, BodySide::kLeft}};
+  for (const Case& one : cases) {
+    const NamedJoint joint = {one.name, -1};
+    const auto roles = body_roles(std::span(&joint, 1));
+    ASSERT_TRUE(roles[0]) << one.name;
+    EXPECT_EQ(*roles[0], (BodyRole{one.part, one.side, 0})) << one.name;
+  }
+  for (const char* name : {"handIK.l", "Armature", "kneePole_L", "LeftUpLegTwist", "hand_socket_R", "tail01", ""}) {
+    const NamedJoint joint = {name, -1};
+    EXPECT_FALSE(body_roles(std::span(&joint, 1))[0]) << name;
+  }
+  const NamedJoint index = {"LeftHandIndex2", -1};
+  EXPECT_EQ(*body_roles(std::span(&index, 1))[0], (BodyRole{BodyPart::kIndex, BodySide::kLeft, 2}));
+}
+
+}  // namespace
+}  // namespace vestige

@@ -1,0 +1,121 @@
+#include "traces/collider_rows.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "traces/frame_file.hpp"
+#include "traces/number_text.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::string_view kRemedy = "each row is time_s,id,x,y,z: seconds, a whole number, metres";
+constexpr std::string_view kAloneRemedy = "export poses and colliders of the same trace, or leave out the column frame";
+
+constexpr double kFarthest_m = 1e9;  // an astronomical unit is a mistake
+
+class ColliderCsv final : public FrameFile {
+ public:
+  ColliderCsv(const std::filesystem::path& path, Overwrite overwrite) : file_(path, overwrite) {
+    file_.write(kColliderFramesHeader);
+    file_.write("\n");
+  }
+
+  void write(const TraceFrame& frame) override {
+    time_.clear();
+    append_seconds(time_, frame.time_ns);
+    for (const ColliderSample& collider : frame.colliders) {
+      row_.clear();
+      const bool teleported = std::ranges::find(frame.teleported, collider.id) != frame.teleported.end();
+      fmt::format_to(std::back_inserter(row_), "{},{},{},{},{},{},{}\n", frame.index, time_, collider.id,
+                     collider.position_m.x, collider.position_m.y, collider.position_m.z, teleported ? 1 : 0);
+      file_.write(row_);
+    }
+  }
+
+  void commit() override { file_.commit(); }
+
+ private:
+  OutputFile file_;
+  std::string time_;
+  std::string row_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameFile> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite) {
+  return std::make_unique<ColliderCsv>(path, overwrite);
+}
+
+ColliderRows::ColliderRows(const std::filesystem::path& path) : reader_(path), lines_(reader_, kRemedy) {
+  const std::string header = fmt::format("{}", fmt::join(lines_.take_header(), ","));
+  if (header == kColliderFramesHeader)
+    columns_ = ColliderColumns::kFrames;
+  else if (header != kColliderTimesHeader)
+    throw lines_.error(fmt::format("the header is not '{}'", kColliderTimesHeader));
+}
+
+bool ColliderRows::next(ColliderRow& row) {
+  if (!lines_.next()) {
+    // A trace may have frames without any collider.
+    if (rows_ == 0 && columns_ == ColliderColumns::kTimes) throw Error(reader_.name(), "holds no sample", kRemedy);
+    return false;
+  }
+  glm::dvec3& position = row.sample.position_m;
+  const bool has_frames = columns_ == ColliderColumns::kFrames;
+  int teleported = 0;
+  if (has_frames && !lines_.take(row.frame)) throw lines_.error("frame is no whole number");
+  if (!lines_.take(row.time_s)) throw lines_.error("time_s is no number");
+  if (!lines_.take(row.sample.id)) throw lines_.error("id is no whole number from 0 to 4294967295");
+  if (!lines_.take(position.x) || !lines_.take(position.y) || !lines_.take(position.z))
+    throw lines_.error(has_frames ? "is not seven numbers" : "is not five numbers");
+  if (has_frames && (!lines_.take(teleported) || (teleported != 0 && teleported != 1)))
+    throw lines_.error("teleported is neither 0 nor 1");
+  if (!lines_.at_end()) throw lines_.error(has_frames ? "is not seven numbers" : "is not five numbers");
+  if (!std::isfinite(row.time_s) || !std::isfinite(position.x) || !std::isfinite(position.y) ||
+      !std::isfinite(position.z))
+    throw lines_.error("a number is not finite");
+  if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) > kFarthest_m)
+    throw lines_.error("a position is farther away than 1e9 m");
+  if (rows_ > 0 && row.time_s < last_time_s_)
+    throw lines_.error(fmt::format("time runs backwards, from {} s to {} s", last_time_s_, row.time_s),
+                       "sort the rows by time");
+  if (has_frames && rows_ > 0 && row.frame < last_frame_)
+    throw lines_.error(fmt::format("frame {} comes after frame {}", row.frame, last_frame_), "sort the rows");
+  row.teleported = teleported == 1;
+  last_time_s_ = row.time_s;
+  last_frame_ = row.frame;
+  ++rows_;
+  return true;
+}
+
+void ColliderFrames::advance() {
+  if (!rows_.next(ahead_ ? *ahead_ : ahead_.emplace())) ahead_.reset();
+}
+
+void ColliderFrames::fill(TraceFrame& frame) {
+  frame.colliders.clear();
+  frame.teleported.clear();
+  if (ahead_ && ahead_->frame < frame.index)
+    throw rows_.error(fmt::format("frame {} has no pose", ahead_->frame), kAloneRemedy);
+  for (; ahead_ && ahead_->frame == frame.index; advance()) {
+    if (nanoseconds_of(ahead_->time_s) != frame.time_ns)
+      throw rows_.error(fmt::format("frame {} is at {} s, its pose at another time", frame.index, ahead_->time_s),
+                        kAloneRemedy);
+    if (std::ranges::find(frame.colliders, ahead_->sample.id, &ColliderSample::id) != frame.colliders.end())
+      throw rows_.error(fmt::format("collider {} has two positions in frame {}", ahead_->sample.id, frame.index),
+                        "remove one of them");
+    frame.colliders.push_back(ahead_->sample);
+    if (ahead_->teleported) frame.teleported.push_back(ahead_->sample.id);
+  }
+}
+
+void ColliderFrames::expect_end() const {
+  if (ahead_) throw rows_.error(fmt::format("frame {} has no pose", ahead_->frame), kAloneRemedy);
+}
+
+}  // namespace vestige

@@ -1,0 +1,434 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/constants.hpp>
+#include <glm/gtc/quaternion.hpp>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <version.hpp>
+
+#include "traces/column_file.hpp"
+#include "traces/error.hpp"
+#include "traces/frame_file.hpp"
+#include "traces/glb_container.hpp"
+#include "traces/gltf_meshopt.hpp"
+
+namespace vestige {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
+constexpr int kFloat = 5126;
+constexpr int kUnsignedShort = 5123;
+constexpr const char* kTooLarge = "export fewer frames: --rate 60, or a part of it that 'vestige trim' cuts out";
+
+struct Sphere {
+  std::vector<float> positions;
+  std::vector<float> normals;
+  std::vector<std::uint16_t> indices;
+};
+
+/// Of 1 cm radius.
+Sphere make_sphere() {
+  constexpr int kRings = 8;
+  constexpr int kSegments = 12;
+  constexpr double kRadius_m = 0.01;
+  Sphere sphere;
+  for (int ring = 0; ring <= kRings; ++ring)
+    for (int segment = 0; segment < kSegments; ++segment) {
+      const double polar = glm::pi<double>() * ring / kRings;
+      const double around = 2 * glm::pi<double>() * segment / kSegments;
+      const glm::dvec3 normal(std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around));
+      for (int axis = 0; axis < 3; ++axis) {
+        sphere.normals.push_back(static_cast<float>(normal[axis]));
+        sphere.positions.push_back(static_cast<float>(kRadius_m * normal[axis]));
+      }
+    }
+  const auto corner = [](int ring, int segment) {
+    return static_cast<std::uint16_t>(ring * kSegments + segment % kSegments);
+  };
+  for (int ring = 0; ring < kRings; ++ring)
+    for (int segment = 0; segment < kSegments; ++segment) {
+      const std::uint16_t a = corner(ring, segment);
+      const std::uint16_t b = corner(ring, segment + 1);
+      const std::uint16_t c = corner(ring + 1, segment);
+      const std::uint16_t d = corner(ring + 1, segment + 1);
+      if (ring > 0) sphere.indices.insert(sphere.indices.end(), {a, b, c});
+      if (ring + 1 < kRings) sphere.indices.insert(sphere.indices.end(), {b, d, c});
+    }
+  return sphere;
+}
+
+/// A glTF that grows: what is appended to its buffer is either in memory or a column of frames.
+class Builder {
+ public:
+  Builder(std::span<const std::byte> glb) {
+    const gltf::Report report("avatar.glb");
+    gltf::Report quiet = report;
+    const gltf::GlbChunks chunks = gltf::split_glb(glb, quiet);
+    json = Json::parse(chunks.json);
+    if (chunks.bin.empty() && json.contains("buffers")) {
+      // Its data is in data: URIs; the buffer of a GLB must be the first.
+      for (Json& view : json["bufferViews"]) {
+        view["buffer"] = view["buffer"].get<int>() + 1;
+        if (view.contains("extensions") && view["extensions"].contains(gltf::kMeshopt))
+          view["extensions"][gltf::kMeshopt]["buffer"] = view["extensions"][gltf::kMeshopt]["buffer"].get<int>() + 1;
+      }
+      json["buffers"].insert(json["buffers"].begin(), Json::object());
+    } else if (!json.contains("buffers")) {
+      json["buffers"] = Json::array({Json::object()});
+    }
+    bin.assign(chunks.bin.begin(), chunks.bin.end());
+    align();
+  }
+
+  int add(const char* list, Json element) {
+    json[list].push_back(std::move(element));
+    return static_cast<int>(json[list].size()) - 1;
+  }
+
+  template <typename Number>
+  int add_accessor(const std::vector<Number>& numbers, int component_type, const char* type, std::size_t components,
+                   int target) {
+    const int view = add("bufferViews", {{"buffer", 0},
+                                         {"byteOffset", bin.size()},
+                                         {"byteLength", numbers.size() * sizeof(Number)},
+                                         {"target", target}});
+    const auto bytes = std::as_bytes(std::span(numbers));
+    bin.insert(bin.end(), bytes.begin(), bytes.end());
+    align();
+    return add("accessors", {{"bufferView", view},
+                             {"componentType", component_type},
+                             {"count", numbers.size() / components},
+                             {"type", type}});
+  }
+
+  Json json;
+  std::vector<std::byte> bin;  ///< multiple of 4
+
+ private:
+  void align() { bin.resize((bin.size() + 3) / 4 * 4); }
+};
+
+int add_sphere(Builder& builder) {
+  const Sphere sphere = make_sphere();
+  const int position = builder.add_accessor(sphere.positions, kFloat, "VEC3", 3, 34962);
+  glm::vec3 low(std::numeric_limits<float>::max());
+  glm::vec3 high(-low);
+  for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
+    const int axis = static_cast<int>(i % 3);
+    low[axis] = std::min(low[axis], sphere.positions[i]);
+    high[axis] = std::max(high[axis], sphere.positions[i]);
+  }
+  Json& accessor = builder.json["accessors"].back();
+  accessor["min"] = {low.x, low.y, low.z};
+  accessor["max"] = {high.x, high.y, high.z};
+  const int normal = builder.add_accessor(sphere.normals, kFloat, "VEC3", 3, 34962);
+  const int indices = builder.add_accessor(sphere.indices, kUnsignedShort, "SCALAR", 1, 34963);
+  const int material = builder.add(
+      "materials", {{"name", "collider"},
+                    {"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.3, 0.1, 1.0}}, {"metallicFactor", 0.0}}}});
+  return builder.add("meshes",
+                     {{"name", "collider"},
+                      {"primitives", Json::array({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
+                                                   {"indices", indices},
+                                                   {"material", material}}})}});
+}
+
+class FrameGltf final : public FrameFile {
+ public:
+  FrameGltf(const std::filesystem::path& path, Overwrite overwrite, const Avatar& avatar,
+            std::span<const std::byte> glb, std::vector<std::uint32_t> ids)
+      : file_(path, overwrite),
+        path_(path),
+        avatar_(avatar),
+        glb_(glb),
+        ids_(std::move(ids)),
+        columns_(path, widths(avatar.nodes.size(), ids_.size())),
+        varies_(2 + 3 * avatar.nodes.size() + 2 * ids_.size()) {
+    for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
+    last_position_.resize(ids_.size(), glm::vec3(0));
+  }
+
+  void write(const TraceFrame& frame) override;
+  void commit() override;
+  std::vector<std::string> losses() const override;
+
+ private:
+  // The columns: time, origin, three of each node, two of each collider.
+  static constexpr std::size_t kTime = 0;
+  static constexpr std::size_t kOrigin = 1;
+  static std::size_t node_column(std::size_t node) { return 2 + 3 * node; }
+  std::size_t collider_column(std::size_t collider) const { return 2 + 3 * avatar_.nodes.size() + 2 * collider; }
+  static std::vector<std::size_t> widths(std::size_t nodes, std::size_t colliders) {
+    std::vector<std::size_t> all = {1, 3};
+    for (std::size_t i = 0; i < nodes; ++i) all.insert(all.end(), {3, 4, 3});
+    for (std::size_t i = 0; i < colliders; ++i) all.insert(all.end(), {3, 3});
+    return all;
+  }
+
+  void append_node(std::size_t index, NodeLocal node);
+  void note_what_varies();
+  void place_nodes(Builder& builder) const;
+  std::optional<int> add_origin_node(Builder& builder) const;
+  void add_channels(Builder& builder, std::vector<std::size_t>& order, int node, std::size_t column, const char* path,
+                    const char* interpolation, int input) const;
+  Json& scene_of(Builder& builder) const;
+
+  OutputFile file_;
+  std::filesystem::path path_;
+  const Avatar& avatar_;
+  std::span<const std::byte> glb_;
+  std::vector<std::uint32_t> ids_;
+  std::map<std::uint32_t, std::size_t> place_of_;
+  ColumnFile columns_;
+  std::vector<bool> varies_;  ///< for each column
+  std::uint64_t varying_floats_ = 1;
+  std::vector<float> row_;
+  std::vector<float> first_row_;
+  std::vector<float> last_row_;
+  std::vector<glm::vec3> last_position_;
+  glm::dvec3 base_m_ = glm::dvec3(0);
+  std::uint64_t frames_left_out_ = 0;
+  std::uint64_t non_finite_ = 0;
+};
+
+/// What glTF forbids is mended: a rotation has length 1, and numbers are finite.
+void FrameGltf::append_node(std::size_t index, NodeLocal node) {
+  const auto& q = node.rotation;
+  const double length = glm::length(glm::dquat(q));
+  if (std::abs(length - 1) > 1e-5 && std::isfinite(length) && length > 0)
+    node.rotation = glm::quat(glm::normalize(glm::dquat(q)));
+  std::array numbers = {node.translation.x, node.translation.y, node.translation.z, q.x, q.y, q.z, q.w,
+                        node.scale.x,       node.scale.y,       node.scale.z};
+  const bool is_good = length > 0 && std::ranges::all_of(numbers, [](float x) { return std::isfinite(x); });
+  if (!is_good) {
+    ++non_finite_;
+    if (!last_row_.empty()) {
+      std::copy_n(last_row_.begin() + static_cast<std::ptrdiff_t>(row_.size()), numbers.size(), numbers.begin());
+    } else {
+      const NodeLocal& rest = avatar_.nodes[index].rest;
+      numbers = {rest.translation.x, rest.translation.y, rest.translation.z, rest.rotation.x, rest.rotation.y,
+                 rest.rotation.z,    rest.rotation.w,    rest.scale.x,       rest.scale.y,    rest.scale.z};
+    }
+  }
+  row_.insert(row_.end(), numbers.begin(), numbers.end());
+}
+
+void FrameGltf::write(const TraceFrame& frame) {
+  const auto time_s = static_cast<float>(static_cast<double>(frame.time_ns) / 1e9);
+  if (!last_row_.empty() && !(time_s > last_row_.front())) {
+    ++frames_left_out_;
+    return;
+  }
+  if (first_row_.empty()) base_m_ = frame.pose.origin_m;
+  row_.assign(1, time_s);
+  const auto append = [&](const glm::vec3& vector) { row_.insert(row_.end(), {vector.x, vector.y, vector.z}); };
+  append(glm::vec3(frame.pose.origin_m - base_m_));
+  for (std::size_t i = 0; i < frame.pose.nodes.size(); ++i) append_node(i, frame.pose.nodes[i]);
+  std::vector<bool> present(ids_.size());
+  for (const ColliderSample& collider : frame.colliders) {
+    const auto place = place_of_.find(collider.id);
+    if (place == place_of_.end()) continue;
+    const glm::vec3 position(collider.position_m - base_m_);
+    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
+      ++non_finite_;
+      continue;
+    }
+    present[place->second] = true;
+    last_position_[place->second] = position;
+  }
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    append(last_position_[i]);
+    append(glm::vec3(present[i] ? 1 : 0));
+  }
+  note_what_varies();
+  columns_.append(row_);
+  if (columns_.rows() * varying_floats_ * sizeof(float) > kMostBytes)
+    throw Error(path_.string(), "would be larger than the 4 GiB that a GLB can hold", kTooLarge);
+  last_row_ = row_;
+}
+
+void FrameGltf::note_what_varies() {
+  if (first_row_.empty()) first_row_ = row_;
+  std::size_t start = 0;
+  for (std::size_t column = 0; column < varies_.size(); ++column) {
+    const std::size_t width = columns_.width(column);
+    if (!varies_[column] && std::memcmp(&row_[start], &first_row_[start], width * sizeof(float)) != 0) {
+      varies_[column] = true;
+      varying_floats_ += width;
+    }
+    start += width;
+  }
+}
+
+/// Every node as the first frame has it.
+void FrameGltf::place_nodes(Builder& builder) const {
+  for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
+    if (avatar_.nodes[i].fixed_matrix) continue;
+    Json& node = builder.json["nodes"][i];
+    node.erase("matrix");
+    const float* numbers = &first_row_[4 + 10 * i];
+    node["translation"] = {numbers[0], numbers[1], numbers[2]};
+    node["rotation"] = {numbers[3], numbers[4], numbers[5], numbers[6]};
+    node["scale"] = {numbers[7], numbers[8], numbers[9]};
+  }
+}
+
+Json& FrameGltf::scene_of(Builder& builder) const {
+  Json& json = builder.json;
+  if (!json.contains("scenes") || json["scenes"].empty()) {
+    Json roots = Json::array();
+    for (std::size_t i = 0; i < avatar_.nodes.size(); ++i)
+      if (avatar_.nodes[i].parent < 0) roots.push_back(i);
+    json["scenes"] = Json::array({{{"nodes", roots}}});
+  }
+  if (!json.contains("scene")) json["scene"] = 0;
+  return json["scenes"][json["scene"].get<std::size_t>()];
+}
+
+/// Above the avatar, where it wanders in the world; a skinned mesh follows its joints and stays at the root.
+std::optional<int> FrameGltf::add_origin_node(Builder& builder) const {
+  if (!varies_[kOrigin]) return {};
+  Json& roots = scene_of(builder)["nodes"];
+  Json below = Json::array();
+  Json beside = Json::array();
+  for (const Json& root : roots) {
+    const Json& node = builder.json["nodes"][root.get<std::size_t>()];
+    (node.contains("skin") && !node.contains("children") ? beside : below).push_back(root);
+  }
+  const int node = builder.add("nodes", {{"name", "avatar origin"}, {"children", below}});
+  beside.push_back(node);
+  scene_of(builder)["nodes"] = beside;
+  return node;
+}
+
+void FrameGltf::add_channels(Builder& builder, std::vector<std::size_t>& order, int node, std::size_t column,
+                             const char* path, const char* interpolation, int input) const {
+  if (!varies_[column]) return;
+  const std::uint64_t offset = builder.json["bufferViews"].back()["byteLength"].get<std::uint64_t>();
+  const std::size_t width = columns_.width(column);
+  const int output = builder.add("accessors", {{"bufferView", builder.json["bufferViews"].size() - 1},
+                                               {"byteOffset", offset},
+                                               {"componentType", kFloat},
+                                               {"count", columns_.rows()},
+                                               {"type", width == 4 ? "VEC4" : "VEC3"}});
+  builder.json["bufferViews"].back()["byteLength"] = offset + columns_.rows() * width * sizeof(float);
+  order.push_back(column);
+  Json& animation = builder.json["animations"].back();
+  animation["samplers"].push_back({{"input", input}, {"interpolation", interpolation}, {"output", output}});
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+}
+
+void FrameGltf::commit() {
+  if (columns_.rows() == 0) throw Error(path_.string(), "there is no frame to export", "");
+  columns_.finish();
+  Builder builder(glb_);
+  Json& json = builder.json;
+  json["asset"]["generator"] = fmt::format("vestige {}", kVersion);
+  json.erase("animations");
+  place_nodes(builder);
+  const std::optional<int> origin = add_origin_node(builder);
+  std::vector<int> colliders;
+  if (!ids_.empty()) {
+    const int sphere = add_sphere(builder);
+    for (std::size_t i = 0; i < ids_.size(); ++i) {
+      const std::size_t place = 4 + 10 * avatar_.nodes.size() + 6 * i;
+      const float* numbers = &first_row_[place];
+      colliders.push_back(builder.add("nodes", {{"name", fmt::format("collider {}", ids_[i])},
+                                                {"mesh", sphere},
+                                                {"translation", {numbers[0], numbers[1], numbers[2]}},
+                                                {"scale", {numbers[3], numbers[4], numbers[5]}}}));
+      scene_of(builder)["nodes"].push_back(colliders.back());
+    }
+  }
+  scene_of(builder)["extras"]["origin_m"] = {base_m_.x, base_m_.y, base_m_.z};
+
+  // One view behind all that the avatar has: the times, then a column for each channel.
+  std::vector<std::size_t> order = {kTime};
+  const std::uint64_t time_bytes = columns_.rows() * sizeof(float);
+  const int view =
+      builder.add("bufferViews", {{"buffer", 0}, {"byteOffset", builder.bin.size()}, {"byteLength", time_bytes}});
+  const int input = builder.add("accessors", {{"bufferView", view},
+                                              {"componentType", kFloat},
+                                              {"count", columns_.rows()},
+                                              {"type", "SCALAR"},
+                                              {"min", {first_row_[kTime]}},
+                                              {"max", {last_row_[kTime]}}});
+  json["animations"] = Json::array({{{"name", "trace"}, {"channels", Json::array()}, {"samplers", Json::array()}}});
+  if (origin) add_channels(builder, order, *origin, kOrigin, "translation", "LINEAR", input);
+  for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
+    if (avatar_.nodes[i].fixed_matrix) continue;
+    const int node = static_cast<int>(i);
+    add_channels(builder, order, node, node_column(i), "translation", "LINEAR", input);
+    add_channels(builder, order, node, node_column(i) + 1, "rotation", "LINEAR", input);
+    add_channels(builder, order, node, node_column(i) + 2, "scale", "LINEAR", input);
+  }
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    add_channels(builder, order, colliders[i], collider_column(i), "translation", "LINEAR", input);
+    add_channels(builder, order, colliders[i], collider_column(i) + 1, "scale", "STEP", input);
+  }
+  if (json["animations"][0]["channels"].empty()) {
+    // Nothing moves: an animation without channels is not allowed.
+    json.erase("animations");
+    json["accessors"].erase(json["accessors"].size() - 1);
+    json["bufferViews"].erase(json["bufferViews"].size() - 1);
+    order.clear();
+  }
+  std::uint64_t column_bytes = 0;
+  for (const std::size_t column : order) column_bytes += columns_.rows() * columns_.width(column) * sizeof(float);
+  const std::uint64_t bin_bytes = builder.bin.size() + column_bytes;
+  json["buffers"][0]["byteLength"] = bin_bytes;
+  std::string text = json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const std::uint64_t total = 12 + 8 + text.size() + 8 + bin_bytes;
+  if (total > kMostBytes)
+    throw Error(path_.string(), fmt::format("needs {} bytes, more than the 4 GiB that a GLB can hold", total),
+                kTooLarge);
+  const auto put = [&](std::uint64_t word) {
+    const auto bits = static_cast<std::uint32_t>(word);
+    file_.write(std::as_bytes(std::span(&bits, 1)));
+  };
+  put(0x46546C67);  // "glTF", glTF 2.0 §4.4
+  put(2);
+  put(total);
+  put(text.size());
+  put(0x4E4F534A);  // "JSON"
+  file_.write(text);
+  put(bin_bytes);
+  put(0x004E4942);  // "BIN"
+  file_.write(std::span<const std::byte>(builder.bin));
+  for (const std::size_t column : order)
+    columns_.read(column, [&](std::span<const float> block) { file_.write(std::as_bytes(block)); });
+  file_.commit();
+}
+
+std::vector<std::string> FrameGltf::losses() const {
+  std::vector<std::string> losses;
+  if (frames_left_out_ > 0)
+    losses.push_back(
+        fmt::format("{} frames are at the time of the one before once it is rounded to fp32, and were left "
+                    "out (--rate, or 'vestige trim')",
+                    frames_left_out_));
+  if (non_finite_ > 0)
+    losses.push_back(
+        fmt::format("{} transforms and positions were not finite, and are as in the frame before", non_finite_));
+  return losses;
+}
+
+}  // namespace
+
+std::unique_ptr<FrameFile> make_frame_gltf(const std::filesystem::path& path, Overwrite overwrite, const Avatar& avatar,
+                                           std::span<const std::byte> glb, std::vector<std::uint32_t> collider_ids) {
+  return std::make_unique<FrameGltf>(path, overwrite, avatar, glb, std::move(collider_ids));
+}
+
+}  // namespace vestige

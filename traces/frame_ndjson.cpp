@@ -1,0 +1,43 @@
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "traces/frame_file.hpp"
+#include "traces/number_text.hpp"
+
+namespace vestige {
+
+namespace {
+
+class FrameNdjson final : public FrameFile {
+ public:
+  FrameNdjson(const std::filesystem::path& path, Overwrite overwrite) : file_(path, overwrite) {}
+
+  void write(const TraceFrame& frame) override {
+    line_.clear();
+    fmt::format_to(std::back_inserter(line_), R"({{"frame":{},"time_s":)", frame.index);
+    append_seconds(line_, frame.time_ns);
+    line_ += R"(,"pose":)";
+    append_json(line_, frame.pose);
+    line_ += R"(,"colliders":)";
+    append_json(line_, frame.colliders);
+    if (!frame.teleported.empty())
+      fmt::format_to(std::back_inserter(line_), R"(,"teleported":[{}])", fmt::join(frame.teleported, ","));
+    line_ += "}\n";
+    file_.write(line_);
+  }
+
+  void commit() override { file_.commit(); }
+
+ private:
+  OutputFile file_;
+  std::string line_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameFile> make_frame_ndjson(const std::filesystem::path& path, Overwrite overwrite) {
+  return std::make_unique<FrameNdjson>(path, overwrite);
+}
+
+}  // namespace vestige

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "traces/trace.hpp"
+
+namespace vestige {
+
+/// Leaves out frames so that no more than a rate are left: of those between two ticks the first. What is left is
+/// numbered anew, one number apart unless frames were missing before; teleports go over to the next frame that is left.
+class FrameThinning {
+ public:
+  explicit FrameThinning(double rate_hz) : rate_hz_(rate_hz) {}
+
+  /// Whether the frame stays; then its number and teleports are changed.
+  bool keep(TraceFrame& frame) {
+    is_gap_ = is_gap_ || (last_index_ && frame.index != *last_index_ + 1);
+    last_index_ = frame.index;
+    teleported_.insert(teleported_.end(), frame.teleported.begin(), frame.teleported.end());
+    // Times are rounded to nanoseconds: a frame just before its tick is meant to be on it.
+    constexpr double kTolerance = 1e-3;
+    const double tick = std::floor(static_cast<double>(frame.time_ns) * rate_hz_ / 1e9 + kTolerance);
+    if (last_tick_ && tick <= *last_tick_) return false;
+    last_tick_ = tick;
+    frame.teleported.swap(teleported_);
+    teleported_.clear();
+    if (is_gap_) ++next_index_;
+    is_gap_ = false;
+    frame.index = next_index_++;
+    return true;
+  }
+
+ private:
+  double rate_hz_;
+  std::optional<std::uint64_t> last_index_;
+  std::optional<double> last_tick_;
+  std::vector<std::uint32_t> teleported_;
+  bool is_gap_ = false;
+  std::uint64_t next_index_ = 0;
+};
+
+}  // namespace vestige

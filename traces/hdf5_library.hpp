@@ -1,0 +1,100 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace vestige {
+
+/// HDF5's functions, typed by its own header, and the types of numbers that files hold.
+struct Hdf5Library {
+  decltype(&::H5open) open;
+  decltype(&::H5Eset_auto2) set_error_printing;
+  decltype(&::H5Fcreate) create_file;
+  decltype(&::H5Fopen) open_file;
+  decltype(&::H5Fclose) close_file;
+  decltype(&::H5Gcreate2) create_group;
+  decltype(&::H5Gclose) close_group;
+  decltype(&::H5Screate) create_space;
+  decltype(&::H5Screate_simple) create_simple_space;
+  decltype(&::H5Sselect_hyperslab) select_hyperslab;
+  decltype(&::H5Sget_simple_extent_ndims) rank;
+  decltype(&::H5Sget_simple_extent_dims) dimensions;
+  decltype(&::H5Sclose) close_space;
+  decltype(&::H5Pcreate) create_properties;
+  decltype(&::H5Pset_chunk) set_chunk;
+  decltype(&::H5Pset_shuffle) set_shuffle;
+  decltype(&::H5Pset_deflate) set_deflate;
+  decltype(&::H5Pclose) close_properties;
+  decltype(&::H5Dcreate2) create_dataset;
+  decltype(&::H5Dopen2) open_dataset;
+  decltype(&::H5Dget_space) space_of;
+  decltype(&::H5Dget_type) type_of;
+  decltype(&::H5Dset_extent) set_extent;
+  decltype(&::H5Dwrite) write;
+  decltype(&::H5Dread) read;
+  decltype(&::H5Dclose) close_dataset;
+  decltype(&::H5Lexists) link_exists;
+  decltype(&::H5Acreate2) create_attribute;
+  decltype(&::H5Awrite) write_attribute;
+  decltype(&::H5Aclose) close_attribute;
+  decltype(&::H5Tcopy) copy_type;
+  decltype(&::H5Tget_class) class_of;
+  decltype(&::H5Tset_size) set_size;
+  decltype(&::H5Tset_cset) set_character_set;
+  decltype(&::H5Tclose) close_type;
+  // Values, since the library's own macros name variables that are found at run time.
+  hid_t float32;
+  hid_t float64;
+  hid_t int64;
+  hid_t uint64;
+  hid_t uint32;
+  hid_t uint8;
+  hid_t text;
+  hid_t dataset_creation;
+};
+
+/// Opened the first time, never closed. Throws `Error` where libhdf5 is not installed.
+const Hdf5Library& hdf5();
+
+/// Something that HDF5 counts references of. Negative identifiers are failures.
+class Hdf5Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Hdf5Handle() = default;
+  /// Without a check: whoever made it looks at `id`.
+  Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  /// Throws `Error` at `path`, saying what failed, for a negative identifier.
+  Hdf5Handle(hid_t id, Close close, const std::filesystem::path& path, std::string_view doing);
+  ~Hdf5Handle() { reset(); }
+  Hdf5Handle(Hdf5Handle&& other) noexcept
+      : id_(std::exchange(other.id_, -1)), close_(std::exchange(other.close_, nullptr)) {}
+  Hdf5Handle& operator=(Hdf5Handle&& other) noexcept {
+    reset();
+    id_ = std::exchange(other.id_, -1);
+    close_ = std::exchange(other.close_, nullptr);
+    return *this;
+  }
+  hid_t id() const { return id_; }
+  /// Closes it; returns what HDF5 says of that, negative for a failure.
+  herr_t reset() {
+    const herr_t result = id_ >= 0 && close_ != nullptr ? close_(id_) : 0;
+    id_ = -1;
+    return result;
+  }
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+/// Throws `Error` at `path` where `result` is negative.
+void hdf5_check(herr_t result, const std::filesystem::path& path, std::string_view doing);
+
+}  // namespace vestige

@@ -1,0 +1,84 @@
+#include "traces/number_text.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+namespace vestige {
+
+namespace {
+
+template <typename Number>
+void append_number(std::string& out, Number value) {
+  if (!std::isfinite(value)) {
+    out += std::isnan(value) ? "\"nan\"" : value > 0 ? "\"inf\"" : "\"-inf\"";
+  } else if (value == 0 && std::signbit(value)) {
+    out += "-0.0";  // -0 would be read as a whole number, which has no sign
+  } else {
+    fmt::format_to(std::back_inserter(out), "{}", value);
+  }
+}
+
+}  // namespace
+
+void append_json(std::string& out, float value) {
+  append_number(out, value);
+}
+
+void append_json(std::string& out, double value) {
+  append_number(out, value);
+}
+
+void append_json(std::string& out, const glm::dvec3& vector) {
+  out += '[';
+  append_number(out, vector.x);
+  out += ',';
+  append_number(out, vector.y);
+  out += ',';
+  append_number(out, vector.z);
+  out += ']';
+}
+
+void append_json(std::string& out, const Pose& pose) {
+  out += R"({"origin":)";
+  append_json(out, pose.origin_m);
+  out += R"(,"nodes":[)";
+  for (std::size_t i = 0; i < pose.nodes.size(); ++i) {
+    const NodeLocal& node = pose.nodes[i];
+    const float numbers[] = {node.translation.x, node.translation.y, node.translation.z, node.rotation.x,
+                             node.rotation.y,    node.rotation.z,    node.rotation.w,    node.scale.x,
+                             node.scale.y,       node.scale.z};
+    out += i == 0 ? "[" : ",[";
+    for (std::size_t k = 0; k < std::size(numbers); ++k) {
+      if (k > 0) out += ',';
+      append_number(out, numbers[k]);
+    }
+    out += ']';
+  }
+  out += "]}";
+}
+
+void append_json(std::string& out, const std::vector<ColliderSample>& colliders) {
+  out += '[';
+  for (std::size_t i = 0; i < colliders.size(); ++i) {
+    fmt::format_to(std::back_inserter(out), R"({}{{"id":{},"position":)", i == 0 ? "" : ",", colliders[i].id);
+    append_json(out, colliders[i].position_m);
+    out += '}';
+  }
+  out += ']';
+}
+
+void append_seconds(std::string& out, std::int64_t time_ns) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  fmt::format_to(std::back_inserter(out), "{}", time_ns / kSecond);
+  if (time_ns % kSecond == 0) return;
+  fmt::format_to(std::back_inserter(out), ".{:09}", time_ns % kSecond);
+  out.erase(out.find_last_not_of('0') + 1);
+}
+
+std::int64_t nanoseconds_of(double time_s) {
+  return std::llround(time_s * 1e9);
+}
+
+}  // namespace vestige

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "traces/trace.hpp"
+
+namespace vestige {
+
+// Numbers as text, each the shortest that reads back to the same bits. All append to `out`.
+
+/// As JSON has it: a zero with a sign is -0.0, NaN and infinities are the strings "nan", "inf" and "-inf".
+void append_json(std::string& out, float value);
+void append_json(std::string& out, double value);
+void append_json(std::string& out, const glm::dvec3& vector);
+
+/// `{"origin": [x, y, z], "nodes": [[tx, ty, tz, rx, ry, rz, rw, sx, sy, sz], …]}`
+void append_json(std::string& out, const Pose& pose);
+
+/// `[{"id", "position": [x, y, z]}, …]`
+void append_json(std::string& out, const std::vector<ColliderSample>& colliders);
+
+/// Nanoseconds as a decimal fraction of seconds, exactly: 1500000 is 0.0015.
+void append_seconds(std::string& out, std::int64_t time_ns);
+
+/// The reverse, of seconds read as a double: exact below 2^52 ns (52 days). Precondition: |time_s| < 9e9.
+std::int64_t nanoseconds_of(double time_s);
+
+}  // namespace vestige

@@ -1,0 +1,190 @@
+#include "traces/pose_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "traces/frame_file.hpp"
+#include "traces/number_text.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::string_view kRemedy =
+    "a row is frame,time_s,origin_x,origin_y,origin_z, then NODE.tx … NODE.sz for nodes of the avatar";
+constexpr std::string_view kAvatarRemedy =
+    "name the avatar that it was exported with (--avatar), or leave the column out";
+
+constexpr double kLongest_s = 9e9;  // int64 nanoseconds
+
+float& part_of(NodeLocal& node, std::size_t part) {
+  switch (part) {
+    case 0:
+    case 1:
+    case 2:
+      return node.translation[static_cast<int>(part)];
+    case 3:
+      return node.rotation.x;
+    case 4:
+      return node.rotation.y;
+    case 5:
+      return node.rotation.z;
+    case 6:
+      return node.rotation.w;
+    default:
+      return node.scale[static_cast<int>(part) - 7];
+  }
+}
+
+class PoseCsv final : public FrameFile {
+ public:
+  PoseCsv(const std::filesystem::path& path, Overwrite overwrite, const std::vector<std::string>& node_names)
+      : file_(path, overwrite) {
+    row_ = "frame,time_s,origin_x,origin_y,origin_z";
+    for (const std::string& node : pose_csv_nodes(node_names))
+      for (const char* part : kPoseCsvParts) {
+        row_ += ',';
+        row_ += csv_field(fmt::format("{}.{}", node, part));
+      }
+    row_ += '\n';
+    file_.write(row_);
+  }
+
+  void write(const TraceFrame& frame) override {
+    row_ = fmt::format("{},", frame.index);
+    append_seconds(row_, frame.time_ns);
+    const auto out = std::back_inserter(row_);
+    const glm::dvec3& origin = frame.pose.origin_m;
+    fmt::format_to(out, ",{},{},{}", origin.x, origin.y, origin.z);
+    for (const NodeLocal& node : frame.pose.nodes) {
+      fmt::format_to(out, ",{},{},{}", node.translation.x, node.translation.y, node.translation.z);
+      fmt::format_to(out, ",{},{},{},{}", node.rotation.x, node.rotation.y, node.rotation.z, node.rotation.w);
+      fmt::format_to(out, ",{},{},{}", node.scale.x, node.scale.y, node.scale.z);
+    }
+    row_ += '\n';
+    file_.write(row_);
+  }
+
+  void commit() override { file_.commit(); }
+
+ private:
+  OutputFile file_;
+  std::string row_;
+};
+
+}  // namespace
+
+std::vector<std::string> pose_csv_nodes(const std::vector<std::string>& node_names) {
+  std::map<std::string, int> count;
+  for (const std::string& name : node_names) ++count[name];
+  std::vector<std::string> nodes;
+  for (std::size_t i = 0; i < node_names.size(); ++i) {
+    const bool is_plain = !node_names[i].empty() && count[node_names[i]] == 1;
+    nodes.push_back(is_plain ? node_names[i] : fmt::format("{}#{}", node_names[i], i));
+    // A line end would end the row; a file that has one in a name has that name alone.
+    std::ranges::replace(nodes.back(), '\n', ' ');
+    std::ranges::replace(nodes.back(), '\r', ' ');
+  }
+  return nodes;
+}
+
+std::unique_ptr<FrameFile> make_pose_csv(const std::filesystem::path& path, Overwrite overwrite,
+                                         const std::vector<std::string>& node_names) {
+  return std::make_unique<PoseCsv>(path, overwrite, node_names);
+}
+
+PoseCsvReader::PoseCsvReader(const std::filesystem::path& path, const Avatar& avatar)
+    : reader_(path), lines_(reader_, kRemedy), avatar_(avatar), rest_(rest_pose(avatar)) {
+  read_header();
+}
+
+void PoseCsvReader::read_header() {
+  std::vector<std::string> names;
+  for (const Node& node : avatar_.nodes) names.push_back(node.name);
+  const std::vector<std::string> nodes = pose_csv_nodes(names);
+  std::map<std::string, Target> known = {{"frame", {Column::kFrame, 0, 0}},
+                                         {"time_s", {Column::kTime, 0, 0}},
+                                         {"origin_x", {Column::kOrigin, 0, 0}},
+                                         {"origin_y", {Column::kOrigin, 0, 1}},
+                                         {"origin_z", {Column::kOrigin, 0, 2}}};
+  for (std::size_t node = 0; node < nodes.size(); ++node)
+    for (std::size_t part = 0; part < std::size(kPoseCsvParts); ++part)
+      known.try_emplace(fmt::format("{}.{}", nodes[node], kPoseCsvParts[part]), Target{Column::kNode, node, part});
+  columns_ = lines_.take_header();
+  std::set<std::string> seen;
+  std::vector<bool> moves(nodes.size());
+  for (const std::string& column : columns_) {
+    const auto target = known.find(column);
+    if (target == known.end())
+      throw lines_.error(fmt::format("the column '{}' names no node of the avatar", column), kAvatarRemedy);
+    if (!seen.insert(column).second) throw lines_.error(fmt::format("the column '{}' stands there twice", column));
+    targets_.push_back(target->second);
+    if (target->second.column == Column::kNode) moves[target->second.node] = true;
+  }
+  if (!seen.contains("time_s")) throw lines_.error("there is no column time_s");
+  has_frames_ = seen.contains("frame");
+  for (std::size_t node = 0; node < nodes.size(); ++node)
+    if (!moves[node]) resting_.push_back(nodes[node]);
+}
+
+void PoseCsvReader::take(const Target& target, TraceFrame& frame) {
+  const auto number = [&](auto& value) {
+    if (!lines_.take(value) || !std::isfinite(value))
+      throw lines_.error(
+          fmt::format("{} is no finite number", columns_[static_cast<std::size_t>(&target - targets_.data())]));
+  };
+  switch (target.column) {
+    case Column::kFrame:
+      if (!lines_.take(frame.index)) throw lines_.error("frame is no whole number");
+      break;
+    case Column::kTime:
+      number(time_s_);
+      if (time_s_ < 0 || time_s_ > kLongest_s) throw lines_.error(fmt::format("{} s is no time in a trace", time_s_));
+      frame.time_ns = nanoseconds_of(time_s_);
+      break;
+    case Column::kOrigin:
+      number(frame.pose.origin_m[static_cast<int>(target.part)]);
+      break;
+    case Column::kNode:
+      number(part_of(frame.pose.nodes[target.node], target.part));
+      break;
+  }
+}
+
+void PoseCsvReader::check(const TraceFrame& frame) {
+  if (rows_ > 0 && frame.index <= last_index_)
+    throw lines_.error(fmt::format("frame {} comes after frame {}", frame.index, last_index_), "sort the rows");
+  if (frame.index > std::numeric_limits<std::uint32_t>::max())
+    throw lines_.error(fmt::format("frame {} is beyond 4294967295", frame.index));
+  if (frame.time_ns < last_time_ns_)
+    throw lines_.error(fmt::format("time runs backwards, to {} s", time_s_), "sort the rows by time");
+  for (std::size_t i = 0; i < frame.pose.nodes.size(); ++i) {
+    const glm::quat& q = frame.pose.nodes[i].rotation;
+    if (q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0)
+      throw lines_.error(fmt::format("the rotation of node {} is zero, which is no rotation", i));
+  }
+}
+
+bool PoseCsvReader::next(TraceFrame& frame) {
+  if (!lines_.next()) {
+    if (rows_ == 0) throw Error(reader_.name(), "holds no frame", kRemedy);
+    return false;
+  }
+  frame.pose = rest_;
+  frame.index = rows_;
+  for (const Target& target : targets_) take(target, frame);
+  if (!lines_.at_end()) throw lines_.error(fmt::format("has more than the header's {} fields", targets_.size()));
+  check(frame);
+  ++rows_;
+  last_index_ = frame.index;
+  last_time_ns_ = frame.time_ns;
+  return true;
+}
+
+}  // namespace vestige
