@@ -284,6 +284,20 @@ std::vector<std::optional<BodyRole>> body_roles(std::span<const NamedJoint> join
   return RoleFinder(joints).find();
 }
 
+std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar) {
+  std::vector<NamedJoint> joints;
+  std::vector<int> place(avatar.nodes.size(), -1);
+  for (const int index : avatar.node_order) {
+    const Node& node = avatar.nodes[static_cast<std::size_t>(index)];
+    place[static_cast<std::size_t>(index)] = static_cast<int>(joints.size());
+    joints.push_back({node.name, node.parent < 0 ? -1 : place[static_cast<std::size_t>(node.parent)]});
+  }
+  const Roles ordered = body_roles(joints);
+  Roles roles(avatar.nodes.size());
+  for (std::size_t i = 0; i < ordered.size(); ++i) roles[static_cast<std::size_t>(avatar.node_order[i])] = ordered[i];
+  return roles;
+}
+
 std::string plain_joint_name(std::string_view name) {
   std::string plain;
   for (const char c : without_namespace(name))

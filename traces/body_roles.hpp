@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "traces/avatar.hpp"
+
 namespace vestige {
 
 enum class BodyPart {
@@ -51,6 +53,9 @@ struct NamedJoint {
 /// Mixamo, HumanIK, CMU, Biovision, 3ds Max Biped, Poser, MakeHuman, Rigify, Unity and VRM, in any case, with any
 /// prefix, with sides as "Left", "L" or "left" at either end; and limbs whose joints are only numbered.
 std::vector<std::optional<BodyRole>> body_roles(std::span<const NamedJoint> joints);
+
+/// The same of an avatar's nodes.
+std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar);
 
 /// A name without what programs put in front of it ("mixamorig:"), in small letters and digits only.
 std::string plain_joint_name(std::string_view name);

@@ -5,7 +5,6 @@
 #include <map>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include "traces/avatar.hpp"
 
@@ -23,12 +22,8 @@ struct Humanoid {
   Facing facing = Facing::kPlusZ;
 };
 
-/// By the extensions VRM or VRMC_vrm of its file `glb` where there is one, else by the nodes' names: those of Unity,
-/// VRM, Mixamo, Unreal, Blender's Rigify and of the built-in avatar. May find none. Never fails: `glb` has been read as
-/// `avatar` before.
+/// By the extensions VRM or VRMC_vrm of its file `glb` where there is one, else by the nodes' names (body_roles.hpp).
+/// May find none. Never fails: `glb` has been read as `avatar` before.
 Humanoid find_humanoid(const Avatar& avatar, std::span<const std::byte> glb);
-
-/// The bone that a joint's name stands for; empty: none.
-std::string humanoid_bone(std::string_view joint_name);
 
 }  // namespace vestige

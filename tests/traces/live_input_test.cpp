@@ -167,29 +167,6 @@ TEST(OscPacket, NestedWithoutEndIsRefused) {
 
 // The body.
 
-TEST(Humanoid, KnowsTheNamesOfTheUsualTools) {
-  EXPECT_EQ(humanoid_bone("mixamorig:LeftUpLeg"), "LeftUpperLeg");
-  EXPECT_EQ(humanoid_bone("mixamorig:LeftLeg"), "LeftLowerLeg");
-  EXPECT_EQ(humanoid_bone("mixamorig:Spine2"), "UpperChest");
-  EXPECT_EQ(humanoid_bone("mixamorig:RightHandIndex2"), "RightIndexIntermediate");
-  EXPECT_EQ(humanoid_bone("upperarm_l"), "LeftUpperArm");
-  EXPECT_EQ(humanoid_bone("thumb_03_r"), "RightThumbDistal");
-  EXPECT_EQ(humanoid_bone("clavicle_r"), "RightShoulder");
-  EXPECT_EQ(humanoid_bone("upper_arm.L"), "LeftUpperArm");
-  EXPECT_EQ(humanoid_bone("shin.R"), "RightLowerLeg");
-  EXPECT_EQ(humanoid_bone("LeftLowerArm"), "LeftLowerArm");
-  EXPECT_EQ(humanoid_bone("Hips"), "Hips");
-  EXPECT_EQ(humanoid_bone("Sword"), "");
-  EXPECT_EQ(humanoid_bone(""), "");
-}
-
-TEST(Humanoid, OfTheBuiltInAvatarIsWhole) {
-  const Humanoid humanoid = find_humanoid(test::builtin_avatar(), builtin_avatar_glb());
-  EXPECT_EQ(humanoid.node_of.size(), 21U);
-  for (const char* name : {"Hips", "Spine", "Chest", "Neck", "Head", "LeftUpperArm", "RightLowerLeg", "LeftToes"})
-    EXPECT_TRUE(humanoid.node_of.contains(name)) << name;
-}
-
 std::vector<std::byte> glb_of(std::string json) {
   while (json.size() % 4 != 0) json += ' ';
   const auto size = static_cast<std::uint32_t>(json.size());
@@ -198,6 +175,34 @@ std::vector<std::byte> glb_of(std::string json) {
   std::memcpy(glb.data(), head, sizeof head);
   std::memcpy(glb.data() + sizeof head, json.data(), json.size());
   return glb;
+}
+
+TEST(Humanoid, HasUnitysNamesWhateverTheJointsAreCalled) {
+  const std::vector<std::pair<const char*, const char*>> bones = {
+      {"mixamorig:Hips", "Hips"},         {"mixamorig:Spine", "Spine"},
+      {"mixamorig:Spine1", "Chest"},      {"mixamorig:Spine2", "UpperChest"},
+      {"mixamorig:Neck", "Neck"},         {"mixamorig:Head", "Head"},
+      {"clavicle_r", "RightShoulder"},    {"upperarm_l", "LeftUpperArm"},
+      {"LeftForeArm", "LeftLowerArm"},    {"mixamorig:RightHandIndex2", "RightIndexIntermediate"},
+      {"thumb_03_r", "RightThumbDistal"}, {"mixamorig:LeftUpLeg", "LeftUpperLeg"},
+      {"shin.R", "RightLowerLeg"},        {"Sword", ""}};
+  Avatar avatar = test::skeleton(bones.size());  // each joint hangs from the one before
+  for (std::size_t i = 0; i < bones.size(); ++i) avatar.nodes[i].name = bones[i].first;
+  const Humanoid humanoid = find_humanoid(avatar, glb_of("{}"));
+  for (std::size_t i = 0; i < bones.size(); ++i) {
+    const std::string bone = bones[i].second;
+    if (bone.empty()) continue;
+    ASSERT_TRUE(humanoid.node_of.contains(bone)) << bone;
+    EXPECT_EQ(humanoid.node_of.find(bone)->second, i) << bone;
+  }
+  EXPECT_EQ(humanoid.node_of.size(), bones.size() - 1);
+}
+
+TEST(Humanoid, OfTheBuiltInAvatarIsWhole) {
+  const Humanoid humanoid = find_humanoid(test::builtin_avatar(), builtin_avatar_glb());
+  EXPECT_EQ(humanoid.node_of.size(), 21U);
+  for (const char* name : {"Hips", "Spine", "Chest", "Neck", "Head", "LeftUpperArm", "RightLowerLeg", "LeftToes"})
+    EXPECT_TRUE(humanoid.node_of.contains(name)) << name;
 }
 
 TEST(Humanoid, IsWhatVrmSays) {
