@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
   add_merge(program, invocation);
   add_cat(program, invocation);
   add_avatar(program, invocation);
+  add_map(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);
   add_claims(program, invocation);

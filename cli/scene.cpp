@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/mapping/body_surface.hpp"
+#include "analysis/mapping/layouts.hpp"
 #include "cli/options.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
@@ -28,13 +30,12 @@ Scene load_scene(const std::string& avatar, const std::string& map, Verbosity ve
   warn_all(scene.avatar.warnings, verbosity);
   const std::string default_map = avatar == "builtin" ? "builtin" : "none";
   const std::string& chosen_map = map.empty() ? default_map : map;
-  ActuatorMapFiles files = read_actuator_map_files(chosen_map);
+  ActuatorMapFiles files = read_map_files(scene.avatar, chosen_map);
   if (!files.png.empty()) scene.map = parse_actuator_map(files.png, files.json, chosen_map);
   scene.map_png = std::move(files.png);
   scene.map_json = std::move(files.json);
   warn_all(scene.map.warnings, verbosity);
-  const auto& coordinates = scene.avatar.texture_coordinate;
-  if (!scene.map_png.empty() && std::ranges::count(coordinates, coordinates.front()) == std::ssize(coordinates))
+  if (!scene.map_png.empty() && !has_texture_coordinates(scene.avatar))
     warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", avatar), verbosity);
   if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
   return scene;

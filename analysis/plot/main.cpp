@@ -152,7 +152,7 @@ int draw_timeline(const Options& options) {
   return write_figure(options, stem_of(options), [&] {
     plot::Timeline timeline = plot::read_timeline(options.inputs.front());
     if (!options.map.empty()) {
-      const vestige::ActuatorMap map = plot::read_map(options.map);
+      const vestige::ActuatorMap map = plot::read_map(options.map, plot::read_subject("builtin", "none").avatar);
       warn(options, map.warnings);
       if (map.actuator_count != timeline.actuator_count)
         throw vestige::Error(options.map,
@@ -339,7 +339,7 @@ int run(int argc, char** argv) {
       ->expected(1)
       ->required();
   timeline.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
-      ->type_name("builtin|FILE.png");
+      ->type_name("builtin|LAYOUT|FILE.png");
   timeline.add_option("--measured", options.measured, "What a board's pins did meanwhile, as CSV like a timeline")
       ->type_name("CSV");
   add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
@@ -363,8 +363,9 @@ int run(int argc, char** argv) {
       ->type_name("builtin|FILE");
   body.add_option(
           "--map", options.map,
-          "The actuator map, a greyscale PNG whose FILE.json names the actuators if it exists [default: the trace's]")
-      ->type_name("builtin|none|FILE.png");
+          "The actuator map, a greyscale PNG whose FILE.json names the actuators if it exists, or a layout ('vestige "
+          "map make' lists them) [default: the trace's]")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
   body.add_option("--contacts", options.contacts, "What 'vestige replay --contacts FILE.csv' wrote")->type_name("CSV");
   add_common_options(body, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -body]");
 
@@ -390,7 +391,8 @@ int run(int argc, char** argv) {
       .add_option("--contacts", options.contacts,
                   "What 'vestige replay --contacts FILE.csv' wrote; the frames drawn are then ones with contacts")
       ->type_name("CSV");
-  scene.add_option("--map", options.map, "Actuator map instead of the trace's")->type_name("builtin|none|FILE.png");
+  scene.add_option("--map", options.map, "Actuator map instead of the trace's")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
   add_common_options(scene, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -scene]");
 
   CLI::App& avatar = add_command(app, "avatar", "An avatar from four sides, in poses over its animations",
