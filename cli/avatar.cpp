@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <png.h>
 
 #include <algorithm>
 #include <array>
@@ -7,8 +6,10 @@
 #include <set>
 #include <tuple>
 
+#include "analysis/png_image.hpp"
 #include "analysis/provenance.hpp"
 #include "analysis/uv_overlap.hpp"
+#include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/box.hpp"
@@ -100,32 +101,7 @@ std::vector<std::byte> overlap_picture(const UvCoverage& coverage) {
     pixels.push_back(layers == 0   ? kNothing
                      : layers == 1 ? kOne
                                    : kSeveral[std::min<std::size_t>(layers - 2U, kSeveral.size() - 1)]);
-  png_image image = {};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = coverage.side;
-  image.height = coverage.side;
-  image.format = PNG_FORMAT_RGB;
-  png_alloc_size_t bytes = 0;
-  std::vector<std::byte> png;
-  if (png_image_write_to_memory(&image, nullptr, &bytes, 0, pixels.data(), 0, nullptr) != 0) {
-    png.resize(bytes);
-    if (png_image_write_to_memory(&image, png.data(), &bytes, 0, pixels.data(), 0, nullptr) != 0) return png;
-  }
-  throw Error("--uv", image.message, "leave it out");
-}
-
-void write_file(const std::string& path, std::span<const std::byte> bytes, const CommonOptions& options) {
-  if (path.empty()) return;
-  OutputFile file(path, options.overwrite());
-  file.write(bytes);
-  file.commit();
-}
-
-/// A file named otherwise would be opened as what it is not.
-void check_extension(const char* flag, const std::string& path, std::string_view extension, std::string_view what) {
-  if (path.empty() || path == "-" || std::filesystem::path(path).extension() == extension) return;
-  throw UsageError(flag, fmt::format("'{}' does not end in {}", path, extension),
-                   fmt::format("what is written is {}", what));
+  return colour_png(pixels, coverage.side, coverage.side);
 }
 
 void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
@@ -149,13 +125,13 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
   for (const std::string& warning : avatar.warnings) warn(warning, options.common.verbosity());
   const UvCoverage coverage = uv_coverage(avatar, kTextureSide);
 
-  write_file(options.output, glb, options.common);
+  write_bytes(options.output, glb, options.common);
   if (!options.map_output.empty()) {
-    write_file(options.map_output, builtin_actuator_map_png(), options.common);
+    write_bytes(options.map_output, builtin_actuator_map_png(), options.common);
     const std::string json = builtin_actuator_map_json();
-    write_file(sidecar, std::as_bytes(std::span(json)), options.common);
+    write_bytes(sidecar, std::as_bytes(std::span(json)), options.common);
   }
-  if (!options.uv_output.empty()) write_file(options.uv_output, overlap_picture(coverage), options.common);
+  if (!options.uv_output.empty()) write_bytes(options.uv_output, overlap_picture(coverage), options.common);
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["avatar"] = options.avatar;

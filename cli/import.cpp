@@ -171,7 +171,8 @@ void run_import(ImportOptions options, Invocation& invocation) {
   Scene scene;
   if (from_hdf5) {
     const auto file = std::make_shared<TraceHdf5>(options.from);
-    scene = make_scene(file->avatar_glb(), file->actuator_map_png(), std::string(text_of(file->actuator_map_json())),
+    scene = make_scene(file->avatar_glb(),
+                       {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
                        {options.from + ", avatar.glb", options.from + ", actuator_map.png"}, verbosity);
     frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
     frames.share = [file] { return file->share(); };
@@ -266,7 +267,7 @@ void add_import(CLI::App& program, Invocation& invocation) {
   verb->add_option("--map", options->map,
                    "The actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
                    "[default: builtin for the built-in avatar, else none]")
-      ->type_name("builtin|none|FILE.png");
+      ->type_name("builtin|none|LAYOUT|FILE.png");
   verb->add_option("--unit", options->unit,
                    "How far the motion travels: auto scales it by the heights of both hips, so that feet do not slide; "
                    "a unit keeps true distances")

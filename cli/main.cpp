@@ -70,6 +70,7 @@ int run(int argc, char** argv) {
   add_export(program, invocation);
   add_import(program, invocation);
   add_avatar(program, invocation);
+  add_map(program, invocation);
   add_devices(program, invocation);
   add_plot(program, invocation);
   add_claims(program, invocation);

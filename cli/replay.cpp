@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/mapping/layouts.hpp"
 #include "analysis/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/law_choice.hpp"
@@ -112,8 +113,8 @@ std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const 
                                  const DriveMaker* drives, Verbosity verbosity) {
   std::vector<MapChange> changes;
   for (const TimedMap& timed : timed_maps) {
-    const ActuatorMapFiles files = read_actuator_map_files(timed.file);
-    if (files.png.empty()) throw UsageError("--map-at", "'none' is no map", "name a PNG file, or builtin");
+    const ActuatorMapFiles files = read_map_files(trace.avatar, timed.file);
+    if (files.png.empty()) throw UsageError("--map-at", "'none' is no map", "name a PNG file, builtin or a layout");
     MapChange change = {timed.time_s, parse_actuator_map(files.png, files.json, timed.file), nullptr};
     if (change.map.actuator_count != trace.map.actuator_count)
       throw Error(timed.file,
@@ -405,7 +406,7 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   verb->add_option("--map-at", options->map_at,
                    "Use another actuator map from a time of the trace on, with as many actuators; again for more")
       ->group("Results")
-      ->type_name("TIME=FILE.png")
+      ->type_name("TIME=FILE.png|TIME=LAYOUT")
       ->expected(1)
       ->take_all();
   add_result("--verify", options->verify,

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "analysis/mapping/body_surface.hpp"
+#include "analysis/mapping/layouts.hpp"
 #include "cli/options.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
@@ -19,32 +21,39 @@ void warn_all(const std::vector<std::string>& warnings, Verbosity verbosity) {
   for (const std::string& warning : warnings) warn(warning, verbosity);
 }
 
+Scene scene_of(std::vector<std::byte> avatar_glb, const std::string& name, Verbosity verbosity) {
+  Scene scene;
+  scene.avatar_glb = std::move(avatar_glb);
+  scene.avatar = parse_avatar_glb(scene.avatar_glb, name);
+  warn_all(scene.avatar.warnings, verbosity);
+  return scene;
+}
+
+void give_map(Scene& scene, ActuatorMapFiles files, const SceneNames& names, Verbosity verbosity) {
+  if (!files.png.empty()) scene.map = parse_actuator_map(files.png, files.json, names.map);
+  scene.map_png = std::move(files.png);
+  scene.map_json = std::move(files.json);
+  warn_all(scene.map.warnings, verbosity);
+  if (!scene.map_png.empty() && !has_texture_coordinates(scene.avatar))
+    warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", names.avatar),
+         verbosity);
+  if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
+}
+
 }  // namespace
 
 Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity) {
   const std::string default_map = avatar == "builtin" ? "builtin" : "none";
-  std::vector<std::byte> avatar_glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
   const std::string& chosen_map = map.empty() ? default_map : map;
-  ActuatorMapFiles files = read_actuator_map_files(chosen_map);
-  return make_scene(std::move(avatar_glb), std::move(files.png), std::move(files.json), {avatar, chosen_map},
-                    verbosity);
+  Scene scene = scene_of(avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar, verbosity);
+  give_map(scene, read_map_files(scene.avatar, chosen_map), {avatar, chosen_map}, verbosity);
+  return scene;
 }
 
-Scene make_scene(std::vector<std::byte> avatar_glb, std::vector<std::byte> map_png, std::string map_json,
-                 const SceneNames& names, Verbosity verbosity) {
-  Scene scene;
-  scene.avatar_glb = std::move(avatar_glb);
-  scene.avatar = parse_avatar_glb(scene.avatar_glb, names.avatar);
-  warn_all(scene.avatar.warnings, verbosity);
-  if (!map_png.empty()) scene.map = parse_actuator_map(map_png, map_json, names.map);
-  scene.map_png = std::move(map_png);
-  scene.map_json = std::move(map_json);
-  warn_all(scene.map.warnings, verbosity);
-  const auto& coordinates = scene.avatar.texture_coordinate;
-  if (!scene.map_png.empty() && std::ranges::count(coordinates, coordinates.front()) == std::ssize(coordinates))
-    warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", names.avatar),
-         verbosity);
-  if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
+Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const SceneNames& names,
+                 Verbosity verbosity) {
+  Scene scene = scene_of(std::move(avatar_glb), names.avatar, verbosity);
+  give_map(scene, std::move(map), names, verbosity);
   return scene;
 }
 

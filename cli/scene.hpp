@@ -24,8 +24,9 @@ struct Scene {
   TraceAttachments attachments() const { return {avatar_glb, map_png, map_json}; }
 };
 
-/// `avatar`: "builtin" or a file. `map`: "builtin", "none" or a PNG file, whose sidecar is the .json of the same name,
-/// if there is one; empty: "builtin" for the built-in avatar, else "none". Warnings go to standard error.
+/// `avatar`: "builtin" or a file. `map`: "builtin", "none", a layout's name, or a PNG file, whose sidecar is the .json
+/// of the same name, if there is one; empty: "builtin" for the built-in avatar, else "none". Warnings go to standard
+/// error.
 Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity);
 
 /// What errors and warnings call them.
@@ -35,8 +36,8 @@ struct SceneNames {
 };
 
 /// The same of files that are read already.
-Scene make_scene(std::vector<std::byte> avatar_glb, std::vector<std::byte> map_png, std::string map_json,
-                 const SceneNames& names, Verbosity verbosity);
+Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const SceneNames& names,
+                 Verbosity verbosity);
 
 /// A trace, with the avatar and map that it carries.
 struct OpenTrace {

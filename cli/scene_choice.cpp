@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/mapping/layouts.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/motion.hpp"
@@ -65,9 +66,10 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
                   "their names tell ('vestige import' reports more) [default: the first]")
       ->type_name("NAME|INDEX|none|FILE.bvh");
   verb.add_option("--map", choice.map,
-                  "The actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
-                  "[default: builtin for the built-in avatar, else none]")
-      ->type_name("builtin|none|FILE.png");
+                  "The actuator map: a layout," + layout_list() +
+                      "\nor a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
+                      "[default: builtin for the built-in avatar, else none]")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
   verb.add_option("--colliders", choice.colliders, describe_colliders())
       ->capture_default_str()
       ->type_name("SCENARIO|FILE.csv|FILE.glb");

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "analysis/mapping/layouts.hpp"
 #include "analysis/playback.hpp"
 #include "analysis/provenance.hpp"
 #include "cli/detectors.hpp"
@@ -200,7 +201,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   if (!options.map.empty() && options.choice.surface == "mapped")
     throw UsageError("--map", "may change while it is felt, which --surface mapped cannot follow",
                      "leave one of the two out");
-  const bool watched = !options.map.empty() && options.map != "builtin";
+  const bool watched = !options.map.empty() && options.map != "builtin" && !is_layout(options.map);
   if (watched && options.choice.detector == "paper")
     throw UsageError("--map", "may change while it is felt, which --detector paper cannot follow",
                      "choose another detector");
@@ -208,7 +209,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
 
   OpenTrace trace(options.trace, verbosity);
   if (!options.map.empty()) {
-    const ActuatorMapFiles files = read_actuator_map_files(options.map);
+    const ActuatorMapFiles files = read_map_files(trace.avatar, options.map);
     trace.map = parse_actuator_map(files.png, files.json, options.map);
     for (const std::string& warning : trace.map.warnings) warn(warning, verbosity);
   }
@@ -293,7 +294,7 @@ void add_stream(CLI::App& program, Invocation& invocation) {
   verb->add_flag("--loop", options->playback.loop, "Begin anew at the trace's end, until Ctrl-C")->group("Playing");
   add_playing("--map", options->map,
               "Use this actuator map instead of the trace's, and read it again whenever it changes on disk")
-      ->type_name("builtin|FILE.png");
+      ->type_name("builtin|LAYOUT|FILE.png");
   add_law_options(*verb, options->law, "Intensity",
                   "How long a contact is felt, in ms of the vest's time: a coin motor cannot answer a single frame");
   add_detector_and_context(*verb, options->choice);

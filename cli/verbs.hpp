@@ -27,6 +27,7 @@ void add_cat(CLI::App& program, Invocation& invocation);
 void add_stream(CLI::App& program, Invocation& invocation);
 void add_vest(CLI::App& program, Invocation& invocation);
 void add_avatar(CLI::App& program, Invocation& invocation);
+void add_map(CLI::App& program, Invocation& invocation);
 void add_devices(CLI::App& program, Invocation& invocation);
 void add_plot(CLI::App& program, Invocation& invocation);
 void add_claims(CLI::App& program, Invocation& invocation);

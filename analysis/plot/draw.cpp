@@ -94,12 +94,18 @@ int draw_stress(const Options& options) {
                       [](const std::filesystem::path& folder) { return stress_figure(read_stress(folder)); });
 }
 
+/// The map that --map names, which is of no certain avatar: a layout is made for the built-in one.
+ActuatorMap map_of(const Options& options) {
+  ActuatorMap map = read_map(options.map, read_subject("builtin", "none").avatar);
+  warn(options, map.warnings);
+  return map;
+}
+
 int draw_timeline(const Options& options) {
   return write_figure(options, stem_of(options), [&] {
     Timeline timeline = read_timeline(options.inputs.front());
     if (!options.map.empty()) {
-      const ActuatorMap map = read_map(options.map);
-      warn(options, map.warnings);
+      const ActuatorMap map = map_of(options);
       if (map.actuator_count != timeline.actuator_count)
         throw Error(options.map,
                     fmt::format("has {} actuators, and {} has {}", map.actuator_count, options.inputs.front().string(),
@@ -117,8 +123,7 @@ int draw_textures(const Options& options) {
   return write_figure(options, stem_of(options), [&] {
     TextureContacts textures = read_texture_contacts(options.inputs.front());
     if (!options.map.empty()) {
-      const ActuatorMap map = read_map(options.map);
-      warn(options, map.warnings);
+      const ActuatorMap map = map_of(options);
       for (const TextureContact& contact : textures.contacts)
         if (contact.actuator > map.actuator_count)
           throw Error(options.map,

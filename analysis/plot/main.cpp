@@ -97,7 +97,7 @@ int run(int argc, char** argv) {
       ->expected(1)
       ->required();
   timeline.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
-      ->type_name("builtin|FILE.png");
+      ->type_name("builtin|LAYOUT|FILE.png");
   timeline.add_option("--measured", options.measured, "What a board's pins did meanwhile, as CSV like a timeline")
       ->type_name("CSV");
   add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
@@ -111,7 +111,7 @@ int run(int argc, char** argv) {
       ->expected(1)
       ->required();
   textures.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
-      ->type_name("builtin|FILE.png");
+      ->type_name("builtin|LAYOUT|FILE.png");
   add_common_options(textures, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
 
   CLI::App& body =
@@ -123,8 +123,9 @@ int run(int argc, char** argv) {
       ->type_name("builtin|FILE");
   body.add_option(
           "--map", options.map,
-          "The actuator map, a greyscale PNG whose FILE.json names the actuators if it exists [default: the trace's]")
-      ->type_name("builtin|none|FILE.png");
+          "The actuator map, a greyscale PNG whose FILE.json names the actuators if it exists, or a layout ('vestige "
+          "map make' lists them) [default: the trace's]")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
   body.add_option("--contacts", options.contacts, "What 'vestige replay --contacts FILE.csv' wrote")->type_name("CSV");
   add_common_options(body, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -body]");
 
@@ -150,7 +151,8 @@ int run(int argc, char** argv) {
       .add_option("--contacts", options.contacts,
                   "What 'vestige replay --contacts FILE.csv' wrote; the frames drawn are then ones with contacts")
       ->type_name("CSV");
-  scene.add_option("--map", options.map, "Actuator map instead of the trace's")->type_name("builtin|none|FILE.png");
+  scene.add_option("--map", options.map, "Actuator map instead of the trace's")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
   add_common_options(scene, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -scene]");
 
   CLI::App& avatar = add_command(app, "avatar", "An avatar from four sides, in poses over its animations",
@@ -186,7 +188,7 @@ int run(int argc, char** argv) {
                                    "  vestige plot paraview man.mcap\n"
                                    "  vestige plot paraview man.mcap --every 1 -o paraview/man.pvd\n");
   paraview.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
-  paraview.add_option("--map", options.map, "Actuator map instead of the trace's")->type_name("builtin|none|FILE.png");
+  paraview.add_option("--map", options.map, "Actuator map instead of the trace's")->type_name("builtin|none|LAYOUT|FILE.png");
   paraview.add_option("--law", options.law, "How strong a contact makes the actuators")
       ->capture_default_str()
       ->type_name("binary|speed|phantom|gaussian");

@@ -71,8 +71,8 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
   return contacts;
 }
 
-ActuatorMap read_batch_map(const std::filesystem::path& folder, const std::string& map) {
-  return read_map((folder / "maps" / (map + ".png")).string());
+ActuatorMap read_batch_map(const std::filesystem::path& folder, const std::string& map, const Avatar& avatar) {
+  return read_map((folder / "maps" / (map + ".png")).string(), avatar);
 }
 
 /// What the actuators are told over the trace.
@@ -136,7 +136,7 @@ class Report {
     }
     const MapPictures pictures(avatar, contacts.all);
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      ActuatorMap map = read_batch_map(batch_, maps[i]);
+      ActuatorMap map = read_batch_map(batch_, maps[i], avatar);
       page.unfelt.push_back({maps[i], contacts.all.size(), pictures.unfelt_count(map)});
       if (i < pictured) page.maps.push_back(section(data, maps[i], avatar, contacts, pictures, std::move(map)));
     }

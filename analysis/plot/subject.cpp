@@ -2,14 +2,15 @@
 
 #include <glm/vec2.hpp>
 
+#include "analysis/mapping/layouts.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige::plot {
 
-ActuatorMap read_map(const std::string& map) {
-  const ActuatorMapFiles files = read_actuator_map_files(map);
+ActuatorMap read_map(const std::string& map, const Avatar& avatar) {
+  const ActuatorMapFiles files = read_map_files(avatar, map);
   return files.png.empty() ? ActuatorMap() : parse_actuator_map(files.png, files.json, map);
 }
 
@@ -25,7 +26,7 @@ Subject read_subject(const std::string& avatar, const std::string& map) {
   Subject subject;
   subject.title = is_builtin ? "built-in avatar" : std::filesystem::path(avatar).filename().string();
   subject.avatar = parse_avatar_glb(is_builtin ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar);
-  subject.map = read_map(!map.empty() ? map : is_builtin ? "builtin" : "none");
+  subject.map = read_map(!map.empty() ? map : is_builtin ? "builtin" : "none", subject.avatar);
   return subject;
 }
 
@@ -34,7 +35,7 @@ Subject read_subject(const TraceReader& trace, const std::filesystem::path& path
   subject.title = path.filename().string();
   subject.avatar = parse_avatar_glb(trace.avatar_glb(), path.string() + ", avatar.glb");
   if (!map.empty())
-    subject.map = read_map(map);
+    subject.map = read_map(map, subject.avatar);
   else if (!trace.actuator_map_png().empty())
     subject.map = parse_actuator_map(trace.actuator_map_png(), text_of(trace.actuator_map_json()),
                                      path.string() + ", actuator_map.png");

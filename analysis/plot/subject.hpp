@@ -25,8 +25,9 @@ struct Subject {
   }
 };
 
-/// "builtin", "none" or a PNG file, whose sidecar is the .json of the same name, if there is one. Throws `Error`.
-ActuatorMap read_map(const std::string& map);
+/// "builtin", "none", a layout's name (as it lies on `avatar`), or a PNG file, whose sidecar is the .json of the same
+/// name, if there is one. Throws `Error`.
+ActuatorMap read_map(const std::string& map, const Avatar& avatar);
 
 /// `avatar`: "builtin" or a glTF file. `map`: as for `read_map`; empty: "builtin" for the built-in avatar, else "none".
 /// Throws `Error`.

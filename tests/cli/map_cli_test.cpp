@@ -1,0 +1,109 @@
+// 'vestige map' as a user runs it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/command_line.hpp"
+#include "traces/input_file.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+class Map : public test::CommandLineTest {
+ protected:
+  void write(const char* name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+};
+
+TEST_F(Map, IsMadeCheckedAndRecordedByItsFileOrItsName) {
+  const auto made = json_of("vestige map make --layout torso16 -o vest.png --json -");
+  ASSERT_EQ(made["actuators"].size(), 16U);
+  EXPECT_EQ(made["texels_in_conflict"], 0);
+  const auto sidecar = nlohmann::json::parse(read_text_file(folder_ / "vest.json"));
+  EXPECT_EQ(sidecar["actuators"][3]["name"], "chest right");
+  EXPECT_EQ(sidecar["actuators"][3]["position_m"].size(), 3U);
+  const auto checked = json_of("vestige map check vest.png --json -");
+  EXPECT_EQ(checked["good"], true);
+  EXPECT_EQ(checked["actuators"].size(), 16U);
+
+  ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 --map vest.png -o file.mcap && "
+                "vestige record --count 20 --rate 60 --duration 1 --map torso16 -o name.mcap")
+                .exit_code,
+            0);
+  const auto hash = [&](const char* trace) {
+    return json_of(std::string("vestige replay ") + trace + " --json -")["texture_hash"];
+  };
+  EXPECT_EQ(hash("file.mcap"), hash("name.mcap"));
+  ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 -o builtin.mcap").exit_code, 0);
+  EXPECT_NE(hash("name.mcap"), hash("builtin.mcap"));
+}
+
+TEST_F(Map, OfALayoutsOwnRegionFileIsTheLayout) {
+  ASSERT_EQ(run("vestige map make --layout torso40 -o a.png --save-regions mine.json && "
+                "vestige map make --regions mine.json -o b.png")
+                .exit_code,
+            0);
+  EXPECT_EQ(read_file(folder_ / "a.png"), read_file(folder_ / "b.png"));
+  EXPECT_EQ(read_file(folder_ / "a.json"), read_file(folder_ / "b.json"));
+}
+
+TEST_F(Map, CheckFailsWithCauseAndRemedy) {
+  ASSERT_EQ(run("vestige avatar --map-output map.png && sed -i 's/\"grey\": 240/\"grey\": 241/; "
+                "s/\"actuators\": \\[/\"actuators\": [{\"grey\": 240}, /' map.json")
+                .exit_code,
+            0);
+  const test::Outcome check = run("vestige map check map.png");
+  EXPECT_EQ(check.exit_code, 4);
+  EXPECT_THAT(check.standard_output, AllOf(HasSubstr("problem: actuator 7 'lower torso, left' can never fire"),
+                                           HasSubstr("take it out of the sidecar")));
+  EXPECT_EQ(run("vestige map check builtin").exit_code, 0);
+}
+
+TEST_F(Map, SaysWhatIsWrongWithWhatItIsGiven) {
+  expect_failure("vestige map make -o a.png", 2, {"--layout", "--regions"}, "a.png");
+  expect_failure("vestige map make --layout torso17 -o a.png", 2, {"torso17"}, "a.png");
+  expect_failure("vestige map make --layout torso16 -o a.jpg", 2, {"a.jpg", ".png"}, "a.jpg");
+  expect_failure("vestige map make --layout torso16 -o -", 2, {"two files"});
+  expect_failure("vestige map make --layout torso16 -o no/such/a.png", 1, {"no/such"});
+  expect_failure("vestige map make --regions none.json -o a.png", 1, {"none.json"}, "a.png");
+  write("mine.json", R"({"regions": [{"name": "arm", "below": ["upper_arm_lfet"]}]})");
+  expect_failure("vestige map make --regions mine.json -o a.png", 1,
+                 {"mine.json, region 'arm'", "did you mean 'upper_arm_left'?"}, "a.png");
+  write("mine.json", R"({"regions": [{"name": "arm", "hieght": [0, 1]}]})");
+  expect_failure("vestige map make --regions mine.json -o a.png", 1, {"did you mean 'height'?"}, "a.json");
+  write("mine.json", R"({"regions": [{"name": "a"}, {"name": "b", "part": "head"}]})");
+  expect_failure("vestige map make --regions mine.json -o a.png", 1, {"'b'", "no skin belongs to it"}, "a.png");
+  ASSERT_EQ(run("touch a.json").exit_code, 0);
+  expect_failure("vestige map make --layout torso16 -o a.png", 1, {"a.json", "--force"}, "a.png");
+  expect_failure("vestige map check missing.png", 1, {"missing.png"});
+  expect_failure("vestige map check none", 2, {"nothing to check"});
+}
+
+TEST_F(Map, OfAnAvatarWithoutTextureCoordinatesIsRefused) {
+  const auto path = test::data("avatars/skin/SimpleSkin.gltf");
+  VESTIGE_REQUIRE_DATA(path);
+  expect_failure("vestige map make --layout torso16 -o a.png --avatar " + path.string(), 1,
+                 {"has no texture coordinates", "Blender"}, "a.png");
+  expect_failure("vestige map check builtin --avatar " + path.string(), 1, {"has no texture coordinates"});
+}
+
+TEST_F(Map, PartsListsWhatRegionsMayName) {
+  const auto parts = json_of("vestige map parts --json -");
+  EXPECT_EQ(parts["parts_by"], "joints");
+  EXPECT_NEAR(parts["parts_m2"]["thigh left"].get<double>(), parts["parts_m2"]["thigh right"].get<double>(), 1e-3);
+  EXPECT_TRUE(parts["joints_m2"].contains("thoracic_spine"));
+}
+
+TEST_F(Map, PreviewDrawsIt) {
+  if (run("vestige plot --help").exit_code != 0) GTEST_SKIP() << "BUILT WITHOUT VTK: NO PREVIEW WAS DRAWN";
+  const test::Outcome drawn = run("vestige map preview paper6 -o picture -q");
+  EXPECT_TRUE(drawn.exit_code == 0 || drawn.exit_code == 3) << drawn.standard_error;
+  EXPECT_THAT(read_text_file(folder_ / "picture.svg"), HasSubstr("upper torso, right"));
+}
+
+}  // namespace
+}  // namespace vestige
