@@ -102,7 +102,9 @@ constexpr std::size_t kNoTexel = ~std::size_t{0};
 /// Goes through the skin in pieces; `texels`: how many there are.
 template <typename Take>
 void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const SurfaceDistance& surface, Take&& take) {
-  const auto [width, height] = sampled_size(map);
+  const Size size = sampled_size(map);
+  const std::uint32_t width = size.width;
+  const std::uint32_t height = size.height;
   const glm::dvec2 scale(width, height);
   for (std::uint32_t number = 0; number < avatar.triangles.size(); ++number) {
     const double area_m2 = area_of(surface, number);

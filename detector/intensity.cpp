@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <utility>
 
 #include "detector/portable_math.hpp"
 #include "traces/error.hpp"
@@ -67,21 +69,24 @@ class Between {
 
  private:
   bool find_triangle() {
-    double best_m = std::numeric_limits<double>::infinity();
+    // Of several that hold the contact (two ways to cut a square, or one on the body's other side), the one whose
+    // corners are nearest: the farthest of them, then all.
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    std::pair<float, float> best_m = {kInfinity, kInfinity};
     for (const std::uint32_t number : layout_.neighbours_of(nearest_)) {
       const std::array<std::uint16_t, 3>& corner = layout_.neighbours()[number];
-      // Of several that seem to hold the contact (one may lie on the body's other side), the one whose corners are
-      // nearest.
-      const double farthest_m = std::max(
-          {contact_.distance_m()[corner[0]], contact_.distance_m()[corner[1]], contact_.distance_m()[corner[2]]});
-      if (farthest_m >= best_m) continue;
+      const float a_m = contact_.distance_m()[corner[0]];
+      const float b_m = contact_.distance_m()[corner[1]];
+      const float c_m = contact_.distance_m()[corner[2]];
+      const std::pair<float, float> away_m = {std::max({a_m, b_m, c_m}), a_m + b_m + c_m};
+      if (away_m >= best_m) continue;
       const std::array<glm::dvec2, 3> to = {towards(corner[0]), towards(corner[1]), towards(corner[2])};
       const std::array<double, 3> part = {cross(to[1], to[2]), cross(to[2], to[0]), cross(to[0], to[1])};
       const double whole = part[0] + part[1] + part[2];
       if (!(std::abs(whole) > 0)) continue;
       const std::array<double, 3> weight = {part[0] / whole, part[1] / whole, part[2] / whole};
       if (!(weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0)) continue;
-      best_m = farthest_m;
+      best_m = away_m;
       count_ = 0;
       for (std::size_t i = 0; i < 3; ++i)
         if (weight[i] > 0) weight_[count_++] = {corner[i], weight[i]};
@@ -108,11 +113,20 @@ class Between {
     }
   }
 
-  glm::dvec2 towards(std::uint16_t actuator) const { return layout_.towards_m(contact_, actuator); }
+  /// Triangles share corners: each is looked up once.
+  glm::dvec2 towards(std::uint16_t actuator) {
+    for (std::size_t i = 0; i < known_count_; ++i)
+      if (known_[i].first == actuator) return known_[i].second;
+    const glm::dvec2 way = layout_.towards_m(contact_, actuator);
+    if (known_count_ < known_.size()) known_[known_count_++] = {actuator, way};
+    return way;
+  }
 
   const ActuatorLayout& layout_;
   const LocatedContact& contact_;
   std::uint16_t nearest_ = 0;
+  std::array<std::pair<std::uint16_t, glm::dvec2>, 12> known_;  // the first known_count_ of them
+  std::size_t known_count_ = 0;
   std::array<Share, 3> weight_ = {};
   std::size_t count_ = 0;
 };
@@ -149,11 +163,11 @@ class Gaussian final : public IntensityLaw {
     const double sigma_m = sigma_of(layout(), options());
     // One actuator alone has no spacing: it is on.
     const double scale = std::isfinite(sigma_m) ? 0.5 / (sigma_m * sigma_m) : 0;
-    const double reach_squared = 2 * kLogOfSteps / (2 * scale);
+    const auto reach_m = static_cast<float>(std::sqrt(kLogOfSteps / scale));
     const std::span<const float> distance_m = contact.distance_m();
     for (std::uint32_t i = 0; i < distance_m.size(); ++i) {
+      if (distance_m[i] >= reach_m) continue;
       const double squared = static_cast<double>(distance_m[i]) * static_cast<double>(distance_m[i]);
-      if (squared >= reach_squared) continue;
       const double amplitude = portable_exp(-squared * scale);
       if (amplitude >= kNothing) out.push_back({i, std::min(amplitude, 1.0)});
     }

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <array>
+#include <bit>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 
 namespace vestige {
@@ -16,9 +20,17 @@ inline double portable_exp(double x) {
   constexpr double kLn2Low = 0x1.cf79abc9e3b3ap-40;
   const double whole = std::floor(x * 0x1.71547652b82fep0 + 0.5);
   const double r = (x - whole * kLn2High) - whole * kLn2Low;  // within ln 2 / 2
-  double sum = 1;
-  for (int n = 14; n > 0; --n) sum = 1 + r * sum / n;
-  return std::ldexp(sum, static_cast<int>(whole));
+  constexpr std::array<double, 15> kInverseFactorial = [] {
+    std::array<double, 15> inverse = {1};
+    double factorial = 1;
+    for (std::size_t n = 1; n < inverse.size(); ++n) inverse[n] = 1 / (factorial *= static_cast<double>(n));
+    return inverse;
+  }();
+  double sum = kInverseFactorial.back();
+  for (std::size_t n = kInverseFactorial.size() - 1; n-- > 0;) sum = sum * r + kInverseFactorial[n];
+  const auto exponent = static_cast<int>(whole);
+  if (exponent < -1022) return std::ldexp(sum, exponent);
+  return sum * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
 
 /// The logarithm to base 2; -inf for 0, not a number below. Exact for powers of two.

@@ -12,7 +12,7 @@ namespace vestige {
 namespace {
 
 constexpr double kNoise_m = 0.0125;
-constexpr double kHopeless = 50;  // exp(-25)
+constexpr double kHopeless = 25;  // named with e^-12.5 of the nearest one's probability, if at all
 
 /// What the observer names for each actuator that fires alone: rows add up to 1.
 std::vector<double> confusions(const ActuatorLayout& layout) {

@@ -19,7 +19,7 @@ double transmitted_bits(std::span<const double> counts, std::size_t columns);
 /// What a noisy observer can tell of where contacts are, in a closed form: a model.
 ///
 /// A stimulus is the region of a contact: its actuator by the map, else the nearest one. The observer feels it in the
-/// middle of what fires (`Centroid::kAmplitude`), off by Gaussian noise of half the torso's acuity (σ = 12.5 mm, van
+/// middle of what fires (`FeltOffset::amplitude_m`), off by Gaussian noise of half the torso's acuity (σ = 12.5 mm, van
 /// Erp 2005), and names actuator j with probability ∝ exp(-D_j² / 2σ²), D_j being the way along the surface from that
 /// middle to the actuator. Where nothing fires, the answer is "nothing".
 class RegionObserver {
@@ -30,7 +30,7 @@ class RegionObserver {
   void add_unfelt(std::size_t region) { ++named_[region * (actuators_ + 1) + actuators_], ++contacts_; }
   /// One under which one actuator alone fires: it is felt there.
   void add_single(std::size_t region, std::size_t actuator) { ++single_[region * actuators_ + actuator], ++contacts_; }
-  /// One that is felt `offset_m` away from where it is (`felt_offset_m`).
+  /// One that is felt `offset_m` away from where it is (`felt_offset`).
   void add(std::size_t region, const ActuatorLayout& layout, const LocatedContact& contact, const glm::dvec2& offset_m);
 
   /// What it learns of the regions of all contacts added, bits. NaN for none.

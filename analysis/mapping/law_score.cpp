@@ -38,6 +38,7 @@ double ratio(double part, double whole) {
 LawScore::LawScore(const ActuatorLayout& layout, const LawChoice& choice, double frame_s)
     : layout_(layout),
       choice_(choice),
+      contact_lasts_s_(std::max(choice.options.hold_s, frame_s)),
       law_(make_law(choice.name, borrow(layout), choice.options)),
       held_(layout.actuator_count(), choice.options.hold_s, law_->hold_rule()),
       amplitude_(layout.actuator_count(), 0),
@@ -47,15 +48,7 @@ LawScore::LawScore(const ActuatorLayout& layout, const LawChoice& choice, double
       timing_(layout.actuator_count()),
       link_(state_bytes(layout.actuator_count()), choice.line_bytes_per_s) {
   if (!choice.actuators) return;
-  for (const Motor& motor : choice.actuators->motors(layout.map())) {
-    Response& response = responses_.emplace_back();
-    response.motor = motor;
-    for (int duty = 0; duty < 256; ++duty) {
-      const auto told = static_cast<std::uint8_t>(duty);
-      const double reached = motor.after(0, told, std::max(choice.options.hold_s, frame_s));
-      response.reached.push_back(reached >= motor.felt_threshold ? reached : 0);
-    }
-  }
+  for (const Motor& motor : choice.actuators->motors(layout.map())) responses_.push_back({.motor = motor});
 }
 
 void LawScore::begin_frame(std::uint64_t frame, double time_s) {
@@ -68,9 +61,9 @@ void LawScore::feel_shares(const LocatedContact& contact) {
   if (responses_.empty()) return;
   felt_.clear();
   for (const Share& share : shares_) {
-    const Response& response = responses_[share.actuator];
-    const double reached = response.reached[response.motor.duty(share.amplitude)];
-    if (reached > 0) felt_.push_back({share.actuator, reached});
+    const Motor& motor = responses_[share.actuator].motor;
+    const double reached = motor.after(0, motor.duty(share.amplitude), contact_lasts_s_);
+    if (reached >= motor.felt_threshold && reached > 0) felt_.push_back({share.actuator, reached});
   }
 }
 
@@ -93,10 +86,10 @@ double LawScore::add(const JudgedContact& contact) {
     error_m = energy_error_m = static_cast<double>(contact.located.distance_m()[felt.front().actuator]);
     observer_.add_single(contact.region, felt.front().actuator);
   } else {
-    const glm::dvec2 offset_m = felt_offset_m(layout_, contact.located, felt, Centroid::kAmplitude);
-    error_m = glm::length(offset_m);
-    energy_error_m = glm::length(felt_offset_m(layout_, contact.located, felt, Centroid::kEnergy));
-    observer_.add(contact.region, layout_, contact.located, offset_m);
+    const FeltOffset offset = felt_offset(layout_, contact.located, felt);
+    error_m = glm::length(offset.amplitude_m);
+    energy_error_m = glm::length(offset.energy_m);
+    observer_.add(contact.region, layout_, contact.located, offset.amplitude_m);
   }
   squared_error_m2_ += error_m * error_m;
   squared_energy_error_m2_ += energy_error_m * energy_error_m;

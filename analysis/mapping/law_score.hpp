@@ -45,7 +45,6 @@ class LawScore {
   /// One actuator's motor, from what it is told to what is felt.
   struct Response {
     Motor motor;
-    std::vector<double> reached;  ///< by duty: the amplitude that a contact alone gets to, 0 where nobody feels it
     double felt = 0;
     double kick_until_s = -1e300;
   };
@@ -55,6 +54,7 @@ class LawScore {
 
   const ActuatorLayout& layout_;
   LawChoice choice_;
+  double contact_lasts_s_;  ///< alone
   std::unique_ptr<IntensityLaw> law_;
   HeldAmplitudes held_;
   std::vector<Response> responses_;  ///< empty: ideal motors

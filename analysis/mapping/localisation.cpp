@@ -12,16 +12,19 @@ constexpr double kMidline_m = 0.025;
 
 }  // namespace
 
-glm::dvec2 felt_offset_m(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares,
-                         Centroid centroid) {
-  glm::dvec2 sum(0);
-  double weights = 0;
+FeltOffset felt_offset(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares) {
+  FeltOffset sum;
+  double amplitudes = 0;
+  double energies = 0;
   for (const Share& share : shares) {
-    const double weight = centroid == Centroid::kEnergy ? share.amplitude * share.amplitude : share.amplitude;
-    sum += weight * layout.towards_m(contact, share.actuator);
-    weights += weight;
+    const glm::dvec2 way_m = layout.towards_m(contact, share.actuator);
+    const double energy = share.amplitude * share.amplitude;
+    sum.amplitude_m += share.amplitude * way_m;
+    sum.energy_m += energy * way_m;
+    amplitudes += share.amplitude;
+    energies += energy;
   }
-  return sum / weights;
+  return {sum.amplitude_m / amplitudes, sum.energy_m / energies};
 }
 
 double acuity_m(const glm::dvec3& position_m, double middle_x_m) {

@@ -9,18 +9,19 @@
 
 namespace vestige {
 
-/// Where several actuators together are felt, a model: the middle of their places weighed by
-enum class Centroid {
-  kAmplitude,  ///< A_i: Σ A_i x_i / Σ A_i. Between two actuators a distance L apart, over all places between them, its
-               ///< root mean square error is 0.289 L under `binary` and 0.107 L under `phantom`
-  kEnergy,  ///< A_i²: what `phantom` assumes, whose error is therefore 0 between actuators, by construction
+/// Where several actuators together are felt, a model: ways from the contact, metres along the body.
+struct FeltOffset {
+  /// Σ A_i v_i / Σ A_i. Between two actuators a distance L apart, over all places between them, its root mean square
+  /// is 0.289 L under `binary` and 0.107 L under `phantom`.
+  glm::dvec2 amplitude_m = glm::dvec2(0);
+  /// Σ A_i² v_i / Σ A_i²: what `phantom` assumes, so it is 0 between actuators under that, by construction.
+  glm::dvec2 energy_m = glm::dvec2(0);
 };
 
-/// The way from a contact to where it is felt, metres along the body: Σ w_i v_i / Σ w_i, v_i being the way along the
-/// surface to actuator i as the contact sees it (`ActuatorLayout::towards_m`): the first step towards the middle on a
-/// curved surface (Karcher 1977), the middle itself on a flat one. `shares` is not empty.
-glm::dvec2 felt_offset_m(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares,
-                         Centroid centroid);
+/// v_i is the way along the surface to actuator i as the contact sees it (`ActuatorLayout::towards_m`): so this is the
+/// first step towards the middle on a curved surface (Karcher 1977), and the middle itself on a flat one. `shares` is
+/// not empty.
+FeltOffset felt_offset(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares);
 
 /// The spatial acuity of the torso for vibration, metres: 25 mm, the middle of what was found, but 10 mm within 25 mm
 /// of the body's midline (van Erp 2005, "Vibrotactile spatial acuity on the torso"). `middle_x_m`: of the body at rest.

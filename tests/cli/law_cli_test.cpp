@@ -17,8 +17,6 @@
 namespace vestige {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::Each;
 using ::testing::ElementsAreArray;
 
 class Laws : public test::CommandLineTest {
@@ -54,6 +52,13 @@ std::size_t levels_in(const std::vector<ActuatorFrame>& frames) {
   return static_cast<std::size_t>(std::ranges::count(seen, true));
 }
 
+double sum(const std::vector<ActuatorFrame>& frames) {
+  double all = 0;
+  for (const ActuatorFrame& frame : frames)
+    for (const std::uint8_t duty : frame.duty) all += duty;
+  return all;
+}
+
 TEST_F(Laws, AreBinaryUnlessAskedOtherwise) {
   timeline("");
   const std::string plain = read_text_file(folder_ / "t.csv");
@@ -72,12 +77,6 @@ TEST_F(Laws, GradeDutiesWithTheContact) {
 }
 
 TEST_F(Laws, TakeTheirParameters) {
-  const auto sum = [](const std::vector<ActuatorFrame>& frames) {
-    double sum = 0;
-    for (const ActuatorFrame& frame : frames)
-      for (const std::uint8_t duty : frame.duty) sum += duty;
-    return sum;
-  };
   EXPECT_GT(sum(timeline("--law speed --full-speed 0.5")), sum(timeline("--law speed --full-speed 2")));
   EXPECT_GT(sum(timeline("--law gaussian --sigma 200")), sum(timeline("--law gaussian --sigma 50")));
   write("motor.json", R"({"duty": {"gamma": 0.5}})");
