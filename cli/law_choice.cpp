@@ -88,7 +88,7 @@ std::unique_ptr<ActuatorDrive> DriveMaker::make() const {
 }
 
 std::shared_ptr<const ActuatorLayout> DriveMaker::layout_of(const ActuatorMap& map) const {
-  return needs_layout(flags_.law) ? std::make_shared<ActuatorLayout>(avatar_, map) : nullptr;
+  return vestige::needs_layout(flags_.law) ? std::make_shared<ActuatorLayout>(avatar_, map) : nullptr;
 }
 
 nlohmann::ordered_json DriveMaker::to_json() const {

@@ -38,7 +38,7 @@ class DriveMaker {
 
   /// What rows must carry.
   PlaneSet planes() const { return planes_; }
-  bool needs_layout() const { return layout_ != nullptr; }
+  bool has_layout() const { return layout_ != nullptr; }
   std::unique_ptr<ActuatorDrive> make() const;
   /// For another map of as many actuators; null where the law needs none.
   std::shared_ptr<const ActuatorLayout> layout_of(const ActuatorMap& map) const;

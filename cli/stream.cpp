@@ -76,7 +76,7 @@ class LawMaker {
   }
 
   PlaneSet planes() const { return drives_ ? drives_->planes() : kHashedPlanes | Plane::kPressure; }
-  bool needs_layout() const { return drives_ && drives_->needs_layout(); }
+  bool needs_layout() const { return drives_ && drives_->has_layout(); }
   nlohmann::ordered_json to_json() const { return drives_ ? drives_->to_json() : nlohmann::ordered_json("pressure"); }
 
   PlaybackCalls::Law make() {
@@ -245,9 +245,9 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
     PlaybackCalls calls;
     calls.make_law = [&] { return laws.make(); };
     calls.go_on = [&](double share) {
-      if (auto watched = watch ? watch->take() : std::nullopt) {
-        trace.map = std::move(watched->map);
-        laws.use(watched->layout);
+      if (auto taken = watch ? watch->take() : std::nullopt) {
+        trace.map = std::move(taken->map);
+        laws.use(taken->layout);
         ++streamed.maps_reloaded;
         for (const std::string& warning : trace.map.warnings) tell(warning);
       }

@@ -13,8 +13,10 @@ namespace vestige {
 
 /// How far it is along a surface from a point of it to every vertex: fast marching (Kimmel & Sethian 1998, "Computing
 /// geodesic paths on manifolds"), where a triangle hands distances on as from a point source unfolded into its plane
-/// (Novotni & Klein 2002, "Computing geodesic distances on triangular meshes"): exact on a plane. A vertex whose
-/// distance turns out shorter is marched on from again, so obtuse triangles need no splitting.
+/// (Novotni & Klein 2002, "Computing geodesic distances on triangular meshes"): exact on a plane; where edges are a
+/// fifth of the radius of curvature, as on a coarse torso, too short by 0.6 % a quarter turn away and 1.4 % half a turn
+/// away, and less in proportion on finer meshes. A vertex whose distance turns out shorter is marched on from again, so
+/// obtuse triangles need no splitting.
 ///
 /// Never longer than the shortest way along edges, never shorter than the straight line. Vertices in the same place
 /// are one; edges may have any number of triangles. Triangles without area are passed along their edges. The same bits

@@ -1,5 +1,8 @@
 #include "analysis/mapping/information.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "detector/portable_math.hpp"
@@ -9,8 +12,9 @@ namespace vestige {
 namespace {
 
 constexpr double kNoise_m = 0.0125;
+constexpr double kHopeless = 50;  // exp(-25)
 
-/// What the observer names for each actuator that it attends to: rows add up to 1.
+/// What the observer names for each actuator that fires alone: rows add up to 1.
 std::vector<double> confusions(const ActuatorLayout& layout) {
   const std::size_t n = layout.actuator_count();
   std::vector<double> named(n * n, 0);
@@ -49,32 +53,51 @@ double transmitted_bits(std::span<const double> counts, std::size_t columns) {
 }
 
 RegionObserver::RegionObserver(std::size_t actuator_count)
-    : actuators_(actuator_count), attended_(actuator_count * (actuator_count + 1), 0) {}
+    : actuators_(actuator_count),
+      single_(actuator_count * actuator_count, 0),
+      named_(actuator_count * (actuator_count + 1), 0) {}
 
-void RegionObserver::add(std::size_t region, std::span<const Share> shares) {
+void RegionObserver::add(std::size_t region, const ActuatorLayout& layout, const LocatedContact& contact,
+                         const glm::dvec2& offset_m) {
   ++contacts_;
-  double* const row = attended_.data() + region * (actuators_ + 1);
-  double energy = 0;
-  for (const Share& share : shares) energy += share.amplitude * share.amplitude;
-  if (!(energy > 0)) {
-    row[actuators_] += 1;
-    return;
+  const auto away_squared = [&](std::size_t actuator) {
+    const glm::dvec2 away = layout.towards_m(contact, actuator) - offset_m;
+    return glm::dot(away, away);
+  };
+  // Only what is not hopelessly farther away than the region's own actuator can be named.
+  const double reach_squared = away_squared(region) + kHopeless * kNoise_m * kNoise_m;
+  const double reach_m = std::sqrt(reach_squared) + glm::length(offset_m);
+  const std::span<const float> distance_m = contact.distance_m();
+  likely_.clear();
+  double least = reach_squared;
+  for (std::uint32_t i = 0; i < distance_m.size(); ++i) {
+    if (static_cast<double>(distance_m[i]) > reach_m) continue;
+    const double squared = away_squared(i);
+    if (squared > reach_squared) continue;
+    likely_.push_back({i, squared});
+    least = std::min(least, squared);
   }
-  for (const Share& share : shares) row[share.actuator] += share.amplitude * share.amplitude / energy;
+  double sum = 0;
+  for (Share& likely : likely_) {
+    const double excess = likely.amplitude - least;
+    likely.amplitude = excess == 0 ? 1 : portable_exp(-0.5 * excess / (kNoise_m * kNoise_m));
+    sum += likely.amplitude;
+  }
+  double* const row = named_.data() + region * (actuators_ + 1);
+  for (const Share& likely : likely_) row[likely.actuator] += likely.amplitude / sum;
 }
 
 double RegionObserver::bits(const ActuatorLayout& layout) const {
   if (contacts_ == 0) return std::numeric_limits<double>::quiet_NaN();
   const std::size_t columns = actuators_ + 1;
   const std::vector<double> named = confusions(layout);
-  std::vector<double> counts(attended_.size(), 0);
+  std::vector<double> counts = named_;
   for (std::size_t region = 0; region < actuators_; ++region) {
     for (std::size_t i = 0; i < actuators_; ++i) {
-      const double attended = attended_[region * columns + i];
-      if (attended == 0) continue;
-      for (std::size_t j = 0; j < actuators_; ++j) counts[region * columns + j] += attended * named[i * actuators_ + j];
+      const double felt = single_[region * actuators_ + i];
+      if (felt == 0) continue;
+      for (std::size_t j = 0; j < actuators_; ++j) counts[region * columns + j] += felt * named[i * actuators_ + j];
     }
-    counts[region * columns + actuators_] = attended_[region * columns + actuators_];
   }
   return transmitted_bits(counts, columns);
 }

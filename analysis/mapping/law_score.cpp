@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 #include "analysis/mapping/balance.hpp"
@@ -81,12 +82,22 @@ double LawScore::add(const JudgedContact& contact) {
 
   ++contacts_;
   const std::vector<Share>& felt = responses_.empty() ? shares_ : felt_;
-  observer_.add(contact.region, felt);
-  if (felt.empty()) return kNaN;
+  if (felt.empty()) {
+    observer_.add_unfelt(contact.region);
+    return kNaN;
+  }
   ++fired_;
-  const double error_m = localisation_error_m(layout_, contact.located, felt, Centroid::kAmplitude);
-  const double energy_error_m =
-      felt.size() == 1 ? error_m : localisation_error_m(layout_, contact.located, felt, Centroid::kEnergy);
+  double error_m = 0;
+  double energy_error_m = 0;
+  if (felt.size() == 1) {
+    error_m = energy_error_m = static_cast<double>(contact.located.distance_m()[felt.front().actuator]);
+    observer_.add_single(contact.region, felt.front().actuator);
+  } else {
+    const glm::dvec2 offset_m = felt_offset_m(layout_, contact.located, felt, Centroid::kAmplitude);
+    error_m = glm::length(offset_m);
+    energy_error_m = glm::length(felt_offset_m(layout_, contact.located, felt, Centroid::kEnergy));
+    observer_.add(contact.region, layout_, contact.located, offset_m);
+  }
   squared_error_m2_ += error_m * error_m;
   squared_energy_error_m2_ += energy_error_m * energy_error_m;
   const double acuities = error_m / contact.acuity_m;

@@ -1,7 +1,6 @@
 #include "analysis/mapping/localisation.hpp"
 
 #include <cmath>
-#include <glm/geometric.hpp>
 
 namespace vestige {
 
@@ -13,9 +12,8 @@ constexpr double kMidline_m = 0.025;
 
 }  // namespace
 
-double localisation_error_m(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares,
-                            Centroid centroid) {
-  if (shares.size() == 1) return static_cast<double>(contact.distance_m()[shares.front().actuator]);
+glm::dvec2 felt_offset_m(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares,
+                         Centroid centroid) {
   glm::dvec2 sum(0);
   double weights = 0;
   for (const Share& share : shares) {
@@ -23,7 +21,7 @@ double localisation_error_m(const ActuatorLayout& layout, const LocatedContact& 
     sum += weight * layout.towards_m(contact, share.actuator);
     weights += weight;
   }
-  return glm::length(sum) / weights;
+  return sum / weights;
 }
 
 double acuity_m(const glm::dvec3& position_m, double middle_x_m) {

@@ -16,11 +16,11 @@ enum class Centroid {
   kEnergy,  ///< A_i²: what `phantom` assumes, whose error is therefore 0 between actuators, by construction
 };
 
-/// From a contact to where it is felt, metres along the body: Σ w_i v_i / Σ w_i, v_i being the way along the surface to
-/// actuator i as the contact sees it (the first step towards the middle on a curved surface, Karcher 1977, and the
-/// middle itself on a flat one). `shares` is not empty.
-double localisation_error_m(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares,
-                            Centroid centroid);
+/// The way from a contact to where it is felt, metres along the body: Σ w_i v_i / Σ w_i, v_i being the way along the
+/// surface to actuator i as the contact sees it (`ActuatorLayout::towards_m`): the first step towards the middle on a
+/// curved surface (Karcher 1977), the middle itself on a flat one. `shares` is not empty.
+glm::dvec2 felt_offset_m(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares,
+                         Centroid centroid);
 
 /// The spatial acuity of the torso for vibration, metres: 25 mm, the middle of what was found, but 10 mm within 25 mm
 /// of the body's midline (van Erp 2005, "Vibrotactile spatial acuity on the torso"). `middle_x_m`: of the body at rest.

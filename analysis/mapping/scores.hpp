@@ -17,7 +17,7 @@ struct LawChoice {
   std::string name = "binary";  ///< as `make_law` takes it
   LawOptions options;
   std::shared_ptr<const ActuatorModel> actuators;  ///< null: ideal ones, that do at once what they are told
-  double line_bytes_per_s = 5760;                   ///< of the link to the vest: 57600 baud, ten bits a byte
+  double line_bytes_per_s = 5760;                  ///< of the link to the vest: 57600 baud, ten bits a byte
 };
 
 enum class Better { kHigher, kLower, kNeither };

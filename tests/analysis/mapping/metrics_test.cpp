@@ -41,10 +41,8 @@ TEST(RegionObserver, LearnsEverythingFromActuatorsFarApartAndLittleFromOnesAcros
                                 test::nearest_map({{0.5 - apart_m / 2, 0.5}, {0.5 + apart_m / 2, 0.5}}, 64));
     RegionObserver observer(2);
     for (int i = 0; i < 10; ++i) {
-      const std::vector<Share> left = {{0, 1}};
-      const std::vector<Share> right = {{1, 1}};
-      observer.add(0, left);
-      observer.add(1, right);
+      observer.add_single(0, 0);
+      observer.add_single(1, 1);
     }
     return observer.bits(layout);
   };
@@ -57,10 +55,29 @@ TEST(RegionObserver, LearnsEverythingFromActuatorsFarApartAndLittleFromOnesAcros
 TEST(RegionObserver, CannotTellRegionsWhoseContactsFireNothing) {
   const ActuatorLayout layout(test::flat_body(8), test::nearest_map({{0.2, 0.5}, {0.8, 0.5}}, 64));
   RegionObserver observer(2);
-  observer.add(0, {});
-  observer.add(1, {});
+  observer.add_unfelt(0);
+  observer.add_unfelt(1);
   EXPECT_EQ(observer.bits(layout), 0);
   EXPECT_TRUE(std::isnan(RegionObserver(2).bits(layout)));
+}
+
+TEST(RegionObserver, FeelsWhatSeveralActuatorsFireInTheirMiddle) {
+  const ActuatorLayout layout(test::flat_body(32), test::nearest_map({{0.45, 0.5}, {0.55, 0.5}}, 64));
+  LocatedContact contact;
+  const auto bits_of = [&](double felt_right_m) {
+    RegionObserver observer(2);
+    for (int i = 0; i < 10; ++i) {
+      layout.locate(test::contact_at(0.47, 0.5, 32), contact);
+      observer.add(0, layout, contact, {0, 0});  // where it is: nearer to the first
+      layout.locate(test::contact_at(0.53, 0.5, 32), contact);
+      observer.add(1, layout, contact, layout.towards_m(contact, 1) * (felt_right_m / 0.02));
+    }
+    return observer.bits(layout);
+  };
+  // Named rightly with 1 / (1 + e), e = exp(-(80² - 20²) / (2 * 12.5²) mm²) = 4.6e-9.
+  EXPECT_NEAR(bits_of(0), 1, 1e-6);
+  // Felt at the midpoint, the second is named half of the time: H(1/4) - 1/2.
+  EXPECT_NEAR(bits_of(-0.03), 0.3113, 1e-3);
 }
 
 TEST(UseEvenness, IsOneForEvenUseAndNoneForOneActuator) {
