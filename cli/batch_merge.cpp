@@ -79,7 +79,7 @@ nlohmann::ordered_json run_of(const MergedShards& shards, const Invocation& invo
   run["traces"] = traces_of(shards);
   run["failures"] = shards.failures;
   std::size_t maps = 0;
-  for (const nlohmann::ordered_json& map : shards.batch["maps"]) maps += map["sha256"].is_null() ? 0 : 1;
+  for (const nlohmann::ordered_json& map : shards.batch["maps"]) maps += map["sha256"].is_null() ? 0U : 1U;
   run["totals"] = totals(run["traces"], maps * shards.batch["laws"].size());
   return run;
 }
