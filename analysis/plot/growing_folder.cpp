@@ -17,7 +17,9 @@ GrowingFolder::GrowingFolder(fs::path folder, Overwrite overwrite)
       growing_(folder_.parent_path() / fmt::format(".{}.{}", folder_.filename().string(), ::getpid())) {
   if (fs::exists(folder_)) {
     if (!fs::is_directory(folder_)) throw Error(folder_.string(), "is no folder", "choose another name");
-    if (!fs::is_empty(folder_)) refuse_overwrite(folder_, overwrite);
+    if (overwrite == Overwrite::kRefuse && !fs::is_empty(folder_))
+      throw Error(folder_.string(), "exists already, with files in it",
+                  "choose another name, or add --force to overwrite them");
   }
   std::error_code failure;
   fs::create_directory(growing_, failure);

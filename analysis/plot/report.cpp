@@ -111,10 +111,10 @@ class Report {
   ReportOutcome write() {
     const std::filesystem::path page_file = options_.output / "report.html";
     const ReportData data = read_report(batch_);
-    refuse_overwrite(page_file, options_.overwrite);
     std::error_code failure;
     std::filesystem::create_directories(options_.output, failure);
     if (failure) throw system_error(options_.output, "could not be made", failure.value());
+    refuse_overwrite(page_file, options_.overwrite);
     folder_.emplace(options_.output / "figures", options_.overwrite);
     outcome_.page = page_file;
 
