@@ -63,10 +63,9 @@ void add_limits_options(CLI::App& verb, LimitsChoice& choice) {
           "SIGUSR1")
       ->type_name("SECONDS")
       ->check(help::kPositive);
-  verb.add_option(
-          "--max-size", choice.max_size,
-          "No file becomes larger: the recording ends, or goes on in the next part (--split), or forgets what is "
-          "oldest (--ring)")
+  verb.add_option("--max-size", choice.max_size,
+                  "No file becomes larger: the recording ends, or goes on in the next part (--split). With --ring, the "
+                  "memory that it takes")
       ->type_name("SIZE");
   verb.add_option("--split", choice.split,
                   "Write parts NAME-0001.mcap, …, each a whole trace: 60s, 10min or 500MiB; 'vestige merge' joins them")

@@ -110,7 +110,8 @@ TEST_F(Kill, AtAnyInstantLosesLessThanAChunkAndWhatIsLeftCanBeRecovered) {
     }
     const auto seen = nlohmann::json::parse(test::run_node("open_traces.mjs", mended));
     EXPECT_EQ(seen.size(), expected.size());
-    for (const auto& [name, frames] : expected) EXPECT_EQ(seen.value(name, std::uint64_t{0}), frames) << name;
+    // Of the chunk that was being written, recovering keeps what reading passes over.
+    for (const auto& [name, frames] : expected) EXPECT_GE(seen.value(name, std::uint64_t{0}), frames) << name;
     std::filesystem::remove_all(mended);
   }
   EXPECT_GT(opened, 0);
