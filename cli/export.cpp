@@ -90,9 +90,8 @@ void check_flags(const ExportOptions& options, const std::string& format) {
     throw UsageError("-o", "poses and colliders are two tables",
                      "add --what poses or --what colliders, or name a folder");
   if (options.output == "-" && (format == "hdf5" || format == "gltf")) refuse_terminal("-o -");
-  if (format == "paraview" && (options.rate_hz || options.output == "-" || options.file == "-"))
-    throw UsageError("--format paraview", "'vestige plot paraview' reads a file and writes a file, all frames of it",
-                     "leave --rate out, and name both");
+  if (format == "paraview" && options.output == "-")
+    throw UsageError("-o -", "ParaView reads a folder of files", "name a .pvd");
   if (format == "paraview" && !options.common.json.empty())
     throw UsageError("--json", "'vestige plot paraview' does not say what it wrote", "leave --json out");
 }
@@ -112,6 +111,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   if (format == "paraview") {
     check_outputs({options.output}, {options.file}, options.common);
     std::vector<std::string> arguments = {"paraview", options.file, "-o", options.output};
+    if (options.rate_hz) arguments.insert(arguments.end(), {"--rate", fmt::format("{}", *options.rate_hz)});
     if (options.common.force) arguments.emplace_back("--force");
     if (options.common.quiet) arguments.emplace_back("-q");
     invocation.exit_code = run_plot(arguments);
@@ -217,7 +217,8 @@ void add_export(CLI::App& program, Invocation& invocation) {
   verb->add_option("--what", options->what, "Which of the two tables; CSV only")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "poses", "colliders"}));
-  verb->add_option("--rate", options->rate_hz, "At most so many frames a second, numbered anew [default: all frames]")
+  verb->add_option("--rate", options->rate_hz,
+                   "At most so many frames a second, numbered anew [default: all frames; 'plot paraview' has its own]")
       ->type_name("HZ")
       ->check(help::kPositive);
   add_common_options(*verb, options->common);

@@ -204,13 +204,6 @@ class Parser {
     else if (!same_word(word, "Frames:"))
       words_.fail(fmt::format("expected Frames: instead of {}", Words::quoted(word)));
     const auto frames = words_.number<std::uint64_t>(words_.next(), "the number of frames");
-    words_.expect("Frame");
-    if (const std::string_view word = words_.next(); same_word(word, "Time"))
-      words_.expect(":");
-    else if (!same_word(word, "Time:"))
-      words_.fail(fmt::format("expected Frame Time: instead of {}", Words::quoted(word)));
-    motion_.frame_time_s = words_.number<double>(words_.next(), "the frame time");
-    if (!(motion_.frame_time_s > 0)) words_.fail("the frame time is not positive");
     if (frames == 0) words_.fail("there are 0 frames");
     // A number takes a digit and a space at least: so what is allocated is bounded by what is there.
     const std::uint64_t most = (words_.bytes_left() + 1) / 2 / motion_.channel_count;
@@ -218,6 +211,13 @@ class Parser {
       words_.fail(fmt::format("{} frames of {} numbers do not fit into the {} bytes that follow", frames,
                               motion_.channel_count, words_.bytes_left()),
                   "the file was cut short, or its number of frames is wrong");
+    words_.expect("Frame");
+    if (const std::string_view word = words_.next(); same_word(word, "Time"))
+      words_.expect(":");
+    else if (!same_word(word, "Time:"))
+      words_.fail(fmt::format("expected Frame Time: instead of {}", Words::quoted(word)));
+    motion_.frame_time_s = words_.number<double>(words_.next(), "the frame time");
+    if (!(motion_.frame_time_s > 0)) words_.fail("the frame time is not positive");
     if (static_cast<double>(frames) * motion_.frame_time_s > kLongest_s)
       words_.fail("the motion lasts longer than 1e9 s", "check the frame time");
     motion_.frame_count = static_cast<std::size_t>(frames);

@@ -121,10 +121,10 @@ class GrowingDataset {
 class FrameHdf5 final : public FrameFile {
  public:
   FrameHdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace)
-      : file_(path, overwrite), path_(path), scratch_(path), ids_(trace.collider_ids()) {
+      : file_(path, overwrite), path_(path), scratch_(path, ScratchName::kKept), ids_(trace.collider_ids()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     const Hdf5Library& h5 = hdf5();
-    h5_file_ = Hdf5Handle(h5.create_file(scratch_.path().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+    h5_file_ = Hdf5Handle(h5.create_file(scratch_.path().c_str(), kHdf5Truncate, H5P_DEFAULT, H5P_DEFAULT),
                           h5.close_file, path, "make a file");
     write_head(trace);
     add({"time_ns", h5.int64, 8, {}, "ns"});

@@ -60,6 +60,10 @@ struct Hdf5Library {
   hid_t dataset_creation;
 };
 
+// The header's names of these would call the library as if it were linked.
+inline constexpr unsigned kHdf5ReadOnly = 0;  ///< H5F_ACC_RDONLY
+inline constexpr unsigned kHdf5Truncate = 2;  ///< H5F_ACC_TRUNC
+
 /// Opened the first time, never closed. Throws `Error` where libhdf5 is not installed.
 const Hdf5Library& hdf5();
 

@@ -239,6 +239,7 @@ class Retargeter {
  private:
   void refuse_other_bodies() const;
   void align();
+  glm::dquat flatter(Index foot, const glm::dquat& with_leg) const;
   /// The avatar's joint with this role, where one of the motion leads it.
   std::optional<Index> followed(const BodyRole& role) const {
     const auto node = find_role(target_.roles, role);
@@ -276,8 +277,24 @@ void Retargeter::refuse_other_bodies() const {
               "rename joints as VRM, Mixamo or CMU name them: hips, spine, leftUpperArm, …");
 }
 
-/// Turns arms and legs to where those of the motion point at rest. Hands and fingers go with their arm; feet stand flat
-/// in both, and the trunk is upright.
+/// Of two ways to hold a foot while the motion rests, the one in which it stands flatter over the motion: some captures
+/// (CMU's) rest with legs spread and feet that belong to them, others with feet flat on the floor.
+glm::dquat Retargeter::flatter(Index foot, const glm::dquat& with_leg) const {
+  constexpr std::size_t kSamples = 64;
+  const glm::dquat turn_to_avatar = glm::normalize(glm::quat_cast(to_avatar_));
+  const std::size_t step = motion_.frame_count / kSamples + 1;
+  double lead = 0;
+  std::vector<BvhPlace> places;
+  for (std::size_t frame = 0; frame < motion_.frame_count; frame += step) {
+    bvh_places(motion_, frame, places);
+    const glm::dquat turned = turn_to_avatar * places[*follows_[foot]].rotation * glm::conjugate(turn_to_avatar);
+    lead += glm::dot(turned * with_leg * target_up_ - turned * target_up_, target_up_);
+  }
+  return lead > 0 ? with_leg : glm::dquat(1, 0, 0, 0);
+}
+
+/// Turns arms and legs to where those of the motion point at rest. Hands and fingers go with their arm, toes with their
+/// foot; the trunk is upright in both.
 void Retargeter::align() {
   at_rest_.resize(target_.joints.size());
   std::vector<glm::dquat> swing(target_.joints.size(), glm::dquat(1, 0, 0, 0));
@@ -288,10 +305,10 @@ void Retargeter::align() {
   for (Index i = 0; i < target_.joints.size(); ++i) {
     const auto& role = target_.roles[i];
     const int parent = target_.joints[i].parent;
-    const bool is_trunk_or_foot =
-        role && (role->side == BodySide::kNone || role->part == BodyPart::kShoulder || role->part == BodyPart::kFoot ||
-                 role->part == BodyPart::kToes || role->part == BodyPart::kEye);
-    if (parent >= 0 && !is_trunk_or_foot) swing[i] = swing[static_cast<Index>(parent)];
+    const bool is_trunk =
+        role && (role->side == BodySide::kNone || role->part == BodyPart::kShoulder || role->part == BodyPart::kEye);
+    if (parent >= 0 && !is_trunk) swing[i] = swing[static_cast<Index>(parent)];
+    if (role && follows_[i] && role->part == BodyPart::kFoot) swing[i] = flatter(i, swing[i]);
     if (role && follows_[i] && next.contains(role->part)) {
       const auto end = followed({next.at(role->part), role->side, 0});
       if (end)

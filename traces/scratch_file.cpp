@@ -12,7 +12,7 @@
 
 namespace vestige {
 
-ScratchFile::ScratchFile(const std::filesystem::path& beside) : beside_(beside) {
+ScratchFile::ScratchFile(const std::filesystem::path& beside, ScratchName keep) : beside_(beside) {
   std::error_code ignored;
   const bool is_stream =
       beside == "-" || (std::filesystem::exists(beside, ignored) && !std::filesystem::is_regular_file(beside, ignored));
@@ -22,11 +22,15 @@ ScratchFile::ScratchFile(const std::filesystem::path& beside) : beside_(beside) 
   std::string name = (folder / ".vestige.XXXXXX").string();
   descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) throw system_error(beside, "could not create a temporary file beside it", errno);
-  ::unlink(name.c_str());
+  if (keep == ScratchName::kNone)
+    ::unlink(name.c_str());
+  else
+    path_ = name;
 }
 
 ScratchFile::~ScratchFile() {
   ::close(descriptor_);
+  if (!path_.empty()) ::unlink(path_.c_str());
 }
 
 void ScratchFile::append(std::span<const std::byte> bytes) {
@@ -41,10 +45,6 @@ void ScratchFile::read(std::uint64_t offset, std::span<std::byte> into) const {
     offset += static_cast<std::uint64_t>(count);
     into = into.subspan(static_cast<std::size_t>(count));
   }
-}
-
-std::filesystem::path ScratchFile::path() const {
-  return fmt::format("/proc/self/fd/{}", descriptor_);
 }
 
 void ScratchFile::copy_to(OutputFile& file) const {

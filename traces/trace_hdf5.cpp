@@ -143,7 +143,7 @@ class TraceHdf5::Implementation {
   static Hdf5Handle open(const std::filesystem::path& path) {
     std::error_code failed;
     if (!std::filesystem::exists(path, failed)) throw Error(path.string(), "there is no such file", "check the name");
-    Hdf5Handle file(hdf5().open_file(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), hdf5().close_file);
+    Hdf5Handle file(hdf5().open_file(path.c_str(), kHdf5ReadOnly, H5P_DEFAULT), hdf5().close_file);
     if (file.id() < 0) throw Error(path.string(), "is no HDF5 file, or one that is damaged", kRemedy);
     return file;
   }
