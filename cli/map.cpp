@@ -287,11 +287,11 @@ void run_parts(const PartsOptions& options, Invocation& invocation) {
     const double area_m2 = body.surface().area_m2(i) / static_cast<double>(patches.count());
     patches.for_each([&](const SkinPoint& point) {
       const glm::dvec3 p = body.surface().position_m(point);
-      const BodyPart part = body.part_at(point);
+      const SkinPart part = body.part_at(point);
       std::string name(to_string(part));
-      if (part > BodyPart::kHead) name += p.x >= body.middle_x_m() ? " left" : " right";
+      if (part > SkinPart::kHead) name += p.x >= body.middle_x_m() ? " left" : " right";
       parts_m2[name] += area_m2;
-      if (part == BodyPart::kTorso && p.y >= body.vest_low_m() && p.y < body.vest_high_m()) parts_m2["vest"] += area_m2;
+      if (part == SkinPart::kTorso && p.y >= body.vest_low_m() && p.y < body.vest_high_m()) parts_m2["vest"] += area_m2;
       joints_m2[avatar.nodes[static_cast<std::size_t>(body.node_at(point))].name] += area_m2;
     });
   }

@@ -56,7 +56,7 @@ void Body::weigh_parts() {
     for (std::size_t k = 0; k < kMaxInfluences && influences.weight[k] > 0; ++k) {
       const auto node = static_cast<std::size_t>(avatar().palette[influences.palette[k]].node);
       // What has no part, and none above it, such as a root, is the trunk on which the rest hangs.
-      const BodyPart part = parts_of_nodes_[node].value_or(BodyPart::kTorso);
+      const SkinPart part = parts_of_nodes_[node].value_or(SkinPart::kTorso);
       weights[static_cast<std::size_t>(part)] += influences.weight[k];
     }
   }
@@ -67,7 +67,7 @@ constexpr std::size_t kIslandsInLargest = 5;
 
 /// Vertices in one place count once: they have the same weights.
 void Body::settle_islands() {
-  const auto strongest = [](const std::array<float, kBodyParts>& weights) {
+  const auto strongest = [](const std::array<float, kSkinParts>& weights) {
     return static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
   };
   std::vector<std::size_t> part(surface_.place_count(), 0);
@@ -80,7 +80,7 @@ void Body::settle_islands() {
     }
   }
   std::vector<std::vector<std::uint32_t>> pieces;
-  std::array<std::size_t, kBodyParts> largest = {};
+  std::array<std::size_t, kSkinParts> largest = {};
   std::vector<bool> seen(part.size(), false);
   for (std::uint32_t first = 0; first < part.size(); ++first) {
     if (seen[first]) continue;
@@ -97,7 +97,7 @@ void Body::settle_islands() {
   std::vector<std::optional<std::size_t>> settled(part.size());
   for (const auto& piece : pieces) {
     if (kIslandsInLargest * piece.size() >= largest[part[piece.front()]]) continue;
-    std::array<std::size_t, kBodyParts> around = {};
+    std::array<std::size_t, kSkinParts> around = {};
     for (const std::uint32_t place : piece)
       for (const std::uint32_t next : beside[place])
         if (part[next] != part[place]) ++around[part[next]];
@@ -117,37 +117,37 @@ void Body::settle_islands() {
 
 /// A torso, and at least two of: head or neck, arms, legs.
 bool Body::is_understood() const {
-  std::array<bool, kBodyParts> named = {};
+  std::array<bool, kSkinParts> named = {};
   for (const PaletteEntry& entry : avatar().palette)
     if (const auto part = parts_of_nodes_[static_cast<std::size_t>(entry.node)])
       named[static_cast<std::size_t>(*part)] = true;
-  const auto any = [&](BodyPart first, BodyPart last) {
+  const auto any = [&](SkinPart first, SkinPart last) {
     return std::any_of(named.begin() + static_cast<std::ptrdiff_t>(first),
                        named.begin() + static_cast<std::ptrdiff_t>(last) + 1, [](bool is) { return is; });
   };
-  const int limbs = int{any(BodyPart::kNeck, BodyPart::kHead)} + int{any(BodyPart::kUpperArm, BodyPart::kHand)} +
-                    int{any(BodyPart::kThigh, BodyPart::kFoot)};
-  return any(BodyPart::kTorso, BodyPart::kTorso) && limbs >= 2;
+  const int limbs = int{any(SkinPart::kNeck, SkinPart::kHead)} + int{any(SkinPart::kUpperArm, SkinPart::kHand)} +
+                    int{any(SkinPart::kThigh, SkinPart::kFoot)};
+  return any(SkinPart::kTorso, SkinPart::kTorso) && limbs >= 2;
 }
 
-BodyPart Body::part_by_proportions(const glm::dvec3& position_m) const {
+SkinPart Body::part_by_proportions(const glm::dvec3& position_m) const {
   const Box& bounds = surface_.bounds();
   const double height_m = surface_.height_m();
   const double y = (position_m.y - bounds.low.y) / height_m;
   const double beside = std::abs(position_m.x - (bounds.low.x + bounds.high.x) / 2) / height_m;
   const bool arms_out = bounds.extent().x > kArmsHang * height_m * 1.3;
   if (arms_out && y > kCrotch * 0.8 && y < kChin && beside > kShoulder) {
-    if (beside > kWrist) return BodyPart::kHand;
-    return beside > kElbow ? BodyPart::kForearm : BodyPart::kUpperArm;
+    if (beside > kWrist) return SkinPart::kHand;
+    return beside > kElbow ? SkinPart::kForearm : SkinPart::kUpperArm;
   }
-  if (y >= kChin) return BodyPart::kHead;
-  if (y >= kNeck) return BodyPart::kNeck;
-  if (y >= kCrotch) return BodyPart::kTorso;
-  if (y >= kKnees) return BodyPart::kThigh;
-  return y >= kAnkles ? BodyPart::kShin : BodyPart::kFoot;
+  if (y >= kChin) return SkinPart::kHead;
+  if (y >= kNeck) return SkinPart::kNeck;
+  if (y >= kCrotch) return SkinPart::kTorso;
+  if (y >= kKnees) return SkinPart::kThigh;
+  return y >= kAnkles ? SkinPart::kShin : SkinPart::kFoot;
 }
 
-BodyPart Body::part_at(const SkinPoint& point) const {
+SkinPart Body::part_at(const SkinPoint& point) const {
   if (understanding_ == Understanding::kProportions) return part_by_proportions(surface_.position_m(point));
   const glm::uvec3& corner = avatar().triangles[point.triangle];
   const auto& a = part_weights_[corner.x];
@@ -155,14 +155,14 @@ BodyPart Body::part_at(const SkinPoint& point) const {
   const auto& c = part_weights_[corner.z];
   std::size_t best = 0;
   double most = -1;
-  for (std::size_t i = 0; i < kBodyParts; ++i) {
+  for (std::size_t i = 0; i < kSkinParts; ++i) {
     const double weight = point.weight.x * double{a[i]} + point.weight.y * double{b[i]} + point.weight.z * double{c[i]};
     if (weight > most) {
       most = weight;
       best = i;
     }
   }
-  return static_cast<BodyPart>(best);
+  return static_cast<SkinPart>(best);
 }
 
 int Body::node_at(const SkinPoint& point) const {
@@ -197,7 +197,7 @@ void Body::find_middle() {
   Extent torso;
   for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i) {
     const SkinPoint middle = {i, glm::dvec3(1.0 / 3)};
-    if (part_at(middle) != BodyPart::kTorso) continue;
+    if (part_at(middle) != SkinPart::kTorso) continue;
     for (const glm::dvec3& corner : surface_.corners_m(i)) torso.add(corner.x);
   }
   middle_x_m_ = torso.is_empty() ? (bounds.low.x + bounds.high.x) / 2 : (torso.low + torso.high) / 2;
@@ -218,12 +218,12 @@ void Body::find_vest() {
       const auto above = parent < 0 ? std::nullopt : parts_of_nodes_[static_cast<std::size_t>(parent)];
       if (parts_of_nodes_[i] == above) continue;
       const double y_m = world[i][3].y + rest.origin_m.y;
-      if (parts_of_nodes_[i] == BodyPart::kThigh) hips.add(y_m);
-      if (parts_of_nodes_[i] == BodyPart::kNeck || parts_of_nodes_[i] == BodyPart::kHead) necks.add(y_m);
+      if (parts_of_nodes_[i] == SkinPart::kThigh) hips.add(y_m);
+      if (parts_of_nodes_[i] == SkinPart::kNeck || parts_of_nodes_[i] == SkinPart::kHead) necks.add(y_m);
     }
   for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i) {
     const SkinPoint middle = {i, glm::dvec3(1.0 / 3)};
-    if (part_at(middle) == BodyPart::kTorso) torso.add(surface_.position_m(middle).y);
+    if (part_at(middle) == SkinPart::kTorso) torso.add(surface_.position_m(middle).y);
   }
   if (torso.is_empty()) torso = {surface_.bounds().low.y, surface_.bounds().high.y};
   const double low_m = hips.is_empty() ? torso.low : hips.low;

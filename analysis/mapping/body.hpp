@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/mapping/body_surface.hpp"
-#include "analysis/mapping/joint_names.hpp"
+#include "analysis/mapping/skin_parts.hpp"
 
 namespace vestige {
 
@@ -28,7 +28,7 @@ class Body {
 
   /// The part whose joints weigh most. Islands of a part that lie within another (a kneecap whose weights stray to the
   /// foot) belong to what surrounds them.
-  BodyPart part_at(const SkinPoint& point) const;
+  SkinPart part_at(const SkinPoint& point) const;
   /// The node that weighs most: a joint, or the node of a mesh without joints.
   int node_at(const SkinPoint& point) const;
 
@@ -43,13 +43,13 @@ class Body {
   void weigh_parts();
   void settle_islands();
   bool is_understood() const;
-  BodyPart part_by_proportions(const glm::dvec3& position_m) const;
+  SkinPart part_by_proportions(const glm::dvec3& position_m) const;
   void find_middle();
   void find_vest();
 
   BodySurface surface_;
-  std::vector<std::optional<BodyPart>> parts_of_nodes_;
-  std::vector<std::array<float, kBodyParts>> part_weights_;  ///< of every vertex
+  std::vector<std::optional<SkinPart>> parts_of_nodes_;
+  std::vector<std::array<float, kSkinParts>> part_weights_;  ///< of every vertex
   Understanding understanding_ = Understanding::kJoints;
   double middle_x_m_ = 0;
   double vest_low_m_ = 0;

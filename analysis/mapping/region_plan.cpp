@@ -163,13 +163,13 @@ RegionPlan::PartChoice RegionPlan::part_choice(const std::string& text, const st
   if (word.ends_with(" right")) choice.half = Half::kRight;
   if (choice.half != Half::kBoth) word = word.substr(0, word.rfind(' '));
   choice.vest = word == "vest";
-  const auto part = choice.vest ? BodyPart::kTorso : body_part_named(word);
+  const auto part = choice.vest ? SkinPart::kTorso : skin_part_named(word);
   if (part) {
     choice.part = *part;
     return choice;
   }
   std::vector<std::string> known = {"vest"};
-  for (std::size_t i = 0; i < kBodyParts; ++i) known.emplace_back(to_string(static_cast<BodyPart>(i)));
+  for (std::size_t i = 0; i < kSkinParts; ++i) known.emplace_back(to_string(static_cast<SkinPart>(i)));
   throw UnknownName(where, "part", text, known);
 }
 

@@ -29,7 +29,7 @@ class RegionPlan {
  private:
   enum class Half { kBoth, kLeft, kRight };
   struct PartChoice {
-    BodyPart part = BodyPart::kTorso;
+    SkinPart part = SkinPart::kTorso;
     bool vest = false;
     Half half = Half::kBoth;
   };
@@ -70,7 +70,7 @@ class RegionPlan {
   struct Asked {
     SkinPoint point;
     glm::dvec3 position_m;
-    BodyPart part;
+    SkinPart part;
   };
   Asked ask(const SkinPoint& point) const;
 

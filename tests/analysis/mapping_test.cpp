@@ -233,7 +233,7 @@ Avatar skeleton_of(const std::vector<std::pair<const char*, int>>& joints) {
 }
 
 TEST(JointNames, OfCommonRigsSayWhichPartTheyAre) {
-  using enum BodyPart;
+  using enum SkinPart;
   const auto parts = [](const std::vector<std::pair<const char*, int>>& joints) {
     return parts_of_nodes(skeleton_of(joints));
   };
