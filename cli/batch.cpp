@@ -11,6 +11,7 @@
 #include "analysis/batch/batch_record.hpp"
 #include "analysis/batch/batch_results.hpp"
 #include "analysis/batch/batch_run.hpp"
+#include "analysis/batch/rank_by.hpp"
 #include "analysis/mapping/contact_recording.hpp"
 #include "analysis/provenance.hpp"
 #include "cli/batch_options.hpp"

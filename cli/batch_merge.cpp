@@ -8,6 +8,7 @@
 
 #include "analysis/batch/batch_record.hpp"
 #include "analysis/batch/batch_results.hpp"
+#include "analysis/batch/rank_by.hpp"
 #include "analysis/provenance.hpp"
 #include "cli/batch_options.hpp"
 #include "cli/verbs.hpp"

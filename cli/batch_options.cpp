@@ -6,7 +6,7 @@
 #include <set>
 
 #include "analysis/batch/batch_inputs.hpp"
-#include "analysis/batch/batch_results.hpp"
+#include "analysis/batch/rank_by.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/mapping/scores.hpp"
 #include "cli/help/validators.hpp"

@@ -9,6 +9,7 @@
 #include <map>
 #include <string_view>
 
+#include "analysis/batch/rank_by.hpp"
 #include "analysis/mapping/scores.hpp"
 #include "traces/error.hpp"
 

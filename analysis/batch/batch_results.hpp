@@ -25,13 +25,6 @@ struct BatchResults {
   std::vector<std::string> warnings;  ///< what keeps the comparison from being fair, one sentence each
 };
 
-/// What candidates are put in order by, unless told otherwise.
-const char* default_metric_to_rank_by();
-
-/// Of `metrics()`, the one of that name. Throws `UsageError` naming --rank-by and listing them, those that no value is
-/// better of left out.
-std::size_t metric_to_rank_by(const std::string& name);
-
 /// Writes scores.csv, scores.json, ranking.csv and ranking.json. `items`: in the order of the batch's traces. Throws
 /// `Error` for an item that lacks a score.
 BatchResults write_results(const BatchFolder& folder, const nlohmann::ordered_json& batch,
