@@ -212,7 +212,7 @@ void add_export(CLI::App& program, Invocation& invocation) {
                    "  ndjson    a line of JSON a frame, as 'record --live' reads it; lossless\n"
                    "  hdf5      (.h5) for Python, MATLAB and others; lossless\n"
                    "  gltf      (.glb) the avatar's animation and a sphere for each collider; fp32\n"
-                   "  paraview  (.pvd) posed surfaces, by 'vestige plot paraview'")
+                   "  paraview  (.pvd) posed surfaces, which vestige-plot writes")
       ->check(CLI::IsMember({"csv", "ndjson", "hdf5", "gltf", "paraview"}));
   verb->add_option("--what", options->what, "Which of the two tables; CSV only")
       ->capture_default_str()

@@ -259,7 +259,7 @@ void add_import(CLI::App& program, Invocation& invocation) {
       ->type_name("FILE.csv|FILE.glb");
   verb->add_option("--nodes", options->nodes,
                    "Which nodes of a glTF file are colliders, as a pattern of names: 'ball*' [default: those named "
-                   "collider…, or else all whose translation is animated]")
+                   "collider*, or else all whose translation is animated]")
       ->type_name("PATTERN");
   verb->add_option("--avatar", options->avatar,
                    "The avatar that moves: the built-in one, or a glTF file (.glb, .gltf, .vrm) [default: builtin]")

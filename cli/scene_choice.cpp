@@ -75,7 +75,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->type_name("SCENARIO|FILE.csv|FILE.glb");
   verb.add_option("--nodes", choice.nodes,
                   "Which nodes of a glTF file are colliders, as a pattern of names: 'ball*' [default: those named "
-                  "collider…, or else all whose translation is animated]")
+                  "collider*, or else all whose translation is animated]")
       ->type_name("PATTERN");
   verb.add_option("--count", choice.count, describe_count())->check(help::whole_number(1, 1000000));
 }
