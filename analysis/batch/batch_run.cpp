@@ -201,7 +201,11 @@ class Run {
       RecordingSettings settings;
       settings.rate_hz = plan_.recording.rate_hz;
       settings.duration_s = plan_.recording.duration_s;
-      record(writer, plan_.avatar, animation, *colliders, settings, [&](double) { return !stop_; });
+      const auto write = [&](const TraceFrame& frame) {
+        writer.write(frame);
+        return true;
+      };
+      record(write, plan_.avatar, animation, *colliders, settings, [&](double) { return !stop_; });
       if (stop_) throw Stopped();
       writer.finish();
     }

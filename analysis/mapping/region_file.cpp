@@ -82,12 +82,12 @@ class Fields {
     return at(key).get<std::size_t>();
   }
 
-  std::optional<Interval> interval(const char* key, double least, double most, const char* example) const {
+  std::optional<Extent> interval(const char* key, double least, double most, const char* example) const {
     if (!has(key)) return std::nullopt;
     const json& value = at(key);
     if (!value.is_array() || value.size() != 2 || !std::ranges::all_of(value, is_finite))
       refuse(key, "is not two numbers", example);
-    const Interval interval = {value[0].get<double>(), value[1].get<double>()};
+    const Extent interval = {value[0].get<double>(), value[1].get<double>()};
     if (!(interval.low < interval.high)) refuse(key, "does not go from the lower to the higher", example);
     if (interval.low < least || interval.high > most)
       refuse(key, fmt::format("goes beyond {} or {}", least, most).c_str(), example);

@@ -28,7 +28,7 @@ class UnknownName : public Error {
 };
 
 /// From `low` up to, but not with, `high`.
-struct Interval {
+struct Extent {
   double low = 0;
   double high = 1;
 };
@@ -54,9 +54,9 @@ struct RegionSpec {
   std::vector<std::string> parts;   ///< any of these
   std::vector<std::string> joints;  ///< the strongest joint is one of these; "*" stands for any letters
   std::vector<std::string> below;   ///< or one that hangs on one of these, or is it
-  std::optional<Interval> height;
-  std::optional<Interval> height_m;
-  std::optional<Interval> angle_degrees;
+  std::optional<Extent> height;
+  std::optional<Extent> height_m;
+  std::optional<Extent> angle_degrees;
   std::vector<std::string> sides;  ///< each of these: "front", "back", "left", "right"
   std::optional<RegionGrid> grid;
   std::vector<RegionActuator> actuators;

@@ -45,12 +45,12 @@ bool matches(std::string_view pattern, std::string_view text) {
 }
 
 /// Whether an angle lies in an interval, both up to whole turns.
-bool is_within(double degrees, const Interval& interval) {
+bool is_within(double degrees, const Extent& interval) {
   const double beyond = degrees - interval.low;
   return beyond - 360 * std::floor(beyond / 360) < interval.high - interval.low;
 }
 
-Interval angles_of(const std::string& side) {
+Extent angles_of(const std::string& side) {
   if (side == "front") return {-90, 90};
   if (side == "back") return {90, 270};
   if (side == "left") return {0, 180};
@@ -58,14 +58,14 @@ Interval angles_of(const std::string& side) {
 }
 
 /// Over which angles a grid's columns go: those asked for, or what the sides leave.
-Interval column_angles(const RegionSpec& spec, const std::string& where) {
+Extent column_angles(const RegionSpec& spec, const std::string& where) {
   if (spec.angle_degrees) return *spec.angle_degrees;
   const auto has = [&](const char* side) { return std::ranges::find(spec.sides, side) != spec.sides.end(); };
   if ((has("front") && has("back")) || (has("left") && has("right")))
     throw Error(where, "asks for two opposite sides at once", "write them as two regions");
   if (has("left") || has("right")) {
-    if (has("front")) return has("left") ? Interval{0, 90} : Interval{-90, 0};
-    if (has("back")) return has("left") ? Interval{90, 180} : Interval{180, 270};
+    if (has("front")) return has("left") ? Extent{0, 90} : Extent{-90, 0};
+    if (has("back")) return has("left") ? Extent{90, 180} : Extent{180, 270};
     return angles_of(has("left") ? "left" : "right");
   }
   if (has("front") || has("back")) return angles_of(has("front") ? "front" : "back");
@@ -73,7 +73,7 @@ Interval column_angles(const RegionSpec& spec, const std::string& where) {
 }
 
 /// Which of `count` equal pieces of the interval a value lies in.
-std::size_t piece(double value, const Interval& interval, std::size_t count) {
+std::size_t piece(double value, const Extent& interval, std::size_t count) {
   const double share = (value - interval.low) / (interval.high - interval.low);
   const double number = std::floor(share * static_cast<double>(count));
   return static_cast<std::size_t>(std::clamp(number, 0.0, static_cast<double>(count - 1)));
@@ -267,7 +267,7 @@ bool RegionPlan::holds(const Region& region, const Asked& asked) const {
   if (!selects(region, asked)) return false;
   if (region.angles.empty()) return true;
   const double degrees = region.frame.angle_degrees(p);
-  return std::ranges::all_of(region.angles, [&](const Interval& angles) { return is_within(degrees, angles); });
+  return std::ranges::all_of(region.angles, [&](const Extent& angles) { return is_within(degrees, angles); });
 }
 
 void RegionPlan::place_sites(const RegionSpec& spec, const std::string& where, Region& region) const {

@@ -55,10 +55,10 @@ class RegionPlan {
     std::vector<PartChoice> parts;
     std::vector<bool> nodes;  ///< by node; empty: any
     Frame frame;
-    std::optional<Interval> height_m;
-    std::vector<Interval> angles;  ///< each of these
-    Interval rows_m;
-    Interval columns;
+    std::optional<Extent> height_m;
+    std::vector<Extent> angles;  ///< each of these
+    Extent rows_m;
+    Extent columns;
     std::size_t row_count = 1;
     std::size_t column_count = 1;
     std::vector<Site> sites;
