@@ -171,8 +171,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
   Scene scene;
   if (from_hdf5) {
     const auto file = std::make_shared<TraceHdf5>(options.from);
-    scene = make_scene(file->avatar_glb(),
-                       {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
+    scene = make_scene(file->avatar_glb(), {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
                        {options.from + ", avatar.glb", options.from + ", actuator_map.png"}, verbosity);
     frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
     frames.share = [file] { return file->share(); };

@@ -36,8 +36,7 @@ struct SceneNames {
 };
 
 /// The same of files that are read already.
-Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const SceneNames& names,
-                 Verbosity verbosity);
+Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const SceneNames& names, Verbosity verbosity);
 
 /// A trace, with the avatar and map that it carries.
 struct OpenTrace {

@@ -188,7 +188,8 @@ int run(int argc, char** argv) {
                                    "  vestige plot paraview man.mcap\n"
                                    "  vestige plot paraview man.mcap --every 1 -o paraview/man.pvd\n");
   paraview.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
-  paraview.add_option("--map", options.map, "Actuator map instead of the trace's")->type_name("builtin|none|LAYOUT|FILE.png");
+  paraview.add_option("--map", options.map, "Actuator map instead of the trace's")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
   paraview.add_option("--law", options.law, "How strong a contact makes the actuators")
       ->capture_default_str()
       ->type_name("binary|speed|phantom|gaussian");
