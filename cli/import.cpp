@@ -250,7 +250,7 @@ void add_import(CLI::App& program, Invocation& invocation) {
                    "Motion capture (BVH), which the avatar follows as far as the joints' names tell, frame by frame")
       ->type_name("FILE.bvh");
   verb->add_option("--poses", options->poses,
-                   "Poses of the avatar's own nodes, in rows time_s, NODE.tx … NODE.sz; '-' is standard input")
+                   "Poses of the avatar's own nodes, in rows time_s, NODE.tx ... NODE.sz; '-' is standard input")
       ->type_name("FILE.csv|-");
   verb->add_option("--colliders", options->colliders,
                    "Colliders: rows time_s,id,x,y,z or what 'export' writes; or the animated nodes of a glTF file "

@@ -59,7 +59,7 @@ std::uint64_t parse_size(const std::string& text, const std::string& flag) {
 void add_limits_options(CLI::App& verb, LimitsChoice& choice) {
   verb.add_option(
           "--ring", choice.ring_s,
-          "Keep the last seconds only, in memory; they are written at the end, and as NAME-0001.mcap, … at each "
+          "Keep the last seconds only, in memory; they are written at the end, and as NAME-0001.mcap and so on at each "
           "SIGUSR1")
       ->type_name("SECONDS")
       ->check(help::kPositive);
@@ -67,8 +67,9 @@ void add_limits_options(CLI::App& verb, LimitsChoice& choice) {
                   "No file becomes larger: the recording ends, or goes on in the next part (--split). With --ring, the "
                   "memory that it takes")
       ->type_name("SIZE");
-  verb.add_option("--split", choice.split,
-                  "Write parts NAME-0001.mcap, …, each a whole trace: 60s, 10min or 500MiB; 'vestige merge' joins them")
+  verb.add_option(
+          "--split", choice.split,
+          "Write parts NAME-0001.mcap and so on, each a whole trace: 60s, 10min or 500MiB; 'vestige merge' joins them")
       ->type_name("SECONDS|SIZE");
   verb.add_flag("--sync", choice.sync, "Bring each chunk to disk at once, so that a power cut takes 100 ms at most");
 }

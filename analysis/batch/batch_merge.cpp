@@ -128,6 +128,7 @@ void add_failures(const std::vector<ShardFolder>& shards, MergedShards& merged) 
 
 MergedShards read_shards(const std::vector<std::string>& folders) {
   std::vector<ShardFolder> shards;
+  shards.reserve(folders.size());
   for (const std::string& folder : folders) shards.push_back(read_shard(folder));
   check_same_batch(shards);
   check_none_missing(shards);

@@ -96,9 +96,9 @@ RecordedTrace read_contact_recording(const std::string& path) {
     recording.first.back() = colliders.size();
   }
   trace.collider_ids = colliders;
-  std::ranges::sort(trace.collider_ids);
-  const auto copies = std::ranges::unique(trace.collider_ids);
-  trace.collider_ids.erase(copies.begin(), copies.end());
+  auto& ids = trace.collider_ids;
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());  // clang 14 does not take std::ranges::unique
   for (const std::uint32_t collider : colliders)
     recording.column.push_back(static_cast<std::uint32_t>(std::ranges::lower_bound(trace.collider_ids, collider) -
                                                           trace.collider_ids.begin()));

@@ -128,6 +128,7 @@ std::vector<Scores> score_all(const ContactRecording& recording, const ActuatorL
   if (layout.actuator_count() != 0) judge(recording, layout, laws, [](std::size_t, std::size_t, double) {});
   const double duration_s = recording.frames() == 0 ? 0 : recording.time_s.back() - recording.time_s.front() + frame_s;
   std::vector<Scores> scores;
+  scores.reserve(laws.size());
   for (LawScore& law : laws) scores.push_back(law.scores(duration_s, recording.frames()));
   return scores;
 }

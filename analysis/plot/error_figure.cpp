@@ -59,8 +59,9 @@ class ErrorFigure : public Figure {
                       static_cast<double>(columns()));
     for (std::size_t i = 0; i < series_.size(); ++i) {
       const std::size_t column = i % columns();
+      const std::size_t row = i / columns();
       const double left_pt = kLeftPt + static_cast<double>(column) * (panel_pt + kPanelGapPt);
-      const double bottom_pt = height_pt() - static_cast<double>(i / columns() + 1) * row_pt() + kAxisRoomPt;
+      const double bottom_pt = height_pt() - static_cast<double>(row + 1) * row_pt() + kAxisRoomPt;
       draw_panel(canvas, series_[i], {left_pt, bottom_pt, left_pt + panel_pt, bottom_pt + kPlotHeightPt}, column == 0);
     }
   }

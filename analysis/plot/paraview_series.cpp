@@ -21,6 +21,7 @@
 #include <regex>
 #include <utility>
 
+#include "analysis/plot/html.hpp"
 #include "traces/error.hpp"
 #include "traces/reference_skinning.hpp"
 
@@ -70,26 +71,6 @@ void add_point_data(vtkPolyData& data, const char* name, const Items& items, con
   vtkIdType next = 0;
   for (const auto& item : items) array->SetValue(next++, value(item));
   data.GetPointData()->AddArray(array);
-}
-
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += letter;
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -187,7 +168,7 @@ void ParaviewSeries::write_part(const char* part, vtkPolyData& data, double time
 }
 
 std::string ParaviewSeries::collection() const {
-  const std::string folder = escaped(stem_.filename().string());
+  const std::string folder = html_text(stem_.filename().string());
   std::string text =
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"

@@ -164,7 +164,7 @@ class Page {
       return fmt::format(
           "With one trace it cannot be said whether that would hold on another: the {} have no interval "
           "either.",
-          counted(others, others == 1 ? "other combination" : "other combination"));
+          counted(others, "other combination"));
     const std::size_t level = level_with_best();
     if (level == 0)
       return others == 1

@@ -13,6 +13,7 @@
 #include "analysis/mapping/skin_patches.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
+#include "tests/support/message_of.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/avatar_gltf.hpp"
@@ -21,6 +22,7 @@
 namespace vestige {
 namespace {
 
+using test::message_of;
 using ::testing::Contains;
 using ::testing::Each;
 using ::testing::ElementsAre;
@@ -32,15 +34,6 @@ using ::testing::SizeIs;
 const Body& mannequin() {
   static const Body body(test::builtin_avatar());
   return body;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 MadeMap make(const Body& body, const std::string& regions, MapSettings settings = {}) {

@@ -107,6 +107,7 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
       // What the example writes must not be there yet; and a long measurement is only begun.
       if (command == "vestige record" || command == "vestige merge") run("rm here/man.mcap");
       if (command == "vestige trim") run("rm here/beginning.mcap");
+      if (command == "vestige batch") run("rm -r here/compared");
       if (command == "vestige replay") run("rm here/*.csv here/*.exr");
       const std::map<std::string, std::pair<const char*, const char*>> long_ones = {
           {"vestige sweep", {"sweep.json", "\"colliders\": "}},

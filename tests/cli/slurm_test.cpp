@@ -35,10 +35,12 @@ class Slurm : public test::CommandLineTest {
     GTEST_SKIP() << missing << ": BATCHES ON SLURM WERE NOT TESTED";
   }
 
+  /// munged and the jobs' accounts must be able to enter the folder.
   test::Outcome run_on_cluster(const std::string& script) const {
-    return run("cat >job.sh <<'JOB'\n" + script +
-               "\nJOB\nmkdir cluster && timeout -s KILL 300 unshare -u -p -f --kill-child --mount-proc bash "
-               "'" VESTIGE_SOURCE_DIR "/tests/cli/slurm_cluster.sh' \"$PWD/cluster\" 'bash job.sh'");
+    return run(
+        "cat >job.sh <<'JOB'\n" + script +
+        "\nJOB\nmkdir cluster && chmod 755 . && timeout -s KILL 300 unshare -u -p -f --kill-child --mount-proc bash "
+        "'" VESTIGE_SOURCE_DIR "/tests/cli/slurm_cluster.sh' \"$PWD/cluster\" 'bash job.sh'");
   }
 };
 

@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 
+#include "tests/support/message_of.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/builtin_avatar.hpp"
 #include "traces/error.hpp"
@@ -16,6 +17,7 @@
 namespace vestige {
 namespace {
 
+using test::message_of;
 using ::testing::HasSubstr;
 
 /// A PNG of these samples, `channels` a texel; 16-bit where `Sample` is.
@@ -43,15 +45,6 @@ std::vector<std::byte> make_png(const std::vector<Sample>& samples, std::uint32_
   png_write_end(png, info);
   png_destroy_write_struct(&png, &info);
   return out;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(ActuatorMap, NumbersGreysInAscendingOrderAndLeavesBlackOut) {
