@@ -196,7 +196,7 @@ std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& fi
   if (result.contains("series")) add_sweep(result, base, claims);
   if (result.contains("recording_s")) add_record(result, base, claims);
   if (result.contains("texture_hash")) add_replay(result, base, claims);
-  if (result.contains("total")) add_query(result, base, claims);
+  if (result.contains("files") && result.contains("total")) add_query(result, base, claims);
   if (result.contains("scenes") && result.contains("duration_s")) add_accuracy(result, base, claims);
   if (result.contains("families")) {
     if (result["families"].is_array()) {

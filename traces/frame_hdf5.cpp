@@ -221,6 +221,7 @@ class FrameHdf5 final : public FrameFile {
     hdf5_check(h5.set_size(type.id(), H5T_VARIABLE), path_, "make a type");
     hdf5_check(h5.set_character_set(type.id(), H5T_CSET_UTF8), path_, "make a type");
     std::vector<const char*> texts;
+    texts.reserve(names.size());
     for (const std::string& name : names) texts.push_back(name.c_str());
     write_whole("pose/node_names", type.id(), texts.size(), texts.data());
   }

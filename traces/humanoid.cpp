@@ -19,7 +19,7 @@ using nlohmann::json;
 
 /// Empty: Unity has no such bone.
 std::string bone_name(const BodyRole& role) {
-  static const std::map<BodyPart, const char*> kNames = {
+  static const std::map<BodyPart, const char*> names = {
       {BodyPart::kHips, "Hips"},         {BodyPart::kNeck, "Neck"},         {BodyPart::kHead, "Head"},
       {BodyPart::kJaw, "Jaw"},           {BodyPart::kEye, "Eye"},           {BodyPart::kShoulder, "Shoulder"},
       {BodyPart::kUpperArm, "UpperArm"}, {BodyPart::kLowerArm, "LowerArm"}, {BodyPart::kHand, "Hand"},
@@ -31,20 +31,20 @@ std::string bone_name(const BodyRole& role) {
   const auto segment = static_cast<std::size_t>(role.segment);
   if (role.part == BodyPart::kSpine) return segment < kSpine.size() ? kSpine[segment] : "";
   std::string name = role.side == BodySide::kLeft ? "Left" : role.side == BodySide::kRight ? "Right" : "";
-  name += kNames.at(role.part);
+  name += names.at(role.part);
   if (role.part < BodyPart::kThumb || role.part > BodyPart::kLittle) return name;
   return segment >= 1 && segment <= kPhalanges.size() ? name + kPhalanges[segment - 1] : "";
 }
 
 /// VRM writes "leftUpperArm"; 1.0 names the thumb's bones differently from all others.
 std::string unity_name(std::string name) {
-  static const std::map<std::string, std::string, std::less<>> kThumbs = {
+  static const std::map<std::string, std::string, std::less<>> thumbs = {
       {"leftThumbMetacarpal", "LeftThumbProximal"},
       {"leftThumbProximal", "LeftThumbIntermediate"},
       {"rightThumbMetacarpal", "RightThumbProximal"},
       {"rightThumbProximal", "RightThumbIntermediate"},
   };
-  if (const auto thumb = kThumbs.find(name); thumb != kThumbs.end()) return thumb->second;
+  if (const auto thumb = thumbs.find(name); thumb != thumbs.end()) return thumb->second;
   if (!name.empty()) name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   return name;
 }

@@ -113,6 +113,7 @@ std::vector<ColliderSample> colliders_of(const Json& json) {
     colliders.push_back({.id = id_of(one["id"]), .position_m = position_of(one["position"], "position")});
   }
   std::vector<std::uint32_t> ids;
+  ids.reserve(colliders.size());
   for (const ColliderSample& collider : colliders) ids.push_back(collider.id);
   std::sort(ids.begin(), ids.end());
   if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())

@@ -172,6 +172,7 @@ class Matcher {
     for (Index i = 0; i < roles.size(); ++i)
       if (roles[i] && roles[i]->part == BodyPart::kSpine) spine.emplace(roles[i]->segment, i);
     std::vector<Index> joints;
+    joints.reserve(spine.size());
     for (const auto& [segment, joint] : spine) joints.push_back(joint);
     return joints;
   }
@@ -186,14 +187,14 @@ class Matcher {
 
   /// What no body has (tails, skirts): by the same name, when neither has a role.
   void match_names() {
-    static const std::set<std::string> kAnyones = {"", "root", "armature", "scene", "reference"};
+    static const std::set<std::string> anyones = {"", "root", "armature", "scene", "reference"};
     std::map<std::string, Index> by_name;
     for (Index joint = 0; joint < motion_.joints.size(); ++joint)
       if (!taken_[joint]) by_name.emplace(plain_joint_name(motion_.joints[joint].name), joint);
     for (Index node = 0; node < avatar_.joints.size(); ++node) {
       const std::string name = plain_joint_name(avatar_.joints[node].name);
       const auto same = by_name.find(name);
-      if (same == by_name.end() || kAnyones.contains(name)) continue;
+      if (same == by_name.end() || anyones.contains(name)) continue;
       if (!taken_[same->second] && !avatar_.roles[node] && !motion_.roles[same->second]) match(node, same->second);
     }
   }
