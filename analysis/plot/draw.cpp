@@ -55,6 +55,13 @@ ContactLimits limits_of(const Options& options, const Subject& subject) {
   return limits;
 }
 
+/// The map that --map names, which is of no certain avatar: a layout is made for the built-in one.
+ActuatorMap map_of(const Options& options) {
+  ActuatorMap map = read_map(options.map, read_subject("builtin", "none").avatar);
+  warn(options, map.warnings);
+  return map;
+}
+
 /// Larger than that, a figure fits neither on a page nor into OpenGL's windows.
 constexpr std::size_t kMostAnimations = 4;
 
@@ -92,13 +99,6 @@ int draw_growth(const Options& options) {
 int draw_stress(const Options& options) {
   return draw_results(options, "stress",
                       [](const std::filesystem::path& folder) { return stress_figure(read_stress(folder)); });
-}
-
-/// The map that --map names, which is of no certain avatar: a layout is made for the built-in one.
-ActuatorMap map_of(const Options& options) {
-  ActuatorMap map = read_map(options.map, read_subject("builtin", "none").avatar);
-  warn(options, map.warnings);
-  return map;
 }
 
 int draw_timeline(const Options& options) {

@@ -205,7 +205,8 @@ class Report {
         fmt::format("Localisation error of each contact of {} over time; line: median. Red, below: not felt.",
                     contacts.shown_trace)));
     std::vector<std::string> laws = data.laws;
-    std::ranges::stable_partition(laws, [&](const std::string& law) { return law == data.best_of(name).law; });
+    std::stable_partition(laws.begin(), laws.end(),  // clang 14 does not take std::ranges::stable_partition
+                          [&](const std::string& law) { return law == data.best_of(name).law; });
     for (const std::string& law : laws) {
       const std::unique_ptr<IntensityLaw> made = make_law(law, layout, law_options);
       section.timelines.push_back(draw(
