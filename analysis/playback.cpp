@@ -5,6 +5,7 @@
 #include <optional>
 #include <thread>
 
+#include "analysis/clocks.hpp"
 #include "detector/frame.hpp"
 
 namespace vestige {
@@ -16,10 +17,6 @@ using Clock = PlaybackCalls::Clock;
 
 constexpr auto kSlice = 50ms;  ///< of waiting, so that an interrupt is answered
 constexpr double kGap_s = 0.2;
-
-double seconds(Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
 
 Clock::duration to_duration(double duration_s) {
   // Beyond a century the clock's count would overflow.

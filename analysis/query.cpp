@@ -1,7 +1,6 @@
 #include "analysis/query.hpp"
 
 #include <fmt/format.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "analysis/clocks.hpp"
 #include "analysis/loose_triangles.hpp"
 #include "analysis/statistics.hpp"
 #include "detector/exact/truth.hpp"
@@ -19,12 +19,6 @@ namespace vestige {
 namespace {
 
 constexpr int kTries = 3;
-
-double thread_cpu_us() {
-  timespec time = {};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return 1e6 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_nsec);
-}
 
 void refuse_carried(Method method) {
   if (method == Method::kCarried) throw std::invalid_argument("queries know no 'carried'");
@@ -114,9 +108,9 @@ QueryScore answer_queries(const QueryFile& file, Method method, QueryTruth truth
     QueryAnswer answer;
     double least_us = std::numeric_limits<double>::infinity();
     for (int attempt = 0; attempt < kTries; ++attempt) {
-      const double start_us = thread_cpu_us();
+      const double start_s = thread_cpu_s();
       answer = responder(query);
-      least_us = std::min(least_us, thread_cpu_us() - start_us);
+      least_us = std::min(least_us, 1e6 * (thread_cpu_s() - start_s));
     }
     const bool expected = truth == QueryTruth::kFile ? query.truth : exact(query).contact;
     ++score.queries;

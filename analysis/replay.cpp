@@ -4,6 +4,7 @@
 #include <chrono>
 #include <span>
 
+#include "analysis/clocks.hpp"
 #include "detector/texture_hash.hpp"
 
 namespace vestige {
@@ -13,10 +14,6 @@ namespace {
 constexpr std::uint64_t kSkinningFrames = 5;
 
 using Clock = std::chrono::steady_clock;
-
-double seconds(Clock::duration duration) {
-  return std::chrono::duration<double>(duration).count();
-}
 
 /// How many frames to detect together: enough that threads seldom wait for each other, few enough that progress is
 /// seen and an interrupt answered. A thread alone takes them one by one.

@@ -2,10 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
 namespace vestige {
+
+/// Stands for a value that there is none of.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 /// The p-quantile (0 … 1) of `values` by linear interpolation between order statistics (Hyndman & Fan 1996, type 7).
 /// NaN for no values.

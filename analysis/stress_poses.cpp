@@ -171,7 +171,7 @@ constexpr std::array kAxes = {1.0, 3.0};
 constexpr std::array kBroken = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0};
 
 constexpr StressBody kMannequin = StressBody::kMannequin;
-constexpr std::array<StressFamily, 5> kFamilies = {{
+constexpr std::array<StressFamily, 5> kPoseFamilies = {{
     {"non_finite", "", "Colliders and bones without a finite place; nothing they do may count as a contact.",
      "0 a collider's NaN, 1 its infinity, 2 its 1e39 m; 3 a bone's NaN, 4 its infinity, 5 its 3e38 m", kBroken,
      kMannequin, non_finite},
@@ -187,7 +187,7 @@ constexpr std::array<StressFamily, 5> kFamilies = {{
 }  // namespace
 
 std::span<const StressFamily> pose_families() {
-  return kFamilies;
+  return kPoseFamilies;
 }
 
 }  // namespace vestige

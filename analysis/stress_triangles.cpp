@@ -397,7 +397,7 @@ constexpr const char* kFromOrigin = "metres from the origin, as fp32 coordinates
 constexpr const char* kNudge = "units in the last place by which one coordinate is moved";
 
 constexpr StressBody kLoose = StressBody::kLoose;
-constexpr std::array<StressFamily, 13> kFamilies = {{
+constexpr std::array<StressFamily, 13> kTriangleFamilies = {{
     {"vertex", "", "Segments through a corner that several triangles share.", kFromOrigin, kOffsets_m, kLoose, vertex},
     {"edge", "", "Segments through an edge that two triangles share.", kFromOrigin, kOffsets_m, kLoose, edge},
     {"coplanar", "", "Segments in the very plane of the triangles.", kFromOrigin, kOffsets_m, kLoose, coplanar},
@@ -421,7 +421,7 @@ constexpr std::array<StressFamily, 13> kFamilies = {{
 }  // namespace
 
 std::span<const StressFamily> triangle_families() {
-  return kFamilies;
+  return kTriangleFamilies;
 }
 
 }  // namespace vestige

@@ -151,7 +151,7 @@ constexpr const char* kInDouble = "metres from the origin, of avatar and collide
 constexpr const char* kInFloat = "metres from the origin, as fp32 coordinates";
 
 constexpr StressBody kMannequin = StressBody::kMannequin;
-constexpr std::array<StressFamily, 4> kFamilies = {{
+constexpr std::array<StressFamily, 4> kWatertightFamilies = {{
     {"watertight", "vertex", kMeaning, kInDouble, kWorld_m, kMannequin, watertight<Aim::kVertex, Where::kDoubleOrigin>},
     {"watertight", "edge", kMeaning, kInDouble, kWorld_m, kMannequin, watertight<Aim::kEdge, Where::kDoubleOrigin>},
     {"watertight", "vertex, raw fp32", kMeaning, kInFloat, kFloat_m, kMannequin,
@@ -162,7 +162,7 @@ constexpr std::array<StressFamily, 4> kFamilies = {{
 }  // namespace
 
 std::span<const StressFamily> watertight_families() {
-  return kFamilies;
+  return kWatertightFamilies;
 }
 
 }  // namespace vestige

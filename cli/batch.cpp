@@ -23,8 +23,6 @@ namespace vestige::cli {
 
 namespace {
 
-constexpr std::size_t kRowsShown = 20;
-
 struct BatchRunOptions {
   BatchOptions batch;
   std::size_t jobs = 0;

@@ -19,8 +19,6 @@ namespace vestige::cli {
 
 namespace {
 
-constexpr std::size_t kRowsShown = 20;
-
 struct BatchMergeOptions {
   CommonOptions common;
   std::vector<std::string> folders;

@@ -27,6 +27,9 @@ struct BatchOptions {
   std::string output;
 };
 
+/// Lines of the ranking that are printed; its file has them all.
+inline constexpr std::size_t kRowsShown = 20;
+
 /// Adds all of them but --jobs and --shard.
 void add_batch_options(CLI::App& verb, BatchOptions& options);
 

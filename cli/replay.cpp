@@ -200,7 +200,7 @@ struct Run {
   const DriveMaker* drives = nullptr;  ///< of the timeline; null without one
 };
 
-std::string describe(const PickedPath& picked) {
+std::string describe_picked(const PickedPath& picked) {
   return fmt::format("{}, skip {}", picked.detector, picked.skip == Skip::kOn ? "on" : "off");
 }
 
@@ -211,7 +211,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const Run& run, const
   json["trace"] = options.trace;
   json["detector"] = run.detector.name();
   if (run.picked) {
-    json["picked"] = describe(*run.picked);
+    json["picked"] = describe_picked(*run.picked);
     json["why"] = run.picked->why;
   }
   json["threads"] = options.threads;
@@ -260,7 +260,7 @@ std::string summary(const ReplayResult& result, const Run& run) {
   std::string text =
       fmt::format("{}{}: {} frames, {} colliders, {} contacts, {:.0f} Hz\n", detector.name(), where, result.frames,
                   run.colliders, result.contacts, static_cast<double>(result.frames) / result.detection_s);
-  if (run.picked) text += fmt::format("picked {} ({})\n", describe(*run.picked), run.picked->why);
+  if (run.picked) text += fmt::format("picked {} ({})\n", describe_picked(*run.picked), run.picked->why);
   for (std::size_t i = 0; i < map.actuator_count; ++i)
     text += fmt::format("  {:<24} {:>8} contacts\n", map.names[i], result.contacts_of_actuator[i + 1]);
   text += fmt::format("  {:<24} {:>8} contacts\n", "(no actuator)", result.contacts_of_actuator[0]);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "traces/mcap/byte_source.hpp"
+#include "traces/nanoseconds.hpp"
 #include "traces/trace_index.hpp"
 
 namespace vestige::cli {
@@ -16,7 +17,6 @@ void warn_of_damage(const std::string& file, const std::vector<mcap::Damage>& da
 
 void run_rewrite(const std::string& file, const std::string& output, const RewriteOptions& how,
                  const std::string& doing, const CommonOptions& common, Invocation& invocation) {
-  constexpr double kNanosecondsPerSecond = 1e9;
   check_outputs({output, common.json}, {file}, common);
   if (output == "-") refuse_terminal("-o -");
   const mcap::FileSource source(file);

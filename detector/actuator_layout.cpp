@@ -15,7 +15,6 @@ namespace vestige {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::uint32_t kMostTexels = 2048;  // a side: a finer map is sampled
 constexpr std::size_t kLane = 8;             // actuators are padded to whole lanes
 constexpr float kBeyond_m = 1e9F;            // stands for infinitely far, where infinite - infinite would be no number
@@ -59,7 +58,7 @@ glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const glm::dvec3& a, const g
 
 std::optional<SkinPoint> nearest_on_skin(const SurfaceDistance& surface, const glm::dvec3& p) {
   std::optional<SkinPoint> best;
-  double best_m = kInfinity;
+  double best_m = kUnreached_m;
   for (std::uint32_t number = 0; number < surface.triangles().size(); ++number) {
     const glm::uvec3& corner = surface.triangles()[number];
     const SkinPoint point = {number,
@@ -218,7 +217,7 @@ void ActuatorLayout::place_actuators(const Avatar& avatar) {
     if (i < map_.position_m.size() && map_.position_m[i]) place_[i] = nearest_on_skin(surface_, *map_.position_m[i]);
     if (area_m2_[i] > 0) middle[i] /= area_m2_[i];
   }
-  std::vector<double> away_m(n, kInfinity);
+  std::vector<double> away_m(n, kUnreached_m);
   std::vector<bool> is_given(n);
   for (std::size_t i = 0; i < n; ++i) is_given[i] = place_[i].has_value();
   if (!std::ranges::all_of(is_given, std::identity()))
@@ -243,12 +242,12 @@ void ActuatorLayout::measure_distances() {
     for (std::size_t i = 0; i < n; ++i) axes_[static_cast<std::size_t>(k)][i] = static_cast<float>(position_m_[i][k]);
   }
   detour_.assign(vertices * stride_, kBeyond_m);
-  between_m_.assign(n * n, kInfinity);
+  between_m_.assign(n * n, kUnreached_m);
   for (std::size_t i = 0; i < n; ++i) {
     if (!place_[i]) continue;
     const std::vector<double> distance_m = surface_.from(*place_[i]);
     for (std::size_t vertex = 0; vertex < vertices; ++vertex)
-      if (distance_m[vertex] < kInfinity)
+      if (distance_m[vertex] < kUnreached_m)
         detour_[vertex * stride_ + i] =
             static_cast<float>(distance_m[vertex] - glm::distance(surface_.position_m()[vertex], position_m_[i]));
   }
@@ -262,13 +261,13 @@ void ActuatorLayout::measure_distances() {
   // Each was measured from both ends.
   std::vector<double> nearest_m;
   for (std::size_t a = 0; a < n; ++a) {
-    double least_m = kInfinity;
+    double least_m = kUnreached_m;
     for (std::size_t b = 0; b < n; ++b) {
       if (a == b) continue;
       if (a < b) between_m_[a * n + b] = between_m_[b * n + a] = 0.5 * (between_m_[a * n + b] + between_m_[b * n + a]);
       least_m = std::min(least_m, between_m_[a * n + b]);
     }
-    if (least_m < kInfinity) nearest_m.push_back(least_m);
+    if (least_m < kUnreached_m) nearest_m.push_back(least_m);
   }
   if (nearest_m.empty()) return;
   std::ranges::sort(nearest_m);
@@ -296,7 +295,7 @@ void ActuatorLayout::find_neighbours() {
     triples.insert(triple);
   };
   const double step_m = spacing_m_ / kPointsASpacing;
-  for (std::uint32_t number = 0; step_m < kInfinity && number < surface_.triangles().size(); ++number) {
+  for (std::uint32_t number = 0; step_m < kUnreached_m && number < surface_.triangles().size(); ++number) {
     if (!(area_of(surface_, number) > 0)) continue;
     const glm::uvec3& corner = surface_.triangles()[number];
     const double side_m = std::max({glm::distance(surface_.position_m()[corner.x], surface_.position_m()[corner.y]),

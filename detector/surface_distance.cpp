@@ -16,7 +16,6 @@ namespace vestige {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNear = 0.01;  // of the box's longest side: parts so close lie on each other
 /// A vertex is marched on from at most so often: rounding, or a mesh made for it, must not keep the front moving.
 constexpr int kMostVisits = 32;
@@ -30,16 +29,16 @@ bool is_finite(const glm::dvec3& p) {
 /// The distance at C from those at A and B, as from a point in the plane of the triangle, on the other side of A B
 /// (Novotni & Klein 2002, §3.1). +inf where there is no such point, or its straight line to C does not cross A B.
 double unfold(double at_a_m, double at_b_m, double ab_m, double ac_m, double bc_m) {
-  if (!(ab_m > 0)) return kInfinity;
+  if (!(ab_m > 0)) return kUnreached_m;
   const double cx = (ac_m * ac_m - bc_m * bc_m + ab_m * ab_m) / (2 * ab_m);
   const double cy_squared = ac_m * ac_m - cx * cx;
   const double sx = (at_a_m * at_a_m - at_b_m * at_b_m + ab_m * ab_m) / (2 * ab_m);
   const double sy_squared = at_a_m * at_a_m - sx * sx;
-  if (!(cy_squared > 0) || !(sy_squared >= 0)) return kInfinity;
+  if (!(cy_squared > 0) || !(sy_squared >= 0)) return kUnreached_m;
   const double cy = std::sqrt(cy_squared);
   const double sy = std::sqrt(sy_squared);
   const double crossing = sx + (cx - sx) * (sy / (sy + cy));
-  if (!(crossing >= 0 && crossing <= ab_m)) return kInfinity;
+  if (!(crossing >= 0 && crossing <= ab_m)) return kUnreached_m;
   return std::sqrt((cx - sx) * (cx - sx) + (cy + sy) * (cy + sy));
 }
 
@@ -163,7 +162,7 @@ void SurfaceDistance::build_bridges(std::vector<std::uint32_t> part) {
   // What is still apart, nearest first (Prim): from the group of the first vertex outwards.
   for (const std::uint32_t i : vertices) group[i] = root_of(group, i);
   std::vector<std::uint32_t> nearest(position_m_.size(), 0);
-  std::vector<double> nearest_m(position_m_.size(), kInfinity);
+  std::vector<double> nearest_m(position_m_.size(), kUnreached_m);
   std::vector<std::uint32_t> added;
   std::vector<std::uint32_t> outside;
   for (const std::uint32_t i : vertices) (group[i] == group[vertices.front()] ? added : outside).push_back(i);
@@ -194,7 +193,7 @@ glm::dvec3 SurfaceDistance::position_of(const SkinPoint& point) const {
 }
 
 std::vector<double> SurfaceDistance::from(const SkinPoint& source) const {
-  std::vector<double> distance_m(position_m_.size(), kInfinity);
+  std::vector<double> distance_m(position_m_.size(), kUnreached_m);
   std::vector<int> visits(position_m_.size(), 0);
   const glm::dvec3 origin = position_of(source);
   using Entry = std::pair<double, std::uint32_t>;
@@ -222,7 +221,7 @@ std::vector<double> SurfaceDistance::from(const SkinPoint& source) const {
       for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) reach(fan.other[i], here_m + fan.side_m[i]);
       for (const std::size_t i : {std::size_t{0}, std::size_t{1}}) {
         const double other_m = distance_m[fan.other[1 - i]];
-        if (other_m < kInfinity)
+        if (other_m < kUnreached_m)
           reach(fan.other[i], unfold(here_m, other_m, fan.side_m[1 - i], fan.side_m[i], fan.base_m));
       }
     }

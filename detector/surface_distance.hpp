@@ -4,12 +4,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
 #include "traces/scenarios/skin.hpp"
 
 namespace vestige {
+
+/// How far it is where no way leads.
+inline constexpr double kUnreached_m = std::numeric_limits<double>::infinity();
 
 /// How far it is along a surface from a point of it to every vertex: fast marching (Kimmel & Sethian 1998, "Computing
 /// geodesic paths on manifolds"), where a triangle hands distances on as from a point source unfolded into its plane
@@ -34,7 +38,7 @@ class SurfaceDistance {
   /// `position_m`: a vertex each; `triangles`: indices into it.
   SurfaceDistance(std::vector<glm::dvec3> position_m, std::span<const glm::uvec3> triangles, Gaps gaps);
 
-  /// Metres, for every vertex; +inf for one that cannot be reached, or is not finite.
+  /// Metres, for every vertex; kUnreached_m for one that is not reached, or not finite.
   std::vector<double> from(const SkinPoint& source) const;
 
   const std::vector<glm::dvec3>& position_m() const { return position_m_; }

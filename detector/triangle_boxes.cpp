@@ -8,13 +8,13 @@ namespace vestige {
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
 /// The lower end of a box, grown so that `start + moved` rounded to fp32 lies at or above `low` only if `start` lies at
 /// or above the result, whatever `start` is: rounding is monotonic, so start + moved >= the float below `low`.
 float grown_down(float low, double moved) {
-  const double grown = static_cast<double>(std::nextafter(low, -kInfinity)) - std::max(moved, 0.0);
-  return std::nextafter(static_cast<float>(grown), -kInfinity);
+  const double grown = static_cast<double>(std::nextafter(low, -kUnbounded)) - std::max(moved, 0.0);
+  return std::nextafter(static_cast<float>(grown), -kUnbounded);
 }
 
 float grown_up(float high, double moved) {
@@ -27,8 +27,8 @@ void TriangleBoxes::build(const Avatar& avatar, const SkinMotion& skin, Method m
   count_ = avatar.triangles.size();
   const std::size_t padded = (count_ + kBlock - 1) / kBlock * kBlock;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    low_[axis].assign(padded, kInfinity);
-    high_[axis].assign(padded, -kInfinity);
+    low_[axis].assign(padded, kUnbounded);
+    high_[axis].assign(padded, -kUnbounded);
   }
   for (std::size_t i = 0; i < count_; ++i) {
     const glm::uvec3& corner = avatar.triangles[i];

@@ -4,6 +4,7 @@
 
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
+#include "traces/nanoseconds.hpp"
 #include "traces/trace_format.hpp"
 
 namespace vestige {
@@ -65,7 +66,6 @@ void FrameRing::close_block() {
 }
 
 std::int64_t FrameRing::first_kept_ns() const {
-  constexpr double kNanosecondsPerSecond = 1e9;
   const double kept_ns = limits_.seconds * kNanosecondsPerSecond;
   return static_cast<double>(last_ns_) <= kept_ns ? 0 : last_ns_ - std::llround(kept_ns);
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "traces/mcap/decode.hpp"
+#include "traces/nanoseconds.hpp"
 
 namespace vestige {
 
@@ -20,8 +21,7 @@ using Json = nlohmann::json;
 using FloatJson = nlohmann::basic_json<std::map, std::vector, std::string, bool, std::int64_t, std::uint64_t, float>;
 
 constexpr std::size_t kMostLineBytes = std::size_t{16} << 20;
-constexpr std::size_t kMostProblems = 10;
-constexpr double kNanosecondsPerSecond = 1e9;
+constexpr std::size_t kMostBadLinesTold = 10;
 constexpr double kMost_s = 9e9;  ///< nanoseconds in 63 bits
 
 std::map<std::string, std::size_t, std::less<>> nodes_by_name(const Avatar& avatar) {
@@ -149,7 +149,7 @@ LiveNdjson::LiveNdjson(const Avatar& avatar, const glm::dvec3& origin_m)
 
 void LiveNdjson::leave_out(std::string_view cause) {
   ++malformed_;
-  if (problems_.size() < kMostProblems) problems_.push_back(fmt::format("line {}: {}", lines_, cause));
+  if (problems_.size() < kMostBadLinesTold) problems_.push_back(fmt::format("line {}: {}", lines_, cause));
 }
 
 void LiveNdjson::push(std::string_view bytes, std::int64_t now_ns, const TakeFrame& take) {

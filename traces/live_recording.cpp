@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "traces/error.hpp"
+#include "traces/nanoseconds.hpp"
 
 namespace vestige {
 
@@ -20,7 +21,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using WhenBehind = RecordingThread::WhenBehind;
 
-constexpr double kNanosecondsPerSecond = 1e9;
 /// How long nothing is asked at most.
 constexpr std::chrono::milliseconds kLongestWait(20);
 /// How late a frame may be made: about as far as a sender's own frames, and the network's delays, are apart. A busy

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 #include <version.hpp>
 
@@ -30,6 +31,11 @@ void McapOutput::write_definitions() {
 
 void McapOutput::add(mcap::Schema schema) {
   if (schema.id == 0) return;
+  // A channel that was written without its schema stays without: what was written of it would change its meaning.
+  const bool comes_too_late = std::ranges::any_of(channels_written_, [&](std::uint16_t channel_id) {
+    return definitions_.channels.at(channel_id).schema_id == schema.id;
+  });
+  if (comes_too_late) return;
   const auto [known, is_new] = definitions_.schemas.try_emplace(schema.id, std::move(schema));
   if (is_new) streams_.add(known->second);
 }

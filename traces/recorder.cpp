@@ -8,12 +8,11 @@
 #include <utility>
 
 #include "traces/error.hpp"
+#include "traces/nanoseconds.hpp"
 
 namespace vestige {
 
 namespace {
-
-constexpr double kNanosecondsPerSecond = 1e9;
 
 void note_in(TraceWriter& writer, const RecordingNote& note) {
   if (note.kind == RecordingNote::Kind::kDropped) {

@@ -2,16 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
+
+#include "traces/scenarios/body.hpp"
 
 namespace vestige {
-
-namespace {
-
-/// Steps a metre: on this grid a shift by whole metres is exact up to 1e7 m.
-constexpr double kGrid = 1048576;
-
-}  // namespace
 
 std::uint64_t frame_count(const RecordingSettings& settings) {
   return static_cast<std::uint64_t>(std::max(1.0, std::round(settings.rate_hz * settings.duration_s)));
@@ -32,7 +26,7 @@ void sample_frame(const Avatar& avatar, const Animation* animation, ColliderSour
 void record(const FrameSink& write, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
             const RecordingSettings& settings, const std::function<bool(double)>& progress) {
   const std::uint64_t frames = frame_count(settings);
-  const glm::dvec3 origin_m = glm::round(settings.origin_m * kGrid) / kGrid;
+  const glm::dvec3 origin_m = on_grid(settings.origin_m);
   TraceFrame frame;
   for (std::uint64_t index = 0; index < frames; ++index) {
     sample_frame(avatar, animation, colliders, settings.rate_hz, index, origin_m, frame);

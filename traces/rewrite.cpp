@@ -8,6 +8,7 @@
 #include "traces/error.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap_output.hpp"
+#include "traces/nanoseconds.hpp"
 
 namespace vestige {
 
@@ -15,8 +16,6 @@ namespace {
 
 using mcap::Malformed;
 using mcap::Opcode;
-
-constexpr double kNanosecondsPerSecond = 1e9;
 
 class Rewriter {
  public:

@@ -21,8 +21,6 @@ namespace {
 using mcap::Malformed;
 using trace_format::Stream;
 
-enum class PoseDecoding { kFull, kNodeCount };
-
 }  // namespace
 
 class TraceReader::Implementation {
@@ -48,6 +46,8 @@ class TraceReader::Implementation {
   const Census& census();
 
  private:
+  enum class PoseDecoding { kFull, kNodeCount };
+
   /// Puts messages together to frames.
   class Frames {
    public:

@@ -11,6 +11,7 @@
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/message_stream.hpp"
+#include "traces/nanoseconds.hpp"
 #include "traces/sha256.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_index.hpp"
@@ -97,7 +98,6 @@ void Gatherer::take_event(Stream stream, mcap::Bytes data) {
 }
 
 McapSummary Gatherer::finish(bool has_footer) {
-  constexpr double kNanosecondsPerSecond = 1e9;
   summary_.file_bytes = source_.size();
   if (summary_.end_ns > summary_.start_ns)
     summary_.duration_s = static_cast<double>(summary_.end_ns - summary_.start_ns) / kNanosecondsPerSecond;

@@ -12,6 +12,7 @@
 #include "traces/append_file.hpp"
 #include "traces/error.hpp"
 #include "traces/mcap/writer.hpp"
+#include "traces/nanoseconds.hpp"
 #include "traces/sha256.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_messages.hpp"
@@ -172,7 +173,6 @@ void TraceWriter::Implementation::write_message(Stream stream, mcap::Bytes data)
 /// At the first frame of each sixtieth of a second.
 void TraceWriter::Implementation::write_viz(const TraceFrame& frame) {
   if (!viz_ || frame.time_ns < next_viz_ns_) return;
-  constexpr double kNanosecondsPerSecond = 1e9;
   const double slots = std::floor(static_cast<double>(frame.time_ns) / kNanosecondsPerSecond * viz_format::kRate_hz);
   next_viz_ns_ = static_cast<std::int64_t>(std::ceil((slots + 1) / viz_format::kRate_hz * kNanosecondsPerSecond));
   write_message(viz_format::kTransformsId, viz_->transforms(frame));

@@ -17,7 +17,7 @@ namespace {
 
 using mcap::Malformed;
 
-constexpr std::size_t kMostProblems = 10;
+constexpr std::size_t kMostBadMessagesTold = 10;
 constexpr std::size_t kMostUnknownBones = 64;
 constexpr std::size_t kMostColliders = 1'000'000;  // as many as a scenario may have
 constexpr std::size_t kMostMarkers = 1000;
@@ -120,7 +120,7 @@ bool VmcState::take(std::span<const std::byte> datagram) {
     return changed;
   } catch (const Malformed& malformed) {
     ++malformed_;
-    if (problems_.size() < kMostProblems) problems_.emplace_back(malformed.what());
+    if (problems_.size() < kMostBadMessagesTold) problems_.emplace_back(malformed.what());
     return false;
   }
 }

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
-#include <ctime>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -17,6 +16,7 @@
 #include <thread>
 #include <utility>
 
+#include "analysis/clocks.hpp"
 #include "analysis/mapping/contact_recording.hpp"
 #include "analysis/mapping/contact_recording_file.hpp"
 #include "analysis/mapping/scores.hpp"
@@ -35,13 +35,6 @@ namespace {
 
 constexpr auto kProgressPeriod = std::chrono::milliseconds(100);
 constexpr double kScenarioBytesPerFrame = 1500;  // roughly; for the progress bar
-
-/// Of the calling thread: what a trace cost, however many run beside it.
-double cpu_s() {
-  timespec time = {};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
 
 struct ItemTimes {
   double recording_s = 0;
@@ -182,7 +175,7 @@ class Run {
     if (std::filesystem::exists(path) && std::filesystem::exists(finished_item) &&
         folder_.finished(trace.name, key_, sha256_of_file(path)))
       return;
-    const double begin_s = cpu_s();
+    const double begin_s = thread_cpu_s();
     const Animation* animation = find_animation(plan_.avatar, "");
     const std::uint32_t count = plan_.recording.count.value_or(trace.scenario->default_count);
     const auto colliders = trace.scenario->make(plan_.avatar, animation, {count, plan_.seed});
@@ -212,7 +205,7 @@ class Run {
     std::error_code failure;
     std::filesystem::rename(growing, path, failure);
     if (failure) throw system_error(path, "could not give the recorded trace its name", failure.value());
-    times.recording_s = cpu_s() - begin_s;
+    times.recording_s = thread_cpu_s() - begin_s;
   }
 
   Computed compute(std::size_t i, Detector& detector, ItemTimes& times) {
@@ -223,17 +216,17 @@ class Run {
     Computed computed;
     computed.item = {{"schema_version", 1}, {"key", key_}, {"trace", trace.name}, {"trace_sha256", sha256}};
     computed.recording = detect(path, i, detector, computed.item, times);
-    const double begin_s = cpu_s();
+    const double begin_s = thread_cpu_s();
     computed.item["scores"] = score_maps(computed.recording->contacts);
-    times.scoring_s = cpu_s() - begin_s;
+    times.scoring_s = thread_cpu_s() - begin_s;
     return computed;
   }
 
   RecordedTrace detect(const std::string& path, std::size_t i, Detector& detector, nlohmann::ordered_json& item,
                        ItemTimes& times) {
-    double mark_s = cpu_s();
+    double mark_s = thread_cpu_s();
     const auto lap_s = [&] {
-      const double now_s = cpu_s();
+      const double now_s = thread_cpu_s();
       return now_s - std::exchange(mark_s, now_s);
     };
     TraceReader reader(path);

@@ -7,6 +7,7 @@
 
 #include "analysis/mapping/balance.hpp"
 #include "analysis/mapping/localisation.hpp"
+#include "analysis/statistics.hpp"
 #include "detector/actuator_drive.hpp"
 #include "detector/portable_math.hpp"
 
@@ -14,7 +15,6 @@ namespace vestige {
 
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kMillimetres = 1e3;
 constexpr double kMilliseconds = 1e3;
 
@@ -30,7 +30,7 @@ double crossing_s(const Motor& motor, double amplitude, double settled, double t
 }
 
 double ratio(double part, double whole) {
-  return whole > 0 ? part / whole : kNaN;
+  return whole > 0 ? part / whole : kMissing;
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ double LawScore::add(const JudgedContact& contact) {
   const std::vector<Share>& felt = responses_.empty() ? shares_ : felt_;
   if (felt.empty()) {
     observer_.add_unfelt(contact.region);
-    return kNaN;
+    return kMissing;
   }
   ++fired_;
   double error_m = 0;

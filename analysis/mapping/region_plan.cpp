@@ -17,7 +17,7 @@ namespace vestige {
 namespace {
 
 /// Of the body's height: how finely skin is looked at to find its extent and its middle.
-constexpr double kSampleStep = 0.005;
+constexpr double kPlanStep = 0.005;
 /// How many heights the axis between front and back is found at.
 constexpr std::size_t kAxisPoints = 24;
 
@@ -151,7 +151,7 @@ std::uint16_t RegionPlan::number_of(const std::string& actuator_name) {
 template <typename Visit>
 void RegionPlan::for_each_sample(const Visit& visit) const {
   const BodySurface& surface = body_.surface();
-  const double step_m = kSampleStep * surface.bounds().longest_side();
+  const double step_m = kPlanStep * surface.bounds().longest_side();
   for (std::uint32_t i = 0; i < body_.avatar().triangles.size(); ++i)
     patches_of_length(surface, i, step_m).for_each([&](const SkinPoint& point) { visit(ask(point)); });
 }

@@ -7,6 +7,7 @@
 
 #include "analysis/mapping/law_score.hpp"
 #include "analysis/mapping/localisation.hpp"
+#include "analysis/statistics.hpp"
 #include "traces/box.hpp"
 
 namespace vestige {
@@ -60,8 +61,6 @@ constexpr Metric kMetrics[] = {
      "Vestige"},
     {"line_load", "", Better::kLower, true, "bytes sent / bytes that the line takes in that time", "Vestige"},
 };
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The median step between frames; 0 for fewer than two.
 double usual_step_s(const ContactRecording& recording) {
@@ -139,7 +138,7 @@ Scores score(const ContactRecording& recording, const ActuatorLayout& layout, co
 
 std::vector<float> contact_errors_mm(const ContactRecording& recording, const ActuatorLayout& layout,
                                      const LawChoice& choice) {
-  std::vector<float> errors_mm(recording.contacts.size(), static_cast<float>(kNaN));
+  std::vector<float> errors_mm(recording.contacts.size(), static_cast<float>(kMissing));
   if (layout.actuator_count() == 0) return errors_mm;
   std::deque<LawScore> laws;
   laws.emplace_back(layout, choice, usual_step_s(recording));

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "analysis/statistics.hpp"
+
 namespace vestige {
 
 namespace {
@@ -12,7 +14,6 @@ constexpr double kLongestPause_s = 0.1;
 constexpr double kLongestStep_m = 0.050;
 constexpr double kShortestSlide_m = 0.050;
 constexpr std::size_t kFewestContacts = 5;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
@@ -59,7 +60,7 @@ void SlideSmoothness::add(double energy, const glm::dvec3* felt_at_m, const glm:
 }
 
 double SlideSmoothness::ripple() const {
-  return sum_ > 0 ? (most_ - least_) / (sum_ / static_cast<double>(contacts_)) : kNaN;
+  return sum_ > 0 ? (most_ - least_) / (sum_ / static_cast<double>(contacts_)) : kMissing;
 }
 
 void SlideScore::add(const SlideSmoothness& slide, double way_m) {
@@ -75,15 +76,15 @@ void SlideScore::add(const SlideSmoothness& slide, double way_m) {
 }
 
 double SlideScore::ripple() const {
-  return rippled_ == 0 ? kNaN : ripple_sum_ / static_cast<double>(rippled_);
+  return rippled_ == 0 ? kMissing : ripple_sum_ / static_cast<double>(rippled_);
 }
 
 double SlideScore::largest_jump_m() const {
-  return rippled_ == 0 ? kNaN : jump_sum_m_ / static_cast<double>(slides_);
+  return rippled_ == 0 ? kMissing : jump_sum_m_ / static_cast<double>(slides_);
 }
 
 double SlideScore::reversals_per_m() const {
-  return rippled_ == 0 ? kNaN : static_cast<double>(reversals_) / way_m_;
+  return rippled_ == 0 ? kMissing : static_cast<double>(reversals_) / way_m_;
 }
 
 }  // namespace vestige

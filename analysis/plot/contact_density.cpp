@@ -11,7 +11,7 @@ namespace vestige::plot {
 namespace {
 
 /// Where the density is computed.
-struct Place {
+struct SkinPlace {
   glm::dvec3 point = glm::dvec3(0);
   glm::dvec3 normal = glm::dvec3(0);
   double area = 0;
@@ -25,13 +25,13 @@ constexpr double kMostPlaces = 4e6;
 /// Places by the cube they lie in, as wide as the Gaussian reaches.
 class Neighbourhood {
  public:
-  Neighbourhood(const std::vector<Place>& places, double reach) : places_(places), reach_(reach) {
+  Neighbourhood(const std::vector<SkinPlace>& places, double reach) : places_(places), reach_(reach) {
     for (std::size_t i = 0; i < places.size(); ++i) cubes_[key(cube(places[i].point))].push_back(i);
   }
 
   /// Calls `visit(index, weight)` for the places that a contact at `place` is felt at.
   template <typename Visit>
-  void around(const Place& place, double sigma, const Visit& visit) const {
+  void around(const SkinPlace& place, double sigma, const Visit& visit) const {
     const glm::dvec3 middle = cube(place.point);
     for (int x = -1; x <= 1; ++x)
       for (int y = -1; y <= 1; ++y)
@@ -39,7 +39,7 @@ class Neighbourhood {
           const auto found = cubes_.find(key(middle + glm::dvec3(x, y, z)));
           if (found == cubes_.end()) continue;
           for (const std::size_t index : found->second) {
-            const Place& other = places_[index];
+            const SkinPlace& other = places_[index];
             const glm::dvec3 apart = other.point - place.point;
             const double squared = glm::dot(apart, apart);
             if (squared > reach_ * reach_ || glm::dot(other.normal, place.normal) <= 0) continue;
@@ -58,7 +58,7 @@ class Neighbourhood {
     return static_cast<std::uint64_t>(result);
   }
 
-  const std::vector<Place>& places_;
+  const std::vector<SkinPlace>& places_;
   double reach_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> cubes_;
 };
@@ -66,7 +66,7 @@ class Neighbourhood {
 }  // namespace
 
 ContactDensity::ContactDensity(const Surface& surface, std::span<const RecordedContact> contacts, double sigma) {
-  std::vector<Place> places;
+  std::vector<SkinPlace> places;
   cuts_.reserve(surface.triangles.size());
   const double most_parts = std::ceil(std::sqrt(2 * kMostPlaces / static_cast<double>(surface.triangles.size())));
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t) {
@@ -101,7 +101,7 @@ ContactDensity::ContactDensity(const Surface& surface, std::span<const RecordedC
   }
   const Neighbourhood neighbourhood(places, kReach * sigma);
   density_.assign(places.size(), 0);
-  for (const Place& place : places) {
+  for (const SkinPlace& place : places) {
     if (place.contacts == 0) continue;
     double sum = 0;
     neighbourhood.around(place, sigma, [&](std::size_t index, double weight) { sum += weight * places[index].area; });

@@ -16,7 +16,7 @@ namespace {
 
 thread_local GlContext* current_context = nullptr;
 
-constexpr const char* kRemedy =
+constexpr const char* kContextRemedy =
     "install a software renderer (apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6), or the GPU's "
     "driver; "
     "'vestige devices' lists what this machine offers. --detector cpu needs no OpenGL";
@@ -109,7 +109,7 @@ std::unique_ptr<GlContext> make_gl_context(ContextKind kind, int device) {
       failures += fmt::format("\n  tried {}", line.substr(0, line.find('\n')));
     }
   }
-  throw Error("--context", "no OpenGL 4.5 context is to be had on this machine" + failures, kRemedy);
+  throw Error("--context", "no OpenGL 4.5 context is to be had on this machine" + failures, kContextRemedy);
 }
 
 }  // namespace vestige

@@ -12,7 +12,8 @@ namespace vestige {
 
 namespace {
 
-constexpr const char* kRemedy = "this is a fault of ours or of the GL driver: try another --context, and report it";
+constexpr const char* kFaultRemedy =
+    "this is a fault of ours or of the GL driver: try another --context, and report it";
 
 /// The info log of a shader or program, whichever the two functions read.
 template <typename GetIv, typename GetLog>
@@ -75,7 +76,7 @@ GlProgram::GlProgram(const GlFunctions& gl, std::string_view head, std::initiali
   for (const GLuint shader : shaders) gl_.DeleteShader(shader);  // kept alive by the program
   if (failure.empty()) return;
   gl_.DeleteProgram(name_);
-  throw Error("OpenGL", "the driver does not accept a shader: " + failure, kRemedy);
+  throw Error("OpenGL", "the driver does not accept a shader: " + failure, kFaultRemedy);
 }
 
 GlProgram::~GlProgram() {
@@ -91,7 +92,7 @@ GLint gl_limit(const GlFunctions& gl, GLenum name) {
 void check_gl(const GlFunctions& gl, std::string_view doing) {
   const GLenum error = gl.GetError();
   if (error == GL_NO_ERROR) return;
-  const char* remedy = error == GL_OUT_OF_MEMORY ? "use fewer colliders or a smaller avatar" : kRemedy;
+  const char* remedy = error == GL_OUT_OF_MEMORY ? "use fewer colliders or a smaller avatar" : kFaultRemedy;
   throw Error("OpenGL", fmt::format("error {:#06x} while {}", error, doing), remedy);
 }
 

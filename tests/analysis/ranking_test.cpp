@@ -11,7 +11,6 @@
 namespace vestige {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kSeed = 1;
 
 /// Candidates of one metric.
@@ -69,7 +68,7 @@ TEST(Ranking, OneTraceDistinguishesNothing) {
 }
 
 TEST(Ranking, MissingValuesAreLeftOutAndACandidateWithoutAnyHasNoRank) {
-  const auto ranking = rank_candidates(candidates({{kNone, kNone, kNone}, {4, kNone, 6}, {3, 3, 3}}), 0,
+  const auto ranking = rank_candidates(candidates({{kMissing, kMissing, kMissing}, {4, kMissing, 6}, {3, 3, 3}}), 0,
                                        RankDirection::kLowerIsBetter, kSeed);
   EXPECT_EQ(ranking[0].candidate, 2U);
   EXPECT_EQ(ranking[1].candidate, 1U);

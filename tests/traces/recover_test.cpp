@@ -189,6 +189,17 @@ TEST(Recover, LeavesOutFramesThatComeTwice) {
   EXPECT_EQ(outcome->recovery.messages_left_out, 2 * kFramesInAChunk);
 }
 
+// A fuzzer's finding: /pose is defined outside chunks, its schema only inside a chunk, behind messages of it.
+TEST(Recover, DoesNotChangeLaterWhatItHasWritten) {
+  const auto outcome =
+      recover(read_file(std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/fuzz/seeds/trace/late-schema.mcap"));
+  ASSERT_TRUE(outcome);
+  const auto again = recover(outcome->bytes);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->recovery.messages, outcome->recovery.messages);
+  EXPECT_EQ(again->recovery.messages_left_out, 0U);
+}
+
 TEST(Recover, WritesSoundFilesOfOthersAsTheyWere) {
   VESTIGE_REQUIRE_DATA(test::data("mcap"));
   for (const auto& file : test::foreign_mcaps()) {

@@ -11,8 +11,8 @@ namespace vestige {
 
 namespace {
 
-constexpr double kShortest_s = 0.8;  // once around
-constexpr double kLongest_s = 1.6;
+constexpr double kShortestTurn_s = 0.8;  // once around
+constexpr double kLongestTurn_s = 1.6;
 constexpr double kWithin = 0.98;
 
 /// Level circles around the upright axis through the body's centre, half of them either way. Each goes through a random
@@ -30,7 +30,7 @@ class Orbit final : public ColliderSource {
       Random random(settings.seed, id);
       const glm::dvec3 through_m = skin.place(skin.random_point(random), palette).position_m;
       const double y_m = centre_m.y + kWithin * (through_m.y - centre_m.y);
-      const double turn_s = random.uniform(kShortest_s, kLongest_s);
+      const double turn_s = random.uniform(kShortestTurn_s, kLongestTurn_s);
       circles_.push_back({std::hypot(through_m.x - centre_m.x, through_m.z - centre_m.z), y_m, random.uniform(0, 1),
                           (random.next() % 2 == 0 ? 1 : -1) / turn_s});
     }

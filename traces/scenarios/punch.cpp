@@ -15,14 +15,14 @@ namespace {
 
 constexpr std::uint32_t kFistPoints = 8;
 constexpr double kFistRadius_m = 0.035;
-constexpr double kSpeed_m_per_s = 8;  // on the skin
+constexpr double kStrike_m_per_s = 8;  // on the skin
 constexpr double kDepth_m = 0.04;
 constexpr double kReach_m = 0.4;  // from rest to the skin, all of it speeding up
-constexpr double kStop_s = 2 * kDepth_m / kSpeed_m_per_s;
-constexpr double kSwing_s = 2 * kReach_m / kSpeed_m_per_s;
+constexpr double kStop_s = 2 * kDepth_m / kStrike_m_per_s;
+constexpr double kSwing_s = 2 * kReach_m / kStrike_m_per_s;
 constexpr double kBack_s = 0.25;
-constexpr double kShortest_s = 0.7;  // from one strike to the next
-constexpr double kLongest_s = 1.1;
+constexpr double kShortestRound_s = 0.7;  // from one strike to the next
+constexpr double kLongestRound_s = 1.1;
 
 constexpr double kLowest = 0.5;  // of the height at rest: hips to head
 constexpr double kHighest = 0.97;
@@ -49,7 +49,7 @@ class Punch final : public ColliderSource {
     for (std::uint32_t number = 0; number < fists; ++number) {
       Random random(settings.seed, number);
       Fist fist;
-      fist.period_s = random.uniform(kShortest_s, kLongest_s);
+      fist.period_s = random.uniform(kShortestRound_s, kLongestRound_s);
       fist.phase = random.uniform(0, 1);
       fists_.push_back(fist);
     }
@@ -120,14 +120,14 @@ class Punch final : public ColliderSource {
     const double since_s = time_s - fist.last.time_s;
     const double until_s = fist.next.time_s - time_s;
     if (since_s < kStop_s) {
-      const double braking = kSpeed_m_per_s / kStop_s;
-      return point_m(fist.last, place, since_s * (kSpeed_m_per_s - 0.5 * braking * since_s));
+      const double braking = kStrike_m_per_s / kStop_s;
+      return point_m(fist.last, place, since_s * (kStrike_m_per_s - 0.5 * braking * since_s));
     }
     if (since_s < kStop_s + kBack_s)
       return point_m(fist.last, place, glm::mix(kDepth_m, -kReach_m, smooth((since_s - kStop_s) / kBack_s)));
     if (until_s < kSwing_s) {
       const double swung_s = kSwing_s - until_s;
-      return point_m(fist.next, place, 0.5 * kSpeed_m_per_s / kSwing_s * swung_s * swung_s - kReach_m);
+      return point_m(fist.next, place, 0.5 * kStrike_m_per_s / kSwing_s * swung_s * swung_s - kReach_m);
     }
     const double idle_s = fist.period_s - kStop_s - kBack_s - kSwing_s;
     return glm::mix(point_m(fist.last, place, -kReach_m), point_m(fist.next, place, -kReach_m),

@@ -8,7 +8,7 @@ namespace vestige {
 
 namespace {
 
-constexpr double kSpeed_m_per_s = 9;  // at which large drops end up falling
+constexpr double kFall_m_per_s = 9;  // at which large drops end up falling
 constexpr double kAbove_m = 0.3;  // of the room, where a drop begins: none is tested before it has fallen for a frame
 constexpr double kBelow_m = 0.3;
 
@@ -20,7 +20,7 @@ class Rain final : public ColliderSource {
       : body_(avatar, animation), room_(body_), settings_(settings) {
     top_m_ = room_.high_m().y + kAbove_m * body_.metre();
     const double fall_m = top_m_ - room_.low_m().y + kBelow_m * body_.metre();
-    fall_s_ = fall_m / (kSpeed_m_per_s * body_.metre());
+    fall_s_ = fall_m / (kFall_m_per_s * body_.metre());
     fall_m_ = fall_m;
     falls_.reserve(settings.count);
   }

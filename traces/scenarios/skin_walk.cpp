@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
 constexpr std::uint32_t kNoCorner = 3;
-constexpr double kShortest_s = 1e-4;  // a step takes at least this, so that slivers cannot stop time
-constexpr double kTurn = 0.4;         // radians
-constexpr double kResting_s = 1;      // a step where there is no way to go
+constexpr double kShortestStep_s = 1e-4;  // a step takes at least this, so that slivers cannot stop time
+constexpr double kTurn = 0.4;             // radians
+constexpr double kResting_s = 1;          // a step where there is no way to go
 
 struct Edge {
   std::array<std::uint32_t, 2> ends;
@@ -82,7 +82,7 @@ SkinStep SkinWalk::step_from(double start_s, const SkinPoint& from, const glm::d
   step.to_weight = glm::max(from.weight + length_m * rate, glm::dvec3(0));
   if (step.exit_corner != kNoCorner) step.to_weight[static_cast<int>(step.exit_corner)] = 0;
   step.to_weight /= step.to_weight.x + step.to_weight.y + step.to_weight.z;
-  step.end_s = start_s + std::max(length_m / speed_m_per_s_, kShortest_s);
+  step.end_s = start_s + std::max(length_m / speed_m_per_s_, kShortestStep_s);
   return step;
 }
 
