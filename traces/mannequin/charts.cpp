@@ -297,13 +297,15 @@ std::vector<Chart> make_charts(const Surface& surface) {
   constexpr double kGap_m = 0.02;
   double best = 1e9;
   std::vector<glm::dvec2> corners;
-  for (double width = 0.8; width < 3; width += 0.01) {
+  double width = 0.8;
+  while (width < 3) {
     std::vector<glm::dvec2> candidate;
     const double side = pack(sizes, width, kGap_m, candidate);
     if (side < best) {
       best = side;
       corners = candidate;
     }
+    width += 0.01;
   }
   for (std::size_t i = 0; i < charts.size(); ++i)
     for (const glm::dvec2& p : flats[i]) charts[i].uv.emplace_back((p + corners[i]) / best);
