@@ -181,6 +181,7 @@ ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuat
   }
   result.texture_hash = hash.hex();
   result.origin_changes = builder.origin_changes();
+  result.map_changes = next_change;
   result.non_finite_frames = builder.non_finite_frames();
   result.non_finite_segments = builder.non_finite_segments();
   result.first_non_finite = builder.first_non_finite();

@@ -46,6 +46,7 @@ struct ReplayResult {
   std::uint64_t contacts = 0;
   DetectorWork work;
   std::uint64_t origin_changes = 0;
+  std::size_t map_changes = 0;  ///< of those asked for, how many were reached
   std::uint64_t non_finite_frames = 0;
   std::uint64_t non_finite_segments = 0;
   std::optional<std::uint64_t> first_non_finite;    ///< index of the first frame with any of either

@@ -188,7 +188,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   const std::vector<SceneChoice> choices = scene_choices(options);
   const std::string errors_path = options.output + "/accuracy.json";
   const std::string run_path = options.output + "/run.json";
-  make_folder(options.output, "-o");
+  make_output_folder(options.output);
   check_outputs({errors_path, run_path, options.common.json}, {options.scene.avatar, options.scene.map},
                 options.common);
 

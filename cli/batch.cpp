@@ -43,9 +43,10 @@ Shard parse_shard(const std::string& text, std::size_t traces) {
   return shard;
 }
 
-/// The map's own files, so that the folder can be looked at and drawn without the inputs.
+/// The inputs' own bytes, so that the folder can be looked at and drawn without the inputs.
 void write_inputs(const BatchPlan& plan, const BatchFolder& folder) {
   write_file(folder.top("avatar.glb"), {reinterpret_cast<const char*>(plan.avatar_glb.data()), plan.avatar_glb.size()});
+  if (plan.actuators.model) write_file(folder.top("actuator.json"), plan.actuators.json);
   for (const BatchMap& map : plan.maps) {
     if (map.sha256.empty()) continue;
     write_file(folder.map_png(map.name), {reinterpret_cast<const char*>(map.files.png.data()), map.files.png.size()});
@@ -137,7 +138,7 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   check_outputs({batch.common.json}, batch.traces, batch.common);
   catch_interrupts();
   const std::size_t jobs = options.jobs != 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
-  std::vector<BatchFailure> failures = load_inputs(plan, batch.avatar, batch.maps, jobs);
+  std::vector<BatchFailure> failures = load_inputs(plan, batch.avatar, batch.maps, batch.law_parameters.actuator, jobs);
   if (failures.size() == plan.maps.size())
     throw Error("--maps", fmt::format("none of them can be used: {}", failures.front().cause), failures.front().remedy);
 
@@ -150,6 +151,9 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   run["rank_by"] = batch.rank_by;
   run["complete"] = false;
   run["jobs"] = jobs;
+  run.update(input_warnings(plan));
+  warn_of_inputs(run, verbosity);
+  folder.remove_results(run);                    // which may be another batch's
   write_json_file(folder.top("run.json"), run);  // before the first item, so that the folder is known as this batch's
   write_inputs(plan, folder);
 
@@ -167,6 +171,7 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
   run["wall_s"] = spent.count();
   const BatchReport ended = report(plan, folder, outcome, failures, std::move(run), verbosity);
+  folder.remove_results(ended.run);
   if (outcome.interrupted) {
     write_json_file(folder.top("run.json"), ended.run);
     warn(fmt::format("stopped; {} traces are finished, and the same command goes on from there", outcome.items.size()),
@@ -177,6 +182,13 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   }
   if (outcome.items.empty()) {
     write_json_file(folder.top("run.json"), ended.run);
+    if (shard.count > 1) {  // the others may do better, and are merged with it
+      warn(fmt::format("shard {}/{}: none of its traces could be used", shard.number, shard.count), verbosity);
+      print_summary(summary(outcome, ended.run, batch.output), {batch.common.json}, batch.common);
+      write_json(batch.common.json, ended.run, batch.common);
+      invocation.exit_code = kDataLost;
+      return;
+    }
     throw Error("--traces", "none of them could be used", "the warnings above say why, and run.json");
   }
   std::vector<nlohmann::ordered_json> items;

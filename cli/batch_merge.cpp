@@ -34,6 +34,7 @@ void copy_file(const std::filesystem::path& from, const std::string& to) {
 void copy_files(const MergedShards& shards, const BatchFolder& folder) {
   const std::filesystem::path first = shards.first_folder;
   copy_file(first / "avatar.glb", folder.top("avatar.glb"));
+  copy_file(first / "actuator.json", folder.top("actuator.json"));
   for (const nlohmann::ordered_json& map : shards.batch["maps"]) {
     const auto name = map["name"].get<std::string>();
     copy_file(first / ("maps/" + name + ".png"), folder.map_png(name));
@@ -68,6 +69,8 @@ nlohmann::ordered_json run_of(const MergedShards& shards, const Invocation& invo
   run["shard"] = {{"number", 1}, {"count", 1}};
   run["rank_by"] = rank_by;
   run["complete"] = false;
+  for (const char* field : {"avatar", "maps"})  // the same in every shard
+    if (shards.runs.front().contains(field)) run[field] = shards.runs.front()[field];
   run["merged"] = nlohmann::ordered_json::array();
   for (const nlohmann::ordered_json& shard : shards.runs) {
     nlohmann::ordered_json one;
@@ -86,6 +89,7 @@ nlohmann::ordered_json run_of(const MergedShards& shards, const Invocation& invo
 void run_merge_shards(const BatchMergeOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   check_outputs({options.common.json}, {}, options.common);
+  if (options.output == "-") throw UsageError("-o -", "a batch is a folder of files", "name a folder");
   for (const std::string& folder : options.folders) {
     std::error_code missing;
     if (std::filesystem::equivalent(folder, options.output, missing))
@@ -93,17 +97,20 @@ void run_merge_shards(const BatchMergeOptions& options, Invocation& invocation) 
   }
   catch_interrupts();
   const MergedShards shards = read_shards(options.folders);
+  if (shards.items.empty()) throw Error("merge", "none of the traces could be used", "the shards' run.json say why");
   const std::string rank_by = options.rank_by.empty() ? shards.rank_by : options.rank_by;
   const std::size_t headline = metric_to_rank_by(rank_by);
   const BatchFolder folder(options.output, shards.batch, {1, 1},
                            options.common.force ? OtherBatch::kReplace : OtherBatch::kRefuse);
   nlohmann::ordered_json run = run_of(shards, invocation, rank_by);
+  folder.remove_results(run);
   write_json_file(folder.top("run.json"), run);
   copy_files(shards, folder);
   const BatchResults results = write_results(folder, shards.batch, shards.items, headline);
   run["complete"] = true;
   write_json_file(folder.top("run.json"), run);
 
+  warn_of_inputs(run, verbosity);
   for (const std::string& warning : results.warnings) warn(warning, verbosity);
   for (const nlohmann::ordered_json& failure : shards.failures) {
     warn(fmt::format("{} '{}' is left out: {}\n  {}", failure.value("what", ""), failure.value("name", ""),

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <set>
 
@@ -9,6 +11,7 @@
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/mapping/scores.hpp"
+#include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "detector/intensity.hpp"
 #include "traces/error.hpp"
@@ -19,6 +22,7 @@ namespace {
 
 const std::vector<std::string> kLaws(std::begin(kLawNames), std::end(kLawNames));
 constexpr const char* kScenarioGroup = "Scenarios among the traces";
+constexpr double kMostScenarioFrames = 4294967295.0;  // a trace numbers its frames in 32 bits
 
 std::string describe_maps() {
   std::string text = "The actuator maps: the built-in one, a layout laid onto the avatar, or a PNG file";
@@ -31,6 +35,19 @@ std::string scenario_names() {
   std::string text;
   for (const Scenario& scenario : scenarios()) text += fmt::format("{}{}", text.empty() ? "" : ", ", scenario.name);
   return text;
+}
+
+/// A misspelt scenario is no file of that name either: better said at once than after all other traces.
+void refuse_misspelt_scenarios(const std::vector<BatchTrace>& traces) {
+  std::vector<std::string_view> names;
+  for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
+  for (const BatchTrace& trace : traces) {
+    std::error_code ignored;
+    if (trace.scenario != nullptr || std::filesystem::exists(trace.given, ignored)) continue;
+    if (const std::string meant = help::did_you_mean(trace.given, names); !meant.empty())
+      throw UsageError("--traces", fmt::format("{}: there is no such file", trace.given),
+                       fmt::format("{}the scenarios are: {}", meant, fmt::join(names, ", ")));
+  }
 }
 
 void check_distinct(const std::vector<std::string>& given, const std::string& flag) {
@@ -55,10 +72,7 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
   verb.add_option("--laws", options.laws, "How a contact becomes intensities")
       ->capture_default_str()
       ->type_name("LIST");
-  verb.add_option("--hold", options.hold_ms, "How long an actuator stays on after a contact")
-      ->capture_default_str()
-      ->check(help::kNotNegative)
-      ->type_name("MS");
+  add_law_parameters(verb, options.law_parameters, "Options", "How long an actuator stays on after a contact");
   options.rank_by = default_metric_to_rank_by();
   add_rank_by(verb, options.rank_by)->capture_default_str();
   verb.add_option("-o,--output", options.output,
@@ -88,10 +102,18 @@ BatchPlan plan_of(const BatchOptions& options) {
     throw UsageError("--surface", "all maps share one detection, so unmapped skin cannot be passed through",
                      "leave it out; 'vestige replay --surface mapped' looks at one map");
   metric_to_rank_by(options.rank_by);
+  if (options.output == "-") throw UsageError("-o -", "a batch is a folder of files", "name a folder");
   BatchPlan plan;
   plan.traces = name_traces(options.traces);
+  refuse_misspelt_scenarios(plan.traces);
   plan.laws = parse_names(options.laws, kLaws, "--laws");
-  plan.hold_s = options.hold_ms / 1e3;
+  const auto refuse_without = [&](bool given, const char* flag, const char* law) {
+    if (given && std::ranges::find(plan.laws, law) == plan.laws.end())
+      throw UsageError(flag, "means nothing to any of the laws", fmt::format("add {} to --laws, or leave it out", law));
+  };
+  refuse_without(options.law_parameters.full_speed_m_per_s.has_value(), "--full-speed", "speed");
+  refuse_without(options.law_parameters.sigma_mm.has_value(), "--sigma", "gaussian");
+  plan.law_options = options.law_parameters.options();
   plan.detector = options.choice.detector == "auto" ? "cpu" : options.choice.detector;
   plan.method = options.choice.method;
   plan.skip = options.choice.skip;
@@ -104,7 +126,20 @@ BatchPlan plan_of(const BatchOptions& options) {
   plan.recording.rate_hz = options.rate_hz.value_or(plan.recording.rate_hz);
   plan.recording.duration_s = options.duration_s.value_or(plan.recording.duration_s);
   plan.recording.count = options.count;
+  if (plan.has_scenario() && plan.recording.rate_hz * plan.recording.duration_s > kMostScenarioFrames)
+    throw UsageError("--duration", "a trace holds 4294967295 frames at most", "record less, or at a lower --rate");
   return plan;
+}
+
+void warn_of_inputs(const nlohmann::ordered_json& run, Verbosity verbosity) {
+  const auto list = [](const nlohmann::ordered_json& json, const char* field) {
+    return json.value(field, nlohmann::ordered_json::array());
+  };
+  for (const nlohmann::ordered_json& warning : list(run.value("avatar", nlohmann::ordered_json::object()), "warnings"))
+    warn(warning.get<std::string>(), verbosity);
+  for (const nlohmann::ordered_json& map : list(run, "maps"))
+    for (const nlohmann::ordered_json& warning : list(map, "warnings"))
+      warn(fmt::format("map '{}': {}", map.value("name", ""), warning.get<std::string>()), verbosity);
 }
 
 std::vector<std::string> arguments_of(const BatchOptions& options) {
@@ -114,7 +149,11 @@ std::vector<std::string> arguments_of(const BatchOptions& options) {
   words.insert(words.end(), options.traces.begin(), options.traces.end());
   const auto add = [&](const char* flag, const std::string& value) { words.insert(words.end(), {flag, value}); };
   add("--laws", options.laws);
-  add("--hold", fmt::format("{}", options.hold_ms));
+  const LawFlags& parameters = options.law_parameters;
+  if (parameters.full_speed_m_per_s) add("--full-speed", fmt::format("{}", *parameters.full_speed_m_per_s));
+  if (parameters.sigma_mm) add("--sigma", fmt::format("{}", *parameters.sigma_mm));
+  if (!parameters.actuator.empty()) add("--actuator", parameters.actuator);
+  add("--hold", fmt::format("{}", parameters.hold_ms));
   add("--rank-by", options.rank_by);
   if (!options.avatar.empty()) add("--avatar", options.avatar);
   if (options.rate_hz) add("--rate", fmt::format("{}", *options.rate_hz));

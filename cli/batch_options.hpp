@@ -7,6 +7,7 @@
 
 #include "analysis/batch/batch_plan.hpp"
 #include "cli/detectors.hpp"
+#include "cli/law_choice.hpp"
 #include "cli/options.hpp"
 
 namespace vestige::cli {
@@ -18,9 +19,9 @@ struct BatchOptions {
   std::vector<std::string> maps;
   std::vector<std::string> traces;
   std::string laws;
+  LawFlags law_parameters;  ///< of all laws alike
   std::string avatar;
   std::string rank_by;
-  double hold_ms = 60;
   std::optional<double> rate_hz;
   std::optional<double> duration_s;
   std::optional<std::uint32_t> count;
@@ -41,6 +42,9 @@ std::vector<std::string> arguments_of(const BatchOptions& options);
 
 void add_batch_merge(CLI::App& batch, Invocation& invocation);
 void add_batch_slurm(CLI::App& batch, Invocation& invocation);
+
+/// Warns of what run.json says about avatar and maps (`input_warnings`).
+void warn_of_inputs(const nlohmann::ordered_json& run, Verbosity verbosity);
 
 /// Adds --rank-by.
 CLI::Option* add_rank_by(CLI::App& verb, std::string& rank_by);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
+#include "traces/error.hpp"
 #include "traces/trace_check.hpp"
 
 namespace vestige::cli {
@@ -85,9 +86,18 @@ void run_doctor(const DoctorOptions& options, Invocation& invocation) {
   catch_interrupts();
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (const std::string& file : options.files) {
-    const mcap::FileSource source(file);
-    Progress progress("Checking", options.common.verbosity());
-    const TraceCheck check = check_trace(source, [&](double share) { return progress.update(share); });
+    TraceCheck check;
+    try {
+      const mcap::FileSource source(file);
+      Progress progress("Checking", options.common.verbosity());
+      check = check_trace(source, [&](double share) { return progress.update(share); });
+    } catch (const Error& error) {
+      if (interrupted()) throw;
+      print_message(fmt::format("vestige: error: {}\n", error.what()));
+      invocation.exit_code = worse(invocation.exit_code, kFailed);
+      json.push_back({{"file", file}, {"readable", false}, {"error", error.what()}});
+      continue;
+    }
     invocation.exit_code = worse(invocation.exit_code, exit_code_of(check));
     json.push_back(to_json(check, file));
     print_summary(describe(check, file), {options.common.json}, options.common);

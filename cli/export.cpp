@@ -128,7 +128,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
     outputs = folder->paths();
     std::vector<std::string> all = outputs;
     all.push_back(options.common.json);
-    make_folder(options.output, "-o");
+    make_output_folder(options.output);
     check_outputs(all, {options.file}, options.common);
   }
   catch_interrupts();
@@ -222,7 +222,15 @@ void add_export(CLI::App& program, Invocation& invocation) {
       ->type_name("HZ")
       ->check(help::kPositive);
   add_common_options(*verb, options->common);
-  verb->callback([options, &invocation] { run_export(*options, invocation); });
+  verb->callback([options, &invocation] {
+    try {
+      run_export(*options, invocation);
+    } catch (const ReaderGone&) {
+      // Of text, `| head` has seen enough.
+      const std::string format = format_of(*options);
+      if (format != "csv" && format != "ndjson") throw;
+    }
+  });
 }
 
 }  // namespace vestige::cli

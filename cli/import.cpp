@@ -24,6 +24,8 @@ namespace vestige::cli {
 
 namespace {
 
+constexpr double kMostImportedFrames = 4294967295.0;  // a trace numbers its frames in 32 bits
+
 struct ImportOptions {
   CommonOptions common;
   std::string from;
@@ -139,6 +141,8 @@ void read_colliders(const ImportOptions& options, Frames& frames) {
 void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional<double> rate_hz, Frames& frames) {
   const double duration_s = static_cast<double>(motion.frame_count - 1) * motion.frame_time_s;
   const double step_s = rate_hz ? 1 / *rate_hz : motion.frame_time_s;
+  if (rate_hz && !(duration_s * *rate_hz + 1 <= kMostImportedFrames))
+    throw UsageError("--rate", "a trace holds 4294967295 frames at most", "import at a lower --rate");
   // The last frame is there even where division has left a little too much.
   const std::uint64_t count =
       rate_hz ? static_cast<std::uint64_t>(std::floor(duration_s * *rate_hz + 1e-6)) + 1 : motion.frame_count;

@@ -50,6 +50,11 @@ void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, 
       ->capture_default_str()
       ->check(CLI::IsMember(names))
       ->type_name("LAW");
+  add_law_parameters(verb, flags, group, hold_description);
+}
+
+void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group,
+                        const std::string& hold_description) {
   verb.add_option("--full-speed", flags.full_speed_m_per_s,
                   "With --law speed: the speed along the skin's normal that asks for all, in metres per second "
                   "[default: 1]")

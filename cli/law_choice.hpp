@@ -27,7 +27,9 @@ struct LawFlags {
   bool any() const { return law != "binary" || !actuator.empty() || full_speed_m_per_s || sigma_mm; }
 };
 
-/// Adds --law, --full-speed, --sigma, --actuator and --hold to a group of help.
+/// Adds --full-speed, --sigma, --actuator and --hold to a group of help.
+void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_description);
+/// Adds --law, and these.
 void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_description);
 
 /// What contacts drive: a law over a map, and the motors.

@@ -26,7 +26,7 @@ std::string page(const help::CommandTable& command) {
 
 /// Every page but that of `plot`, which vestige-plot prints.
 void write_pages(const help::CommandTable& program, const ManOptions& options) {
-  make_folder(options.folder, "--pages");
+  make_output_folder(options.folder);
   const std::filesystem::path folder = options.folder;
   const auto write = [&](const help::CommandTable& command) {
     OutputFile file(folder / (help::page_name(command) + ".1"), options.force ? Overwrite::kAllow : Overwrite::kRefuse);

@@ -39,6 +39,11 @@ void run_merge(const MergeOptions& options, Invocation& invocation) {
   std::map<std::string, std::vector<mcap::Damage>> damages;
   for (const Merged::Damage& damage : merged.damages) damages[damage.file].push_back(damage.damage);
   for (const auto& [file, list] : damages) warn_of_damage(file, list, verbosity);
+  for (const Merged::OtherSession& other : merged.other_sessions)
+    warn(fmt::format("{}: seems to be of another recording than {}: their sessions differ in {}\n  Merge only parts of "
+                     "one recording.",
+                     other.file, options.files.front(), fmt::join(other.keys, ", ")),
+         verbosity);
   if (merged.missing_frames > 0)
     warn(fmt::format("{}: {} frames between its first and its last were in none of the files", options.output,
                      merged.missing_frames),

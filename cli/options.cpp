@@ -70,12 +70,10 @@ class MadeFolders {
 
 }  // namespace
 
-void make_folder(const std::string& path, const std::string& flag) {
+void make_output_folder(const std::string& path) {
   static MadeFolders made;
   made.expect(path);
-  std::error_code failure;
-  std::filesystem::create_directories(path, failure);
-  if (failure) throw Error(path, "the folder cannot be made: " + failure.message(), "choose another " + flag);
+  make_folder(path);
 }
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,

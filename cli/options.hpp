@@ -47,8 +47,7 @@ struct CommonOptions {
 void add_common_options(CLI::App& verb, CommonOptions& options);
 
 /// Makes the folder `path` and those above it, unless they exist; what is still empty when the program ends goes again.
-/// `flag` is the one that named it, for the error.
-void make_folder(const std::string& path, const std::string& flag);
+void make_output_folder(const std::string& path);
 
 /// Refuses, before any work is done, what could not be written at its end or would destroy what is read: existing files
 /// without --force, two results in one place, a result in the place of an input. Empty paths were not asked for.

@@ -26,6 +26,7 @@ namespace vestige::cli {
 namespace {
 
 constexpr double kMostFrames = 4294967295.0;  // a trace numbers its frames in 32 bits
+constexpr double kManyFrames = 1e7;
 
 constexpr double kFarthest_m = 1e7;  // detector/CONTRACT.md, 2
 
@@ -85,18 +86,14 @@ TraceWriterOptions writing_of(const RecordOptions& options) {
   return writing;
 }
 
-/// Records the scene; false when there was no room for all of it.
-bool record_scene(const RecordOptions& options, const Scene& scene, const Animation* animation,
+void record_scene(const RecordOptions& options, const Scene& scene, const Animation* animation,
                   ColliderSource& colliders, const RecordingSettings& settings, Recorder& recorder) {
   Progress progress("Recording", options.common.verbosity());
-  bool full = false;
   const auto write = [&](const TraceFrame& frame) {
     if (snapshot_wanted()) recorder.snapshot();
-    full = !recorder.write(frame);
-    return !full;
+    return recorder.write(frame);
   };
   record(write, scene.avatar, animation, colliders, settings, [&](double share) { return progress.update(share); });
-  return !full;
 }
 
 std::string name_of(const std::vector<std::filesystem::path>& files) {
@@ -123,6 +120,10 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
     check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
   }
 
+  const double frames = settings.rate_hz * settings.duration_s;
+  if (!options.live.is_live() && frames > kManyFrames)
+    warn(fmt::format("{:.0f} frames will take long; Ctrl-C ends the trace early, complete up to there", frames),
+         verbosity);
   catch_interrupts();
   if (limits.ring_s) catch_snapshots();
   const auto start = std::chrono::steady_clock::now();
@@ -133,21 +134,21 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
                      .writing = writing_of(options),
                      .limits = limits});
   LiveCounts lost;
-  bool full = false;
   if (options.live.is_live()) {
     const auto duration_s = options.has_duration ? std::optional(settings.duration_s) : std::nullopt;
     lost = record_live(options.live, scene, recorder, settings.rate_hz, duration_s, settings.origin_m, verbosity);
   } else {
-    full = !record_scene(options, scene, animation, *colliders, settings, recorder);
+    record_scene(options, scene, animation, *colliders, settings, recorder);
   }
   recorder.finish();
   const std::chrono::duration<double> recording = std::chrono::steady_clock::now() - start;
   const bool cut_short = interrupted() && !options.live.is_live();
-  if (cut_short || full)
-    warn(fmt::format("stopped {}after {} frames; the trace is complete up to there", full ? "by --max-size " : "",
-                     recorder.frame_count()),
+  if (cut_short || recorder.is_full())
+    warn(fmt::format("stopped {}after {} frames; the trace is complete up to there",
+                     recorder.is_full() ? "by --max-size " : "", recorder.frame_count()),
          verbosity);
-  if (lost.lost_something()) invocation.exit_code = kDataLost;
+  // What came in live and found no room cannot be made again.
+  if (lost.lost_something() || (options.live.is_live() && recorder.is_full())) invocation.exit_code = kDataLost;
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;

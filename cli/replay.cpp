@@ -357,6 +357,9 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (texture_file) texture_file->commit();
   if (timeline) timeline->commit();
   if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
+  for (std::size_t i = result.map_changes; i < timed_maps.size() && !result.interrupted; ++i)
+    warn(fmt::format("--map-at {}={}: the trace ends before that", timed_maps[i].time_s, timed_maps[i].file),
+         verbosity);
   if (result.non_finite_frames + result.non_finite_segments != 0)
     warn(fmt::format(
              "{}: {} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",

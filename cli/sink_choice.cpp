@@ -110,7 +110,7 @@ std::size_t state_bytes(const SinkChoice& choice, std::size_t actuators) {
 }  // namespace
 
 OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names,
-                   const CommonOptions& options)
+                   const CommonOptions& options, Driven driven)
     : choice_(choice) {
   const Verbosity verbosity = options.verbosity();
   if (choice.is_osc()) {
@@ -144,8 +144,12 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
                      choice.port, choice.baud),
          verbosity);
   }
-  const std::size_t told = greeting_ ? greeting_->actuator_count : actuator_names.size();
-  frame_bytes_ = state_bytes(choice, std::min(told, actuator_names.size()));
+  std::size_t sent = actuator_names.size();
+  if (greeting_) {
+    const std::size_t told = greeting_->actuator_count;
+    sent = driven == Driven::kAllOfTheBoard ? told : std::min(told, sent);
+  }
+  frame_bytes_ = state_bytes(choice, sent);
   // Two may be on their way when the next one is due.
   if (2 * line_time_s() > choice.ttl_ms / 1e3)
     warn(fmt::format("{}: a frame takes {:.0f} ms on the line: the board will switch itself off between frames\n  Use "

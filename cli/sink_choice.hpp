@@ -45,11 +45,15 @@ struct SinkChoice {
 /// --osc-value.
 void add_sink_options(CLI::App& verb, SinkChoice& choice);
 
+/// Which actuators a frame is for, where a board says how many it has.
+enum class Driven { kThoseNamed, kAllOfTheBoard };
+
 /// A sink that is open, and what is known of the other end.
 class OpenSink {
  public:
   /// Opens it and, on a serial line, asks who is there: what a person should know of the answer goes to standard error.
-  OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names, const CommonOptions& options);
+  OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names, const CommonOptions& options,
+           Driven driven = Driven::kThoseNamed);
   ~OpenSink();
   OpenSink(const OpenSink&) = delete;
   OpenSink& operator=(const OpenSink&) = delete;

@@ -88,7 +88,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   parse_names(options.detectors, detector_names(), "--detector");
   const std::string json_path = options.output + "/stress.json";
   const std::string run_path = options.output + "/run.json";
-  make_folder(options.output, "-o");
+  make_output_folder(options.output);
   check_outputs({json_path, run_path, options.common.json}, {}, options.common);
   catch_interrupts();
   const Contestants contestants = make_contestants(options, verbosity);

@@ -44,7 +44,7 @@ std::string prepare_sweep(const SweepChoice& choice, std::vector<std::string> re
   std::string new_trace = choice.trace.empty() ? choice.output + "/trace.mcap" : "";
   results.push_back(new_trace);
   results.push_back(choice.common.json);
-  make_folder(choice.output, "-o");
+  make_output_folder(choice.output);
   check_outputs(results, {choice.trace}, choice.common);
   catch_interrupts();
   if (new_trace.empty()) return choice.trace;

@@ -61,7 +61,10 @@ bool Progress::update(double share) {
 void catch_interrupts() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  std::signal(SIGHUP, on_interrupt);
+  // Where it is ignored, as nohup does, the run is to outlive its terminal.
+  struct sigaction hangup = {};
+  ::sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) std::signal(SIGHUP, on_interrupt);
 }
 
 bool interrupted() {

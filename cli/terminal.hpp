@@ -33,6 +33,7 @@ class Progress {
 };
 
 /// From now on SIGINT, SIGTERM and SIGHUP only set a flag, so that files are finished properly. A second one kills.
+/// A SIGHUP that is ignored, as under nohup, stays so.
 void catch_interrupts();
 bool interrupted();
 

@@ -61,22 +61,33 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   std::size_t actuators = options.actuators == 0 ? kDefaultActuators : options.actuators;
   std::vector<std::string> names;
   for (std::size_t i = 1; i <= actuators; ++i) names.push_back(std::to_string(i));
-  OpenSink sink(options.sink, names, options.common);
+  OpenSink sink(options.sink, names, options.common,
+                options.actuators == 0 ? Driven::kAllOfTheBoard : Driven::kThoseNamed);
   if (options.actuators == 0 && sink.greeting()) actuators = sink.greeting()->actuator_count;
   const SenderStatistics statistics = run_in_turn(sink, actuators, options);
   sink.commit();
 
   const bool acknowledges = sink.sink().acknowledges();
-  const bool good = !acknowledges || (sink.greeting() && statistics.acknowledged == statistics.sent);
+  const bool all_answered = statistics.acknowledged == statistics.sent && statistics.off_acknowledged;
+  const bool good =
+      statistics.off_sent && statistics.links_lost == 0 && (!acknowledges || (sink.greeting() && all_answered));
   std::string verdict = fmt::format("sent {} frames", statistics.sent);
   if (acknowledges) verdict += fmt::format(", {} acknowledged", statistics.acknowledged);
-  if (!acknowledges) {
+  if (statistics.links_lost > 0)
+    verdict +=
+        fmt::format(", the link was lost {} time{}", statistics.links_lost, statistics.links_lost == 1 ? "" : "s");
+  if (!statistics.off_sent) {
+    verdict += ", the last, which switches off, could not be sent";
+  } else if (acknowledges && !statistics.off_acknowledged) {
+    verdict += ", the last, which switches off, was not acknowledged";
+  }
+  if (!good) {
+    verdict += ": THE VEST DOES NOT HEAR EVERYTHING\n";
+  } else if (!acknowledges) {
     verdict += "; nothing answers on this way, so only what you felt counts\n";
-  } else if (good) {
+  } else {
     verdict += fmt::format(", answers after {:.1f} ms (median): the vest hears everything\n",
                            statistics.acknowledged_after.quantile_us(0.5) / 1e3);
-  } else {
-    verdict += ": THE VEST DOES NOT HEAR EVERYTHING\n";
   }
   print_summary(verdict + sink.describe_link(statistics.bytes), {options.common.json, options.sink.output_path()},
                 options.common);
@@ -87,6 +98,8 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   json["acknowledged"] = statistics.acknowledged;
   json["receive_errors"] = statistics.receive_errors;
   json["links_lost"] = statistics.links_lost;
+  json["off_sent"] = statistics.off_sent;
+  json["off_acknowledged"] = statistics.off_acknowledged;
   json["link"] = sink.link_json();
   json["link"]["bytes"] = statistics.bytes;
   json["good"] = good;

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "detector/texture_stretch.hpp"
 #include "detector/uv_texels.hpp"
 #include "traces/pose.hpp"
 #include "traces/reference_skinning.hpp"
@@ -94,7 +95,7 @@ struct Piece {
   SkinPoint point;         // its middle
   std::uint16_t actuator;  // the map's number
   double area_m2;
-  std::size_t texel;  // or kNoTexel: a whole triangle between the texels' centres
+  std::size_t texel;  // or kNoTexel: a whole triangle, between the texels' centres or too large for the texture
 };
 constexpr std::size_t kNoTexel = ~std::size_t{0};
 
@@ -115,7 +116,10 @@ void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const Surf
     if (!std::isfinite(a.x + a.y + b.x + b.y + c.x + c.y)) continue;
     const std::array<glm::dvec2, 3> corners = {a * scale, b * scale, c * scale};
     std::size_t texels = 0;
-    for_texels_of(corners, width, height, [&](std::uint32_t, std::uint32_t, std::uint32_t count) { texels += count; });
+    // One that covers the texture more than once over would go through each texel as often.
+    if (fits_texture(corners, scale))
+      for_texels_of(corners, width, height,
+                    [&](std::uint32_t, std::uint32_t, std::uint32_t count) { texels += count; });
     if (texels == 0) {
       take(Piece{{number, glm::dvec3(1.0 / 3)}, map.at((a + b + c) / 3.0), area_m2, kNoTexel});
       continue;
@@ -229,8 +233,29 @@ void ActuatorLayout::place_actuators(const Avatar& avatar) {
       away_m[i] = piece_m;
       place_[i] = piece.point;
     });
+  place_specks(avatar);
   for (std::size_t i = 0; i < n; ++i)
     if (place_[i]) position_m_[i] = surface_.position_of(*place_[i]);
+}
+
+/// Regions that are touched, though no texel's centre of theirs lies on skin, have no piece of it.
+void ActuatorLayout::place_specks(const Avatar& avatar) {
+  constexpr int kSteps = 8;
+  if (std::ranges::all_of(place_, [](const auto& place) { return place.has_value(); })) return;
+  for (std::uint32_t number = 0; number < avatar.triangles.size(); ++number) {
+    if (!(area_of(surface_, number) > 0)) continue;
+    const glm::uvec3& triangle = avatar.triangles[number];
+    for (int i = 0; i <= kSteps; ++i) {
+      for (int j = 0; i + j <= kSteps; ++j) {
+        const glm::dvec3 weight = glm::dvec3(kSteps - i - j, i, j) / static_cast<double>(kSteps);
+        const glm::dvec2 at = weight.x * glm::dvec2(avatar.texture_coordinate[triangle.x]) +
+                              weight.y * glm::dvec2(avatar.texture_coordinate[triangle.y]) +
+                              weight.z * glm::dvec2(avatar.texture_coordinate[triangle.z]);
+        const std::uint16_t actuator = std::isfinite(at.x + at.y) ? map_.at(at) : std::uint16_t{0};
+        if (actuator != 0 && !place_[actuator - 1U]) place_[actuator - 1U] = SkinPoint{number, weight};
+      }
+    }
+  }
 }
 
 void ActuatorLayout::measure_distances() {

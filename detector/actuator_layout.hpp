@@ -90,6 +90,7 @@ class ActuatorLayout {
 
  private:
   void place_actuators(const Avatar& avatar);
+  void place_specks(const Avatar& avatar);
   void measure_distances();
   void find_neighbours();
 

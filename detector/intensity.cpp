@@ -166,7 +166,7 @@ class Gaussian final : public IntensityLaw {
     const auto reach_m = static_cast<float>(std::sqrt(kLogOfSteps / scale));
     const std::span<const float> distance_m = contact.distance_m();
     for (std::uint32_t i = 0; i < distance_m.size(); ++i) {
-      if (distance_m[i] >= reach_m) continue;
+      if (distance_m[i] >= reach_m || !layout().place(i)) continue;
       const double squared = static_cast<double>(distance_m[i]) * static_cast<double>(distance_m[i]);
       const double amplitude = portable_exp(-squared * scale);
       if (amplitude >= kNothing) out.push_back({i, std::min(amplitude, 1.0)});

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "traces/box.hpp"
+#include "traces/welding.hpp"
 
 namespace vestige {
 
@@ -58,26 +59,14 @@ void unite(std::vector<std::uint32_t>& parent, std::uint32_t a, std::uint32_t b)
 
 SurfaceDistance::SurfaceDistance(std::vector<glm::dvec3> position_m, std::span<const glm::uvec3> triangles, Gaps gaps)
     : position_m_(std::move(position_m)), triangles_(triangles.begin(), triangles.end()) {
-  weld();
+  // Whatever is not finite stands for itself.
+  weld_ = weld(position_m_.size(), [&](std::uint32_t i) {
+    const glm::dvec3& p = position_m_[i];
+    return is_finite(p) ? std::tuple(p.x, p.y, p.z, 0U) : std::tuple(0.0, 0.0, 0.0, i + 1);
+  });
   build_fans();
   std::vector<std::uint32_t> part = find_parts();
   if (gaps == Gaps::kBridged && parts_ > 1) build_bridges(std::move(part));
-}
-
-void SurfaceDistance::weld() {
-  std::vector<std::uint32_t> order(position_m_.size());
-  std::iota(order.begin(), order.end(), 0U);
-  const auto key = [&](std::uint32_t i) {
-    const glm::dvec3& p = position_m_[i];
-    return std::tuple(p.x, p.y, p.z);
-  };
-  std::erase_if(order, [&](std::uint32_t i) { return !is_finite(position_m_[i]); });
-  std::ranges::sort(order,
-                    [&](std::uint32_t a, std::uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-  weld_.resize(position_m_.size());
-  std::iota(weld_.begin(), weld_.end(), 0U);
-  for (std::size_t i = 1; i < order.size(); ++i)
-    if (key(order[i - 1]) == key(order[i])) weld_[order[i]] = weld_[order[i - 1]];
 }
 
 void SurfaceDistance::build_fans() {

@@ -59,7 +59,6 @@ class SurfaceDistance {
     double length_m;
   };
 
-  void weld();
   void build_fans();
   std::vector<std::uint32_t> find_parts();
   void build_bridges(std::vector<std::uint32_t> part);

@@ -2,9 +2,9 @@
 // bounds of candidates.vert, where the proof is; every other pair is captured, for the CPU to decide.
 //
 // For `static` these are a box and the signs of decide_static.cpp, seen from the segment's start: hardly a pair is
-// captured that does not meet. For the other methods no more than boxes and slabs, since llvmpipe runs whatever a branch or a loop holds at least
-// once, for all triangles: all the axes of geometry.geom would take longest of all there, and spare the CPU two
-// decisions of three.
+// captured that does not meet. For the other methods no more than boxes and slabs, since llvmpipe runs whatever a branch
+// or a loop holds at least once, for all triangles: all the axes of geometry.geom would take longest of all there, and
+// spare the CPU two decisions of three.
 
 layout(points) in;
 layout(points, max_vertices = 1) out;

@@ -20,6 +20,7 @@ constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 29;
 constexpr std::size_t kMostJoints = 10000;
 constexpr std::size_t kDeepest = 256;
 constexpr double kLongest_s = 1e9;
+constexpr double kShortestFrame_s = 1e-9;  // a trace's times are in nanoseconds
 constexpr float kFarthest = 1e9F;
 constexpr std::string_view kSpace = " \t\r\v\f";
 
@@ -218,6 +219,9 @@ class Parser {
       words_.fail(fmt::format("expected Frame Time: instead of {}", Words::quoted(word)));
     motion_.frame_time_s = words_.number<double>(words_.next(), "the frame time");
     if (!(motion_.frame_time_s > 0)) words_.fail("the frame time is not positive");
+    if (motion_.frame_time_s < kShortestFrame_s)
+      words_.fail(fmt::format("the frame time is {} s, less than 1e-9 s", motion_.frame_time_s),
+                  "it is in seconds: for 120 frames a second, write 0.00833333");
     if (static_cast<double>(frames) * motion_.frame_time_s > kLongest_s)
       words_.fail("the motion lasts longer than 1e9 s", "check the frame time");
     motion_.frame_count = static_cast<std::size_t>(frames);

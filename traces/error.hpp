@@ -19,6 +19,12 @@ class UsageError : public Error {
   using Error::Error;
 };
 
+/// Whoever read the pipe that was written to has stopped.
+class ReaderGone : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Writes to standard error. Where that is closed, nobody is told, and nothing fails for it.
 void print_message(const std::string& text);
 

@@ -128,14 +128,17 @@ void FrameGate::release(const Group* next) {
     const bool after_last = !last_sequence_ || (group.sequence > *last_sequence_ && group.time_ns >= last_time_ns_);
     const bool before_next = next == nullptr || (group.sequence < next->sequence && group.time_ns <= next->time_ns);
     if (group.has_frame && !(after_last && before_next)) leave_out_frame(group);
-    if (group.trust == Trust::kUnverified) unverified_ += group.messages.size();
     write(group);
   }
   waiting_.clear();
   waiting_bytes_ = 0;
 }
 
-void FrameGate::write(const Group& group) {
+void FrameGate::write(Group& group) {
+  // A definition behind a message that has waited does not change what the message was taken for.
+  left_out_ += std::erase_if(
+      group.messages, [&](const Held& held) { return streams_.stream_of(held.message.channel_id) != held.stream; });
+  if (group.trust == Trust::kUnverified) unverified_ += group.messages.size();
   for (const Held& held : group.messages) {
     mcap::Message message = held.message;
     message.data = held.data;

@@ -57,7 +57,7 @@ class FrameGate {
   bool clean(Group& group);
   bool is_readable(const Held& held);
   void release(const Group* next);
-  void write(const Group& group);
+  void write(Group& group);
   void leave_out_frame(Group& group);
 
   const StreamTable& streams_;

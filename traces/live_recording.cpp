@@ -23,6 +23,9 @@ using WhenBehind = RecordingThread::WhenBehind;
 
 /// How long nothing is asked at most.
 constexpr std::chrono::milliseconds kLongestWait(20);
+/// How many datagrams are taken before it is looked whether a frame is due, and for how long.
+constexpr int kMostInATurn = 1000;
+constexpr std::chrono::milliseconds kLongestTurn(5);
 /// How late a frame may be made: about as far as a sender's own frames, and the network's delays, are apart. A busy
 /// machine then costs no frame, each of which would be a gap over which nothing can touch.
 constexpr double kMostLate_s = 0.02;
@@ -141,8 +144,14 @@ class StateRecording {
     start_ = Clock::now();
   }
 
+  /// Under a flood there is always another datagram: frames, and whoever stops it, must have their turn.
   void receive() {
-    while (const auto datagram = datagrams_.next()) begun_ = state_.take(*datagram) || begun_;
+    const Clock::time_point until = Clock::now() + kLongestTurn;
+    for (int count = 0; count < kMostInATurn && Clock::now() < until; ++count) {
+      const auto datagram = datagrams_.next();
+      if (!datagram) break;
+      begun_ = state_.take(*datagram) || begun_;
+    }
   }
 
   std::int64_t time_of(std::uint64_t index) const {

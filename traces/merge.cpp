@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ranges>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "traces/definitions.hpp"
@@ -47,8 +49,7 @@ struct Identity {
   std::string map_text;
 };
 
-Identity identity_of(const ByteSource& source) {
-  const TraceIndex index = index_trace(source);
+Identity identity_of(const TraceIndex& index) {
   return {.avatar = sha256_hex(index.avatar_glb),
           .map_image = sha256_hex(index.actuator_map_png),
           .map_text = sha256_hex(index.actuator_map_json)};
@@ -81,29 +82,51 @@ void require_same(const Identity& known, const Identity& added, const ByteSource
   if (added.map_text != known.map_text) refuse("actuator map's description");
 }
 
-/// All that the parts define; checks that they are parts of one recording.
-Definitions common_definitions(const std::vector<std::unique_ptr<ByteSource>>& sources) {
+/// Keys that only one of them has, or whose values differ.
+std::vector<std::string> differing_keys(const Session& a, const Session& b) {
+  std::set<std::string> keys;
+  for (const auto& [one, other] : {std::tie(a, b), std::tie(b, a)})
+    for (const auto& [key, value] : one)
+      if (const auto found = other.find(key); found == other.end() || found->second != value) keys.insert(key);
+  return {keys.begin(), keys.end()};
+}
+
+struct Common {
+  Definitions definitions;  ///< all that the parts define
+  std::vector<Merged::OtherSession> other_sessions;
+};
+
+/// Checks that they are parts of one recording.
+Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
   const ByteSource& first = *sources.front();
   std::optional<Identity> identity;
-  Definitions all;
+  Session session;
+  Common common;
+  Definitions& all = common.definitions;
   for (const auto& source : sources) {
     mcap::require_mcap(*source);
     Definitions definitions = gather_definitions(*source);
     if (!is_trace(definitions))
       throw Error(source->name(), "is no trace of ours: it has no channel /pose", "only traces can be merged");
-    const Identity own = identity_of(*source);
+    TraceIndex index = index_trace(*source);
+    const Identity own = identity_of(index);
     if (!identity) {
       identity = own;
+      session = std::move(index.session);
       all = std::move(definitions);
       continue;
     }
     require_same(*identity, own, first, *source);
+    // Parts of one recording have the same session, to the time it began. One that is damaged says nothing.
+    std::vector<std::string> keys = differing_keys(session, index.session);
+    if (!keys.empty() && !session.empty() && !index.session.empty())
+      common.other_sessions.push_back({.file = source->name(), .keys = std::move(keys)});
     require_same(all.schemas, definitions.schemas, "schema", first, *source);
     require_same(all.channels, definitions.channels, "channel", first, *source);
     all.schemas.merge(definitions.schemas);
     all.channels.merge(definitions.channels);
   }
-  return all;
+  return common;
 }
 
 /// A message that outlives its reader's next step.
@@ -164,6 +187,8 @@ class Merger {
   void advance(Part& part);
   void take_other(const mcap::StreamRecord& record);
   void take_group(Part& part, const Moment& moment, std::vector<Held>& group);
+  bool is_ours(const Held& held) const;
+  bool same_frame(const std::vector<Held>& a, const std::vector<Held>& b) const;
   void write(const std::vector<Held>& group, const Part& part);
   void require_next_frame(std::uint32_t sequence, const Part& part);
   double share() const;
@@ -190,8 +215,9 @@ Merged Merger::run(const std::function<bool(double)>& progress) {
       take_group(*part, *next, from == nullptr ? group : twin);
       if (from == nullptr) {
         from = part.get();
-      } else if (std::equal(group.begin(), group.end(), twin.begin(), twin.end(), same)) {
-        result_.duplicates += twin.size();
+      } else if (same_frame(group, twin)) {
+        result_.duplicates +=
+            static_cast<std::uint64_t>(std::ranges::count_if(twin, [this](const Held& held) { return is_ours(held); }));
       } else {
         throw Error(part->source().name(),
                     fmt::format("its frame {} (at {} ns) is not that of {}", next->sequence, next->time_ns,
@@ -247,6 +273,16 @@ void Merger::take_group(Part& part, const Moment& moment, std::vector<Held>& gro
   }
 }
 
+bool Merger::is_ours(const Held& held) const {
+  return output_.streams().stream_of(held.message.channel_id) != Stream::kForeign;
+}
+
+/// What others made of it may differ: each file's first frame has its own /viz.
+bool Merger::same_frame(const std::vector<Held>& a, const std::vector<Held>& b) const {
+  const auto ours = std::views::filter([this](const Held& held) { return is_ours(held); });
+  return std::ranges::equal(a | ours, b | ours, same);
+}
+
 void Merger::require_next_frame(std::uint32_t sequence, const Part& part) {
   if (last_frame_ && sequence <= *last_frame_)
     throw Error(part.source().name(),
@@ -273,7 +309,10 @@ void Merger::write(const std::vector<Held>& group, const Part& part) {
 
 Merged merge_traces(const std::vector<std::unique_ptr<ByteSource>>& sources, const mcap::Writer::Sink& sink,
                     const std::function<bool(double)>& progress) {
-  return Merger(sources, sink, common_definitions(sources)).run(progress);
+  Common common = find_common(sources);
+  Merged merged = Merger(sources, sink, common.definitions).run(progress);
+  merged.other_sessions = std::move(common.other_sessions);
+  return merged;
 }
 
 }  // namespace vestige

@@ -18,15 +18,22 @@ struct Merged {
     std::string file;
     mcap::Damage damage;
   };
+  /// A file whose metadata `session` is not that of the first, as if it were of another recording.
+  struct OtherSession {
+    std::string file;
+    std::vector<std::string> keys;  ///< that differ, or that one of them lacks
+  };
   std::uint64_t messages = 0;        ///< written
   std::uint64_t frames = 0;          ///< written
-  std::uint64_t duplicates = 0;      ///< messages that stood in several files, the same to the bit
+  std::uint64_t duplicates = 0;      ///< of our messages, those that stood in several files, the same to the bit
   std::uint64_t missing_frames = 0;  ///< numbers between the first and the last frame that no file has
   std::vector<Damage> damages;       ///< what could not be read
+  std::vector<OtherSession> other_sessions;
 };
 
 /// Puts traces together that are parts of one recording, such as `trim` makes: their frames in order of time, each
-/// once; every attachment and metadata once; compressed as the first is. Keeps one chunk of each file in memory.
+/// once, with the messages of others (/viz) that the first file has of it; every attachment and metadata once;
+/// compressed as the first is. Keeps one chunk of each file in memory.
 ///
 /// Throws `Error`, naming file and reason: no trace of ours; another avatar or actuator map; other definitions of a
 /// channel; a frame that two files have and that differs; frames whose numbers do not follow their times; reading

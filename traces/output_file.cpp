@@ -30,8 +30,6 @@ std::string_view remedy_for(int error_number) {
       return "check the name; create the folder first";
     case EISDIR:
       return "name a file, not a folder";
-    case EPIPE:
-      return "whoever read it has stopped";
     default:
       return "";
   }
@@ -39,6 +37,20 @@ std::string_view remedy_for(int error_number) {
 
 bool is_standard_output(const std::filesystem::path& path) {
   return path == "-";
+}
+
+std::string shown_name(const std::filesystem::path& path) {
+  return is_standard_output(path) ? "standard output" : path.string();
+}
+
+/// The process's umask. It can only be read by setting it, which no two threads may do at a time.
+mode_t file_mask() {
+  static const mode_t mask = [] {
+    const mode_t found = ::umask(0);
+    ::umask(found);
+    return found;
+  }();
+  return mask;
 }
 
 /// Makes the rename itself durable; a folder that cannot be synced (some network disks) is no failure.
@@ -53,8 +65,7 @@ void sync_folder(const std::filesystem::path& path) {
 }  // namespace
 
 Error system_error(const std::filesystem::path& path, std::string_view doing, int error_number) {
-  const std::string name = is_standard_output(path) ? "standard output" : path.string();
-  return Error(name, fmt::format("{}: {}", doing, std::strerror(error_number)), remedy_for(error_number));
+  return Error(shown_name(path), fmt::format("{}: {}", doing, std::strerror(error_number)), remedy_for(error_number));
 }
 
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path) {
@@ -62,10 +73,17 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const std::file
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0) {
       if (errno == EINTR) continue;
+      if (errno == EPIPE) throw ReaderGone(shown_name(path), "whoever read it has stopped", "");
       throw system_error(path, "could not write", errno);
     }
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) throw system_error(folder, "the folder cannot be made", failure.value());
 }
 
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite) {
@@ -108,9 +126,7 @@ OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite)
   descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) throw system_error(path_, "could not create", errno);
   temporary_path_ = name;
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  ::fchmod(descriptor_, 0666 & ~mask);
+  ::fchmod(descriptor_, 0666 & ~file_mask());
 }
 
 OutputFile::~OutputFile() {

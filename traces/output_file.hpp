@@ -48,10 +48,13 @@ void give_name(const std::filesystem::path& temporary_path, const std::filesyste
 /// Throws `Error` when `path` exists and may not be overwritten: to be called before long work, not after it.
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite);
 
+/// With those that it lies in; one that is there stays. Throws `Error`.
+void make_folder(const std::filesystem::path& folder);
+
 /// Throws `UsageError` when standard output is a terminal: binary data would garble it.
 void refuse_terminal(std::string_view flag);
 
-/// Writes all of `bytes` to `descriptor`; throws `Error` naming `path`.
+/// Writes all of `bytes` to `descriptor`; throws `Error` naming `path`, `ReaderGone` for a pipe that nobody reads.
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 /// The error of a failed system call on `path`, with a remedy where one is known (permission, disk full, no folder).

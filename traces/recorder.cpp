@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <future>
 #include <utility>
 
@@ -68,6 +69,7 @@ class Recorder::Implementation {
   void write_old_chunk();
   void snapshot();
   void finish();
+  bool is_full() const { return full_; }
   std::uint64_t frame_count() const { return finished_frames_ + (writer_ ? writer_->frame_count() : 0); }
   std::uint64_t bytes_written() const { return finished_bytes_ + (writer_ ? writer_->bytes_written() : 0); }
   const std::vector<std::filesystem::path>& files() const { return files_; }
@@ -94,6 +96,7 @@ class Recorder::Implementation {
   std::optional<std::int64_t> first_ns_;
   std::int64_t split_ns_ = 0;  ///< where the part ends
   bool has_frame_ = false;     ///< in the ring
+  bool full_ = false;
   bool finished_ = false;
 };
 
@@ -173,7 +176,8 @@ bool Recorder::Implementation::write(const TraceFrame& frame) {
   }
   const bool beyond = is_beyond_part(frame);
   if (beyond || !has_room_for(frame)) {
-    if (!target_.limits.splits()) return false;
+    full_ = !target_.limits.splits();
+    if (full_) return false;
     finish_writer();
     open_next();
     static_cast<void>(has_room_for(frame));  // throws where not even one fits
@@ -222,7 +226,13 @@ void Recorder::Implementation::snapshot() {
 }
 
 void Recorder::Implementation::write_ring() {
-  await_snapshot();
+  // A snapshot that failed must not take what is still in the ring with it.
+  std::exception_ptr snapshot_failure;
+  try {
+    await_snapshot();
+  } catch (...) {
+    snapshot_failure = std::current_exception();
+  }
   writer_ = open(target_.path);
   files_.push_back(target_.path);
   ring_->contents().for_each([&](const RecordingNote& note) { note_in(*writer_, note); },
@@ -231,6 +241,7 @@ void Recorder::Implementation::write_ring() {
                                return true;
                              });
   finish_writer();
+  if (snapshot_failure) std::rethrow_exception(snapshot_failure);
 }
 
 void Recorder::Implementation::remove_stale_parts() const {
@@ -266,6 +277,9 @@ void Recorder::snapshot() {
 }
 void Recorder::finish() {
   implementation_->finish();
+}
+bool Recorder::is_full() const {
+  return implementation_->is_full();
 }
 std::uint64_t Recorder::frame_count() const {
   return implementation_->frame_count();

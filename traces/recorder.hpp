@@ -57,6 +57,8 @@ class Recorder {
   void snapshot();
   void finish();
 
+  /// Whether `write` has refused a frame.
+  bool is_full() const;
   std::uint64_t frame_count() const;    ///< in the files; with a ring, known after `finish`
   std::uint64_t bytes_written() const;  ///< in the files; with a ring, known after `finish`
   /// The files that there are, in order.

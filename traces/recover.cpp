@@ -268,7 +268,12 @@ void Recoverer::take_records(Bytes records) {
   try {
     while (cursor.remaining() > 0) {
       const mcap::InnerRecord record = mcap::next_record(cursor);
-      take_inner(record.opcode, record.content, Trust::kVerified);
+      try {
+        take_inner(record.opcode, record.content, Trust::kVerified);
+      } catch (const Malformed&) {
+        // Its fields do not fit; where the next begins is known all the same.
+        result_.bytes_lost += record.content.size() + mcap::kRecordHeadBytes;
+      }
     }
   } catch (const Malformed&) {
     // Its CRC holds: it was written like this.
@@ -283,7 +288,7 @@ void Recoverer::take_remains(Bytes records) {
     try {
       take_inner(record.opcode, record.content, Trust::kUnverified);
     } catch (const Malformed&) {
-      continue;  // a definition whose fields do not fit
+      continue;  // its fields do not fit
     }
   }
 }
@@ -298,8 +303,8 @@ void Recoverer::take_inner(Opcode opcode, Bytes content, Trust trust) {
       learn_node_count();
       break;
     case Opcode::kMessage:
-      ++messages_found_;
       gate_.take(mcap::decode_message(content), trust);
+      ++messages_found_;
       break;
     default:
       break;

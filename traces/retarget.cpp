@@ -347,7 +347,8 @@ double Retargeter::metres_per_unit(std::optional<double> asked) const {
   const double of_motion = hip_height(source_, source_up_);
   const double of_avatar = hip_height(target_, target_up_);
   if (of_motion > 0 && of_avatar > 0) return of_avatar / of_motion;
-  throw Error(name_, "its feet and the avatar's do not show how tall both are", "add --unit cm, m or inch");
+  throw Error(name_, "its feet and the avatar's do not show how tall both are",
+              "'vestige import --motion FILE --unit cm' (or m, or inch) says in what it is measured");
 }
 
 /// Where on the vertical the motion's hips stand at rest: some files count from the floor, others from the rest pose.

@@ -133,9 +133,10 @@ bool Sender::has_changed() {
 void Sender::look_for_life(Clock::time_point now) {
   const bool deserted = now > Clock::time_point(Clock::duration(alive_)) + kDeserted;
   if (deserted && !deserted_ && linked_ && has_state_) {
-    on_event_(fmt::format("{}: the playback has stopped; switched off until it goes on", sink_.name()));
     sink_.send_off(next_sequence(nullptr));
     note_sent();
+    // Last: a terminal that is stopped would hold it up, and the motors would run on.
+    on_event_(fmt::format("{}: the playback has stopped; switched off until it goes on", sink_.name()));
   }
   deserted_ = deserted;
 }

@@ -6,7 +6,11 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cerrno>
+#include <iterator>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -19,6 +23,10 @@ namespace {
 
 constexpr const char* kFolders[] = {"items", "contacts", "traces", "maps"};
 constexpr const char* kLockName = ".lock";
+constexpr const char* kPage = "report.html";
+constexpr const char* kResults[] = {"scores.csv", "scores.json", "ranking.csv", "ranking.json"};
+constexpr const char* kTopFiles[] = {"run.json",     "scores.csv", "scores.json",  "ranking.csv",
+                                     "ranking.json", "avatar.glb", "actuator.json"};
 constexpr const char* kShards = "shards";  // of a Slurm run that is merged into this folder, with their logs
 constexpr const char* kLogs = "logs";
 constexpr std::string_view kOtherFolder = "choose another -o, or add --force to replace it";
@@ -29,16 +37,46 @@ std::string this_process() {
   return fmt::format("process {} on {}", ::getpid(), machine.nodename);
 }
 
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) throw Error(folder.string(), "the folder cannot be made: " + failure.message(), "choose another -o");
-}
-
 bool same_command(const nlohmann::ordered_json& run, const nlohmann::ordered_json& batch, const Shard& shard) {
   try {
     return command_of(run.at("batch")) == command_of(batch) && run.at("shard").at("number") == shard.number &&
            run.at("shard").at("count") == shard.count;
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
+}
+
+/// Whether a file is named as `OutputFile` names one of `written` until it is complete: .NAME.XXXXXX.
+bool is_half_written(const std::string& file, const std::set<std::string>& written) {
+  constexpr std::size_t kEnd = 7;
+  if (file.size() < kEnd + 2 || file.front() != '.' || file[file.size() - kEnd] != '.') return false;
+  const auto is_random = [](char letter) { return std::isalnum(static_cast<unsigned char>(letter)) != 0; };
+  return std::all_of(file.end() - kEnd + 1, file.end(), is_random) &&
+         written.contains(file.substr(1, file.size() - kEnd - 1));
+}
+
+/// Names of `list` in what run.json says under "batch", each with `extension` behind it.
+void add_names(std::set<std::string>& names, const nlohmann::ordered_json& list, std::string_view extension) {
+  for (const nlohmann::ordered_json& one : list)
+    names.insert(fmt::format("{}{}", one.at("name").get<std::string>(), extension));
+}
+
+/// Name and bytes of each trace that a run.json has a result of.
+std::vector<std::string> traces_of_run(const nlohmann::ordered_json& run) {
+  std::vector<std::string> traces;
+  for (const nlohmann::ordered_json& trace : run.at("traces"))
+    traces.push_back(fmt::format("{} {}", trace.at("name").get<std::string>(), trace.at("sha256").get<std::string>()));
+  return traces;
+}
+
+/// Whether a finished run has the results that `run` will have, as far as it can be said.
+bool has_results_of(const nlohmann::ordered_json& finished, const nlohmann::ordered_json& run) {
+  try {
+    if (!finished.at("complete").get<bool>()) return false;
+    for (const char* field : {"batch", "shard", "rank_by"})
+      if (finished.at(field) != run.at(field)) return false;
+    return !run.contains("traces") ||
+           (finished.at("failures") == run.at("failures") && traces_of_run(finished) == traces_of_run(run));
   } catch (const nlohmann::json::exception&) {
     return false;
   }
@@ -75,8 +113,11 @@ BatchFolder::BatchFolder(std::filesystem::path folder, const nlohmann::ordered_j
                          OtherBatch other)
     : folder_(std::move(folder)), lock_(folder_) {
   refuse_others(batch, shard, other);
+  const auto run = folder_ / "run.json";
+  if (std::filesystem::exists(run))
+    earlier_run_ = nlohmann::ordered_json::parse(read_text_file(run.string()), nullptr, false);
   for (const char* name : kFolders) make_folder(folder_ / name);
-  remove_leftovers();
+  remove_leftovers(batch);
 }
 
 void BatchFolder::refuse_others(const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other) const {
@@ -95,20 +136,51 @@ void BatchFolder::refuse_others(const nlohmann::ordered_json& batch, const Shard
                 kOtherFolder);
 }
 
-void BatchFolder::remove_leftovers() const {
+void BatchFolder::remove_leftovers(const nlohmann::ordered_json& batch) const {
+  const auto remove = [&](const std::filesystem::path& folder, const std::set<std::string>& written,
+                          const std::set<std::string>& growing) {
+    std::vector<std::filesystem::path> leftovers;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (std::filesystem::is_regular_file(entry.symlink_status()) &&
+          (is_half_written(name, written) || growing.contains(name)))
+        leftovers.push_back(entry.path());
+    }
+    std::error_code ignored;
+    for (const auto& path : leftovers) std::filesystem::remove(path, ignored);
+  };
+  // Without a run.json these may be somebody else's.
+  if (!earlier_run_.is_null()) remove(folder_, {std::begin(kTopFiles), std::end(kTopFiles)}, {});
+  const nlohmann::ordered_json& traces = batch.at("traces");
+  std::set<std::string> items;
+  std::set<std::string> contacts;
+  std::set<std::string> growing;
+  std::set<std::string> recorded;
+  std::set<std::string> maps;
+  add_names(items, traces, ".json");
+  add_names(items, traces, ".run.json");
+  add_names(contacts, traces, ".csv");
+  add_names(recorded, traces, ".mcap");
+  for (const std::string& name : recorded) growing.insert("." + name);
+  recorded.insert(growing.begin(), growing.end());
+  add_names(maps, batch.at("maps"), ".png");
+  add_names(maps, batch.at("maps"), ".json");
+  remove(folder_ / "items", items, {});
+  remove(folder_ / "contacts", contacts, {});
+  remove(folder_ / "traces", recorded, growing);
+  remove(folder_ / "maps", maps, {});
+}
+
+void BatchFolder::remove_results(const nlohmann::ordered_json& run) const {
   std::error_code ignored;
-  std::vector<std::filesystem::path> folders = {folder_};
-  for (const char* name : kFolders) folders.push_back(folder_ / name);
-  for (const auto& folder : folders)
-    for (const auto& entry : std::filesystem::directory_iterator(folder))
-      if (entry.path().filename().string().starts_with('.') && entry.path().filename() != kLockName)
-        std::filesystem::remove(entry.path(), ignored);
+  for (const char* name : kResults) std::filesystem::remove(folder_ / name, ignored);
+  if (!has_results_of(earlier_run_, run)) std::filesystem::remove(folder_ / kPage, ignored);
 }
 
 std::optional<nlohmann::ordered_json> BatchFolder::finished(const std::string& name, const std::string& key,
                                                             const std::string& trace_sha256) const {
   const std::string path = item(name);
-  if (!std::filesystem::exists(path)) return std::nullopt;
+  if (!std::filesystem::exists(path) || !std::filesystem::exists(contacts(name))) return std::nullopt;
   auto json = nlohmann::ordered_json::parse(read_text_file(path), nullptr, false);
   const auto says = [&](const char* field, const std::string& value) {
     return json.is_object() && json.contains(field) && json[field] == value;

@@ -38,7 +38,7 @@ class FolderLock {
 class BatchFolder {
  public:
   /// Locks the folder, refuses one of another batch or with files that are none of a batch's, and removes what a killed
-  /// run left half-written. `batch`: `to_json(plan)`. Throws `Error`.
+  /// run of this batch left half-written. `batch`: `to_json(plan)`. Throws `Error`.
   BatchFolder(std::filesystem::path folder, const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other);
 
   std::string item(const std::string& name) const { return file("items", name, ".json"); }
@@ -51,17 +51,22 @@ class BatchFolder {
   std::string map_json(const std::string& name) const { return file("maps", name, ".json"); }
   std::string top(std::string_view name) const { return (folder_ / name).string(); }
 
-  /// The item of that trace, if it is there and is a result of this key and trace.
+  /// Removes scores and ranking, and a page about them unless `run`, a run.json that is to be written, has the traces
+  /// and results of the finished one that is there. Without "traces" in it, only its command is looked at.
+  void remove_results(const nlohmann::ordered_json& run) const;
+
+  /// The item of that trace, if it is there with its contacts and is a result of this key and trace.
   std::optional<nlohmann::ordered_json> finished(const std::string& name, const std::string& key,
                                                  const std::string& trace_sha256) const;
 
  private:
   std::string file(std::string_view folder, std::string_view name, std::string_view extension) const;
   void refuse_others(const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other) const;
-  void remove_leftovers() const;
+  void remove_leftovers(const nlohmann::ordered_json& batch) const;
 
   std::filesystem::path folder_;
   FolderLock lock_;
+  nlohmann::ordered_json earlier_run_;  ///< run.json as it was found; null: there was none
 };
 
 /// Writes a file that is complete or absent, in the place of an older one.

@@ -13,6 +13,7 @@
 #include "analysis/mapping/layouts.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
+#include "traces/input_file.hpp"
 #include "traces/sha256.hpp"
 #include "traces/trace_reader.hpp"
 
@@ -22,6 +23,7 @@ namespace {
 
 /// The bytes of the avatar that the traces are of; `given` becomes where it is from.
 std::vector<std::byte> avatar_of(const std::vector<BatchTrace>& traces, std::string& given) {
+  std::exception_ptr first;
   for (const BatchTrace& trace : traces) {
     if (trace.scenario != nullptr) {
       given = "builtin";
@@ -32,25 +34,44 @@ std::vector<std::byte> avatar_of(const std::vector<BatchTrace>& traces, std::str
       given = trace.given;
       return {reader.avatar_glb().begin(), reader.avatar_glb().end()};
     } catch (const Error&) {
-      // It will be reported with the other traces.
+      // It will be reported with the other traces, if any of them can be read.
+      if (!first) first = std::current_exception();
     }
   }
-  throw Error("--traces", "none of them can be read, so there is no avatar",
-              "'vestige doctor' says what is wrong with a trace");
+  std::rethrow_exception(first);  // there is at least one trace
 }
 
-ActuatorMapFiles map_files(const std::string& given, const Avatar& avatar, bool builtin_avatar) {
-  if (given == "builtin" && !builtin_avatar)
-    throw Error(given, "is drawn for the built-in avatar, and the batch's is another",
+BatchActuators read_actuators(const std::string& file) {
+  BatchActuators actuators = {.given = file, .json = read_text_file(file), .sha256 = {}, .model = nullptr};
+  actuators.sha256 = sha256_hex(std::as_bytes(std::span(actuators.json)));
+  actuators.model = std::make_shared<const ActuatorModel>(parse_actuator_model(actuators.json, file));
+  return actuators;
+}
+
+void load_map_files(BatchMap& map, const Avatar& avatar, bool builtin_avatar) {
+  if (map.given == "builtin" && !builtin_avatar)
+    throw Error(map.given, "is drawn for the built-in avatar, and the batch's is another",
                 "name one of the layouts, which fit any humanoid, or a PNG for this avatar");
-  return read_map_files(avatar, given);
+  if (!is_layout(map.given)) {
+    map.files = read_actuator_map_files(map.given);
+    return;
+  }
+  MadeMap made = make_layout_map(avatar, map.given);
+  map.files = std::move(made.files);
+  map.warnings = std::move(made.warnings);
+  if (!made.left_out.empty())
+    map.warnings.push_back(
+        fmt::format("the avatar has no skin for {} of the layout's actuators, which are left out: {}",
+                    made.left_out.size(), fmt::join(made.left_out, ", ")));
 }
 
 void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
-  map.files = map_files(map.given, plan.avatar, builtin_avatar);
+  load_map_files(map, plan.avatar, builtin_avatar);
   ActuatorMap parsed = parse_actuator_map(map.files.png, map.files.json, map.given);
   if (parsed.actuator_count == 0)
     throw Error(map.given, "has no actuator", "paint regions other than black, or list actuators in the sidecar");
+  if (plan.actuators.model) static_cast<void>(plan.actuators.model->motors(parsed));  // throws what they lack
+  map.warnings.insert(map.warnings.end(), parsed.warnings.begin(), parsed.warnings.end());
   Sha256 sha;
   sha.update(map.files.png);
   sha.update(std::as_bytes(std::span(map.files.json)));
@@ -82,7 +103,8 @@ void in_threads(std::size_t threads, std::size_t count, const Work& work) {
 }  // namespace
 
 std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar, const std::vector<std::string>& maps,
-                                      std::size_t jobs) {
+                                      const std::string& actuator, std::size_t jobs) {
+  if (!actuator.empty()) plan.actuators = read_actuators(actuator);
   plan.avatar_given = avatar;
   if (avatar.empty())
     plan.avatar_glb = avatar_of(plan.traces, plan.avatar_given);

@@ -87,8 +87,8 @@ void check_none_missing(const std::vector<ShardFolder>& shards) {
     if (!there.contains(number)) missing.push_back(fmt::format("{}/{}", number, count));
   if (!missing.empty())
     throw Error("merge",
-                fmt::format("shard{} {} missing", missing.size() == 1 ? "" : "s", fmt::join(missing, ", ")) +
-                    (missing.size() == 1 ? " is" : " are"),
+                fmt::format("shard{} {} {} missing", missing.size() == 1 ? "" : "s", fmt::join(missing, ", "),
+                            missing.size() == 1 ? "is" : "are"),
                 "run them, then name their folders too");
 }
 
@@ -105,6 +105,9 @@ std::optional<nlohmann::ordered_json> item_in(const ShardFolder& shard, const st
     if (failed(shard, trace)) return std::nullopt;
     throw Error(path, "is missing", "run the shard's command again, which makes it");
   }
+  const std::string contacts = shard.path("contacts/" + trace + ".csv");
+  if (!std::filesystem::exists(contacts))
+    throw Error(contacts, "is missing", "run the shard's command again, which makes it");
   nlohmann::ordered_json item = read_json_object(path, "run the shard's command again");
   if (!item.contains("key") || item["key"] != item_key(shard.run["batch"]))
     throw Error(path, "is a result of other maps, laws, options or another program than run.json says",

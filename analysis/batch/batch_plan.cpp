@@ -26,8 +26,43 @@ bool may_stand_in_a_name(char letter) {
   return byte >= 0x80 || std::isalnum(byte) != 0 || letter == '.' || letter == '_' || letter == '-';
 }
 
+/// Length of the UTF-8 letter (RFC 3629) that `text` begins with; 0: it is none.
+std::size_t letter_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  const unsigned first = byte(0);
+  const std::size_t length = first < 0x80                     ? 1
+                             : first >= 0xC2 && first < 0xE0  ? 2
+                             : first >= 0xE0 && first < 0xF0  ? 3
+                             : first >= 0xF0 && first <= 0xF4 ? 4
+                                                              : 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xC0U) != 0x80) return 0;
+  // Neither longer than needed, nor a half of UTF-16, nor beyond the last letter.
+  const bool refused = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) >= 0xA0) ||
+                       (first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) >= 0x90);
+  return refused ? 0 : length;
+}
+
+/// At most `most_bytes` of whole letters; '_' for each byte that belongs to none.
+std::string shortened_utf8(std::string_view text, std::size_t most_bytes) {
+  std::string letters;
+  while (!text.empty()) {
+    const std::size_t length = letter_bytes(text);
+    const std::string_view letter = length == 0 ? "_" : text.substr(0, length);
+    if (letters.size() + letter.size() > most_bytes) break;
+    letters.append(letter);
+    text.remove_prefix(std::max<std::size_t>(length, 1));
+  }
+  return letters;
+}
+
+/// As it will be read back: a file's name may be of bytes that are no text, which JSON has no place for.
+nlohmann::ordered_json as_read_back(const nlohmann::ordered_json& json) {
+  return nlohmann::ordered_json::parse(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
 std::string name_of(const std::string& given) {
-  std::string name = std::filesystem::path(given).stem().string().substr(0, kLongestName);
+  std::string name = shortened_utf8(std::filesystem::path(given).stem().string(), kLongestName);
   std::ranges::replace_if(
       name, [](char letter) { return !may_stand_in_a_name(letter); }, '_');
   // A name that begins with these would be a hidden file, or read as a flag.
@@ -72,7 +107,12 @@ nlohmann::ordered_json to_json(const BatchPlan& plan) {
   }
   json["laws"] = plan.laws;
   nlohmann::ordered_json& options = json["options"];
-  options["hold_ms"] = plan.hold_s * 1e3;
+  options["hold_ms"] = plan.law_options.hold_s * 1e3;
+  options["full_speed_m_per_s"] = plan.law_options.full_speed_m_per_s;
+  options["sigma_mm"] = nullptr;
+  if (plan.law_options.sigma_m) options["sigma_mm"] = *plan.law_options.sigma_m * 1e3;
+  options["actuator"] = nullptr;
+  if (plan.actuators.model) options["actuator"] = {{"given", plan.actuators.given}, {"sha256", plan.actuators.sha256}};
   options["detector"] = plan.detector;
   options["method"] = plan.method;
   options["skip"] = plan.skip;
@@ -85,14 +125,20 @@ nlohmann::ordered_json to_json(const BatchPlan& plan) {
   }
   json["traces"] = nlohmann::ordered_json::array();
   for (const BatchTrace& trace : plan.traces) json["traces"].push_back({{"name", trace.name}, {"given", trace.given}});
-  return json;
+  return as_read_back(json);
 }
 
-nlohmann::ordered_json command_of(const nlohmann::ordered_json& batch) {
-  nlohmann::ordered_json command = batch;
+nlohmann::json command_of(const nlohmann::ordered_json& batch) {
+  nlohmann::json command = batch;
   command.erase("program");
   command["avatar"].erase("sha256");
-  for (nlohmann::ordered_json& map : command["maps"]) map.erase("sha256");
+  for (nlohmann::json& map : command["maps"]) map.erase("sha256");
+  nlohmann::json& options = command["options"];
+  // What batches of earlier versions do not say was as it is without these options.
+  options.emplace("full_speed_m_per_s", LawOptions().full_speed_m_per_s);
+  options.emplace("sigma_mm", nullptr);
+  options.emplace("actuator", nullptr);
+  if (nlohmann::json& actuator = options["actuator"]; !actuator.is_null()) actuator.erase("sha256");
   return command;
 }
 
@@ -104,7 +150,8 @@ std::string item_key(const nlohmann::ordered_json& batch) {
     if (!map["sha256"].is_null()) key["maps"].push_back({map["name"], map["sha256"]});
   key["laws"] = batch["laws"];
   key["options"] = batch["options"];
-  const std::string text = key.dump();
+  if (nlohmann::ordered_json& actuator = key["options"]["actuator"]; !actuator.is_null()) actuator.erase("given");
+  const std::string text = key.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   return sha256_hex(std::as_bytes(std::span(text)));
 }
 

@@ -12,6 +12,8 @@
 
 #include "detector/actuator_layout.hpp"
 #include "detector/actuator_map.hpp"
+#include "detector/actuator_model.hpp"
+#include "detector/intensity.hpp"
 #include "traces/avatar.hpp"
 #include "traces/colliders.hpp"
 #include "traces/error.hpp"
@@ -33,6 +35,15 @@ struct BatchMap {
   std::string sha256;  ///< of the PNG, then the sidecar; empty: it cannot be used
   ActuatorMapFiles files;
   std::shared_ptr<const ActuatorLayout> layout;  ///< on the avatar; null: it cannot be used
+  std::vector<std::string> warnings;             ///< one sentence each
+};
+
+/// The motors of all maps; none: ideal ones, that do at once what they are told.
+struct BatchActuators {
+  std::string given;  ///< the model's file
+  std::string json;   ///< its text
+  std::string sha256;
+  std::shared_ptr<const ActuatorModel> model;
 };
 
 struct BatchTrace {
@@ -67,7 +78,8 @@ struct BatchPlan {
   std::vector<BatchMap> maps;  ///< those that cannot be used included
   std::vector<BatchTrace> traces;
   std::vector<std::string> laws;
-  double hold_s = 0.06;
+  LawOptions law_options;
+  BatchActuators actuators;
   std::string detector;
   std::string method;
   std::string skip;
@@ -78,14 +90,15 @@ struct BatchPlan {
 };
 
 /// "man", "man-2", …: one name for each path, made of its last part without extension, unique, of letters, digits, '.',
-/// '_', '-' and whatever is not ASCII, so that it can be a file's name and a CSV field.
+/// '_', '-' and whatever of UTF-8 is not ASCII, so that it can be a file's name and a CSV field.
 std::vector<std::string> unique_names(std::span<const std::string> given);
 
 /// What run.json says under "batch": avatar, maps, laws, options, traces, program.
 nlohmann::ordered_json to_json(const BatchPlan& plan);
 
 /// The part of it that was typed: a folder belongs to one such command and is gone on with by the same only.
-nlohmann::ordered_json command_of(const nlohmann::ordered_json& batch);
+/// Of an earlier version's batch too. Throws nlohmann's exceptions where `batch` is none.
+nlohmann::json command_of(const nlohmann::ordered_json& batch);
 
 /// A SHA-256 of what a trace's result follows from, apart from the trace: program, avatar, usable maps with their
 /// bytes, laws, options.

@@ -20,6 +20,14 @@ nlohmann::ordered_json trace_record(const BatchTrace& trace, const nlohmann::ord
   return record;
 }
 
+nlohmann::ordered_json input_warnings(const BatchPlan& plan) {
+  nlohmann::ordered_json json;
+  json["avatar"] = {{"warnings", plan.avatar.warnings}};
+  json["maps"] = nlohmann::ordered_json::array();
+  for (const BatchMap& map : plan.maps) json["maps"].push_back({{"name", map.name}, {"warnings", map.warnings}});
+  return json;
+}
+
 nlohmann::ordered_json totals(const nlohmann::ordered_json& traces, std::size_t scores_per_trace) {
   nlohmann::ordered_json sums = {{"traces", traces.size()}, {"scores", traces.size() * scores_per_trace}};
   for (const char* field : {"recording_s", "reading_s", "detection_s", "scoring_s"}) {

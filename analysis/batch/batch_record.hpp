@@ -14,6 +14,9 @@ namespace vestige {
 nlohmann::ordered_json trace_record(const BatchTrace& trace, const nlohmann::ordered_json& item,
                                     const BatchFolder& folder, bool earlier);
 
+/// The warnings about avatar and maps, for run.json: {"avatar": {"warnings": […]}, "maps": [{"name", "warnings"}, …]}.
+nlohmann::ordered_json input_warnings(const BatchPlan& plan);
+
 /// Sums of what finished traces took, and how many scores there are.
 nlohmann::ordered_json totals(const nlohmann::ordered_json& traces, std::size_t scores_per_trace);
 

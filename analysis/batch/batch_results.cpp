@@ -30,6 +30,11 @@ std::string field(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
+/// Whether it can be said at all how a candidate compares with the best: not so with one trace.
+bool is_compared(const RankedCandidate& ranked) {
+  return std::isfinite(ranked.difference_from_best.interval.low);
+}
+
 nlohmann::ordered_json to_json(const MeanInterval& mean) {
   return {{"mean", number(mean.mean)},
           {"low", number(mean.interval.low)},
@@ -160,7 +165,10 @@ void write_ranking(const BatchFolder& folder, const BatchResults& results, std::
     }
     const MeanInterval& difference = ranked.difference_from_best;
     csv += fmt::format(",{},{},{},{}\n", field(difference.mean), field(difference.interval.low),
-                       field(difference.interval.high), ranked.distinguishable_from_best ? "yes" : "no");
+                       field(difference.interval.high),
+                       !is_compared(ranked)               ? ""
+                       : ranked.distinguishable_from_best ? "yes"
+                                                          : "no");
     nlohmann::ordered_json one = {{"rank", nullptr}, {"map", candidate.map}, {"law", candidate.law}};
     if (ranked.rank) one["rank"] = *ranked.rank;
     one["traces"] = ranked.metrics[results.headline].n;
@@ -259,9 +267,11 @@ std::string describe(const BatchResults& results, std::size_t rows) {
     if (m != results.headline && std::ranges::find(kShownBeside, metrics()[m].name) != std::end(kShownBeside))
       beside.push_back(m);
   std::string text =
-      fmt::format("{}{}{}, {} is better: mean over {} trace{} and its 95 % interval{}\n", headline.name,
-                  *headline.unit == '\0' ? "" : ", ", headline.unit, name_of(headline.better), results.traces,
-                  results.traces == 1 ? "" : "s", headline.model_based ? "; OF A MODEL, NO USER STUDY" : "");
+      fmt::format("{}{}{}, {} is better: {}{}\n", headline.name, *headline.unit == '\0' ? "" : ", ", headline.unit,
+                  name_of(headline.better),
+                  results.traces == 1 ? "one trace: no intervals"
+                                      : fmt::format("mean over {} traces and its 95 % interval", results.traces),
+                  headline.model_based ? "; OF A MODEL, NO USER STUDY" : "");
   std::size_t width = 3;
   for (const BatchResults::Candidate& candidate : results.candidates) width = std::max(width, candidate.map.size());
   text += fmt::format("  {:>4}  {:<{}}  {:<8}  {:>28}", "rank", "map", width, "law", headline.name);
@@ -273,7 +283,7 @@ std::string describe(const BatchResults& results, std::size_t rows) {
     const RankedCandidate& ranked = results.ranking[i];
     const BatchResults::Candidate& candidate = results.candidates[ranked.candidate];
     const MeanInterval& mean = ranked.metrics[results.headline];
-    const bool like_best = ranked.rank && *ranked.rank != 1 && !ranked.distinguishable_from_best;
+    const bool like_best = ranked.rank && *ranked.rank != 1 && is_compared(ranked) && !ranked.distinguishable_from_best;
     marked = marked || like_best;
     const std::string interval = std::isfinite(mean.interval.low) ? fmt::format("{:.4g} ({:.4g} to {:.4g})", mean.mean,
                                                                                 mean.interval.low, mean.interval.high)

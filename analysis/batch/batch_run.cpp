@@ -68,7 +68,8 @@ class Run {
     failures_.resize(mine_.size());
     for (const std::string& law : plan.laws) {
       laws_.emplace_back().name = law;
-      laws_.back().options.hold_s = plan.hold_s;
+      laws_.back().options = plan.law_options;
+      laws_.back().actuators = plan.actuators.model;
     }
   }
 

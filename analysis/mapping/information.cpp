@@ -48,8 +48,10 @@ double transmitted_bits(std::span<const double> counts, std::size_t columns) {
   for (std::size_t i = 0; i < rows; ++i)
     for (std::size_t j = 0; j < columns; ++j)
       if (const double count = counts[i * columns + j]; count > 0)
-        bits += count / all * portable_log2(count / of_row[i] * (all / of_column[j]));
-  return bits;
+        bits += count / all *
+                (portable_log2(count) - portable_log2(of_row[i]) + portable_log2(all) -
+                 portable_log2(of_column[j]));  // one by one: quotients of tiny counts overflow
+  return std::max(bits, 0.0);                   // below it only by rounding
 }
 
 RegionObserver::RegionObserver(std::size_t actuator_count)

@@ -130,8 +130,9 @@ void LawScore::advance_motors(std::uint64_t frame, double time_s) {
     response.felt = motor.after(before, duty_[i], step_s);
     if (response.felt < 1e-6) response.felt = 0;
     const double threshold = motor.felt_threshold;
-    if (std::max(before, response.felt) >= threshold) timing_.vibrates(i, frame);
-    const bool is_on = response.felt >= threshold;
+    const auto is_felt = [&](double amplitude) { return amplitude > 0 && amplitude >= threshold; };
+    if (is_felt(std::max(before, response.felt))) timing_.vibrates(i, frame);
+    const bool is_on = is_felt(response.felt);
     if (is_on == timing_.is_on(i)) continue;
     const double settled = motor.settled(duty_[i]);
     const double at_s = last_time_s_ + std::clamp(crossing_s(motor, before, settled, threshold), 0.0, step_s);

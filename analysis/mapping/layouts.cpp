@@ -113,14 +113,18 @@ EmptyRegions layout_empty_regions(std::string_view layout) {
   return find_layout(layout).empty;
 }
 
-ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout) {
+MadeMap make_layout_map(const Avatar& avatar, std::string_view layout) {
   const Layout& found = find_layout(layout);
   require_texture_coordinates(avatar, fmt::format("layout {}: the avatar", layout));
   const Body body(avatar);
   const RegionPlan plan(body, parse_region_file(found.regions, layout), layout);
   MapSettings settings;
   settings.empty = found.empty;
-  return make_map(body, plan, settings, layout, "the avatar").files;
+  return make_map(body, plan, settings, layout, "the avatar");
+}
+
+ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout) {
+  return make_layout_map(avatar, layout).files;
 }
 
 ActuatorMapFiles read_map_files(const Avatar& avatar, const std::string& map) {

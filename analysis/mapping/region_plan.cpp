@@ -98,7 +98,10 @@ RegionPlan::RegionPlan(const Body& body, const std::vector<RegionSpec>& regions,
     const std::string where = fmt::format("{}, region '{}'", name, spec.name);
     Region region;
     choose_skin(spec, where, region);
-    fit_frame(region, where);
+    region.columns = column_angles(spec, where);
+    number_actuators(spec, where, region);
+    if (!fit_frame(region))
+      continue;  // its actuators have no skin, and whoever makes a map knows what to do about that
     const Frame& frame = region.frame;
     region.rows_m = {frame.low_m, frame.high_m};
     if (spec.height_m) region.rows_m = *spec.height_m;
@@ -113,27 +116,36 @@ RegionPlan::RegionPlan(const Body& body, const std::vector<RegionSpec>& regions,
     region.rows_m = {std::max(region.rows_m.low, frame.low_m), std::min(region.rows_m.high, frame.high_m)};
     for (const std::string& side : spec.sides) region.angles.push_back(angles_of(side));
     if (spec.angle_degrees) region.angles.push_back(*spec.angle_degrees);
-    region.columns = column_angles(spec, where);
     if (spec.grid) {
       region.row_count = spec.grid->rows;
       region.column_count = spec.grid->columns;
-      for (std::size_t i = 0; i < region.row_count * region.column_count; ++i)
-        region.actuators.push_back(
-            number_of(spec.grid->names.empty()
-                          ? fmt::format("{} {}-{}", spec.name, i / region.column_count + 1, i % region.column_count + 1)
-                          : spec.grid->names[i]));
     } else if (!spec.actuators.empty()) {
       place_sites(spec, where, region);
       region.radius_m = spec.radius_m.value_or(std::numeric_limits<double>::infinity());
-      for (std::size_t i = 0; i < spec.actuators.size(); ++i) {
-        region.actuators.push_back(number_of(spec.actuators[i].name));
-        given_position_m_[region.actuators.back() - 1U] = region.sites[i].position_m;
-      }
-    } else {
-      region.actuators.push_back(number_of(spec.name));
+      for (std::size_t i = 0; i < region.sites.size(); ++i)
+        given_position_m_[region.actuators[i] - 1U] = region.sites[i].position_m;
     }
     regions_.push_back(std::move(region));
   }
+}
+
+void RegionPlan::number_actuators(const RegionSpec& spec, const std::string& where, Region& region) {
+  if (spec.grid) {
+    const std::size_t columns = spec.grid->columns;
+    for (std::size_t i = 0; i < spec.grid->rows * columns; ++i)
+      region.actuators.push_back(number_of(spec.grid->names.empty()
+                                               ? fmt::format("{} {}-{}", spec.name, i / columns + 1, i % columns + 1)
+                                               : spec.grid->names[i]));
+    return;
+  }
+  std::set<std::string_view> seen;
+  for (const RegionActuator& actuator : spec.actuators) {
+    if (!seen.insert(actuator.name).second)
+      throw Error(where, fmt::format("the name '{}' stands twice among its actuators", actuator.name),
+                  "give each a name of its own");
+    region.actuators.push_back(number_of(actuator.name));
+  }
+  if (spec.actuators.empty()) region.actuators.push_back(number_of(spec.name));
 }
 
 std::uint16_t RegionPlan::number_of(const std::string& actuator_name) {
@@ -214,7 +226,7 @@ bool RegionPlan::selects(const Region& region, const Asked& asked) const {
   });
 }
 
-void RegionPlan::fit_frame(Region& region, const std::string& where) const {
+bool RegionPlan::fit_frame(Region& region) const {
   Frame& frame = region.frame;
   frame.low_m = std::numeric_limits<double>::infinity();
   frame.high_m = -frame.low_m;
@@ -230,9 +242,7 @@ void RegionPlan::fit_frame(Region& region, const std::string& where) const {
     low_x = std::min(low_x, p.x);
     high_x = std::max(high_x, p.x);
   });
-  if (samples.empty())
-    throw Error(where, "selects no skin of this avatar",
-                "look at its part, joints and below; 'vestige map parts' lists them");
+  if (samples.empty()) return false;
   if (!(frame.low_m < frame.high_m)) frame.high_m = frame.low_m + 1e-6;
   // A vest's skin ends where it is cut, which samples only come near.
   if (!region.parts.empty() && std::ranges::all_of(region.parts, &PartChoice::vest))
@@ -259,6 +269,7 @@ void RegionPlan::fit_frame(Region& region, const std::string& where) const {
   const std::vector<double> rough = frame.middle_z_m;
   for (std::size_t i = 1; i + 1 < rough.size(); ++i)
     frame.middle_z_m[i] = rough[i - 1] / 4 + rough[i] / 2 + rough[i + 1] / 4;
+  return true;
 }
 
 bool RegionPlan::holds(const Region& region, const Asked& asked) const {

@@ -15,8 +15,8 @@ namespace vestige {
 /// Regions as they lie on one avatar: which actuator any point of its skin belongs to.
 class RegionPlan {
  public:
-  /// `body` must stay. `name` stands in errors: a part or joint that the avatar does not have (`UnknownName`), a region
-  /// that selects no skin at all.
+  /// `body` must stay. `name` stands in errors: a part or joint that the avatar does not have (`UnknownName`), two
+  /// actuators of one name in a region's list. A region that selects no skin is no error: its actuators are nowhere.
   RegionPlan(const Body& body, const std::vector<RegionSpec>& regions, std::string_view name);
 
   /// 1 … actuator_count, or 0 for none.
@@ -78,8 +78,10 @@ class RegionPlan {
   PartChoice part_choice(const std::string& text, const std::string& where) const;
   bool selects(const Region& region, const Asked& asked) const;
   bool holds(const Region& region, const Asked& asked) const;
-  void fit_frame(Region& region, const std::string& where) const;
+  /// False: the region selects no skin at all.
+  bool fit_frame(Region& region) const;
   void place_sites(const RegionSpec& spec, const std::string& where, Region& region) const;
+  void number_actuators(const RegionSpec& spec, const std::string& where, Region& region);
   std::uint16_t number_of(const std::string& actuator_name);
   std::uint16_t actuator_within(const Region& region, const Asked& asked) const;
   template <typename Visit>

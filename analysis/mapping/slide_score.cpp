@@ -66,25 +66,24 @@ double SlideSmoothness::ripple() const {
 void SlideScore::add(const SlideSmoothness& slide, double way_m) {
   ++slides_;
   const double ripple = slide.ripple();
-  if (!std::isnan(ripple)) {
-    ++rippled_;
-    ripple_sum_ += ripple;
-  }
+  if (std::isnan(ripple)) return;
+  ++felt_;
+  ripple_sum_ += ripple;
   jump_sum_m_ += slide.largest_jump_m();
   reversals_ += slide.reversals();
   way_m_ += way_m;
 }
 
 double SlideScore::ripple() const {
-  return rippled_ == 0 ? kMissing : ripple_sum_ / static_cast<double>(rippled_);
+  return felt_ == 0 ? kMissing : ripple_sum_ / static_cast<double>(felt_);
 }
 
 double SlideScore::largest_jump_m() const {
-  return rippled_ == 0 ? kMissing : jump_sum_m_ / static_cast<double>(slides_);
+  return felt_ == 0 ? kMissing : jump_sum_m_ / static_cast<double>(felt_);
 }
 
 double SlideScore::reversals_per_m() const {
-  return rippled_ == 0 ? kMissing : static_cast<double>(reversals_) / way_m_;
+  return felt_ == 0 ? kMissing : static_cast<double>(reversals_) / way_m_;
 }
 
 }  // namespace vestige

@@ -74,13 +74,13 @@ class SlideScore {
   void add(const SlideSmoothness& slide, double way_m);
 
   std::size_t slides() const { return slides_; }
-  double ripple() const;           ///< mean over slides; NaN for none
+  double ripple() const;           ///< mean over slides that were felt; NaN for none
   double largest_jump_m() const;   ///< likewise
-  double reversals_per_m() const;  ///< of all, over their way
+  double reversals_per_m() const;  ///< of those together, over their way
 
  private:
   std::size_t slides_ = 0;
-  std::size_t rippled_ = 0;  ///< slides that were felt at all
+  std::size_t felt_ = 0;  ///< slides, of which alone the rest tells
   double ripple_sum_ = 0;
   double jump_sum_m_ = 0;
   double way_m_ = 0;

@@ -18,6 +18,7 @@
 #include "analysis/plot/timeline_figure.hpp"
 #include "cli/terminal.hpp"
 #include "traces/error.hpp"
+#include "traces/output_file.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige::plot {
@@ -241,11 +242,7 @@ int draw_paraview(const Options& options) {
   settings.law_options.hold_s = options.hold_ms / 1000;
   settings.rate_hz = options.rate_hz;
   if (options.every != 0) settings.every = options.every;
-  if (!stem.parent_path().empty()) {
-    std::error_code failure;
-    std::filesystem::create_directories(stem.parent_path(), failure);
-    if (failure) throw system_error(stem.parent_path(), "could not be made", failure.value());
-  }
+  if (!stem.parent_path().empty()) make_folder(stem.parent_path());
   ParaviewSeries series(stem, overwrite_of(options), subject);
   cli::catch_interrupts();
   ParaviewResult result;

@@ -25,13 +25,16 @@
 #include "detector/intensity.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/error.hpp"
+#include "traces/output_file.hpp"
 
 namespace vestige::plot {
 
 namespace {
 
 constexpr std::size_t kRankedShown = 40;
-constexpr std::string_view kRemedy = "run the batch again, with --force";
+/// The batch takes a trace without its contacts for unfinished, and whatever else is there for finished.
+constexpr std::string_view kContactsRemedy =
+    "delete this file, and run the same 'vestige batch' (or 'batch merge') again: it writes the file anew";
 
 /// Thrown where the user stopped; not an error.
 struct Stopped {};
@@ -43,21 +46,33 @@ struct Contacts {
   std::string shown_trace;
 };
 
+ContactRecording read_trace_contacts(const std::filesystem::path& file) {
+  try {
+    return read_contact_recording(file.string()).contacts;
+  } catch (const Error& error) {
+    if (!std::filesystem::exists(file))
+      throw Error(file.string(), "is missing", "run the same 'vestige batch' (or 'batch merge') again: it writes it");
+    const std::string_view text = error.what();  // "WHERE: CAUSE\n  REMEDY"
+    throw Error("contacts", text.substr(0, text.find("\n  ")), kContactsRemedy);
+  }
+}
+
 Contacts read_contacts(const std::filesystem::path& folder, const ReportData& data, const Avatar& avatar) {
   Contacts contacts;
   for (const ReportTrace& trace : data.traces) {
     const std::filesystem::path file = folder / "contacts" / (trace.name + ".csv");
-    ContactRecording recording = read_contact_recording(file.string()).contacts;
+    ContactRecording recording = read_trace_contacts(file);
     for (std::size_t i = 0; i < recording.contacts.size(); ++i) {
       const Contact& contact = recording.contacts[i];
       if (contact.triangle >= avatar.triangles.size())
         throw Error(file.string(),
                     fmt::format("names triangle {}, and avatar.glb has {}", contact.triangle, avatar.triangles.size()),
-                    kRemedy);
+                    kContactsRemedy);
       const glm::dvec2& weights = contact.barycentric;
       constexpr double kSlack = 1e-9;
       if (!(weights.x >= 0 && weights.y >= 0 && weights.x + weights.y <= 1 + kSlack))
-        throw Error(file.string(), fmt::format("contact {}: u and v are no weights from 0 to 1", i + 1), kRemedy);
+        throw Error(file.string(), fmt::format("contact {}: u and v are no weights from 0 to 1", i + 1),
+                    kContactsRemedy);
       RecordedContact one;
       one.triangle = contact.triangle;
       one.barycentric = contact.barycentric;
@@ -111,9 +126,7 @@ class Report {
   ReportOutcome write() {
     const std::filesystem::path page_file = options_.output / "report.html";
     const ReportData data = read_report(batch_);
-    std::error_code failure;
-    std::filesystem::create_directories(options_.output, failure);
-    if (failure) throw system_error(options_.output, "could not be made", failure.value());
+    make_folder(options_.output);
     refuse_overwrite(page_file, options_.overwrite);
     folder_.emplace(options_.output / "figures", options_.overwrite);
     outcome_.page = page_file;
@@ -196,10 +209,9 @@ class Report {
     if (contacts.shown.contacts.empty() || map.actuator_count == 0) return section;
 
     const auto layout = std::make_shared<const ActuatorLayout>(avatar, std::move(map));
-    LawOptions law_options;
-    law_options.hold_s = data.hold_ms / 1000;
+    const LawOptions& law_options = data.law_options;
     std::vector<ErrorSeries> errors;
-    for (const std::string& law : data.laws) errors.push_back(errors_of(contacts.shown, *layout, law, law_options));
+    for (const std::string& law : data.laws) errors.push_back(errors_of(contacts.shown, *layout, data, law));
     section.errors.push_back(draw(
         name + "-errors", *error_figure(std::move(errors), contacts.shown.time_s.front(), contacts.shown.time_s.back()),
         fmt::format("Localisation error of each contact of {} over time; line: median. Red, below: not felt.",
@@ -212,18 +224,19 @@ class Report {
       section.timelines.push_back(draw(
           fmt::format("{}-timeline-{}", name, law), *timeline_figure(timeline_of(contacts.shown, layout->map(), *made)),
           fmt::format("Amplitude of each actuator over {} under {} (duty 255 is full), contacts held for {:g} ms.",
-                      contacts.shown_trace, law, data.hold_ms)));
+                      contacts.shown_trace, law, 1e3 * law_options.hold_s)));
     }
     return section;
   }
 
-  static ErrorSeries errors_of(const ContactRecording& recording, const ActuatorLayout& layout, const std::string& law,
-                               const LawOptions& law_options) {
+  static ErrorSeries errors_of(const ContactRecording& recording, const ActuatorLayout& layout, const ReportData& data,
+                               const std::string& law) {
     ErrorSeries series;
     series.law = law;
     LawChoice choice;
     choice.name = law;
-    choice.options = law_options;
+    choice.options = data.law_options;
+    choice.actuators = data.actuators;
     series.error_mm = contact_errors_mm(recording, layout, choice);
     for (std::size_t frame = 0; frame < recording.frames(); ++frame)
       series.time_s.insert(series.time_s.end(), recording.first[frame + 1] - recording.first[frame],

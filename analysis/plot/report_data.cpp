@@ -13,6 +13,8 @@ namespace vestige::plot {
 namespace {
 
 constexpr std::string_view kRemedy = "was it written by 'vestige batch'? Run the batch again, with --force";
+constexpr std::string_view kGoOn = "run the same 'vestige batch' again: it goes on where it was stopped";
+constexpr double kLeast = std::numeric_limits<double>::min();
 constexpr double kMost = std::numeric_limits<double>::max();
 
 std::optional<double> number(const JsonField& parent, const char* key) {
@@ -133,16 +135,26 @@ void read_provenance(const JsonField& run, ReportData& data) {
   }
 }
 
+/// What folders of earlier versions lack is as it was then.
+void read_law_options(const JsonField& options, ReportData& data) {
+  if (options.has("hold_ms")) data.law_options.hold_s = options.at("hold_ms").within(0, kMost) / 1e3;
+  if (options.has("full_speed_m_per_s"))
+    data.law_options.full_speed_m_per_s = options.at("full_speed_m_per_s").within(kLeast, kMost);
+  if (options.has("sigma_mm")) data.law_options.sigma_m = options.at("sigma_mm").within(kLeast, kMost) / 1e3;
+  if (options.has("actuator")) data.actuator = options.at("actuator").at("given").text();
+}
+
 void read_run(const std::filesystem::path& file, ReportData& data) {
   const nlohmann::json json = read_json(file, kRemedy);
   const JsonField run(json, file, kRemedy);
   if (run.has("complete")) data.complete = truth(run.at("complete"));
+  if (!data.complete && !run.has("traces"))
+    throw Error(file.string(), "says that the batch was not finished, and has no trace yet", kGoOn);
   read_provenance(run, data);
   const JsonField batch = run.at("batch");
   const JsonField laws = batch.at("laws");
   for (std::size_t i = 0; i < laws.count(); ++i) data.laws.push_back(file_name(laws.at(i)));
-  if (batch.has("options") && batch.at("options").has("hold_ms"))
-    data.hold_ms = batch.at("options").at("hold_ms").within(0, kMost);
+  if (batch.has("options")) read_law_options(batch.at("options"), data);
   const JsonField traces = run.at("traces");
   for (std::size_t i = 0; i < length(traces); ++i) {
     const JsonField field = traces.at(i);
@@ -184,12 +196,13 @@ ReportData read_report(const std::filesystem::path& folder) {
                 "name the folder that 'vestige batch -o' wrote");
   if (!std::filesystem::exists(folder / "ranking.json"))
     throw Error(folder.string(), "holds no ranking.json: no batch was finished here",
-                std::filesystem::exists(folder / "run.json")
-                    ? "run the same 'vestige batch' again: it goes on where it was stopped; run.json says what failed"
-                    : "run 'vestige batch -o' first, and name its folder");
+                std::filesystem::exists(folder / "run.json") ? fmt::format("{}; run.json says what failed", kGoOn)
+                                                             : "run 'vestige batch -o' first, and name its folder");
   ReportData data;
   read_ranking(folder / "ranking.json", data);
   read_run(folder / "run.json", data);
+  if (!data.actuator.empty())
+    data.actuators = std::make_shared<const ActuatorModel>(read_actuator_model((folder / "actuator.json").string()));
   return data;
 }
 

@@ -2,10 +2,14 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "detector/actuator_model.hpp"
+#include "detector/intensity.hpp"
 
 namespace vestige::plot {
 
@@ -64,8 +68,10 @@ struct ReportData {
   std::vector<Candidate> ranking;  ///< best first
   std::vector<ReportTrace> traces;
   std::vector<ReportFailure> failures;
-  std::vector<std::string> laws;  ///< in the order of the batch
-  double hold_ms = 60;
+  std::vector<std::string> laws;                                ///< in the order of the batch
+  LawOptions law_options;                                       ///< of all of them
+  std::string actuator;                                         ///< where the motors are from; empty: ideal ones
+  std::shared_ptr<const ActuatorModel> actuators;               ///< those motors
   bool complete = true;                                         ///< false: the batch was stopped
   std::vector<std::pair<std::string, std::string>> provenance;  ///< name and value, as they are shown
 

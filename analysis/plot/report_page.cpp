@@ -375,7 +375,11 @@ class Page {
       const auto known = std::ranges::find(kLaws, law, &LawWords::name);
       if (known != kLaws.end()) add(out_, "<dt>{}</dt><dd>{}</dd>\n", html_text(law), html_text(known->words));
     }
-    add(out_, "</dl>\n<p>A contact is held for {:g} ms.</p>\n</section>\n", data_.hold_ms);
+    add(out_, "</dl>\n<p>A contact is held for {:g} ms. {}</p>\n</section>\n", 1e3 * data_.law_options.hold_s,
+        data_.actuator.empty()
+            ? std::string("Motors do at once what they are told.")
+            : fmt::format("Scores and errors are of the motors in {}; the timelines show the laws alone.",
+                          html_text(data_.actuator)));
   }
 
   void inputs() {

@@ -29,6 +29,40 @@ TEST(BatchNames, CanStandInACsvAndAreNoHiddenFilesOrFlags) {
   EXPECT_LE(unique_names(std::vector<std::string>{std::string(300, 'x')}).front().size(), 100U);
 }
 
+TEST(BatchNames, AreUtf8WhateverTheFilesAreCalled) {
+  EXPECT_THAT(unique_names(std::vector<std::string>{"K\xFC"
+                                                    "che.png",
+                                                    "cut\xC3.png", "half\xED\xA0\x80.png", "long\xC0\xAF.png",
+                                                    "\xF0\x9F\x98\x80.png"}),
+              ElementsAre("K_che", "cut_", "half___", "long__", "\xF0\x9F\x98\x80"));
+  // A letter of two bytes begins at byte 99, counted from 0: it is left out whole.
+  std::string umlauts(99, 'x');
+  for (int i = 0; i < 20; ++i) umlauts += "ü";
+  EXPECT_EQ(unique_names(std::vector<std::string>{umlauts}).front(), std::string(99, 'x'));
+  EXPECT_EQ(unique_names(std::vector<std::string>{"x" + umlauts}).front(), std::string(100, 'x'));
+}
+
+TEST(BatchPlans, OfAnyNamesCanBeSaidInJsonAndAreReadBackTheSame) {
+  BatchPlan plan;
+  plan.avatar_given =
+      "k\xFC"
+      "che.glb";
+  plan.maps.push_back({.name = "map", .given = "\xFF.png", .sha256 = "ab", .files = {}, .layout = {}, .warnings = {}});
+  plan.traces.push_back({"trace", "\xC3", nullptr});
+  const nlohmann::ordered_json json = to_json(plan);
+  EXPECT_EQ(nlohmann::ordered_json::parse(json.dump()), json);
+  EXPECT_EQ(item_key(json).size(), 64U);
+}
+
+TEST(BatchPlans, OfEarlierVersionsAreThoseWithoutLaterOptions) {
+  const nlohmann::ordered_json now = to_json(BatchPlan());
+  nlohmann::ordered_json earlier = now;
+  for (const char* option : {"full_speed_m_per_s", "sigma_mm", "actuator"}) earlier["options"].erase(option);
+  EXPECT_EQ(command_of(earlier), command_of(now));
+  earlier["options"]["sigma_mm"] = 5.0;
+  EXPECT_NE(command_of(earlier), command_of(now));
+}
+
 TEST(BatchShards, TakeEveryTraceOnce) {
   for (std::size_t position = 0; position < 20; ++position) {
     int owners = 0;

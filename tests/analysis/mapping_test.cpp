@@ -210,6 +210,23 @@ TEST(Layouts, LieOnRealAvatarsByTheirJointsNames) {
   }
 }
 
+TEST(Layouts, OfTheWholeBodyLeaveOutWhatAnAvatarDoesNotHave) {
+  for (const char* name : {"Fox.glb", "greenman.glb"}) {
+    const auto path = test::data("avatars/avatars") / name;
+    VESTIGE_REQUIRE_DATA(path);
+    const MadeMap map = make_layout_map(parse_avatar_glb(read_avatar_glb(path), name), "body");
+    EXPECT_GT(map.actuators.size(), 1U) << name;
+    EXPECT_EQ(map.actuators.size() + map.left_out.size(), 21U) << name;
+  }
+}
+
+TEST(Layouts, SayWhenTheTextureCannotTellTheirRegionsApart) {
+  Avatar mirrored = test::builtin_avatar();
+  for (glm::vec2& at : mirrored.texture_coordinate) at.x = std::abs(2 * at.x - 1);
+  EXPECT_THAT(make_layout_map(mirrored, "paper6").warnings, Contains(HasSubstr("texels")));
+  EXPECT_THAT(make_layout_map(test::builtin_avatar(), "paper6").warnings, IsEmpty());
+}
+
 Avatar skeleton_of(const std::vector<std::pair<const char*, int>>& joints) {
   Avatar avatar = test::rigid_avatar({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   avatar.nodes.clear();
@@ -313,12 +330,33 @@ TEST(Regions, ThatCannotBeSayWhichAndWhy) {
               HasSubstr("1 names for 2 actuators"));
   EXPECT_THAT(cause(R"({"name": "a", "actuators": [{"name": "x"}]})"), HasSubstr("actuators[0]: needs either"));
   EXPECT_THAT(cause(R"({"name": "a", "radius_m": 1})"), HasSubstr("radius_m"));
+  EXPECT_THAT(cause(R"({"name": "a", "part": "vest", "actuators": [{"name": "x", "height": 0, "angle": 0},
+                        {"name": "x", "height": 1, "angle": 0}]})"),
+              ::testing::AllOf(HasSubstr("region 'a'"), HasSubstr("the name 'x' stands twice")));
   EXPECT_THAT(cause(R"({"name": "a", "part": "vest", "height_m": [3, 4]})"),
               ::testing::AllOf(HasSubstr("actuator 'a'"), HasSubstr("no skin belongs to it")));
   EXPECT_THAT(cause(R"({"name": "a"}, {"name": "b"})"), HasSubstr("actuator 'b'"));
   EXPECT_THAT(message_of([] { parse_region_file("{\"regions\": [", "mine.json"); }),
               HasSubstr("mine.json, byte 14: is not JSON"));
   EXPECT_THAT(message_of([] { parse_region_file("[]", "mine.json"); }), HasSubstr("no list 'regions'"));
+}
+
+/// No skin of the neck hangs on a hand.
+TEST(Regions, WithoutAnySkinAreRefusedOrLeftOutAsAsked) {
+  const std::string nowhere = R"({"name": "nowhere", "part": "neck", "joints": ["hand_*"]})";
+  const std::string sites = R"({"name": "s", "part": "neck", "joints": ["hand_*"],
+      "actuators": [{"name": "site", "height": 0, "angle": 0}]})";
+  const std::string head = R"({"name": "head", "part": "head"})";
+  MapSettings leave_out;
+  leave_out.empty = EmptyRegions::kLeaveOut;
+  const std::string all = R"({"regions": [)" + nowhere + "," + sites + "," + head + "]}";
+  const MadeMap map = make(mannequin(), all, leave_out);
+  ASSERT_THAT(map.actuators, SizeIs(1));
+  EXPECT_EQ(map.actuators[0].name, "head");
+  EXPECT_THAT(map.left_out, ElementsAre("nowhere", "site"));
+  EXPECT_THAT(message_of([&] { make(mannequin(), all); }), HasSubstr("actuator 'nowhere': no skin belongs to it"));
+  EXPECT_THAT(message_of([&] { make(mannequin(), R"({"regions": [)" + nowhere + "]}", leave_out); }),
+              HasSubstr("no skin of this avatar belongs to any"));
 }
 
 TEST(MadeMaps, PadIntoFreeTexelsOnly) {

@@ -21,7 +21,7 @@ vestige_test(plot_paraview_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_paraview_test.cpp
   LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG nlohmann_json::nlohmann_json VTK::CommonCore VTK::CommonDataModel VTK::IOXML)
 add_dependencies(plot_paraview_test vestige vestige-plot)
-vestige_test(plot_report_test
+vestige_test(plot_report_test LONG
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_report_test.cpp
   LIBRARIES vestige_traces EXPAT::EXPAT PNG::PNG nlohmann_json::nlohmann_json)
 add_dependencies(plot_report_test vestige vestige-plot)

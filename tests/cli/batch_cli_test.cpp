@@ -40,6 +40,8 @@ class BatchCommandLine : public test::CommandLineTest {
     return nlohmann::json::parse(read_text_file(folder_ / path));
   }
 
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+
   void write_map(const std::string& name) const {
     const auto png = builtin_actuator_map_png();
     std::ofstream(folder_ / name, std::ios::binary)
@@ -125,7 +127,8 @@ TEST_F(BatchCommandLine, ShardsMergeIntoTheBytesOfAWholeBatch) {
   EXPECT_EQ(run("vestige batch merge part1 part2 part3 part1 -o merged").exit_code, 3);
   expect_same_results("whole", "merged");
 
-  expect_failure("vestige batch merge part1 part3 -o m", 1, {"2/3", "missing"}, "m");
+  expect_failure("vestige batch merge part1 part3 -o m", 1, {"shard 2/3 is missing"}, "m");
+  expect_failure("vestige batch merge part1 part2 part3 -o -", 2, {"-o -", "folder"}, "-");
   expect_failure("vestige batch merge part1 part2 part3 -o part2", 2, {"part2"});
   ASSERT_EQ(run("vestige batch --maps builtin --traces a.mcap b.mcap --laws binary --shard 2/2 -o other").exit_code, 0);
   expect_failure("vestige batch merge part1 other part3 -o m", 1, {"other", "laws", "traces"}, "m");
@@ -133,6 +136,8 @@ TEST_F(BatchCommandLine, ShardsMergeIntoTheBytesOfAWholeBatch) {
   ASSERT_EQ(run("cp -r part2 changed && sed -i 's/\"frames\": 100/\"frames\": 101/' changed/items/b.json").exit_code,
             0);
   expect_failure("vestige batch merge part1 part2 part3 changed -o m", 1, {"b.json", "differs"}, "m");
+  ASSERT_EQ(run("cp -r part2 bare && rm bare/contacts/b.csv").exit_code, 0);
+  expect_failure("vestige batch merge part1 bare part3 -o m", 1, {"contacts/b.csv", "missing"}, "m");
   ASSERT_EQ(run("rm changed/items/b.json").exit_code, 0);
   expect_failure("vestige batch merge part1 changed part3 -o m", 1, {"b.json", "missing"}, "m");
   ASSERT_EQ(run("sed -i 's/\"complete\": true/\"complete\": false/' changed/run.json").exit_code, 0);
@@ -222,7 +227,7 @@ TEST_F(BatchCommandLine, OneBadInputDoesNotStopTheRest) {
               AllOf(HasSubstr("builtin,a,binary\n"), HasSubstr("builtin,b,binary\n"), HasSubstr("builtin,cut,binary\n"),
                     Not(HasSubstr("noise")), Not(HasSubstr("grey"))));
   expect_failure("vestige batch --maps text.png --traces a.mcap -o none", 1, {"none of them", "PNG"}, "none");
-  expect_failure("vestige batch --maps builtin --traces noise.mcap -o none", 1, {"--traces", "none"}, "none");
+  expect_failure("vestige batch --maps builtin --traces noise.mcap -o none", 1, {"noise.mcap"}, "none");
 }
 
 TEST_F(BatchCommandLine, TwoInOneFolderAreNotLetIn) {
@@ -255,6 +260,174 @@ TEST_F(BatchCommandLine, AFullDiskKeepsWhatIsFinishedAndTheBatchGoesOnLater) {
   expect_same_results("whole", "after");
 }
 
+TEST_F(BatchCommandLine, JudgesWithMotorsAndWithoutAndWithTheLawsParameters) {
+  record({"a.mcap", "b.mcap"});
+  const std::string command = "vestige batch --maps builtin --traces a.mcap b.mcap --laws speed,gaussian ";
+  write("slow.json", R"({"rise_ms": 400, "fall_ms": 400})");
+  ASSERT_EQ(run(command + "-o ideal").exit_code, 0);
+  ASSERT_EQ(run(command + "--actuator slow.json -o slow").exit_code, 0);
+  ASSERT_EQ(run(command + "--full-speed 3 -o faster").exit_code, 0);
+  ASSERT_EQ(run(command + "--sigma 5 -o sharper").exit_code, 0);
+  const auto score = [&](const std::string& folder, std::size_t law, const char* metric) {
+    return json_in(folder + "/scores.json")["scores"][law]["values"][metric];
+  };
+  EXPECT_GT(score("slow", 0, "onset_error_ms"), score("ideal", 0, "onset_error_ms"));
+  EXPECT_NE(score("faster", 0, "mean_duty"), score("ideal", 0, "mean_duty"));
+  EXPECT_EQ(score("faster", 1, "mean_duty"), score("ideal", 1, "mean_duty"));
+  EXPECT_NE(score("sharper", 1, "mean_duty"), score("ideal", 1, "mean_duty"));
+  EXPECT_EQ(json_in("slow/run.json")["batch"]["options"]["actuator"]["given"], "slow.json");
+  // The page needs nothing but the folder.
+  std::filesystem::remove(folder_ / "slow.json");
+  if (std::filesystem::exists(VESTIGE_BIN_DIR "/vestige-plot")) {
+    ASSERT_EQ(run("vestige plot report slow").exit_code, 0);
+    EXPECT_EQ(run("grep -c 'of the motors in slow.json' slow/report.html").standard_output, "1\n");
+  }
+
+  // In shards too, and another model is another batch.
+  write("slow.json", R"({"rise_ms": 400, "fall_ms": 400})");
+  for (const char* shard : {"1", "2"})
+    ASSERT_EQ(run(command + "--actuator slow.json --shard " + shard + "/2 -o part" + shard).exit_code, 0);
+  ASSERT_EQ(run("vestige batch merge part1 part2 -o merged").exit_code, 0);
+  EXPECT_EQ(run("diff -r --exclude=run.json --exclude='*.run.json' --exclude=.lock --exclude=report.html "
+                "--exclude=figures slow merged")
+                .standard_output,
+            "");
+  write("slow.json", R"({"rise_ms": 300})");
+  const test::Outcome again = run(command + "--actuator slow.json -o slow");
+  EXPECT_EQ(again.exit_code, 0) << again.standard_error;
+  EXPECT_NE(score("slow", 0, "onset_error_ms"), score("merged", 0, "onset_error_ms"));
+
+  write("named.json", R"({"actuators": [{"name": "nobody", "rise_ms": 80}]})");
+  expect_failure(command + "--actuator named.json -o none", 1, {"nobody"}, "none");
+  expect_failure(command + "--actuator missing.json -o none", 1, {"missing.json"}, "none");
+  expect_failure("vestige batch --maps builtin --traces a.mcap --laws binary --sigma 5 -o none", 2,
+                 {"--sigma", "gaussian"}, "none");
+}
+
+TEST_F(BatchCommandLine, AShardWithoutAUsableTraceIsNoFailureOfTheOthers) {
+  record({"a.mcap"});
+  write("noise.mcap", "no trace");
+  const std::string command = "vestige batch --maps builtin --traces a.mcap noise.mcap --laws binary ";
+  ASSERT_EQ(run(command + "-o whole").exit_code, 3);
+  ASSERT_EQ(run(command + "--shard 1/2 -o part1").exit_code, 0);
+  const test::Outcome empty = run(command + "--shard 2/2 -o part2");
+  EXPECT_EQ(empty.exit_code, 3) << empty.standard_error;
+  EXPECT_THAT(empty.standard_error, AllOf(HasSubstr("shard 2/2"), HasSubstr("noise.mcap")));
+  EXPECT_EQ(run("vestige batch merge part1 part2 -o merged").exit_code, 3);
+  expect_same_results("whole", "merged");
+  EXPECT_EQ(json_in("merged/run.json")["failures"], json_in("whole/run.json")["failures"]);
+}
+
+TEST_F(BatchCommandLine, RemovesItsOwnLeftoversAndNothingElse) {
+  record({"a.mcap"});
+  const std::string command = "vestige batch --maps builtin --traces a.mcap --laws binary -o home";
+  const std::vector<std::string> others = {
+      ".bashrc", ".gitignore", ".run.json.abc123", "items/.gitkeep", "items/.other.json.abc123", "traces/.b.mcap"};
+  const std::vector<std::string> leftovers = {"items/.a.json.abc123",   "items/.a.run.json.ABC123",
+                                              "contacts/.a.csv.abc123", "traces/.a.mcap",
+                                              "traces/..a.mcap.abc123", "maps/.builtin.png.abc123"};
+  for (const char* name : {"home/items", "home/contacts", "home/traces", "home/maps"})
+    std::filesystem::create_directories(folder_ / name);
+  for (const std::string& name : others) write("home/" + name, "mine");
+  for (const std::string& name : leftovers) write("home/" + name, "half");
+  ASSERT_EQ(run(command + " --force").exit_code, 0);
+  for (const std::string& name : others) EXPECT_TRUE(std::filesystem::exists(folder_ / "home" / name)) << name;
+  for (const std::string& name : leftovers) EXPECT_FALSE(std::filesystem::exists(folder_ / "home" / name)) << name;
+  // Now that it is a batch's, .run.json.abc123 is its own.
+  write("home/.scores.csv.abc123", "half");
+  ASSERT_EQ(run(command).exit_code, 0);
+  for (const char* name : {".run.json.abc123", ".scores.csv.abc123"})
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "home" / name)) << name;
+  EXPECT_EQ(read_text_file(folder_ / "home/.gitignore"), "mine");
+  EXPECT_EQ(read_text_file(folder_ / "home/.bashrc"), "mine");
+}
+
+TEST_F(BatchCommandLine, ResultsOfAnotherBatchDoNotLieBesideOneThatWasStopped) {
+  record({"a.mcap"});
+  ASSERT_EQ(run("vestige record --count 3 --rate 100 --duration 10 -o slow.mcap").exit_code, 0);
+  const std::string command = "vestige batch --maps builtin --traces a.mcap --laws binary -o out";
+  ASSERT_EQ(run(command).exit_code, 0);
+  write("out/report.html", "page");
+  ASSERT_EQ(run("cp -r out before").exit_code, 0);
+  ASSERT_EQ(run(command).exit_code, 0);
+  expect_same_results("before", "out");  // with its page
+  const test::Outcome stopped =
+      run("vestige batch --maps builtin --traces slow.mcap --laws binary --detector exact -o out --force & P=$!; for i "
+          "in $(seq 3000); do grep -q slow out/run.json && break; sleep 0.01; done; kill -INT $P; wait $P");
+  ASSERT_EQ(stopped.exit_code, 3) << stopped.standard_error;
+  ASSERT_EQ(json_in("out/run.json")["complete"], false) << "it was to be stopped in the middle";
+  for (const char* name : {"ranking.csv", "ranking.json", "scores.csv", "scores.json", "report.html"})
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / name)) << name;
+
+  // A page goes with results that have changed.
+  ASSERT_EQ(run("vestige record --count 5 --rate 100 --duration 1 -o a.mcap --force").exit_code, 0);
+  ASSERT_EQ(run("vestige batch --maps builtin --traces a.mcap --laws binary -o before").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "before/report.html"));
+}
+
+TEST_F(BatchCommandLine, WithOneTraceSaysNothingOfHowMapsCompare) {
+  record({"a.mcap"});
+  const test::Outcome batch = run("vestige batch --maps builtin --traces a.mcap --laws binary,phantom -o out");
+  ASSERT_EQ(batch.exit_code, 0) << batch.standard_error;
+  EXPECT_THAT(batch.standard_output, AllOf(HasSubstr("one trace: no intervals"), Not(HasSubstr("holds 0")),
+                                           Not(HasSubstr("\n=")), Not(HasSubstr("95 %"))));
+  EXPECT_EQ(run("grep -c ',$' out/ranking.csv").standard_output, "2\n")
+      << "distinguishable_from_best is the last field";
+}
+
+TEST_F(BatchCommandLine, WarnsOfWhatIsOddAboutAMap) {
+  record({"a.mcap", "b.mcap"});
+  write("fine.json", R"({"regions": [{"name": "v", "part": "vest", "grid": {"rows": 9, "columns": 8}}]})");
+  // Without its sidecar, so many greys look like an editor's soft edges.
+  ASSERT_EQ(run("vestige map make --regions fine.json -o many.png && rm many.json").exit_code, 0);
+  const std::string command = "vestige batch --maps builtin many.png --traces a.mcap b.mcap --laws binary ";
+  for (const char* part : {"-o whole", "--shard 1/2 -o part1", "--shard 2/2 -o part2"}) {
+    const test::Outcome batch = run(command + part);
+    EXPECT_EQ(batch.exit_code, 0) << batch.standard_error;
+    EXPECT_THAT(batch.standard_error, AllOf(HasSubstr("map 'many'"), HasSubstr("grey levels"))) << part;
+  }
+  EXPECT_THAT(run("vestige batch merge part1 part2 -o merged").standard_error, HasSubstr("map 'many'"));
+  for (const char* run_json : {"whole/run.json", "merged/run.json"}) {
+    const auto maps = json_in(run_json)["maps"];
+    EXPECT_EQ(maps[0]["warnings"].size(), 0U);
+    EXPECT_EQ(maps[1]["name"], "many");
+    EXPECT_THAT(maps[1]["warnings"][0].get<std::string>(), HasSubstr("grey levels"));
+    EXPECT_FALSE(json_in(run_json)["batch"]["maps"][1].contains("warnings")) << "they are no part of what is run";
+  }
+}
+
+TEST_F(BatchCommandLine, ATraceWhoseContactsAreGoneIsRunAgain) {
+  record({"a.mcap", "b.mcap"});
+  const std::string command = "vestige batch --maps builtin --traces a.mcap b.mcap --laws binary -o out";
+  ASSERT_EQ(run(command + " && cp -r out before && rm out/contacts/a.csv").exit_code, 0);
+  EXPECT_THAT(run(command).standard_output, HasSubstr("detected 1 trace once"));
+  expect_same_results("before", "out");
+}
+
+TEST_F(BatchCommandLine, TakesNamesThatAreNoTextAndGoesOnWithThem) {
+  record({"a.mcap"});
+  const std::string command =
+      "cp a.mcap $(printf 'k\\374che').mcap; vestige batch --maps builtin --traces $(printf 'k\\374che').mcap --laws "
+      "binary -o out";
+  const test::Outcome batch = run(command);
+  ASSERT_EQ(batch.exit_code, 0) << batch.standard_error;
+  EXPECT_EQ(json_in("out/run.json")["traces"][0]["name"], "k_che");
+  EXPECT_THAT(run(command).standard_output, HasSubstr("detected 0 traces once"));
+}
+
+TEST_F(BatchCommandLine, GoesOnWithAFolderFromBeforeLaterOptions) {
+  record({"a.mcap"});
+  const std::string command = "vestige batch --maps builtin --traces a.mcap --laws speed -o out";
+  ASSERT_EQ(run(command).exit_code, 0);
+  auto earlier = json_in("out/run.json");
+  for (const char* option : {"full_speed_m_per_s", "sigma_mm", "actuator"})
+    ASSERT_EQ(earlier["batch"]["options"].erase(option), 1U);
+  write("out/run.json", earlier.dump());
+  EXPECT_EQ(run(command).exit_code, 0);
+  write("out/run.json", earlier.dump());
+  expect_failure(command + " --full-speed 3", 1, {"another batch"});
+}
+
 TEST_F(BatchCommandLine, RefusesWhatWouldDoNothing) {
   record({"a.mcap"});
   const std::string command = "vestige batch --maps builtin --traces a.mcap -o none ";
@@ -266,6 +439,13 @@ TEST_F(BatchCommandLine, RefusesWhatWouldDoNothing) {
   expect_failure(command + "--shard 0/1", 2, {"--shard", "0/1"}, "none");
   expect_failure("vestige batch --maps builtin builtin --traces a.mcap -o none", 2, {"--maps", "twice"}, "none");
   expect_failure("vestige batch --maps builtin -o none", 2, {"--traces"}, "none");
+  expect_failure("vestige batch --maps builtin --traces a.mcap -o -", 2, {"-o -", "folder"}, "-");
+  expect_failure("vestige batch --maps builtin --traces swarn -o none", 2,
+                 {"swarn: there is no such file", "did you mean 'swarm'?"}, "none");
+  expect_failure("vestige batch --maps builtin --traces nowhere.mcap -o none", 1, {"nowhere.mcap"}, "none");
+  const std::string scenario = "vestige batch --maps builtin --traces slide -o none ";
+  expect_failure(scenario + "--duration 1e300", 2, {"4294967295 frames"}, "none");
+  expect_failure(scenario + "--rate 1e300", 2, {"4294967295 frames"}, "none");
   expect_failure("vestige batch --maps builtin merge a b -o none", 2, {"--maps", "merge"}, "none");
   expect_failure("vestige batch slurm --shards 2 --maps builtin --traces a.mcap -o none", 2, {"--shards"}, "none");
 }

@@ -113,6 +113,10 @@ TEST_F(Exchange, CsvAndBackIsTheSameTraceToTheBit) {
 TEST_F(Exchange, CsvOfOneTableGoesToAFileOrStandardOutput) {
   EXPECT_EQ(run("vestige export a.mcap -o - --format csv --what colliders | head -1").standard_output,
             "frame,time_s,id,x,y,z,teleported\n");
+  // Who needs no more is no failure.
+  const test::Outcome cut = run("(vestige export a.mcap -o - --format csv --what colliders; echo $? >code) | head -1");
+  EXPECT_EQ(cut.standard_error, "");
+  EXPECT_EQ(run("cat code").standard_output, "0\n");
   ASSERT_EQ(run("vestige export a.mcap -o poses.csv --what poses").exit_code, 0);
   EXPECT_EQ(run("wc -l < poses.csv").standard_output, "301\n");
   // Poses by standard input, and colliders that say only when they are where.
@@ -219,6 +223,12 @@ TEST_F(Exchange, WhatIsWrongWithAFileIsSaidByLineAndNothingIsWritten) {
         "HIERARCHY\nROOT tail\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0\n");
   expect_failure("vestige import --motion dog.bvh -o b.mcap", 1, {"dog.bvh", "tail", "hips"}, "b.mcap");
   expect_failure("vestige import --motion missing.bvh -o b.mcap", 1, {"missing.bvh"}, "b.mcap");
+  write("walk.bvh", kWalk);
+  for (const char* rate : {"1e300", "1e11"})
+    expect_failure(std::string("vestige import --motion walk.bvh -o b.mcap --rate ") + rate, 2,
+                   {"--rate", "4294967295 frames at most", "lower --rate"}, "b.mcap");
+  write("fast.bvh", std::string(kWalk).replace(walk.find("Frame Time: "), 12, "Frame Time: 1e-20\n"));
+  expect_failure("vestige import --motion fast.bvh -o b.mcap", 1, {"fast.bvh, line", "less than 1e-9 s"}, "b.mcap");
 
   ASSERT_EQ(run("vestige export a.mcap -o there").exit_code, 0);
   ASSERT_EQ(run("head -100 there/poses.csv > cut.csv && echo 99,0.6,x >> cut.csv").exit_code, 0);

@@ -55,6 +55,20 @@ TEST_F(Files, DoctorSaysWhenNothingCanBeRead) {
                  "out.mcap");
 }
 
+TEST_F(Files, DoctorGoesOnBehindAFileThatCannotBeOpened) {
+  const test::Outcome doctor = run("vestige doctor missing.mcap a.mcap none.mcap --json doctor.json");
+  EXPECT_EQ(doctor.exit_code, 1);
+  EXPECT_THAT(doctor.standard_error, HasSubstr("vestige: error: missing.mcap: "));
+  EXPECT_THAT(doctor.standard_error, HasSubstr("vestige: error: none.mcap: "));
+  EXPECT_THAT(doctor.standard_output, HasSubstr("a.mcap: no problem"));
+  const auto files = json_in("doctor.json")["files"];
+  ASSERT_EQ(files.size(), 3U);
+  EXPECT_THAT(files[0]["error"].get<std::string>(), HasSubstr("missing.mcap"));
+  EXPECT_EQ(files[1]["problem_count"], 0);
+  EXPECT_FALSE(files[1].contains("error"));
+  EXPECT_EQ(files[2]["readable"], false);
+}
+
 TEST_F(Files, TheTextureHashSurvivesRecompressTrimAndMerge) {
   const std::string hash = hash_of("a.mcap");
   for (const char* compression : {"lz4", "none", "zstd"}) {

@@ -18,6 +18,8 @@ namespace vestige {
 namespace {
 
 using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Laws : public test::CommandLineTest {
  protected:
@@ -161,6 +163,10 @@ TEST_F(Laws, GoOnWithAnotherMapFromItsTime) {
     EXPECT_EQ(json["actuators"][i]["contacts"], plain["actuators"][5 - i]["contacts"]);
   EXPECT_NE(json["texture_hash"], plain["texture_hash"]);
   EXPECT_EQ(run("vestige replay t.mcap --map-at 1=turned.png --detector cpu --verify exact").exit_code, 0);
+  const test::Outcome late = run("vestige replay t.mcap --map-at 1=turned.png --map-at 2000=builtin");
+  EXPECT_EQ(late.exit_code, 0);
+  EXPECT_THAT(late.standard_error, HasSubstr("--map-at 2000=builtin: the trace ends before that"));
+  EXPECT_THAT(late.standard_error, Not(HasSubstr("turned.png")));
 }
 
 TEST_F(Laws, RefuseMapsThatCannotFollow) {

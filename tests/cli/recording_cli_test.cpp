@@ -110,6 +110,15 @@ TEST_F(Recording, StopsBeforeTheFileIsLargerThanAllowed) {
   expect_failure("vestige record --max-size 10kB -o tiny.mcap", 1, {"tiny.mcap", "too few"}, "tiny.mcap");
 }
 
+TEST_F(Recording, OfLinesThatFindNoRoomSaysSo) {
+  const test::Outcome outcome =
+      run("yes '{}' | head -n 20000 | vestige record --live - --compression none --max-size 1MB -o small.mcap");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("stopped by --max-size after"));
+  EXPECT_LE(std::filesystem::file_size(folder_ / "small.mcap"), 1'000'000U);
+  EXPECT_EQ(json_of("vestige inspect small.mcap --json -")["complete"], true);
+}
+
 TEST_F(Recording, OfARingIsItsLastSeconds) {
   ASSERT_EQ(run("vestige record --ring 0.25 --rate 100 --duration 3 -o last.mcap").exit_code, 0);
   const auto frames = frames_of("last.mcap");
@@ -136,6 +145,12 @@ TEST_F(Recording, RefusesFlagsThatContradictEachOther) {
            {"--live vmc://127.0.0.1:39539 --animation walk", "--animation"}})
     expect_failure("vestige record -o a.mcap " + flags, 2, {named}, "a.mcap");
   expect_failure("vestige record --split 5 -o -", 2, {"--split"});
+}
+
+TEST_F(Recording, OfVeryManyFramesIsWarnedOf) {
+  const test::Outcome outcome = run("vestige record --rate 1e9 --max-size 1MB -o long.mcap");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("2000000000 frames will take long"));
 }
 
 TEST_F(Recording, OfLinesIsWhatTheyCameFrom) {
@@ -176,6 +191,15 @@ TEST_F(Recording, OfASourceThatStallsIsOnDiskMeanwhile) {
           "vestige record --live - -o live.mcap");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_TRUE(std::filesystem::exists(folder_ / "seen"));
+}
+
+TEST_F(Recording, UnderNohupOutlivesItsTerminal) {
+  const test::Outcome outcome =
+      run("{ echo '{}'; for i in $(seq 200); do [ -s live.mcap ] && break; sleep 0.05; done; kill -HUP $(cat pid); "
+          "sleep 0.3; echo '{}'; } | "
+          "sh -c 'trap \"\" HUP; echo $$ >pid; exec vestige record --live - -o live.mcap'");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_EQ(frames_of("live.mcap").size(), 2U);
 }
 
 TEST_F(Recording, OfTheVmcProtocolIsWhatWasSent) {
@@ -236,6 +260,27 @@ TEST_F(Recording, OfARingGivesASnapshotWhenAsked) {
   static_cast<void>(recorder.wait());
   EXPECT_GT(frames_of("last-0001.mcap").size(), 0U);
   EXPECT_GE(frames_of("last.mcap").size(), frames_of("last-0001.mcap").size());
+}
+
+TEST_F(Recording, OfARingOutlivesASnapshotThatFails) {
+  std::filesystem::create_directory(folder_ / "last-0001.mcap");
+  const std::uint16_t port = test::free_udp_port();
+  test::BackgroundProcess recorder({"vestige", "record", "--live", fmt::format("vmc://127.0.0.1:{}", port), "--rate",
+                                    "100", "--ring", "60", "--force", "-o", (folder_ / "last.mcap").string()},
+                                   folder_ / "error");
+  const test::UdpSender sender(port);
+  int listened = 0;
+  for (int i = 0; i < 3000 && listened < 100; ++i) {
+    sender.send(test::collider(5, 1, 2, 3));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    // Before it listens, the signal would end it.
+    if (listened > 0 || read_text_file(folder_ / "error").find("listening") != std::string::npos) ++listened;
+    if (listened == 50) recorder.signal(SIGUSR1);
+  }
+  recorder.signal(SIGTERM);
+  EXPECT_EQ(recorder.wait(), 1);
+  EXPECT_THAT(read_text_file(folder_ / "error"), HasSubstr("last-0001.mcap"));
+  EXPECT_GT(frames_of("last.mcap").size(), 0U);
 }
 
 TEST_F(Recording, WithVizReplaysToTheSame) {

@@ -1,5 +1,6 @@
 // Streams traces as a user does, to a simulated board: the vest's own program on a simulated ATmega1280, behind a pty.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -192,6 +193,19 @@ TEST_F(StreamCommand, AnInterruptedStreamSwitchesTheVestOff) {
   }
 }
 
+TEST_F(StreamCommand, AStreamThatIsInterruptedBeforeItsEndSaysSo) {
+  record("--colliders hug --rate 100 --duration 5");
+  const test::Outcome outcome = run_with_board(
+      "vestige stream trace.mcap --port vest --json stream.json & stream=$!\nsleep 1.5; kill -INT $stream; wait "
+      "$stream");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("stopped"));
+  const nlohmann::json json = read_json("stream.json");
+  EXPECT_LT(json["frames"], 500);
+  EXPECT_TRUE(json["off_acknowledged"]);
+  EXPECT_THAT(read_timeline(folder_ / "pins.csv").back().level, Each(0));
+}
+
 TEST_F(StreamCommand, AKilledStreamLeavesNoMotorRunning) {
   record("--colliders hug --rate 100 --duration 1");
   run_with_board(
@@ -249,6 +263,53 @@ TEST_F(StreamCommand, FramesGoToStandardOutputAsTheyWouldGoDownTheWire) {
   EXPECT_EQ(bytes.size(), read_json("stream.json")["link"]["bytes"]);
 }
 
+TEST_F(StreamCommand, ParametersGoByOscToWhoeverListens) {
+  record("--colliders hug --rate 100 --duration 1");
+  const test::Outcome outcome =
+      run("python3 -c \"import socket\ns=socket.socket(socket.AF_INET,socket.SOCK_DGRAM)\ns.bind(('127.0.0.1',0))\n"
+          "open('port.new','w').write(str(s.getsockname()[1]))\nimport os\nos.rename('port.new','port')\n"
+          "s.settimeout(3)\nheard=open('heard','wb')\n"
+          "try:\n  while True: heard.write(s.recv(65536))\nexcept TimeoutError: pass\" & listener=$!\n"
+          "for i in $(seq 100); do [ -e port ] && break; sleep 0.05; done\n"
+          "vestige stream trace.mcap --port osc://127.0.0.1:$(cat port) --osc-address '/vest/{n}' --json stream.json; "
+          "code=$?; wait $listener; exit $code");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  const std::string heard = read_text_file(folder_ / "heard");
+  for (int motor = 1; motor <= 6; ++motor) EXPECT_THAT(heard, HasSubstr(fmt::format("/vest/{}", motor)));
+  // Both ends of a motor's strength, as OSC's big-endian floats.
+  EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\x3f\x80\0\0", 8)));
+  EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\0\0\0\0", 8)));
+  EXPECT_GT(read_json("stream.json")["sent"], 0);
+}
+
+TEST_F(StreamCommand, AnXbeeInApiModeGetsItsFrames) {
+  record("--colliders hug --rate 100 --duration 0.5");
+  // A radio that nobody answers through: what it is told is kept.
+  const test::Outcome outcome =
+      run("python3 -c \"import os,pty,select,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'radio')\n"
+          "told=open('told','wb',0)\nwhile select.select([m],[],[],4)[0]: told.write(os.read(m,4096))\" & radio=$!\n"
+          "for i in $(seq 100); do [ -e radio ] && break; sleep 0.05; done\n"
+          "vestige stream trace.mcap --port radio --xbee-api --xbee-address 0013A20041AABBCC --json stream.json\n"
+          "code=$?; wait $radio; exit $code");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;  // no board acknowledges
+  const std::string told = read_text_file(folder_ / "told");
+  std::size_t frames = 0;
+  for (std::size_t at = 0; at < told.size();) {
+    const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(told.at(at + i)); };
+    ASSERT_EQ(byte(0), 0x7E) << at;
+    const std::size_t length = 256U * byte(1) + byte(2);
+    unsigned sum = 0;
+    for (std::size_t i = 3; i <= 3 + length; ++i) sum += byte(i);
+    EXPECT_EQ(sum % 256, 0xFFU) << at;
+    EXPECT_EQ(byte(3), 0x10);
+    EXPECT_EQ(told.substr(at + 5, 8), std::string("\0\x13\xA2\0\x41\xAA\xBB\xCC", 8));
+    if (byte(18) == 'S' || byte(18) == 'X') ++frames;  // behind the head of the request, and COBS' first byte
+    at += length + 4;
+  }
+  EXPECT_GT(frames, 2U);
+  EXPECT_EQ(frames, read_json("stream.json")["sent"]);
+}
+
 TEST_F(StreamCommand, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame) {
   record("--count 20 --rate 60 --duration 0.5");
   const test::Outcome outcome =
@@ -288,6 +349,8 @@ TEST_F(StreamCommand, VestCheckRunsEachMotorInTurn) {
   EXPECT_THAT(outcome.standard_output, HasSubstr("actuator 6 of 6"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("the vest hears everything"));
   EXPECT_TRUE(read_json("check.json")["good"]);
+  EXPECT_TRUE(read_json("check.json")["off_sent"]);
+  EXPECT_TRUE(read_json("check.json")["off_acknowledged"]);
   const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
   for (std::size_t motor = 0; motor < 6; ++motor) {
     const Levels steps = steps_of(motor, pins);
@@ -295,6 +358,20 @@ TEST_F(StreamCommand, VestCheckRunsEachMotorInTurn) {
     EXPECT_NEAR(steps[1], 100, 1);
   }
   for (const Row& row : pins) EXPECT_LE(6 - std::ranges::count(row.level, 0), 1) << row.time_s;
+}
+
+TEST_F(StreamCommand, VestCheckOfAVestThatIsUnpluggedFails) {
+  const test::Outcome outcome = run_with_board(
+      "vestige vest check --port vest --seconds 0.3 --json check.json & check=$!\n"
+      "sleep 1.5; kill -INT $board; wait $board; wait $check");
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.standard_output, HasSubstr("the link was lost"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("DOES NOT HEAR"));
+  const nlohmann::json json = read_json("check.json");
+  EXPECT_FALSE(json["good"]);
+  EXPECT_GE(json["links_lost"], 1);
+  EXPECT_FALSE(json["off_sent"]);
+  EXPECT_FALSE(json["off_acknowledged"]);
 }
 
 TEST_F(StreamCommand, VestCheckOfADeadLineFails) {

@@ -79,6 +79,22 @@ TEST(ActuatorLayout, TakesActuatorsThatCannotFireAndMapsWithoutAny) {
   EXPECT_EQ(none.mapped_area_m2(), 0);
 }
 
+TEST(ActuatorLayout, PlacesRegionsThatAreTouchedWithoutHoldingATexelsCentre) {
+  Avatar body = test::flat_body(1);
+  for (glm::vec2& at : body.texture_coordinate) at = 0.45F + 0.1F * at;  // around where four texels meet
+  ActuatorMap map = test::nearest_map({{0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}}, 2);
+  map.position_m.clear();
+  const ActuatorLayout layout(body, map);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(layout.place(i)) << i;
+}
+
+TEST(ActuatorLayout, GoesNotThroughATextureAgainAndAgain) {
+  Avatar body = test::flat_body(1);
+  for (glm::vec2& at : body.texture_coordinate) at *= 1e6F;
+  const ActuatorLayout layout(body, test::nearest_map({{0.25, 0.5}, {0.75, 0.5}}, 64));
+  EXPECT_NEAR(layout.mapped_area_m2(), 1, 1e-6);
+}
+
 TEST(ActuatorLayout, SeesNeighboursThreeByThreeWithinASingleTriangleToo) {
   const ActuatorLayout layout(test::flat_body(1), test::nearest_map({{0.2, 0.2}, {0.8, 0.25}, {0.45, 0.8}}, 64));
   EXPECT_THAT(layout.neighbours(), ElementsAre(ElementsAre(0, 1, 2)));

@@ -131,6 +131,16 @@ TEST(GaussianLaw, FallsOffWithTheDistanceAlongTheSkin) {
   EXPECT_THAT(amplitudes("gaussian", kTwo, 0.25, 0.5, {.sigma_m = 0.05}), ElementsAre(DoubleNear(1, 1e-5), 0));
 }
 
+TEST(GaussianLaw, LeavesActuatorsAloneThatAreNowhere) {
+  ActuatorMap map = test::nearest_map({{0.5, 0.5}}, 128);
+  map.actuator_count = 3;
+  map.names = {"here", "nowhere", "nowhere either"};
+  map.position_m.resize(3);
+  const auto layout = std::make_shared<ActuatorLayout>(test::flat_body(kCells), map);
+  EXPECT_THAT(make_law("gaussian", layout, {})->next(0, ContactRow{contact_on(layout, 0.4, 0.5)}),
+              ElementsAre(1, 0, 0));
+}
+
 TEST(IntensityLaws, LetSkinThatNoActuatorCoversFireNothing) {
   const auto layout = std::make_shared<ActuatorLayout>(test::flat_body(kCells), test::nearest_map(kTwo, 128, 0.1));
   for (const char* name : {"binary", "speed", "phantom", "linear", "gaussian"}) {

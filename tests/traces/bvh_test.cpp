@@ -87,6 +87,7 @@ TEST(Bvh, MistakesAreNamedByTheirLine) {
       {changed("Frames: 2", "Frames: 0"), "line 8", "0 frames"},
       {changed("Frames: 2", "Frames: -1"), "line 8", "-1"},
       {changed("Frame Time: 0.5", "Frame Time: 0"), "line 9", "not positive"},
+      {changed("Frame Time: 0.5", "Frame Time: 9e-10"), "line 9", "less than 1e-9 s"},
       {changed("10 90", "10"), "line 10", "1 numbers"},
       {changed("10 90", "10 90 5"), "line 10", "more than"},
       {changed("10 90", "10 inf"), "line 10", "inf"},

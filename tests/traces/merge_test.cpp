@@ -106,6 +106,54 @@ TEST(Merge, RefusesWhatIsNoPartOfTheSameRecordingAndSaysWhy) {
   EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes, "{}", 1)}), HasSubstr("its frame 0 (at 0 ns) is not"));
 }
 
+TEST(Merge, TakesWhatViewersDrawFromTheFirstFile) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::byte> glb = test::skeleton_glb(test::kNodes);
+  // Each file's first frame has /viz.
+  const auto record = [&](const char* name, std::uint64_t first, std::uint64_t last) {
+    TraceWriterOptions options = test::steady_options(1200);
+    options.viz = Viz::kScene;
+    TraceWriter writer(folder / name, {{"argv", "test"}}, test::skeleton(test::kNodes), {.avatar_glb = glb}, options);
+    for (std::uint64_t i = first; i < last; ++i) writer.write(test::frame(i, test::kNodes, test::kColliders));
+    writer.finish();
+    return read_file(folder / name);
+  };
+  const Merge result = merge({record("a.mcap", 0, 8), record("b.mcap", 4, 12)});
+  EXPECT_EQ(result.merged.frames, 12U);
+  EXPECT_EQ(result.merged.duplicates, 2U * 4);
+  EXPECT_EQ(result.merged.messages, 2U * 12 + 2) << "/viz of the first frame only";
+  EXPECT_TRUE(result.merged.other_sessions.empty());
+}
+
+TEST(Merge, NamesWhatTheSessionsOfOtherRecordingsDifferIn) {
+  const test::TemporaryFolder folder;
+  const std::vector<std::byte> glb = test::skeleton_glb(test::kNodes);
+  const auto record = [&](const char* name, const Session& session, std::uint64_t first) {
+    TraceWriter writer(folder / name, session, test::skeleton(test::kNodes), {.avatar_glb = glb},
+                       test::steady_options(1200));
+    for (std::uint64_t i = first; i < first + 4; ++i) writer.write(test::frame(i, test::kNodes, test::kColliders));
+    writer.finish();
+    return read_file(folder / name);
+  };
+  const Bytes first = record("a.mcap", {{"argv", "test"}, {"seed", "1"}}, 0);
+  const Bytes other = record("b.mcap", {{"argv", "test"}, {"seed", "2"}, {"live", "-"}}, 4);
+  const Merge result = merge({first, first, other});
+  EXPECT_EQ(result.merged.frames, 8U);
+  ASSERT_EQ(result.merged.other_sessions.size(), 1U);
+  EXPECT_THAT(result.merged.other_sessions[0].keys, ::testing::ElementsAre("live", "seed"));
+}
+
+TEST(Merge, NotesAMessageThatDoesNotFitItsFieldsAndReadsOn) {
+  const test::TemporaryFolder folder;
+  test::SmallTrace trace = small_trace(folder, Compression::kNone);
+  const Bytes rest = part(trace.bytes, 8, 99);
+  test::shorten_first_message(trace);
+  const Merge result = merge({part(trace.bytes, 0, 8), trace.bytes, rest});
+  EXPECT_EQ(result.merged.frames, kFrames - 1);
+  ASSERT_EQ(result.merged.damages.size(), 1U);
+  EXPECT_THAT(result.merged.damages[0].damage.what, HasSubstr("do not fit"));
+}
+
 TEST(Merge, RefusesFilesOfOthers) {
   VESTIGE_REQUIRE_DATA(test::data("mcap"));
   const auto foreign = read_file(test::data("mcap/compressed/multi-zstd.mcap"));

@@ -175,6 +175,16 @@ TEST_F(RecorderTest, ASnapshotOfARingIsATraceOfItsOwn) {
   EXPECT_EQ(indexes(folder_ / "man.mcap"), range(40, 50));
 }
 
+TEST_F(RecorderTest, ASnapshotThatFailsIsSaidAndTheRingIsWrittenAllTheSame) {
+  overwrite_ = Overwrite::kAllow;
+  std::filesystem::create_directory(folder_ / "man-0001.mcap");
+  Recorder recorder(target({.ring_s = 0.01}));
+  for (std::uint64_t i = 0; i < 50; ++i) recorder.write(test::frame(i, kNodes, kColliders));
+  recorder.snapshot();
+  EXPECT_THROW(recorder.finish(), Error);
+  EXPECT_EQ(indexes(folder_ / "man.mcap"), range(40, 50));
+}
+
 TEST_F(RecorderTest, ARingThatIsNeverFinishedIsWrittenAllTheSame) {
   {
     Recorder recorder(target({.ring_s = 0.01}));

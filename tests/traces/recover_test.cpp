@@ -175,6 +175,19 @@ TEST(Recover, KeepsADamagedAttachmentUnderANameThatNobodyTakesForTheRealOne) {
   EXPECT_THAT(text, HasSubstr("avatar.glb.damaged"));
 }
 
+TEST(Recover, KeepsWhatFollowsAMessageWhoseFieldsDoNotFit) {
+  const test::TemporaryFolder folder;
+  SmallTrace trace = small_trace(folder, Compression::kNone);
+  test::shorten_first_message(trace);
+  auto outcome = recover(trace.bytes);
+  ASSERT_TRUE(outcome);
+  read_frames(*outcome);
+  EXPECT_EQ(intact(outcome->frames), kFrames - 1);
+  EXPECT_EQ(outcome->recovery.bytes_lost, mcap::kRecordHeadBytes + 3);
+  EXPECT_EQ(outcome->recovery.messages_left_out, 1U) << "the colliders of the frame that has no pose";
+  EXPECT_TRUE(outcome->recovery.lost_something());
+}
+
 TEST(Recover, LeavesOutFramesThatComeTwice) {
   const test::TemporaryFolder folder;
   const SmallTrace trace = small_trace(folder, Compression::kZstd);
@@ -189,10 +202,10 @@ TEST(Recover, LeavesOutFramesThatComeTwice) {
   EXPECT_EQ(outcome->recovery.messages_left_out, 2 * kFramesInAChunk);
 }
 
-// A fuzzer's finding: /pose is defined outside chunks, its schema only inside a chunk, behind messages of it.
+// A fuzzer's finding: /pose is defined behind messages of it, which wait for those around them.
 TEST(Recover, DoesNotChangeLaterWhatItHasWritten) {
   const auto outcome =
-      recover(read_file(std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/fuzz/seeds/trace/late-schema.mcap"));
+      recover(read_file(std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/fuzz/seeds/trace/late-definition.mcap"));
   ASSERT_TRUE(outcome);
   const auto again = recover(outcome->bytes);
   ASSERT_TRUE(again);

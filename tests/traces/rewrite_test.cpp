@@ -73,6 +73,20 @@ TEST(Recompress, DoesNotMakeDamageLookSound) {
   EXPECT_EQ(check_trace(again, test::go_on).container.attachments, 1U);
 }
 
+TEST(Recompress, SaysThatAMessageDoesNotFitItsFieldsAndKeepsTheOthers) {
+  const test::TemporaryFolder folder;
+  auto trace = small_trace(folder, Compression::kNone);
+  test::shorten_first_message(trace);
+  const mcap::MemorySource source(trace.bytes);
+  std::vector<std::byte> written;
+  const Rewritten result = rewrite_mcap(source, test::into(written), {}, test::go_on);
+  EXPECT_EQ(result.messages, 2 * kFrames - 1);
+  ASSERT_EQ(result.damages.size(), 1U);
+  EXPECT_EQ(result.damages[0].offset, trace.chunks[0].offset);
+  EXPECT_EQ(result.damages[0].bytes, mcap::kRecordHeadBytes + 3);
+  EXPECT_THAT(result.damages[0].what, HasSubstr("do not fit"));
+}
+
 TEST(Trim, KeepsWhatIsAtTheFirstTimeAndLeavesOutWhatIsAtTheLast) {
   const test::TemporaryFolder folder;
   const auto trace = small_trace(folder, Compression::kZstd);

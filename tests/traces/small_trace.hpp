@@ -5,6 +5,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstring>
 #include <vector>
 
 #include "tests/support/test_data.hpp"
@@ -65,6 +66,27 @@ inline SmallTrace small_trace(const TemporaryFolder& folder, Compression compres
   }
   trace.head_end = trace.chunks.front().offset;
   return trace;
+}
+
+/// Shortens the first message, which is frame 0's pose, to 3 bytes, and fills its place with a record of an unknown
+/// kind. Of an uncompressed trace; no CRC tells.
+inline void shorten_first_message(SmallTrace& trace) {
+  constexpr std::uint64_t kFieldsBeforeCrc = 3 * 8;
+  constexpr std::uint64_t kFieldsBeforeRecords = kFieldsBeforeCrc + 4 + 4 + 8;
+  constexpr std::uint64_t kShortBytes = 3;
+  const auto number_at = [&](std::uint64_t offset, auto value) {
+    std::memcpy(trace.bytes.data() + offset, &value, sizeof value);
+  };
+  const std::uint64_t content = trace.chunks.front().content_offset();
+  const std::uint64_t message = content + kFieldsBeforeRecords;
+  const std::uint64_t filler = message + mcap::kRecordHeadBytes + kShortBytes;
+  std::uint64_t message_bytes = 0;
+  std::memcpy(&message_bytes, trace.bytes.data() + message + 1, sizeof message_bytes);
+  number_at(message + 1, kShortBytes);
+  number_at(filler, std::uint8_t{0x80});
+  number_at(filler + 1, message_bytes - kShortBytes - mcap::kRecordHeadBytes);
+  number_at(content + kFieldsBeforeCrc, std::uint32_t{0});
+  number_at(trace.data_end + mcap::kRecordHeadBytes, std::uint32_t{0});
 }
 
 }  // namespace vestige::test

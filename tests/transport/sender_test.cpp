@@ -252,6 +252,19 @@ TEST_F(SenderTest, AVestWhosePlaybackHasStoppedIsSwitchedOffUntilItGoesOn) {
   EXPECT_THAT(events, ElementsAre(HasSubstr("the playback has stopped")));
 }
 
+TEST_F(SenderTest, AVestWhosePlaybackHasStoppedIsSwitchedOffBeforeAnybodyIsTold) {
+  std::vector<Duties> when_told;
+  Sender sender(vest, options(), [&](const std::string& event) {
+    note(event);
+    when_told = changes();
+  });
+  post(sender, {200});
+  until([&] { return changes().size() == 2; });
+  sender.finish();
+  EXPECT_THAT(events, ElementsAre(HasSubstr("the playback has stopped")));
+  EXPECT_THAT(when_told, ElementsAre(Duties{200}, Duties{}));
+}
+
 TEST_F(SenderTest, AStateThatOnlyTheOffReplacesIsReported) {
   vest.busy = true;
   Sender sender(vest, options(), note);

@@ -10,6 +10,16 @@
 
 namespace vestige::mcap {
 
+namespace {
+
+/// Of records that may stand in a chunk.
+bool fits_its_fields(const InnerRecord& inner) {
+  if (inner.opcode == Opcode::kMessage) return inner.content.size() >= least_content_bytes(inner.opcode).value_or(0);
+  return natural_content_bytes(inner.opcode, inner.content).has_value();
+}
+
+}  // namespace
+
 std::uint32_t crc32_of(const ByteSource& source, std::uint64_t begin, std::uint64_t end) {
   constexpr std::uint64_t kBlockBytes = 1 << 16;
   std::vector<std::byte> block(kBlockBytes);
@@ -54,6 +64,10 @@ bool StreamReader::next_in_chunk(StreamRecord& record) {
       const InnerRecord inner = next_record(chunk_);
       if (inner.opcode != Opcode::kSchema && inner.opcode != Opcode::kChannel && inner.opcode != Opcode::kMessage)
         continue;
+      if (!fits_its_fields(inner)) {
+        note_misfit(inner);
+        continue;
+      }
       record = {.opcode = inner.opcode, .content = inner.content, .offset = chunk_place_.offset, .in_chunk = true};
       return true;
     } catch (const Malformed& malformed) {
@@ -63,6 +77,14 @@ bool StreamReader::next_in_chunk(StreamRecord& record) {
     }
   }
   return false;
+}
+
+/// One note for all of a chunk's: there may be millions.
+void StreamReader::note_misfit(const InnerRecord& inner) {
+  constexpr std::string_view kWhat = "records in a Chunk: their fields do not fit into them";
+  if (damages_.empty() || damages_.back().offset != chunk_place_.offset)
+    damages_.push_back({chunk_place_.offset, 0, std::string(kWhat)});
+  damages_.back().bytes += kRecordHeadBytes + inner.content.size();
 }
 
 bool StreamReader::open_chunk(const RecordPlace& place, Bytes content) {

@@ -24,7 +24,8 @@ enum class ChunkHandling {
 };  ///< kExpandAndShow delivers the Chunk record too, before its records
 
 /// Delivers every record of a file in order, with chunks expanded in place, and verifies every CRC. Damage never stops
-/// it: it skips the damaged chunk or record and notes where. Needs as much memory as the largest record and chunk.
+/// it: it skips the damaged chunk or record, or a chunk's records whose fields do not fit, and notes where. Needs as
+/// much memory as the largest record and chunk.
 class StreamReader {
  public:
   /// `source` must stay. Throws `Error` when it is no MCAP file.
@@ -39,6 +40,7 @@ class StreamReader {
 
  private:
   bool next_in_chunk(StreamRecord& record);
+  void note_misfit(const InnerRecord& inner);
   bool open_chunk(const RecordPlace& place, Bytes content);
   void check(const RecordPlace& place, Bytes content);
   void check_data_section(const RecordPlace& place, Bytes content);

@@ -7,11 +7,11 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <iterator>
-#include <numeric>
 #include <tuple>
 
 #include "traces/pose.hpp"
 #include "traces/reference_skinning.hpp"
+#include "traces/welding.hpp"
 
 namespace vestige {
 
@@ -26,15 +26,7 @@ auto weld_key(const Avatar& avatar, std::uint32_t vertex) {
 }
 
 std::vector<std::uint32_t> weld_vertices(const Avatar& avatar) {
-  std::vector<std::uint32_t> order(avatar.position_bind.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, [&](std::uint32_t a, std::uint32_t b) { return weld_key(avatar, a) < weld_key(avatar, b); });
-  std::vector<std::uint32_t> welded(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && weld_key(avatar, order[i - 1]) == weld_key(avatar, order[i]);
-    welded[order[i]] = same ? welded[order[i - 1]] : order[i];
-  }
-  return welded;
+  return weld(avatar.position_bind.size(), [&](std::uint32_t vertex) { return weld_key(avatar, vertex); });
 }
 
 /// Area-weighted, in the space of bind positions; indexed by the weld's numbers.

@@ -30,6 +30,12 @@ TEST(TransmittedBits, AreNoneForAnswersThatDoNotDependOnTheRegion) {
   EXPECT_EQ(transmitted_bits(std::vector<double>{0, 0, 0, 0}, 2), 0);
 }
 
+TEST(TransmittedBits, AreANumberHoweverSeldomAnAnswerIs) {
+  // Half of all is 0 or 1, told apart; the third answer is as good as never given.
+  EXPECT_NEAR(transmitted_bits(std::vector<double>{1, 0, 1e-310, 0, 1, 0}, 3), 1, 1e-13);
+  EXPECT_GE(transmitted_bits(std::vector<double>{0.1, 0.3, 0.7, 0.1 / 3, 0.1, 0.7 / 3}, 3), 0);
+}
+
 TEST(TransmittedBits, OfAChannelThatErrsOneTimeInFour) {
   // 1 - H(1/4) = 0.188722 bits.
   EXPECT_NEAR(transmitted_bits(std::vector<double>{3, 1, 1, 3}, 2), 0.1887218755408671, 1e-14);
@@ -184,6 +190,12 @@ TEST(SlideSmoothness, SeesRippleJumpsAndReversals) {
   SlideSmoothness unfelt;
   unfelt.add(0, nullptr, step);
   EXPECT_TRUE(std::isnan(unfelt.ripple()));
+  // It makes nothing look smoother.
+  score.add(unfelt, 10);
+  EXPECT_DOUBLE_EQ(score.ripple(), 1);
+  EXPECT_DOUBLE_EQ(score.largest_jump_m(), 0.04);
+  EXPECT_DOUBLE_EQ(score.reversals_per_m(), 2);
+  EXPECT_EQ(score.slides(), 2U);
 }
 
 TEST(Acuity, IsFinerAtTheMidline) {
