@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ranges>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -279,8 +278,14 @@ bool Merger::is_ours(const Held& held) const {
 
 /// What others made of it may differ: each file's first frame has its own /viz.
 bool Merger::same_frame(const std::vector<Held>& a, const std::vector<Held>& b) const {
-  const auto ours = std::views::filter([this](const Held& held) { return is_ours(held); });
-  return std::ranges::equal(a | ours, b | ours, same);
+  const auto ours = [this](const std::vector<Held>& group) {
+    std::vector<const Held*> list;
+    list.reserve(group.size());
+    for (const Held& held : group)
+      if (is_ours(held)) list.push_back(&held);
+    return list;
+  };
+  return std::ranges::equal(ours(a), ours(b), [](const Held* one, const Held* other) { return same(*one, *other); });
 }
 
 void Merger::require_next_frame(std::uint32_t sequence, const Part& part) {
