@@ -185,7 +185,7 @@ void Writer::append_summary(ByteBuffer& out) {
   append_record(out, footer);
   // The CRC covers everything up to itself, so it can only be filled in now.
   footer.summary_crc = crc32(Bytes(out).first(out.size() - sizeof footer.summary_crc));
-  out.resize(out.size() - kRecordHeadBytes - kFooterContentBytes);
+  out.erase(out.end() - std::ptrdiff_t{kRecordHeadBytes + kFooterContentBytes}, out.end());
   append_record(out, footer);
 }
 
