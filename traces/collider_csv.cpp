@@ -39,6 +39,8 @@ Samples parse(ColliderRows& rows) {
     }
     of_collider.push_back(sample);
   }
+  // A trace without any collider has an export of none; it has no time to record.
+  if (samples.empty()) throw Error(rows.name(), "holds no sample", "name a file with at least one row");
   return samples;
 }
 

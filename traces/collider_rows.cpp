@@ -60,11 +60,7 @@ ColliderRows::ColliderRows(const std::filesystem::path& path) : reader_(path), l
 }
 
 bool ColliderRows::next(ColliderRow& row) {
-  if (!lines_.next()) {
-    // A trace may have frames without any collider.
-    if (rows_ == 0 && columns_ == ColliderColumns::kTimes) throw Error(reader_.name(), "holds no sample", kRemedy);
-    return false;
-  }
+  if (!lines_.next()) return false;
   glm::dvec3& position = row.sample.position_m;
   const bool has_frames = columns_ == ColliderColumns::kFrames;
   int teleported = 0;

@@ -27,11 +27,13 @@ inline constexpr std::string_view kColliderTimesHeader = "time_s,id,x,y,z";
 inline constexpr std::string_view kColliderFramesHeader = "frame,time_s,id,x,y,z,teleported";
 
 /// Reads a collider CSV of either header, a row at a time. Throws `Error` naming file and line: another header, a wrong
-/// number of columns, no number, not finite, farther than 1e9 m, frames or times that run back, no row.
+/// number of columns, no number, not finite, farther than 1e9 m, frames or times that run back.
 class ColliderRows {
  public:
   explicit ColliderRows(const std::filesystem::path& path);
   bool next(ColliderRow& row);
+  /// What errors are to name.
+  const std::string& name() const { return reader_.name(); }
   ColliderColumns columns() const { return columns_; }
   Error error(std::string_view cause, std::string_view remedy) const { return lines_.error(cause, remedy); }
 

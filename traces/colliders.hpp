@@ -68,7 +68,8 @@ const Scenario* find_scenario(std::string_view name);
 /// Reads `time_s,id,x,y,z` (that header, then a row for each sample, metres; times not decreasing). Between two samples
 /// of a collider its position is interpolated linearly; before its first and after its last it is absent. With the
 /// header `frame,time_s,id,x,y,z,teleported` that a trace is exported with, it is absent too over frames that it misses
-/// and on the way to where it teleported. Throws `Error` as `ColliderRows` does, and for two positions at one time.
+/// and on the way to where it teleported. Throws `Error` as `ColliderRows` does, for two positions at one time and for
+/// a file without rows.
 std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path);
 
 /// Colliders that are nodes of a glTF file, where its animations (all of them, from time 0) move them in the world.
