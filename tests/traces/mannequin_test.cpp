@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "tests/support/builtin_avatar.hpp"
+#include "traces/pose.hpp"
 #include "traces/reference_skinning.hpp"
 
 namespace vestige {
@@ -96,6 +97,29 @@ TEST(Mannequin, IsItsOwnMirrorImage) {
     const auto& [x, y, z] = place;
     EXPECT_TRUE(places.contains({-x, y, z})) << x << " " << y << " " << z;
   }
+}
+
+double distance_to_segment_m(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 ab = b - a;
+  const double length_squared = glm::dot(ab, ab);
+  const double along = length_squared > 0 ? std::clamp(glm::dot(p - a, ab) / length_squared, 0.0, 1.0) : 0;
+  return glm::distance(p, a + along * ab);
+}
+
+TEST(Mannequin, FollowsOnlyTheBonesThatAreNear) {
+  const Avatar& avatar = builtin_avatar();
+  std::vector<glm::dmat4> world;
+  world_matrices(avatar, rest_pose(avatar), world);
+  const auto at_m = [&](int node) { return glm::dvec3(world[static_cast<std::size_t>(node)][3]); };
+  for (std::size_t i = 0; i < avatar.influences.size(); ++i)
+    for (std::size_t k = 0; k < kMaxInfluences && avatar.influences[i].weight[k] > 0; ++k) {
+      const int joint = avatar.palette[avatar.influences[i].palette[k]].node;
+      double nearest_m = glm::distance(glm::dvec3(avatar.position_bind[i]), at_m(joint));
+      for (int child = 0; child < static_cast<int>(avatar.nodes.size()); ++child)
+        if (avatar.nodes[static_cast<std::size_t>(child)].parent == joint)
+          nearest_m = std::min(nearest_m, distance_to_segment_m(avatar.position_bind[i], at_m(joint), at_m(child)));
+      EXPECT_LT(nearest_m, 0.27) << "vertex " << i << " and " << avatar.nodes[static_cast<std::size_t>(joint)].name;
+    }
 }
 
 class MannequinMoves : public testing::TestWithParam<const char*> {

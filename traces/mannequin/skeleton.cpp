@@ -71,6 +71,8 @@ std::size_t owner(const glm::dvec3& p) {
   // The crease of the hip rises outwards.
   if (p.y > 0.800 + 0.75 * p.x) return kPelvis;
   if (p.y > at.knee.y) return kThigh;
+  // Below the shin's middle, what lies in front is the instep.
+  if (p.y > (at.knee.y + at.ankle.y) / 2) return kShin;
   if (p.y > at.ankle.y - 0.3 * std::max(0.0, p.z - at.ankle.z) && p.z < 0.05) return kShin;
   return p.z > at.ball.z ? kToes : kFoot;
 }
