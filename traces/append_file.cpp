@@ -15,8 +15,6 @@ namespace vestige {
 
 namespace {
 
-constexpr mode_t kMode = 0666;
-
 bool is_no_regular_file(const std::filesystem::path& path) {
   std::error_code ignored;
   return std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored);
@@ -29,13 +27,14 @@ AppendFile::AppendFile(std::filesystem::path path, Overwrite overwrite) : path_(
     descriptor_ = STDOUT_FILENO;
     return;
   }
+  path_ = where_it_leads(path_);
   refuse_overwrite(path_, overwrite);
   if (is_no_regular_file(path_)) {
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     if (descriptor_ < 0) throw system_error(path_, "could not open for writing", errno);
     return;
   }
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
+  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ >= 0) {
     current_path_ = path_;
   } else if (errno == EEXIST && overwrite == Overwrite::kAllow) {
@@ -43,9 +42,7 @@ AppendFile::AppendFile(std::filesystem::path path, Overwrite overwrite) : path_(
     descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
     if (descriptor_ < 0) throw system_error(path_, "could not create", errno);
     current_path_ = name;
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    ::fchmod(descriptor_, kMode & ~mask);
+    ::fchmod(descriptor_, new_file_mode());
   } else {
     throw system_error(path_, "could not create", errno);
   }

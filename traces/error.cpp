@@ -5,6 +5,9 @@
 namespace vestige {
 
 namespace {
+
+constexpr std::string_view kBeforeRemedy = "\n  ";
+
 /// File names may hold what moves a terminal's cursor.
 std::string printable(std::string_view text) {
   std::string safe;
@@ -24,13 +27,24 @@ std::string printable(std::string_view text) {
 std::string compose(std::string_view where, std::string_view cause, std::string_view remedy) {
   std::string text;
   text.append(where).append(": ").append(cause);
-  if (!remedy.empty()) text.append("\n  ").append(remedy);
+  if (!remedy.empty()) text.append(kBeforeRemedy).append(remedy);
   return printable(text);
 }
 }  // namespace
 
 Error::Error(std::string_view where, std::string_view cause, std::string_view remedy)
     : std::runtime_error(compose(where, cause, remedy)) {}
+
+std::string_view Error::fault() const {
+  const std::string_view text = what();
+  return text.substr(0, text.find(kBeforeRemedy));
+}
+
+std::string_view Error::remedy() const {
+  const std::string_view text = what();
+  const std::size_t end = text.find(kBeforeRemedy);
+  return end == std::string_view::npos ? "" : text.substr(end + kBeforeRemedy.size());
+}
 
 void print_message(const std::string& text) {
   static_cast<void>(std::fputs(text.c_str(), stderr));

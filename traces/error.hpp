@@ -11,6 +11,8 @@ namespace vestige {
 class Error : public std::runtime_error {
  public:
   Error(std::string_view where, std::string_view cause, std::string_view remedy);
+  std::string_view fault() const;   ///< "WHERE: CAUSE"
+  std::string_view remedy() const;  ///< may be empty
 };
 
 /// The command was called wrongly: the same form of message, exit code 2.

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "traces/gltf_uri.hpp"
+#include "traces/utf8.hpp"
 
 namespace vestige::gltf {
 
@@ -23,20 +24,6 @@ bool is_digit(char character) {
 /// ASCII that stands for itself inside a text.
 bool is_plain(char character) {
   return character >= 0x20 && character != '"' && character != '\\';
-}
-
-/// The length of the UTF-8 sequence (RFC 3629) that `text` starts with, 0 where it is none.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  const unsigned first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first < 0xC2 ? 0 : first < 0xE0 ? 2 : first < 0xF0 ? 3 : first < 0xF5 ? 4 : 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xC0U) != 0x80) return 0;
-  const bool is_overlong = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xF0 && byte(1) < 0x90);
-  const bool is_surrogate = first == 0xED && byte(1) >= 0xA0;
-  const bool is_beyond = first == 0xF4 && byte(1) >= 0x90;
-  return is_overlong || is_surrogate || is_beyond ? 0 : length;
 }
 
 /// Whether a property is read, by its name and the depth of its object: 1 the document, 3 an element of one of its

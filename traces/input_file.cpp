@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "traces/error.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige {
@@ -34,11 +33,7 @@ class Descriptor {
 template <typename Container>
 Container read_all(const std::filesystem::path& path, std::uint64_t limit_bytes) {
   const Descriptor descriptor(path);
-  if (descriptor.value() < 0) {
-    if (errno == ENOENT) throw Error(path.string(), "there is no such file", "check the name");
-    if (errno == EACCES) throw Error(path.string(), "may not be read", "ask its owner, or change its permissions");
-    throw system_error(path, "could not open", errno);
-  }
+  if (descriptor.value() < 0) throw unreadable(path, errno);
   struct stat status = {};
   if (::fstat(descriptor.value(), &status) != 0) throw system_error(path, "could not read", errno);
   if (S_ISDIR(status.st_mode)) throw Error(path.string(), "is a folder", "name a file");
@@ -61,6 +56,12 @@ Container read_all(const std::filesystem::path& path, std::uint64_t limit_bytes)
 }
 
 }  // namespace
+
+Error unreadable(const std::filesystem::path& path, int error_number) {
+  if (error_number == ENOENT) return {path.string(), "there is no such file", "check the name"};
+  if (error_number == EACCES) return {path.string(), "may not be read", "ask its owner, or change its permissions"};
+  return system_error(path, "could not open", error_number);
+}
 
 std::vector<std::byte> read_file(const std::filesystem::path& path, std::uint64_t limit_bytes) {
   return read_all<std::vector<std::byte>>(path, limit_bytes);

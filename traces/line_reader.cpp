@@ -9,6 +9,7 @@
 #include <cerrno>
 
 #include "traces/error.hpp"
+#include "traces/input_file.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige {
@@ -23,8 +24,7 @@ constexpr std::size_t kMostLineBytes = std::size_t{1} << 26;
 LineReader::LineReader(const std::filesystem::path& path)
     : path_(path), name_(path == "-" ? "standard input" : path.string()) {
   descriptor_ = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0 && errno == ENOENT) throw Error(name_, "there is no such file", "check the name");
-  if (descriptor_ < 0) throw system_error(path, "could not open", errno);
+  if (descriptor_ < 0) throw unreadable(path, errno);
   struct stat status = {};
   if (::fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) throw Error(name_, "is a folder", "name a file");
   if (S_ISREG(status.st_mode)) file_bytes_ = static_cast<std::size_t>(status.st_size);

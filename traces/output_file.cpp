@@ -43,16 +43,6 @@ std::string shown_name(const std::filesystem::path& path) {
   return is_standard_output(path) ? "standard output" : path.string();
 }
 
-/// The process's umask. It can only be read by setting it, which no two threads may do at a time.
-mode_t file_mask() {
-  static const mode_t mask = [] {
-    const mode_t found = ::umask(0);
-    ::umask(found);
-    return found;
-  }();
-  return mask;
-}
-
 /// Makes the rename itself durable; a folder that cannot be synced (some network disks) is no failure.
 void sync_folder(const std::filesystem::path& path) {
   const auto parent = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -80,6 +70,33 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const std::file
   }
 }
 
+std::filesystem::path where_it_leads(std::filesystem::path path) {
+  constexpr int kMostLinks = 40;  // as the kernel follows
+  std::error_code failed;
+  // What /dev/stdout leads to has a name only where it is a file.
+  const auto end = std::filesystem::status(path, failed);
+  if (std::filesystem::exists(end) && !std::filesystem::is_regular_file(end)) return path;
+  std::filesystem::path led = path;
+  for (int i = 0; std::filesystem::is_symlink(led, failed); ++i) {
+    if (i == kMostLinks) throw system_error(path, "could not open", ELOOP);
+    led = led.parent_path() / std::filesystem::read_symlink(led, failed);
+  }
+  // /proc names what a descriptor had, which may be gone.
+  if (std::filesystem::exists(end) && !std::filesystem::equivalent(path, led, failed))
+    throw Error(path.string(), "is open, but has no name any more", "write to '-', or name a file");
+  return led;
+}
+
+mode_t new_file_mode() {
+  // The umask can only be read by setting it, which no two threads may do at a time.
+  static const mode_t mask = [] {
+    const mode_t found = ::umask(0);
+    ::umask(found);
+    return found;
+  }();
+  return 0666 & ~mask;
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code failure;
   std::filesystem::create_directories(folder, failure);
@@ -88,6 +105,7 @@ void make_folder(const std::filesystem::path& folder) {
 
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite) {
   if (is_standard_output(path)) return;
+  static_cast<void>(where_it_leads(path));  // throws
   std::error_code ignored;
   const auto status = std::filesystem::status(path, ignored);
   if (!std::filesystem::exists(status)) {
@@ -112,10 +130,9 @@ OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite)
     descriptor_ = STDOUT_FILENO;
     return;
   }
+  path_ = where_it_leads(path_);
   refuse_overwrite(path_, overwrite_);
   std::error_code ignored;
-  // A link keeps being a link: what it leads to is what is written.
-  if (std::filesystem::is_symlink(path_, ignored)) path_ = std::filesystem::weakly_canonical(path_);
   if (std::filesystem::exists(path_, ignored) && !std::filesystem::is_regular_file(path_, ignored)) {
     // A device or a pipe has no complete-or-absent: write to it as it comes.
     descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
@@ -126,7 +143,7 @@ OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite)
   descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
   if (descriptor_ < 0) throw system_error(path_, "could not create", errno);
   temporary_path_ = name;
-  ::fchmod(descriptor_, 0666 & ~file_mask());
+  ::fchmod(descriptor_, new_file_mode());
 }
 
 OutputFile::~OutputFile() {

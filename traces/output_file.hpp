@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <filesystem>
 #include <span>
@@ -44,6 +46,13 @@ class OutputFile {
 /// Gives a finished, synced file its name, in the same folder. Throws `Error`, also where `path` exists by now and may
 /// not be overwritten; then the file keeps its temporary name.
 void give_name(const std::filesystem::path& temporary_path, const std::filesystem::path& path, Overwrite overwrite);
+
+/// The file that a link leads to, which need not be there; any other path, and links to devices, as they are. A link
+/// stays a link when that is written instead. Throws `Error`: links in a circle, an open file without a name.
+std::filesystem::path where_it_leads(std::filesystem::path path);
+
+/// Permissions of a new file, under the process's umask.
+mode_t new_file_mode();
 
 /// Throws `Error` when `path` exists and may not be overwritten: to be called before long work, not after it.
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite);

@@ -16,6 +16,9 @@ struct ColliderSample {
   glm::dvec3 position_m = glm::dvec3(0);  ///< world
 };
 
+/// A trace numbers its frames in 32 bits.
+inline constexpr double kMostTraceFrames = 4294967295.0;
+
 /// One frame: the avatar and every collider present at `time_ns`.
 struct TraceFrame {
   std::uint64_t index = 0;   ///< counts from 0 (MCAP's sequence)

@@ -2,10 +2,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <fstream>
 
 #include "tests/support/test_data.hpp"
+#include "traces/append_file.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
 
@@ -69,6 +72,45 @@ TEST(OutputFile, FollowsALinkAndLeavesItALink) {
   file.commit();
   EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
   EXPECT_EQ(read_text_file(folder / "real.csv"), "new");
+  EXPECT_EQ(entries_in(folder.path()), 2U);
+}
+
+TEST(OutputFile, WritesWhatALinkLeadsToThoughItIsNotThere) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "data");
+  std::filesystem::create_symlink("data/real.csv", folder / "link.csv");
+  OutputFile file(folder / "link.csv", Overwrite::kRefuse);
+  file.write("new");
+  file.commit();
+  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.csv"));
+  EXPECT_EQ(read_text_file(folder / "data/real.csv"), "new");
+}
+
+TEST(AppendFile, FollowsALinkAndLeavesItALink) {
+  for (const bool is_there : {false, true}) {
+    const test::TemporaryFolder folder;
+    if (is_there) std::ofstream(folder / "real.mcap") << "old";
+    std::filesystem::create_symlink("real.mcap", folder / "link.mcap");
+    AppendFile file(folder / "link.mcap", is_there ? Overwrite::kAllow : Overwrite::kRefuse);
+    file.write(std::as_bytes(std::span("new", 3)));
+    file.keep();
+    file.secure();
+    file.close();
+    EXPECT_TRUE(std::filesystem::is_symlink(folder / "link.mcap"));
+    EXPECT_EQ(read_text_file(folder / "real.mcap"), "new");
+    EXPECT_EQ(entries_in(folder.path()), 2U);
+  }
+}
+
+TEST(OutputFile, RefusesLinksInACircleAndFilesWithoutAName) {
+  const test::TemporaryFolder folder;
+  std::filesystem::create_symlink("b", folder / "a");
+  std::filesystem::create_symlink("a", folder / "b");
+  EXPECT_THROW(refuse_overwrite(folder / "a", Overwrite::kAllow), Error);
+  EXPECT_THROW(AppendFile(folder / "a", Overwrite::kAllow), Error);
+  const int nameless = ::memfd_create("x", MFD_CLOEXEC);
+  EXPECT_THROW(OutputFile("/proc/self/fd/" + std::to_string(nameless), Overwrite::kAllow), Error);
+  ::close(nameless);
   EXPECT_EQ(entries_in(folder.path()), 2U);
 }
 

@@ -12,6 +12,8 @@
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/error.hpp"
+#include "traces/mcap/encode.hpp"
+#include "traces/mcap/stream_reader.hpp"
 #include "traces/trace_check.hpp"
 
 namespace vestige {
@@ -186,6 +188,27 @@ TEST(Recover, KeepsWhatFollowsAMessageWhoseFieldsDoNotFit) {
   EXPECT_EQ(outcome->recovery.bytes_lost, mcap::kRecordHeadBytes + 3);
   EXPECT_EQ(outcome->recovery.messages_left_out, 1U) << "the colliders of the frame that has no pose";
   EXPECT_TRUE(outcome->recovery.lost_something());
+}
+
+TEST(Recover, GivesAChannelNoSchemaThatComesAfterItsMessages) {
+  mcap::ByteBuffer bytes;
+  mcap::append_magic(bytes);
+  append_record(bytes, mcap::Header{});
+  append_record(bytes,
+                mcap::Channel{.id = 1, .schema_id = 7, .topic = "/a", .message_encoding = "json", .metadata = {}});
+  append_record(bytes, mcap::Message{.channel_id = 1, .sequence = 0, .log_time = 1, .publish_time = 1, .data = {}});
+  mcap::ByteBuffer late;
+  append_record(late, mcap::Schema{.id = 7, .name = "late", .encoding = "jsonschema", .data = {}});
+  append_record(late, mcap::Message{.channel_id = 1, .sequence = 1, .log_time = 2, .publish_time = 2, .data = {}});
+  append_record(bytes, mcap::Chunk{.uncompressed_size = late.size(), .compression = "", .records = late});
+  const auto outcome = recover(bytes);
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->recovery.messages, 2U);
+  const mcap::MemorySource written(outcome->bytes);
+  mcap::StreamReader reader(written);
+  mcap::StreamRecord record;
+  while (reader.next(record)) EXPECT_NE(record.opcode, mcap::Opcode::kSchema) << "would change what the channel means";
+  EXPECT_THAT(reader.damages(), ::testing::IsEmpty());
 }
 
 TEST(Recover, LeavesOutFramesThatComeTwice) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "traces/error.hpp"
+#include "traces/input_file.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige::mcap {
@@ -39,8 +40,7 @@ int open_for_reading(const std::filesystem::path& path) {
   if (path == "-") return STDIN_FILENO;
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor >= 0) return descriptor;
-  if (errno == ENOENT) throw Error(path.string(), "there is no such file", "check the name");
-  throw system_error(path, "could not open", errno);
+  throw unreadable(path, errno);
 }
 
 int nameless_file() {
