@@ -12,6 +12,7 @@
 #include "tests/transport/board_terminal.hpp"
 #include "tests/transport/simulated_board.hpp"
 #include "traces/error.hpp"
+#include "traces/output_file.hpp"
 
 namespace {
 
@@ -31,6 +32,7 @@ struct Options {
   std::string firmware, microcontroller, link, duties;
   std::uint32_t baud = 57600;
   double duration_s = 0;
+  bool force = false;
 };
 
 void simulate(const Options& options) {
@@ -39,6 +41,8 @@ void simulate(const Options& options) {
   constexpr std::size_t kAdapterBytes = 64;
   constexpr std::int64_t kStep_us = 500;
 
+  if (!options.duties.empty())
+    vestige::refuse_overwrite(options.duties, options.force ? vestige::Overwrite::kAllow : vestige::Overwrite::kRefuse);
   vestige::test::SimulatedBoard board(options.firmware, options.microcontroller, options.baud);
   vestige::test::BoardTerminal terminal(options.link);
   catch_signals();
@@ -88,6 +92,7 @@ int main(int argc, char** argv) {
   app.add_option("--mcu", options.microcontroller, "atmega1280 or atmega2560; else what the firmware was linked for");
   app.add_option("--link", options.link, "Make a symbolic link of this name to the terminal");
   app.add_option("--duties", options.duties, "At the end, write the duties measured at the pins to this CSV file");
+  app.add_flag("--force", options.force, "Overwrite that file");
   app.add_option("--baud", options.baud, "Speed of the line")->capture_default_str()->check(CLI::Range(300, 2'000'000));
   app.add_option("--duration", options.duration_s, "Seconds until the end; else until a signal")
       ->check(CLI::NonNegativeNumber);

@@ -202,6 +202,9 @@ TEST(SimulatedBoardErrorsTest, EndsAfterItsDuration) {
   const Outcome outcome = run("simulated_board --duration 0.2 --duties d.csv '" + firmware() + "'", folder.path());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(read_text_file(folder / "d.csv"), ::testing::EndsWith("actuator_6\n0,0,0,0,0,0,0\n"));
+  const Outcome again = run("simulated_board --duration 9 --duties d.csv '" + firmware() + "'", folder.path());
+  EXPECT_EQ(again.exit_code, 1);
+  EXPECT_THAT(again.standard_error, HasSubstr("exists already"));
 }
 
 TEST(SimulatedLineTest, TakesTheTimeOfARealOne) {
