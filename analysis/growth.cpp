@@ -22,6 +22,18 @@ SweepSettings settings_for(const GrowthSettings& settings, const Avatar& avatar,
   return sweep;
 }
 
+/// For the avatar that traces/subdivision.hpp makes.
+ActuatorMap subdivided(const ActuatorMap& map) {
+  ActuatorMap fine = map;
+  if (map.triangle_count == 0) return fine;
+  fine.triangle_count = 4 * map.triangle_count;
+  fine.width = 2 * map.width;
+  fine.height = 2 * map.height;
+  fine.actuator.assign(std::size_t{fine.width} * fine.height, 0);
+  for (std::size_t i = 0; i < fine.triangle_count; ++i) fine.actuator[i] = map.actuator[i / 4];
+  return fine;
+}
+
 /// Puts the one point of each series of `more` behind those of `all`.
 void append(std::vector<SweepSeries>& all, std::vector<SweepSeries> more) {
   if (all.empty()) {
@@ -33,8 +45,8 @@ void append(std::vector<SweepSeries>& all, std::vector<SweepSeries> more) {
 
 }  // namespace
 
-Growth run_growth(TraceReader& trace, const Avatar& avatar, const ContestantMaker& make, const GrowthSettings& settings,
-                  const std::function<bool(double)>& progress) {
+Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& map, const ContestantMaker& make,
+                  const GrowthSettings& settings, const std::function<bool(double)>& progress) {
   Growth growth;
   bool goes_on = true;
   const double steps = static_cast<double>(settings.sweep.counts.size()) + settings.subdivisions + 1;
@@ -46,15 +58,19 @@ Growth run_growth(TraceReader& trace, const Avatar& avatar, const ContestantMake
   for (const std::uint32_t count : settings.sweep.counts) {
     if (!goes_on) return growth;
     append(growth.by_colliders,
-           run_sweep(trace, avatar, make(avatar), settings_for(settings, avatar, count), step_progress));
+           run_sweep(trace, avatar, make(avatar, map), settings_for(settings, avatar, count), step_progress));
     ++step;
   }
   Avatar fine = avatar;
+  ActuatorMap fine_map = map;
   for (std::uint32_t level = 0; goes_on && level <= settings.subdivisions; ++level) {
-    if (level > 0) fine = subdivided(fine);
+    if (level > 0) {
+      fine = subdivided(fine);
+      fine_map = subdivided(fine_map);
+    }
     const SweepSettings sweep = settings_for(settings, fine, settings.colliders);
     GrowthSize size = {fine.triangles.size(), fine.position_bind.size(), sweep.runs * sweep.run_frames, {}};
-    size.series = run_sweep(trace, fine, make(fine), sweep, step_progress);
+    size.series = run_sweep(trace, fine, make(fine, fine_map), sweep, step_progress);
     growth.by_triangles.push_back(std::move(size));
     ++step;
   }

@@ -35,14 +35,14 @@ struct Growth {
 /// measured, whatever the settings say.
 inline constexpr std::uint64_t kManyPairs = 500'000;
 
-/// Makes the contestants for an avatar, to which they keep references.
-using ContestantMaker = std::function<std::vector<Contestant>(const Avatar&)>;
+/// Makes the contestants for an avatar and its map, to which they keep references.
+using ContestantMaker = std::function<std::vector<Contestant>(const Avatar&, const ActuatorMap&)>;
 
 /// Cost against colliders on the avatar, then against triangles on its subdivisions. All contestants take turns within
 /// one size, be it of colliders or triangles; sizes follow each other, since the largest fill the memory. `progress` as
 /// for `run_sweep`.
-Growth run_growth(TraceReader& trace, const Avatar& avatar, const ContestantMaker& make, const GrowthSettings& settings,
-                  const std::function<bool(double)>& progress);
+Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& map, const ContestantMaker& make,
+                  const GrowthSettings& settings, const std::function<bool(double)>& progress);
 
 /// Mean microseconds of a frame at each point; NaN where nothing was measured.
 std::vector<double> mean_us(const SweepSeries& series);

@@ -76,7 +76,7 @@ class RecordedRows {
 
 void look_up_anew(const ActuatorMap& map, ContactRow& row) {
   for (Contact& contact : row)
-    if (contact.hit()) contact.actuator = map.at(contact.texture_coordinate);
+    if (contact.hit()) contact.actuator = map.at(contact.triangle, contact.texture_coordinate);
 }
 
 }  // namespace

@@ -95,7 +95,7 @@ struct Piece {
   SkinPoint point;         // its middle
   std::uint16_t actuator;  // the map's number
   double area_m2;
-  std::size_t texel;  // or kNoTexel: a whole triangle, between the texels' centres or too large for the texture
+  std::size_t texel;  // or kNoTexel: a whole triangle, between the texels' centres, too large, or with its own actuator
 };
 constexpr std::size_t kNoTexel = ~std::size_t{0};
 
@@ -109,6 +109,10 @@ void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const Surf
   for (std::uint32_t number = 0; number < avatar.triangles.size(); ++number) {
     const double area_m2 = area_of(surface, number);
     if (!(area_m2 > 0)) continue;
+    if (map.triangle_count != 0) {
+      take(Piece{{number, glm::dvec3(1.0 / 3)}, map.at(number, {}), area_m2, kNoTexel});
+      continue;
+    }
     const glm::uvec3& triangle = avatar.triangles[number];
     const glm::dvec2 a(avatar.texture_coordinate[triangle.x]);
     const glm::dvec2 b(avatar.texture_coordinate[triangle.y]);
@@ -241,6 +245,7 @@ void ActuatorLayout::place_actuators(const Avatar& avatar) {
 /// Regions that are touched, though no texel's centre of theirs lies on skin, have no piece of it.
 void ActuatorLayout::place_specks(const Avatar& avatar) {
   constexpr int kSteps = 8;
+  if (map_.triangle_count != 0) return;
   if (std::ranges::all_of(place_, [](const auto& place) { return place.has_value(); })) return;
   for (std::uint32_t number = 0; number < avatar.triangles.size(); ++number) {
     if (!(area_of(surface_, number) > 0)) continue;
@@ -372,7 +377,7 @@ std::span<const std::uint16_t> ActuatorLayout::beside(std::size_t actuator) cons
 void ActuatorLayout::locate(const Contact& contact, LocatedContact& located) const {
   const glm::dvec2& uv = contact.barycentric;
   locate(SkinPoint{contact.triangle, glm::dvec3(1 - uv.x - uv.y, uv.x, uv.y)}, located);
-  located.actuator = map_.at(contact.texture_coordinate);
+  located.actuator = map_.at(contact.triangle, contact.texture_coordinate);
   located.speed_m_per_s = contact.speed_m_per_s;
 }
 

@@ -13,6 +13,8 @@
 #include "traces/builtin_avatar.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
+#include "traces/sha256.hpp"
+#include "traces/trace_reader.hpp"
 
 namespace vestige {
 
@@ -122,6 +124,8 @@ GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name)
 }
 
 struct Sidecar {
+  std::size_t triangle_count = 0;
+  std::string skin_digest;
   std::vector<std::uint16_t> grey;
   std::vector<std::string> names;
   std::vector<std::optional<glm::dvec3>> position_m;
@@ -147,6 +151,14 @@ Sidecar parse_sidecar(std::string_view json, std::string_view name) {
   if (!document.is_object() || !document.contains("actuators") || !document["actuators"].is_array())
     throw Error(fmt::format("{}, sidecar", name), "is not JSON with a list 'actuators'", kRemedy);
   Sidecar sidecar;
+  if (document.contains("triangles")) {
+    const auto& triangles = document["triangles"];
+    if (!triangles.is_number_unsigned() || triangles.get<std::uint64_t>() == 0)
+      throw Error(fmt::format("{}, sidecar", name), "'triangles' is not a number of triangles",
+                  "write how many the avatar has, or leave it out of a map in the avatar's UV space");
+    sidecar.triangle_count = triangles.get<std::size_t>();
+    if (document.contains("skin") && document["skin"].is_string()) sidecar.skin_digest = document["skin"];
+  }
   for (const auto& entry : document["actuators"]) {
     const std::string where = fmt::format("{}, sidecar, actuators[{}]", name, sidecar.grey.size());
     if (!entry.is_object() || !entry.contains("grey") || !entry["grey"].is_number_unsigned() ||
@@ -224,10 +236,45 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
                   "add it to the sidecar's 'actuators', or paint it black");
     map.actuator.push_back(actuator_of_grey[grey]);
   }
+  if (listed.triangle_count > map.actuator.size())
+    throw Error(name, fmt::format("has {} texels for {} triangles", map.actuator.size(), listed.triangle_count),
+                "let 'vestige map make --per-triangle' write it anew");
+  map.triangle_count = listed.triangle_count;
+  map.skin_digest = listed.skin_digest;
+  if (map.triangle_count != 0 && std::any_of(map.actuator.begin() + static_cast<std::ptrdiff_t>(map.triangle_count),
+                                             map.actuator.end(), [](std::uint16_t actuator) { return actuator != 0; }))
+    throw Error(name, fmt::format("has texels behind its {} triangles that are not black", map.triangle_count),
+                "let 'vestige map make --per-triangle' write it anew");
   map.actuator_count = listed.grey.size();
   map.names = std::move(listed.names);
   map.position_m = std::move(listed.position_m);
   return map;
+}
+
+std::string skin_digest(const Avatar& avatar) {
+  Sha256 sha;
+  sha.update(std::as_bytes(std::span(avatar.triangles)));
+  sha.update(std::as_bytes(std::span(avatar.position_bind)));
+  return sha.hex();
+}
+
+ActuatorMap parse_actuator_map(const ActuatorMapFiles& files, const Avatar& avatar, std::string_view name) {
+  ActuatorMap map = parse_actuator_map(files.png, files.json, name);
+  if (map.triangle_count != 0 && map.triangle_count != avatar.triangles.size())
+    throw Error(name,
+                fmt::format("gives an actuator to each of {} triangles, and the avatar has {}", map.triangle_count,
+                            avatar.triangles.size()),
+                "let 'vestige map make --per-triangle' write it for this avatar");
+  if (map.triangle_count != 0 && !map.skin_digest.empty() && map.skin_digest != skin_digest(avatar))
+    throw Error(name, "gives its actuators to the triangles of another avatar, or of another export of it",
+                "let 'vestige map make --per-triangle' write it for this avatar");
+  map.warnings.insert(map.warnings.begin(), files.warnings.begin(), files.warnings.end());
+  return map;
+}
+
+ActuatorMapFiles actuator_map_files(const TraceReader& trace) {
+  const auto png = trace.actuator_map_png();
+  return {{png.begin(), png.end()}, std::string(text_of(trace.actuator_map_json()))};
 }
 
 ActuatorMapFiles read_actuator_map_files(const std::string& map) {

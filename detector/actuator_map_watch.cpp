@@ -18,11 +18,12 @@ constexpr std::chrono::milliseconds kBetweenLooks(100);
 }  // namespace
 
 ActuatorMapWatch::ActuatorMapWatch(std::string file, std::string read_stamp, std::size_t actuator_count,
-                                   std::function<void(const std::string&)> warn, const Avatar* avatar)
+                                   const Avatar& avatar, Layouts layouts, std::function<void(const std::string&)> warn)
     : file_(std::move(file)),
       actuator_count_(actuator_count),
-      warn_(std::move(warn)),
       avatar_(avatar),
+      layouts_(layouts),
+      warn_(std::move(warn)),
       read_stamp_(std::move(read_stamp)),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
@@ -64,13 +65,12 @@ void ActuatorMapWatch::run(const std::stop_token& stop) {
 }
 
 void ActuatorMapWatch::read() try {
-  const ActuatorMapFiles files = read_actuator_map_files(file_);
-  ActuatorMap map = parse_actuator_map(files.png, files.json, file_);
+  ActuatorMap map = parse_actuator_map(read_actuator_map_files(file_), avatar_, file_);
   if (map.actuator_count != actuator_count_)
     throw Error(file_, fmt::format("now names {} actuators, where {} are in use", map.actuator_count, actuator_count_),
                 "start again to use it");
   std::shared_ptr<const ActuatorLayout> layout;
-  if (avatar_ != nullptr) layout = std::make_shared<ActuatorLayout>(*avatar_, map);
+  if (layouts_ == Layouts::kMeasured) layout = std::make_shared<ActuatorLayout>(avatar_, map);
   const std::lock_guard lock(mutex_);
   map_ = {std::move(map), std::move(layout)};
 } catch (const std::exception& error) {

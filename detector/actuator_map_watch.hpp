@@ -24,14 +24,16 @@ struct WatchedMap {
 /// be edited while it is felt (HAVE 2010 §III.B). A file is read once it has been left alone for 0.1 s.
 class ActuatorMapWatch {
  public:
+  enum class Layouts { kNone, kMeasured };  ///< measuring takes its time
+
   /// What tells one state of a map's two files from another.
   static std::string stamp(const std::string& file);
 
   /// `file`: a PNG; `read_stamp`: its stamp from before it was read. Maps with another number of actuators than
   /// `actuator_count` are not taken, nor is what cannot be read: `warn` is told, in the watch's thread, and the old one
-  /// stays. `avatar`, which stays in use: the body for layouts; null for none, which take their time to measure.
-  ActuatorMapWatch(std::string file, std::string read_stamp, std::size_t actuator_count,
-                   std::function<void(const std::string&)> warn, const Avatar* avatar = nullptr);
+  /// stays. `avatar` stays in use.
+  ActuatorMapWatch(std::string file, std::string read_stamp, std::size_t actuator_count, const Avatar& avatar,
+                   Layouts layouts, std::function<void(const std::string&)> warn);
   /// Waits for the thread.
   ~ActuatorMapWatch();
   ActuatorMapWatch(const ActuatorMapWatch&) = delete;
@@ -46,8 +48,9 @@ class ActuatorMapWatch {
 
   std::string file_;
   std::size_t actuator_count_;
+  const Avatar& avatar_;
+  Layouts layouts_;
   std::function<void(const std::string&)> warn_;
-  const Avatar* avatar_;
   std::string read_stamp_;
   std::mutex mutex_;
   std::condition_variable_any stopped_;

@@ -51,7 +51,7 @@ Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, std::uint
   const glm::dvec2 uv_b(avatar.texture_coordinate[corner.y]);
   const glm::dvec2 uv_c(avatar.texture_coordinate[corner.z]);
   contact.texture_coordinate = uv_a + contact.barycentric.x * (uv_b - uv_a) + contact.barycentric.y * (uv_c - uv_a);
-  contact.actuator = map.at(contact.texture_coordinate);
+  contact.actuator = map.at(triangle, contact.texture_coordinate);
   const glm::dvec3 normal = glm::cross(at_contact.b - at_contact.a, at_contact.c - at_contact.a);
   const double length = glm::length(normal);
   if (duration_s > 0 && length > 0) contact.speed_m_per_s = std::abs(glm::dot(moved, normal)) / length / duration_s;

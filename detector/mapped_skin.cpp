@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "detector/texture_stretch.hpp"
@@ -93,13 +94,25 @@ Avatar with_triangles(const Avatar& avatar, const std::vector<std::uint32_t>& nu
   return part;
 }
 
+/// Nothing where the map needs no other numbers.
+std::optional<ActuatorMap> with_triangles(const ActuatorMap& map, const std::vector<std::uint32_t>& numbers) {
+  if (map.triangle_count == 0) return std::nullopt;
+  ActuatorMap part = map;
+  // No larger than the whole map, which a GPU's texture has room for.
+  for (std::size_t i = 0; i < numbers.size(); ++i) part.actuator[i] = map.actuator[numbers[i]];
+  part.triangle_count = numbers.size();
+  return part;
+}
+
 class MappedSkinDetector final : public Detector {
  public:
-  MappedSkinDetector(const Avatar& avatar, std::vector<std::uint32_t> numbers, const DetectorMaker& make)
+  MappedSkinDetector(const Avatar& avatar, const ActuatorMap& map, std::vector<std::uint32_t> numbers,
+                     const DetectorMaker& make)
       : left_out_(avatar.triangles.size() - numbers.size()),
         numbers_(std::move(numbers)),
         part_(with_triangles(avatar, numbers_)),
-        detector_(make(part_)) {}
+        map_(with_triangles(map, numbers_)),
+        detector_(make(part_, map_ ? *map_ : map)) {}
 
   const char* name() const override { return detector_->name(); }
   Method method() const override { return detector_->method(); }
@@ -121,16 +134,22 @@ class MappedSkinDetector final : public Detector {
   std::size_t left_out_;
   std::vector<std::uint32_t> numbers_;  ///< in the whole avatar, of the triangles of `part_`; ascending, as ties need
   Avatar part_;                         ///< with all vertices
+  std::optional<ActuatorMap> map_;      ///< of `part_`
   std::unique_ptr<Detector> detector_;
 };
 
 }  // namespace
 
 std::vector<std::uint32_t> mapped_triangles(const Avatar& avatar, const ActuatorMap& map) {
+  std::vector<std::uint32_t> found;
+  if (map.triangle_count != 0) {
+    for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i)
+      if (map.at(i, {}) != 0) found.push_back(i);
+    return found;
+  }
   const MappedTexels texels(map);
   const glm::dvec2 size(texels.width(), texels.height());
   const auto texel_of = [&](std::uint32_t vertex) { return glm::dvec2(avatar.texture_coordinate[vertex]) * size; };
-  std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) {
     const glm::uvec3& corner = avatar.triangles[i];
     if (covers_mapped(texels, {texel_of(corner.x), texel_of(corner.y), texel_of(corner.z)})) found.push_back(i);
@@ -142,8 +161,8 @@ std::unique_ptr<Detector> on_mapped_skin(const Avatar& avatar, const ActuatorMap
   std::vector<std::uint32_t> numbers = mapped_triangles(avatar, map);
   // Nobody needs a detector of no triangle at all: one is kept, which fires nothing either.
   if (numbers.empty() && !avatar.triangles.empty()) numbers.push_back(0);
-  if (numbers.size() == avatar.triangles.size()) return make(avatar);
-  return std::make_unique<MappedSkinDetector>(avatar, std::move(numbers), make);
+  if (numbers.size() == avatar.triangles.size()) return make(avatar, map);
+  return std::make_unique<MappedSkinDetector>(avatar, map, std::move(numbers), make);
 }
 
 }  // namespace vestige

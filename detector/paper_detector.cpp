@@ -43,6 +43,7 @@ class PaperDetector final : public Detector {
         gl_(current_gl(*context_)),
         avatar_(avatar),
         options_(with_sources(options)),
+        map_per_triangle_(map.triangle_count != 0),
         palette_(gl_),
         segments_(gl_),
         mesh_(gl_, avatar),
@@ -117,7 +118,7 @@ class PaperDetector final : public Detector {
     const auto side = static_cast<std::uint32_t>(gl_limit(gl_, GL_MAX_TEXTURE_SIZE));
     if (map.width > side || map.height > side)
       throw Error("--map", fmt::format("{} x {} texels are more than this driver's {}", map.width, map.height, side),
-                  "scale the map down, without smoothing");
+                  map.triangle_count == 0 ? "scale the map down, without smoothing" : "choose another detector");
     gl_.CreateTextures(GL_TEXTURE_2D, 1, &map_texture_);
     gl_.TextureStorage2D(map_texture_, 1, GL_R16UI, static_cast<GLsizei>(map.width), static_cast<GLsizei>(map.height));
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -162,9 +163,9 @@ class PaperDetector final : public Detector {
   std::string head(std::size_t block) const {
     return fmt::format(
         "#version 450 core\n{}#define PLANES {}\n#define BLOCK_SEGMENTS {}\n#define INFLUENCES {}\n"
-        "#define MAPPED_ONLY {}\n",
+        "#define MAPPED_ONLY {}\n#define MAP_PER_TRIANGLE {}\n",
         shaders::kConstantsH, options_.planes.bits(), block, avatar_.influence_count,
-        options_.surface == Surface::kMapped ? 1 : 0);
+        options_.surface == Surface::kMapped ? 1 : 0, map_per_triangle_ ? 1 : 0);
   }
 
   void read_back(ContactRow& row) {
@@ -220,6 +221,7 @@ class PaperDetector final : public Detector {
   const GlFunctions& gl_;
   const Avatar& avatar_;
   DetectorOptions options_;
+  bool map_per_triangle_;
   std::size_t largest_block_ = 1;
   GlBuffer palette_;
   GlBuffer segments_;

@@ -77,7 +77,12 @@ void main() {
     precise vec2 texture_coordinate = skinned[0].texture_coordinate +
                               u * (skinned[1].texture_coordinate - skinned[0].texture_coordinate) +
                               v * (skinned[2].texture_coordinate - skinned[0].texture_coordinate);
+#if MAP_PER_TRIANGLE
+    int map_width = textureSize(actuator_map, 0).x;
+    uint actuator = texelFetch(actuator_map, ivec2(gl_PrimitiveIDIn % map_width, gl_PrimitiveIDIn / map_width), 0).r;
+#else
     uint actuator = textureLod(actuator_map, texture_coordinate, 0.0).r;
+#endif
 #if MAPPED_ONLY
     if (actuator == 0u) continue;
 #endif

@@ -25,8 +25,6 @@ constexpr const char* kFolders[] = {"items", "contacts", "traces", "maps"};
 constexpr const char* kLockName = ".lock";
 constexpr const char* kPage = "report.html";
 constexpr const char* kResults[] = {"scores.csv", "scores.json", "ranking.csv", "ranking.json"};
-constexpr const char* kTopFiles[] = {"run.json",     "scores.csv", "scores.json",  "ranking.csv",
-                                     "ranking.json", "avatar.glb", "actuator.json"};
 constexpr const char* kShards = "shards";  // of a Slurm run that is merged into this folder, with their logs
 constexpr const char* kLogs = "logs";
 constexpr std::string_view kOtherFolder = "choose another -o, or add --force to replace it";
@@ -150,7 +148,11 @@ void BatchFolder::remove_leftovers(const nlohmann::ordered_json& batch) const {
     for (const auto& path : leftovers) std::filesystem::remove(path, ignored);
   };
   // Without a run.json these may be somebody else's.
-  if (!earlier_run_.is_null()) remove(folder_, {std::begin(kTopFiles), std::end(kTopFiles)}, {});
+  if (!earlier_run_.is_null()) {
+    std::set<std::string> top = {"run.json", "avatar.glb", "actuator.json"};
+    top.insert(std::begin(kResults), std::end(kResults));
+    remove(folder_, top, {});
+  }
   const nlohmann::ordered_json& traces = batch.at("traces");
   std::set<std::string> items;
   std::set<std::string> contacts;

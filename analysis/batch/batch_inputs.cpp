@@ -48,30 +48,20 @@ BatchActuators read_actuators(const std::string& file) {
   return actuators;
 }
 
-void load_map_files(BatchMap& map, const Avatar& avatar, bool builtin_avatar) {
-  if (map.given == "builtin" && !builtin_avatar)
-    throw Error(map.given, "is drawn for the built-in avatar, and the batch's is another",
+ActuatorMapFiles map_files(const std::string& given, const Avatar& avatar, bool builtin_avatar) {
+  if (given == "builtin" && !builtin_avatar)
+    throw Error(given, "is drawn for the built-in avatar, and the batch's is another",
                 "name one of the layouts, which fit any humanoid, or a PNG for this avatar");
-  if (!is_layout(map.given)) {
-    map.files = read_actuator_map_files(map.given);
-    return;
-  }
-  MadeMap made = make_layout_map(avatar, map.given);
-  map.files = std::move(made.files);
-  map.warnings = std::move(made.warnings);
-  if (!made.left_out.empty())
-    map.warnings.push_back(
-        fmt::format("the avatar has no skin for {} of the layout's actuators, which are left out: {}",
-                    made.left_out.size(), fmt::join(made.left_out, ", ")));
+  return read_map_files(avatar, given);
 }
 
 void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
-  load_map_files(map, plan.avatar, builtin_avatar);
-  ActuatorMap parsed = parse_actuator_map(map.files.png, map.files.json, map.given);
+  map.files = map_files(map.given, plan.avatar, builtin_avatar);
+  ActuatorMap parsed = parse_actuator_map(map.files, plan.avatar, map.given);
   if (parsed.actuator_count == 0)
     throw Error(map.given, "has no actuator", "paint regions other than black, or list actuators in the sidecar");
   if (plan.actuators.model) static_cast<void>(plan.actuators.model->motors(parsed));  // throws what they lack
-  map.warnings.insert(map.warnings.end(), parsed.warnings.begin(), parsed.warnings.end());
+  map.warnings = parsed.warnings;
   Sha256 sha;
   sha.update(map.files.png);
   sha.update(std::as_bytes(std::span(map.files.json)));

@@ -13,6 +13,7 @@
 #include "analysis/provenance.hpp"
 #include "traces/output_file.hpp"
 #include "traces/sha256.hpp"
+#include "traces/utf8.hpp"
 #include "version.hpp"
 
 namespace vestige {
@@ -26,28 +27,11 @@ bool may_stand_in_a_name(char letter) {
   return byte >= 0x80 || std::isalnum(byte) != 0 || letter == '.' || letter == '_' || letter == '-';
 }
 
-/// Length of the UTF-8 letter (RFC 3629) that `text` begins with; 0: it is none.
-std::size_t letter_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
-  const unsigned first = byte(0);
-  const std::size_t length = first < 0x80                     ? 1
-                             : first >= 0xC2 && first < 0xE0  ? 2
-                             : first >= 0xE0 && first < 0xF0  ? 3
-                             : first >= 0xF0 && first <= 0xF4 ? 4
-                                                              : 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xC0U) != 0x80) return 0;
-  // Neither longer than needed, nor a half of UTF-16, nor beyond the last letter.
-  const bool refused = (first == 0xE0 && byte(1) < 0xA0) || (first == 0xED && byte(1) >= 0xA0) ||
-                       (first == 0xF0 && byte(1) < 0x90) || (first == 0xF4 && byte(1) >= 0x90);
-  return refused ? 0 : length;
-}
-
 /// At most `most_bytes` of whole letters; '_' for each byte that belongs to none.
 std::string shortened_utf8(std::string_view text, std::size_t most_bytes) {
   std::string letters;
   while (!text.empty()) {
-    const std::size_t length = letter_bytes(text);
+    const std::size_t length = utf8_length(text);
     const std::string_view letter = length == 0 ? "_" : text.substr(0, length);
     if (letters.size() + letter.size() > most_bytes) break;
     letters.append(letter);
@@ -73,10 +57,8 @@ std::string name_of(const std::string& given) {
 }  // namespace
 
 BatchFailure failure_of(std::string_view what, std::string_view name, std::string_view given, const Error& error) {
-  const std::string_view text = error.what();
-  const std::size_t end = text.find("\n  ");
-  return {std::string(what), std::string(name), std::string(given), std::string(text.substr(0, end)),
-          end == std::string_view::npos ? "" : std::string(text.substr(end + 3))};
+  return {std::string(what), std::string(name), std::string(given), std::string(error.fault()),
+          std::string(error.remedy())};
 }
 
 bool BatchPlan::has_scenario() const {

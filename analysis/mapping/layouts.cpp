@@ -19,6 +19,9 @@ struct Layout {
   EmptyRegions empty;
 };
 
+/// Of a layout's skin: borders are no finer than texels.
+constexpr double kTolerablyMisplaced = 0.05;
+
 constexpr std::array kLayouts = {Layout{"paper6", "three heights of the torso, right and left", R"({
   "regions": [
     {"name": "torso", "part": "vest", "angle": [-180, 180],
@@ -115,16 +118,35 @@ EmptyRegions layout_empty_regions(std::string_view layout) {
 
 MadeMap make_layout_map(const Avatar& avatar, std::string_view layout) {
   const Layout& found = find_layout(layout);
-  require_texture_coordinates(avatar, fmt::format("layout {}: the avatar", layout));
   const Body body(avatar);
   const RegionPlan plan(body, parse_region_file(found.regions, layout), layout);
   MapSettings settings;
   settings.empty = found.empty;
-  return make_map(body, plan, settings, layout, "the avatar");
+  settings.per_triangle = !has_texture_coordinates(avatar);
+  MadeMap map = make_map(body, plan, settings, layout, "the avatar");
+  const double misplaced = map.misplaced_share;
+  if (misplaced <= kTolerablyMisplaced) return map;
+  settings.per_triangle = true;
+  settings.empty = EmptyRegions::kLeaveOut;
+  MadeMap by_triangle = make_map(body, plan, settings, layout, "the avatar");
+  const bool is_too_coarse = by_triangle.left_out.size() > map.left_out.size();
+  MadeMap& better = is_too_coarse ? map : by_triangle;
+  better.warnings.push_back(
+      fmt::format("the avatar's texture coordinates cannot tell its skin apart: {:.0f} % of that of layout {} {}",
+                  100 * misplaced, layout,
+                  is_too_coarse ? "fires another actuator, and its triangles are too large to have one each"
+                                : "would fire another actuator; each triangle has one instead"));
+  return std::move(better);
 }
 
 ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout) {
-  return make_layout_map(avatar, layout).files;
+  MadeMap made = make_layout_map(avatar, layout);
+  made.files.warnings = std::move(made.warnings);
+  if (!made.left_out.empty())
+    made.files.warnings.push_back(
+        fmt::format("the avatar has no skin for {} of the layout's actuators, which are left out: {}",
+                    made.left_out.size(), fmt::join(made.left_out, ", ")));
+  return std::move(made.files);
 }
 
 ActuatorMapFiles read_map_files(const Avatar& avatar, const std::string& map) {

@@ -23,12 +23,13 @@ std::string layout_list();
 
 bool is_layout(std::string_view map);
 
-/// The layout on this avatar, as the two files of a map (1024 x 1024 texels), with names and positions; the same bytes
-/// for the same avatar. Throws `Error`: no such layout, no texture coordinates, a region without skin
+/// The layout on this avatar, as the two files of a map, with names, positions and warnings; the same bytes for the
+/// same avatar. 1024 x 1024 texels in its UV space; or per triangle, where there is none or more than 5 % of the
+/// layout's skin would fire another actuator. Throws `Error`: no such layout, a region without skin
 /// (`layout_empty_regions`), no skin for any.
 ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout);
 
-/// The same with its warnings, and what was left out.
+/// The same, with all that is known of how it was made.
 MadeMap make_layout_map(const Avatar& avatar, std::string_view layout);
 
 /// What becomes of its regions that an avatar has no skin for.

@@ -19,6 +19,7 @@ namespace {
 /// Of an actuator's skin: what is smaller is a speck of a border's steps, or of charts that meet within a texel.
 constexpr double kSpeck = 0.01;
 constexpr double kSpeckTexels = 4;
+constexpr double kSpeckOfTriangles = 0.05;  ///< borders step by triangles there
 constexpr std::size_t kMostListed = 8;
 
 struct Piece {
@@ -40,10 +41,13 @@ class Checker {
 
   MapCheck check() {
     measure();
-    find_unreached();
-    find_shared();
+    find_absent();
+    if (map_.triangle_count == 0) {
+      find_unreached();
+      find_shared();
+      find_soft_edges();
+    }
     find_split();
-    find_soft_edges();
     find_misplaced();
     std::ranges::stable_sort(result_.findings, std::ranges::greater(), &MapFinding::severity);
     return std::move(result_);
@@ -70,6 +74,17 @@ class Checker {
     }
   }
 
+  void find_absent() {
+    if (map_.actuator_count == 0)
+      add(Severity::kProblem, "never_fires", 0, "the map is black all over, so that nothing will ever fire",
+          "paint regions in grey levels, or let 'vestige map make' draw them");
+    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator)
+      if (of(actuator).texels == 0 || (map_.triangle_count != 0 && !(of(actuator).area_m2 > 0)))
+        add(Severity::kProblem, "never_fires", actuator,
+            fmt::format("actuator {} can never fire: the image has none of its grey", quoted(actuator)),
+            "paint its region, or take it out of the sidecar");
+  }
+
   void find_unreached() {
     std::vector<bool> reached(map_.actuator_count + 1, false);
     const glm::dvec2 size(map_.width, map_.height);
@@ -93,15 +108,8 @@ class Checker {
                       "over, so that each fires many regions",
                       unfit),
           "give them a place of their own in the texture, and export the avatar again");
-    if (map_.actuator_count == 0)
-      add(Severity::kProblem, "never_fires", 0, "the map is black all over, so that nothing will ever fire",
-          "paint regions in grey levels, or let 'vestige map make' draw them");
     for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
-      if (of(actuator).texels == 0)
-        add(Severity::kProblem, "never_fires", actuator,
-            fmt::format("actuator {} can never fire: the image has none of its grey", quoted(actuator)),
-            "paint its region, or take it out of the sidecar");
-      else if (!reached[actuator] && unfit == 0)
+      if (of(actuator).texels > 0 && !reached[actuator] && unfit == 0)
         add(Severity::kProblem, "never_fires", actuator,
             fmt::format("actuator {} can never fire: no skin reaches its {} texels", quoted(actuator),
                         of(actuator).texels),
@@ -165,16 +173,16 @@ class Checker {
             fmt::format("actuator {} fires left and right alike: {} of its {} texels lie on both halves of the body "
                         "({:.0f} cm² of skin)",
                         quoted(actuator), shared.mirrored, checked.texels, checked.mirrored_m2 * 1e4),
-            "the avatar's halves share one texture: give each its own place in it; or, where that is meant, say so "
-            "with a position_m in the body's middle");
+            "the avatar's halves share one texture: make the map --per-triangle, or give each half its own place in "
+            "the texture; or, where that is meant, say so with a position_m in the body's middle");
       } else {
         add(is_speck || shared.other_pieces == 0 ? Severity::kNote : Severity::kProblem, "shared_texels", actuator,
             fmt::format("actuator {}: {} of its {} texels lie on two places of the skin, up to {:.2f} m apart "
                         "({:.0f} cm² of skin)",
                         quoted(actuator), shared.texels, checked.texels, double{shared.farthest_m},
                         checked.shared_m2 * 1e4),
-            "no map can tell these places apart: give each its own place in the texture; 'vestige avatar FILE --uv "
-            "uv.png' draws where they lie upon each other");
+            "make the map --per-triangle, or give each its own place in the texture; 'vestige avatar FILE --uv uv.png' "
+            "draws where they lie upon each other");
       }
     }
   }
@@ -183,10 +191,11 @@ class Checker {
     for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
       CheckedActuator& checked = of(actuator);
       std::vector<Piece> pieces;
+      const double speck = map_.triangle_count == 0 ? kSpeck : kSpeckOfTriangles;
       for (auto found = pieces_.lower_bound({actuator, 0}); found != pieces_.end() && found->first.first == actuator;
            ++found)
         // A patch is half a texel.
-        if (found->second.area_m2 >= kSpeck * checked.area_m2 &&
+        if (found->second.area_m2 >= speck * checked.area_m2 &&
             static_cast<double>(found->second.patches) >= 2 * kSpeckTexels)
           pieces.push_back(found->second);
       checked.pieces = pieces.size();
@@ -267,7 +276,7 @@ bool MapCheck::good() const {
 }
 
 MapCheck check_map(const Body& body, const ActuatorMap& map, std::string_view avatar_name) {
-  require_texture_coordinates(body.avatar(), avatar_name);
+  if (map.triangle_count == 0) require_texture_coordinates(body.avatar(), avatar_name);
   return Checker(body, map).check();
 }
 

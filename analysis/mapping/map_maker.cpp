@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "analysis/mapping/skin_patches.hpp"
@@ -16,8 +17,6 @@ namespace vestige {
 
 namespace {
 
-/// Of the body's longest side: how finely skin is measured.
-constexpr double kSampleStep = 0.004;
 constexpr std::size_t kMostInEightBits = 240;
 
 /// Skin by actuator: [0] is that of none.
@@ -30,9 +29,8 @@ struct SkinOfActuator {
 
 template <typename Visit>
 void for_each_patch(const BodySurface& surface, const Visit& visit) {
-  const double step_m = kSampleStep * surface.bounds().longest_side();
   for (std::uint32_t i = 0; i < surface.avatar().triangles.size(); ++i) {
-    const SkinPatches patches = patches_of_length(surface, i, step_m);
+    const SkinPatches patches = patches_of_body(surface, i);
     const double area_m2 = surface.area_m2(i) / static_cast<double>(patches.count());
     patches.for_each([&](const SkinPoint& point) { visit(point, area_m2); });
   }
@@ -41,18 +39,65 @@ void for_each_patch(const BodySurface& surface, const Visit& visit) {
 /// Of the body's longest side: a region whose middle is so near to the body's has its actuator there.
 constexpr double kCentral = 0.01;
 
-std::vector<SkinOfActuator> measure(const Body& body, const RegionPlan& plan) {
+/// For each triangle, the actuator that has most of it, among equals the first; but each actuator with any skin gets a
+/// triangle: the one that it has most of.
+std::vector<std::uint16_t> actuator_of_triangle(const BodySurface& surface, const ActuatorAt& actuator_at,
+                                                std::size_t actuator_count) {
+  struct Most {
+    double area_m2 = 0;
+    std::uint32_t triangle = 0;
+  };
+  std::vector<Most> most_of(actuator_count + 1);
+  std::vector<bool> has_one(actuator_count + 1, false);
+  std::vector<std::uint16_t> actuators;
+  const auto triangles = static_cast<std::uint32_t>(surface.avatar().triangles.size());
+  actuators.reserve(triangles);
+  for (std::uint32_t i = 0; i < triangles; ++i) {
+    const SkinPatches patches = patches_of_body(surface, i);
+    std::map<std::uint16_t, std::size_t> count_of;
+    patches.for_each([&](const SkinPoint& point) { ++count_of[actuator_at(point)]; });
+    for (const auto& [actuator, count] : count_of) {
+      const double area_m2 = surface.area_m2(i) * static_cast<double>(count) / static_cast<double>(patches.count());
+      if (area_m2 > most_of[actuator].area_m2) most_of[actuator] = {area_m2, i};
+    }
+    actuators.push_back(std::ranges::max_element(count_of, {}, [](const auto& of) { return of.second; })->first);
+    has_one[actuators.back()] = true;
+  }
+  for (std::size_t actuator = 1; actuator <= actuator_count; ++actuator)
+    if (!has_one[actuator] && most_of[actuator].area_m2 > 0)
+      actuators[most_of[actuator].triangle] = static_cast<std::uint16_t>(actuator);
+  return actuators;
+}
+
+/// Of the skin that should fire or does: how much does not fire its own actuator.
+double misplaced_share(const BodySurface& surface, const MapRaster& raster, const ActuatorAt& actuator_at) {
+  ActuatorMap map;
+  map.width = map.height = raster.side;
+  map.actuator = raster.actuator;
+  double misplaced_m2 = 0;
+  double all_m2 = 0;
+  for_each_patch(surface, [&](const SkinPoint& point, double area_m2) {
+    const std::uint16_t meant = actuator_at(point);
+    const std::uint16_t found = map.at(surface.texture_coordinate(point));
+    if (meant == 0 && found == 0) return;
+    all_m2 += area_m2;
+    if (meant != found) misplaced_m2 += area_m2;
+  });
+  return all_m2 > 0 ? misplaced_m2 / all_m2 : 0;
+}
+
+std::vector<SkinOfActuator> measure(const Body& body, const ActuatorAt& actuator_at, std::size_t actuator_count) {
   const BodySurface& surface = body.surface();
   const double central_m = kCentral * surface.bounds().longest_side();
   const auto is_central = [&](double x_m) { return std::abs(x_m - body.middle_x_m()) < central_m; };
-  std::vector<SkinOfActuator> skin(plan.actuator_count() + 1);
+  std::vector<SkinOfActuator> skin(actuator_count + 1);
   struct Patch {
     std::uint16_t actuator;
     glm::dvec3 position_m;
   };
   std::vector<Patch> patches;
   for_each_patch(surface, [&](const SkinPoint& point, double area_m2) {
-    const Patch& patch = patches.emplace_back(Patch{plan.at(point), surface.position_m(point)});
+    const Patch& patch = patches.emplace_back(Patch{actuator_at(point), surface.position_m(point)});
     skin[patch.actuator].area_m2 += area_m2;
     skin[patch.actuator].sum += area_m2 * patch.position_m;
   });
@@ -77,8 +122,12 @@ double rounded(double metres) {
   return std::round(metres * 1e4) / 1e4 + 0.0;
 }
 
-std::string sidecar_of(const std::vector<MadeActuator>& actuators) {
-  std::string text = "{\n  \"actuators\": [\n";
+/// `avatar`: whose triangles the texels are; null where they are its texture.
+std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar* avatar) {
+  std::string text = "{\n";
+  if (avatar != nullptr)
+    text += fmt::format("  \"triangles\": {},\n  \"skin\": \"{}\",\n", avatar->triangles.size(), skin_digest(*avatar));
+  text += "  \"actuators\": [\n";
   for (std::size_t i = 0; i < actuators.size(); ++i) {
     const glm::dvec3& p = actuators[i].position_m;
     const nlohmann::ordered_json entry = {
@@ -111,7 +160,8 @@ void warn_of(const MapRaster& raster, std::string_view avatar_name, MadeMap& map
   if (texels > 0)
     map.warnings.push_back(fmt::format(
         "{}: its texture coordinates give {} texels to two places of the skin that should fire differently, {} of them "
-        "to {} and {}; both will fire the first. No map can tell them apart: give each its own place in the texture.",
+        "to {} and {}; both will fire the first. Make the map --per-triangle, or give each its own place in the "
+        "texture.",
         avatar_name, texels, worst->second, name_of(map.actuators, worst->first.first),
         name_of(map.actuators, worst->first.second)));
   if (raster.triangles_left_out > 0)
@@ -125,8 +175,14 @@ void warn_of(const MapRaster& raster, std::string_view avatar_name, MadeMap& map
 
 MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& settings, std::string_view name,
                  std::string_view avatar_name) {
-  require_texture_coordinates(body.avatar(), avatar_name);
-  const std::vector<SkinOfActuator> skin = measure(body, plan);
+  if (!settings.per_triangle) require_texture_coordinates(body.avatar(), avatar_name);
+  ActuatorAt actuator_at = [&](const SkinPoint& point) { return plan.at(point); };
+  std::vector<std::uint16_t> of_triangle;
+  if (settings.per_triangle) {
+    of_triangle = actuator_of_triangle(body.surface(), actuator_at, plan.actuator_count());
+    actuator_at = [&](const SkinPoint& point) { return of_triangle[point.triangle]; };
+  }
+  const std::vector<SkinOfActuator> skin = measure(body, actuator_at, plan.actuator_count());
   MadeMap map;
   std::vector<std::uint16_t> number(plan.actuator_count() + 1, 0);
   for (std::size_t i = 0; i < plan.actuator_count(); ++i) {
@@ -148,9 +204,19 @@ MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& se
   const std::size_t count = map.actuators.size();
   const std::size_t step = count <= kMostInEightBits ? kMostInEightBits / count : 65535 / count;
   for (std::size_t i = 0; i < count; ++i) map.actuators[i].grey = static_cast<std::uint16_t>(step * (i + 1));
-  map.raster = rasterise(
-      body.surface(), [&](const SkinPoint& point) { return number[plan.at(point)]; }, settings.side, settings.padding);
-  map.files = {png_of(map.raster, map.actuators), sidecar_of(map.actuators)};
+  if (settings.per_triangle) {
+    map.raster.side = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(of_triangle.size()))));
+    std::ranges::transform(of_triangle, of_triangle.begin(), [&](std::uint16_t actuator) { return number[actuator]; });
+    map.raster.actuator = of_triangle;
+    map.raster.actuator.resize(std::size_t{map.raster.side} * map.raster.side, 0);
+    map.triangle_count = of_triangle.size();
+  } else {
+    const ActuatorAt numbered = [&](const SkinPoint& point) { return number[plan.at(point)]; };
+    map.raster = rasterise(body.surface(), numbered, settings.side, settings.padding);
+    map.misplaced_share = misplaced_share(body.surface(), map.raster, numbered);
+  }
+  map.files = {png_of(map.raster, map.actuators),
+               sidecar_of(map.actuators, map.triangle_count == 0 ? nullptr : &body.avatar())};
   warn_of(map.raster, avatar_name, map);
   return map;
 }

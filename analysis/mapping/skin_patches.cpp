@@ -21,6 +21,11 @@ SkinPatches patches_of_length(const BodySurface& surface, std::uint32_t triangle
   return {triangle, pieces(surface.longest_edge_m(triangle) / step_m, 64)};
 }
 
+SkinPatches patches_of_body(const BodySurface& surface, std::uint32_t triangle, double step) {
+  constexpr double kShare = 0.004;
+  return patches_of_length(surface, triangle, step * kShare * surface.bounds().longest_side());
+}
+
 SkinPatches patches_of_texels(const BodySurface& surface, std::uint32_t triangle, const glm::dvec2& map_size,
                               double step) {
   const auto [a, b, c] = surface.texels(triangle, map_size);

@@ -38,6 +38,9 @@ struct SkinPatches {
 /// So fine that no patch is longer than `step_m`, to 64 x 64.
 SkinPatches patches_of_length(const BodySurface& surface, std::uint32_t triangle, double step_m);
 
+/// So fine that no patch is longer than 0.4 % of the body's longest side, times `step`: 7 mm of a grown person.
+SkinPatches patches_of_body(const BodySurface& surface, std::uint32_t triangle, double step = 1);
+
 /// So fine that no patch is longer than `step` texels of a map of this size, to 512 x 512.
 SkinPatches patches_of_texels(const BodySurface& surface, std::uint32_t triangle, const glm::dvec2& map_size,
                               double step);

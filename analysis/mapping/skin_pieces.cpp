@@ -42,11 +42,15 @@ class Pieces {
   void cut() {
     const auto triangles = static_cast<std::uint32_t>(surface_.avatar().triangles.size());
     double step = 1;
+    const auto patches_of = [&](std::uint32_t triangle) {
+      return map_.triangle_count == 0 ? patches_of_texels(surface_, triangle, size_, step)
+                                      : patches_of_body(surface_, triangle, step);
+    };
     for (int round = 0; round < 20; ++round, step *= std::numbers::sqrt2) {
       cuts_.clear();
       double total = 0;
       for (std::uint32_t i = 0; i < triangles; ++i) {
-        cuts_.push_back(patches_of_texels(surface_, i, size_, step));
+        cuts_.push_back(patches_of(i));
         total += static_cast<double>(cuts_.back().count());
       }
       if (total <= kMostPatches) break;
@@ -63,8 +67,10 @@ class Pieces {
     patch.position_m = surface_.position_m(point);
     patch.area_m2 = area_m2;
     const glm::dvec2 coordinate = surface_.texture_coordinate(point);
-    patch.actuator = map_.at(coordinate);
-    if (std::isfinite(coordinate.x) && std::isfinite(coordinate.y)) {
+    patch.actuator = map_.at(point.triangle, coordinate);
+    if (map_.triangle_count != 0) {
+      patch.texel = point.triangle;
+    } else if (std::isfinite(coordinate.x) && std::isfinite(coordinate.y)) {
       const auto texel = [](double value, std::uint32_t side) {
         return std::min(static_cast<std::uint32_t>((value - std::floor(value)) * side), side - 1);
       };

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "analysis/mapping/layouts.hpp"
 #include "analysis/plot/accuracy_figure.hpp"
 #include "analysis/plot/avatar_figure.hpp"
 #include "analysis/plot/body_figure.hpp"
@@ -58,7 +59,8 @@ ContactLimits limits_of(const Options& options, const Subject& subject) {
 
 /// The map that --map names, which is of no certain avatar: a layout is made for the built-in one.
 ActuatorMap map_of(const Options& options) {
-  ActuatorMap map = read_map(options.map, read_subject("builtin", "none").avatar);
+  const ActuatorMapFiles files = read_map_files(read_subject("builtin", "none").avatar, options.map);
+  ActuatorMap map = files.png.empty() ? ActuatorMap() : parse_actuator_map(files.png, files.json, options.map);
   warn(options, map.warnings);
   return map;
 }

@@ -234,8 +234,8 @@ int run(int argc, char** argv) {
     if (!std::cout) throw vestige::system_error("standard output", "could not write", errno);
     return shown;
   } catch (const CLI::ParseError& error) {
-    vestige::print_message(fmt::format("vestige: error: {}\n  'vestige plot --help' lists what can be drawn.\n",
-                                       help::cause_of(app, error)));
+    vestige::print_message(
+        fmt::format("vestige: error: {}\n  {}\n", help::cause_of(app, error), help::help_remedy(app)));
     return plot::kWrongUsage;
   }
   if (options.output == "-")

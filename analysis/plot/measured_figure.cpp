@@ -98,7 +98,8 @@ class MeasuredFigure : public Figure {
  private:
   void draw_lane(Canvas& canvas, const Box& lane, const Axis& x, std::size_t actuator) const {
     const auto height_pt = [&](std::uint8_t duty) { return lane.bottom_pt + duty / kFullDuty * lane.height_pt(); };
-    for (const Step& step : steps_of(commanded_, actuator, begin_s_, end_s_))
+    // At the trace's end everything is switched off.
+    for (const Step& step : steps_of(commanded_, actuator, begin_s_, commanded_.time_s.back()))
       if (step.duty != 0)
         canvas.rectangle({x.place_pt(step.from_s), lane.bottom_pt, x.place_pt(step.to_s), height_pt(step.duty)},
                          faded(kCommanded, 0.6));

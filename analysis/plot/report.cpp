@@ -52,8 +52,7 @@ ContactRecording read_trace_contacts(const std::filesystem::path& file) {
   } catch (const Error& error) {
     if (!std::filesystem::exists(file))
       throw Error(file.string(), "is missing", "run the same 'vestige batch' (or 'batch merge') again: it writes it");
-    const std::string_view text = error.what();  // "WHERE: CAUSE\n  REMEDY"
-    throw Error("contacts", text.substr(0, text.find("\n  ")), kContactsRemedy);
+    throw Error("contacts", error.fault(), kContactsRemedy);
   }
 }
 
@@ -102,7 +101,7 @@ Timeline timeline_of(const ContactRecording& recording, const ActuatorMap& map, 
     row.assign(columns, Contact());
     for (std::size_t i = recording.first[frame]; i < recording.first[frame + 1]; ++i) {
       Contact contact = recording.contacts[i];
-      contact.actuator = map.at(contact.texture_coordinate);
+      contact.actuator = map.at(contact.triangle, contact.texture_coordinate);
       row[recording.column[i]] = contact;
     }
     const std::vector<double>& amplitude = law.next(recording.time_s[frame], row);

@@ -11,14 +11,14 @@ namespace vestige::plot {
 
 ActuatorMap read_map(const std::string& map, const Avatar& avatar) {
   const ActuatorMapFiles files = read_map_files(avatar, map);
-  return files.png.empty() ? ActuatorMap() : parse_actuator_map(files.png, files.json, map);
+  return files.png.empty() ? ActuatorMap() : parse_actuator_map(files, avatar, map);
 }
 
 std::uint16_t actuator_at(const Avatar& avatar, const ActuatorMap& map, std::uint32_t triangle, double u, double v) {
   const glm::uvec3& corner = avatar.triangles[triangle];
   const auto& coordinates = avatar.texture_coordinate;
-  return map.at((1 - u - v) * glm::dvec2(coordinates[corner.x]) + u * glm::dvec2(coordinates[corner.y]) +
-                v * glm::dvec2(coordinates[corner.z]));
+  return map.at(triangle, (1 - u - v) * glm::dvec2(coordinates[corner.x]) + u * glm::dvec2(coordinates[corner.y]) +
+                              v * glm::dvec2(coordinates[corner.z]));
 }
 
 Subject read_subject(const std::string& avatar, const std::string& map) {
@@ -37,8 +37,7 @@ Subject read_subject(const TraceReader& trace, const std::filesystem::path& path
   if (!map.empty())
     subject.map = read_map(map, subject.avatar);
   else if (!trace.actuator_map_png().empty())
-    subject.map = parse_actuator_map(trace.actuator_map_png(), text_of(trace.actuator_map_json()),
-                                     path.string() + ", actuator_map.png");
+    subject.map = parse_actuator_map(actuator_map_files(trace), subject.avatar, path.string() + ", actuator_map.png");
   return subject;
 }
 

@@ -145,5 +145,37 @@ TEST(ActuatorMap, OfTheBuiltInAvatarHasSixNamedRegions) {
   EXPECT_TRUE(map.warnings.empty());
 }
 
+TEST(ActuatorMap, MayGiveEachTriangleItsOwn) {
+  const std::vector<std::uint8_t> greys = {0, 40, 80, 40, 80, 0};
+  const auto png = make_png(greys, 3, PNG_COLOR_TYPE_GRAY);
+  constexpr const char* kSidecar = R"({"triangles": 5, "actuators": [{"grey": 40}, {"grey": 80}]})";
+  const ActuatorMap map = parse_actuator_map(png, kSidecar, "map.png");
+  for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(map.at(i, {0.9, 0.9}), greys[i] / 40) << i;
+  EXPECT_EQ(map.at(5, {0.9, 0.9}), 0) << "no triangle of its";
+
+  EXPECT_THAT(message_of([&] {
+                parse_actuator_map(png, R"({"triangles": 4, "actuators": [{"grey": 40}, {"grey": 80}]})", "map.png");
+              }),
+              HasSubstr("not black"));
+  Avatar avatar;
+  avatar.triangles.resize(5);
+  EXPECT_EQ(parse_actuator_map({png, kSidecar}, avatar, "map.png").triangle_count, 5U);
+  avatar.triangles.resize(4);
+  EXPECT_THAT(message_of([&] {
+                parse_actuator_map({png, kSidecar}, avatar, "map.png");
+              }),
+              HasSubstr("gives an actuator to each of 5 triangles, and the avatar has 4"));
+  EXPECT_THAT(message_of([&] {
+                parse_actuator_map(png, R"({"triangles": 7, "actuators": [{"grey": 40}, {"grey": 80}]})", "map.png");
+              }),
+              HasSubstr("6 texels for 7 triangles"));
+  for (const char* number : {"0", "-1", "1.5", "\"5\""})
+    EXPECT_THAT(message_of([&] {
+                  parse_actuator_map(png, fmt::format(R"({{"triangles": {}, "actuators": []}})", number), "map.png");
+                }),
+                HasSubstr("'triangles'"))
+        << number;
+}
+
 }  // namespace
 }  // namespace vestige

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/support/builtin_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/builtin_avatar.hpp"
 
@@ -44,6 +45,7 @@ class ActuatorMapWatchTest : public ::testing::Test {
     return warnings;
   }
 
+  const Avatar& avatar = test::builtin_avatar();
   const test::TemporaryFolder folder;
   const std::string file = (folder / "map.png").string();
   std::mutex mutex;
@@ -56,14 +58,14 @@ class ActuatorMapWatchTest : public ::testing::Test {
 
 TEST_F(ActuatorMapWatchTest, AMapThatStaysAsItIsIsNotReadAgain) {
   write_png("map.png");
-  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, warn);
+  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, avatar, ActuatorMapWatch::Layouts::kNone, warn);
   std::this_thread::sleep_for(std::chrono::milliseconds(400));
   EXPECT_FALSE(watch.take());
 }
 
 TEST_F(ActuatorMapWatchTest, AnotherFileInItsPlaceAndAnotherSidecarAreRead) {
   write_png("map.png");
-  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, warn);
+  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, avatar, ActuatorMapWatch::Layouts::kNone, warn);
   write_png("new.png");
   std::filesystem::rename(folder / "new.png", file);
   ASSERT_TRUE(wait_for_map(watch));
@@ -77,7 +79,7 @@ TEST_F(ActuatorMapWatchTest, AnotherFileInItsPlaceAndAnotherSidecarAreRead) {
 
 TEST_F(ActuatorMapWatchTest, WhatCannotBeReadAndAnotherNumberOfActuatorsIsSaidOnceAndTheOldMapStays) {
   write_png("map.png");
-  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, warn);
+  ActuatorMapWatch watch(file, ActuatorMapWatch::stamp(file), 6, avatar, ActuatorMapWatch::Layouts::kNone, warn);
   write_text("map.png", "not a picture");
   wait_for_warnings(1);
   std::filesystem::remove(file);
@@ -87,7 +89,7 @@ TEST_F(ActuatorMapWatchTest, WhatCannotBeReadAndAnotherNumberOfActuatorsIsSaidOn
   EXPECT_THAT(warnings_so_far(), ElementsAre(HasSubstr("is not a PNG file"), HasSubstr("map.png")));
   EXPECT_FALSE(watch.take());
 
-  ActuatorMapWatch other(file, ActuatorMapWatch::stamp(file), 5, warn);
+  ActuatorMapWatch other(file, ActuatorMapWatch::stamp(file), 5, avatar, ActuatorMapWatch::Layouts::kNone, warn);
   write_png("new.png");
   std::filesystem::rename(folder / "new.png", file);
   wait_for_warnings(3);

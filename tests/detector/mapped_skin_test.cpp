@@ -126,7 +126,7 @@ class MappedSkin : public ::testing::TestWithParam<Kind> {};
 TEST_P(MappedSkin, GivesTheBitsOfTheWholeSkin) {
   for (const char* scenario : {"swarm", "hug"}) {
     const auto scene = test::scene(scenario, builtin_avatar(), 50, 8, 20);
-    const auto whole = GetParam().make(builtin_avatar());
+    const auto whole = GetParam().make(builtin_avatar(), builtin_map());
     const auto mapped = on_mapped_skin(builtin_avatar(), builtin_map(), GetParam().make);
     EXPECT_EQ(mapped->triangles_left_out() + mapped_triangles(builtin_avatar(), builtin_map()).size(),
               builtin_avatar().triangles.size());
@@ -137,30 +137,58 @@ TEST_P(MappedSkin, GivesTheBitsOfTheWholeSkin) {
   }
 }
 
+/// Whatever its texture coordinates say: here they are all alike.
+TEST_P(MappedSkin, FiresByTriangleWhereTheMapIsOfTriangles) {
+  Avatar avatar = builtin_avatar();
+  ActuatorMap map = builtin_map();
+  map.triangle_count = avatar.triangles.size();
+  map.width = 72;
+  map.height = 70;
+  map.actuator.assign(std::size_t{map.width} * map.height, 0);
+  for (std::size_t i = 0; i < avatar.triangles.size(); ++i) {
+    glm::dvec2 middle(0);
+    for (int k = 0; k < 3; ++k) middle += glm::dvec2(avatar.texture_coordinate[avatar.triangles[i][k]]) / 3.0;
+    map.actuator[i] = builtin_map().at(middle);
+  }
+  avatar.texture_coordinate.assign(avatar.texture_coordinate.size(), glm::vec2(0));
+  const auto scene = test::scene("hug", avatar, 50, 8, 20);
+  const auto mapped = on_mapped_skin(avatar, map, GetParam().make);
+  EXPECT_GT(mapped->triangles_left_out(), 1000U);
+  const test::SceneRun run = test::run_scene(scene, avatar, 50, *mapped);
+  std::set<std::uint16_t> fired;
+  for (const ContactRow& row : run.rows)
+    for (const Contact& contact : row) {
+      if (!contact.hit()) continue;
+      EXPECT_EQ(contact.actuator, map.actuator[contact.triangle]) << contact.triangle;
+      fired.insert(contact.actuator);
+    }
+  EXPECT_GT(fired.size(), 3U);
+  EXPECT_EQ(hash_of(run), hash_of(test::run_scene(scene, avatar, 50, *GetParam().make(avatar, map))));
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Each, MappedSkin,
     ::testing::Values(
         Kind{"cpu",
-             [](const Avatar& avatar) {
-               return make_cpu_detector(avatar, builtin_map(), {Surface::kMapped, kHashedPlanes});
+             [](const Avatar& avatar, const ActuatorMap& map) {
+               return make_cpu_detector(avatar, map, {Surface::kMapped, kHashedPlanes});
              }},
         Kind{"cpu_skipping",
-             [](const Avatar& avatar) {
-               return make_cpu_detector(avatar, builtin_map(),
-                                        {Surface::kMapped, kHashedPlanes, Method::kStatic, Skip::kOn});
+             [](const Avatar& avatar, const ActuatorMap& map) {
+               return make_cpu_detector(avatar, map, {Surface::kMapped, kHashedPlanes, Method::kStatic, Skip::kOn});
              }},
         Kind{"cpu_ccd",
-             [](const Avatar& avatar) {
-               return make_cpu_detector(avatar, builtin_map(), {Surface::kMapped, kHashedPlanes, Method::kCcd});
+             [](const Avatar& avatar, const ActuatorMap& map) {
+               return make_cpu_detector(avatar, map, {Surface::kMapped, kHashedPlanes, Method::kCcd});
              }},
         Kind{"paper",
-             [](const Avatar& avatar) {
-               return make_paper_detector(make_gl_context(ContextKind::kAuto, -1), avatar, builtin_map(),
+             [](const Avatar& avatar, const ActuatorMap& map) {
+               return make_paper_detector(make_gl_context(ContextKind::kAuto, -1), avatar, map,
                                           {Surface::kMapped, kHashedPlanes});
              }},
         Kind{"geometry",
-             [](const Avatar& avatar) {
-               return make_geometry_detector(make_gl_context(ContextKind::kAuto, -1), avatar, builtin_map(),
+             [](const Avatar& avatar, const ActuatorMap& map) {
+               return make_geometry_detector(make_gl_context(ContextKind::kAuto, -1), avatar, map,
                                              {Surface::kMapped, kHashedPlanes});
              }}),
     [](const auto& test) { return std::string(test.param.name); });
@@ -168,8 +196,8 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(MappedSkin, GivesTheBitsOfTheSlowTruthOnTheWholeSkin) {
   const auto scene = test::scene("swarm", builtin_avatar(), 50, 6, 20);
   const DetectorOptions options = {Surface::kMapped, kHashedPlanes};
-  const auto cpu = on_mapped_skin(builtin_avatar(), builtin_map(), [&](const Avatar& avatar) {
-    return make_cpu_detector(avatar, builtin_map(), options);
+  const auto cpu = on_mapped_skin(builtin_avatar(), builtin_map(), [&](const Avatar& avatar, const ActuatorMap& map) {
+    return make_cpu_detector(avatar, map, options);
   });
   const auto exact = make_exact_detector(builtin_avatar(), builtin_map(), options);
   EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 50, *cpu)),
@@ -180,8 +208,8 @@ TEST(MappedSkin, FiresNothingUnderABlackMap) {
   ActuatorMap black = builtin_map();
   black.actuator.assign(black.actuator.size(), 0);
   const auto scene = test::scene("swarm", builtin_avatar(), 20, 4, 20);
-  const auto cpu = on_mapped_skin(builtin_avatar(), black, [&](const Avatar& avatar) {
-    return make_cpu_detector(avatar, black, {Surface::kMapped, kHashedPlanes});
+  const auto cpu = on_mapped_skin(builtin_avatar(), black, [&](const Avatar& avatar, const ActuatorMap& map) {
+    return make_cpu_detector(avatar, map, {Surface::kMapped, kHashedPlanes});
   });
   EXPECT_EQ(test::run_scene(scene, builtin_avatar(), 20, *cpu).contacts(), 0U);
 }
