@@ -18,12 +18,11 @@
 #include "cli/scene_choice.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
+#include "traces/trace.hpp"
 
 namespace vestige::cli {
 
 namespace {
-
-constexpr double kMostFrames = 4294967295.0;
 
 struct AccuracyOptions {
   CommonOptions common;
@@ -182,7 +181,7 @@ nlohmann::ordered_json results_json(const AccuracyOptions& options, const SceneC
 void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   parse_names(options.detectors, detector_names(), "--detector");
   parse_names(options.methods, kMethodNames, "--method");
-  if (options.truth_rate_hz * options.duration_s > kMostFrames)
+  if (options.truth_rate_hz * options.duration_s > kMostTraceFrames)
     throw UsageError("--duration", "the truth would have more than 4294967295 frames", "lower it, or --truth-rate");
   const std::vector<double> rates_hz = parse_rates(options);
   const std::vector<SceneChoice> choices = scene_choices(options);

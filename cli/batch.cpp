@@ -158,12 +158,13 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   write_inputs(plan, folder);
 
   BatchOutcome outcome;
+  const ActuatorMap no_map;  // contacts are recorded for all maps at once
   {
     BatchWatch watch(verbosity);
     outcome = run_batch(
         plan, shard, folder, jobs,
         [&] {
-          return make_detector(plan.detector, batch.choice.context, batch.choice, plan.avatar, {}, kRecordedPlanes);
+          return make_detector(plan.detector, batch.choice.context, batch.choice, plan.avatar, no_map, kRecordedPlanes);
         },
         [&](const BatchProgress& now) { return watch.update(now); });
   }

@@ -22,7 +22,6 @@ namespace {
 
 const std::vector<std::string> kLaws(std::begin(kLawNames), std::end(kLawNames));
 constexpr const char* kScenarioGroup = "Scenarios among the traces";
-constexpr double kMostScenarioFrames = 4294967295.0;  // a trace numbers its frames in 32 bits
 
 std::string describe_maps() {
   std::string text = "The actuator maps: the built-in one, a layout laid onto the avatar, or a PNG file";
@@ -126,8 +125,9 @@ BatchPlan plan_of(const BatchOptions& options) {
   plan.recording.rate_hz = options.rate_hz.value_or(plan.recording.rate_hz);
   plan.recording.duration_s = options.duration_s.value_or(plan.recording.duration_s);
   plan.recording.count = options.count;
-  if (plan.has_scenario() && plan.recording.rate_hz * plan.recording.duration_s > kMostScenarioFrames)
-    throw UsageError("--duration", "a trace holds 4294967295 frames at most", "record less, or at a lower --rate");
+  if (plan.has_scenario())
+    refuse_too_many_frames(plan.recording.rate_hz * plan.recording.duration_s, "--duration",
+                           "record less, or at a lower --rate");
   return plan;
 }
 

@@ -117,9 +117,11 @@ std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, const std:
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes) {
-  const auto make = [&](const Avatar& skin) { return make_on_whole_skin(name, context, choice, skin, map, planes); };
+  const auto make = [&](const Avatar& skin, const ActuatorMap& skin_map) {
+    return make_on_whole_skin(name, context, choice, skin, skin_map, planes);
+  };
   // The slow truth takes no short cut.
-  if (choice.surface_kind() == Surface::kAll || name == "exact") return make(avatar);
+  if (choice.surface_kind() == Surface::kAll || name == "exact") return make(avatar, map);
   return on_mapped_skin(avatar, map, make);
 }
 

@@ -24,8 +24,6 @@ namespace vestige::cli {
 
 namespace {
 
-constexpr double kMostImportedFrames = 4294967295.0;  // a trace numbers its frames in 32 bits
-
 struct ImportOptions {
   CommonOptions common;
   std::string from;
@@ -141,8 +139,7 @@ void read_colliders(const ImportOptions& options, Frames& frames) {
 void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional<double> rate_hz, Frames& frames) {
   const double duration_s = static_cast<double>(motion.frame_count - 1) * motion.frame_time_s;
   const double step_s = rate_hz ? 1 / *rate_hz : motion.frame_time_s;
-  if (rate_hz && !(duration_s * *rate_hz + 1 <= kMostImportedFrames))
-    throw UsageError("--rate", "a trace holds 4294967295 frames at most", "import at a lower --rate");
+  if (rate_hz) refuse_too_many_frames(duration_s * *rate_hz + 1, "--rate", "import at a lower --rate");
   // The last frame is there even where division has left a little too much.
   const std::uint64_t count =
       rate_hz ? static_cast<std::uint64_t>(std::floor(duration_s * *rate_hz + 1e-6)) + 1 : motion.frame_count;
@@ -268,14 +265,11 @@ void add_import(CLI::App& program, Invocation& invocation) {
                    "The avatar that moves: the built-in one, or a glTF file (.glb, .gltf, .vrm) [default: builtin]")
       ->type_name("builtin|FILE");
   verb->add_option("--map", options->map,
-                   "The actuator map: a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
+                   "The actuator map: a greyscale PNG in UV space or by triangle, whose FILE.json names the actuators "
+                   "if it exists "
                    "[default: builtin for the built-in avatar, else none]")
       ->type_name("builtin|none|LAYOUT|FILE.png");
-  verb->add_option("--unit", options->unit,
-                   "How far the motion travels: auto scales it by the heights of both hips, so that feet do not slide; "
-                   "a unit keeps true distances")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "mm", "cm", "inch", "m"}));
+  add_unit_option(*verb, options->unit);
   verb->add_option("--rate", options->rate_hz, "Frames per second of a motion [default: its own]")
       ->type_name("HZ")
       ->check(help::kPositive);

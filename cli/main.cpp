@@ -97,10 +97,8 @@ int run(int argc, char** argv) {
     if (!std::cout) throw system_error("standard output", "could not write", errno);
     return shown;
   } catch (const CLI::ParseError& error) {
-    const auto verbs = program.get_subcommands();
-    print_message(fmt::format("vestige: error: {}\n  {}\n", help::cause_of(program, error),
-                              verbs.empty() ? "'vestige --help' lists the verbs"
-                                            : fmt::format("'vestige {} --help' explains it", verbs[0]->get_name())));
+    print_message(
+        fmt::format("vestige: error: {}\n  {}\n", help::cause_of(program, error), help::help_remedy(program)));
     return kWrongUsage;
   }
   if (std::fflush(stdout) != 0) throw system_error("standard output", "could not write", errno);

@@ -66,14 +66,16 @@ struct MakeOptions {
   std::string output;
   std::string regions_output;
   MapSettings settings;
+  bool is_given_texels = false;  ///< --size, --padding or --per-triangle
 };
 
 std::string made_text(const MakeOptions& options, const MadeMap& map, const std::string& sidecar) {
   double area_m2 = 0;
   for (const MadeActuator& actuator : map.actuators) area_m2 += actuator.area_m2;
-  std::string text = fmt::format("{}, {}: {} actuator{} on {:.0f} cm² of skin, {} x {} texels\n", options.output,
-                                 sidecar, map.actuators.size(), map.actuators.size() == 1 ? "" : "s",
-                                 area_m2 * kSquareCentimetres, map.raster.side, map.raster.side);
+  std::string text = fmt::format(
+      "{}, {}: {} actuator{} on {:.0f} cm² of skin, {}\n", options.output, sidecar, map.actuators.size(),
+      map.actuators.size() == 1 ? "" : "s", area_m2 * kSquareCentimetres,
+      map.triangle_count != 0 ? "a texel for each triangle" : fmt::format("{0} x {0} texels", map.raster.side));
   for (std::size_t i = 0; i < map.actuators.size(); ++i) {
     const MadeActuator& actuator = map.actuators[i];
     text += fmt::format("  {:>3}  grey {:>3}  {:>5.0f} cm² around ({:.3f}, {:.3f}, {:.3f})  {}\n", i + 1, actuator.grey,
@@ -87,6 +89,7 @@ nlohmann::ordered_json made_json(const MakeOptions& options, const MadeMap& map,
   nlohmann::ordered_json json;
   json["avatar"] = options.avatar;
   json["parts_by"] = body.understanding() == Understanding::kJoints ? "joints" : "proportions";
+  json["per_triangle"] = map.triangle_count != 0;
   json["side"] = map.raster.side;
   json["actuators"] = nlohmann::ordered_json::array();
   for (const MadeActuator& actuator : map.actuators)
@@ -115,7 +118,7 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
                 {options.avatar, options.regions}, options.common);
 
   const Avatar avatar = read_avatar(options.avatar, options.common);
-  require_texture_coordinates(avatar, options.avatar);
+  if (options.layout.empty() && !options.settings.per_triangle) require_texture_coordinates(avatar, options.avatar);
   const std::string name = options.layout.empty() ? options.regions : options.layout;
   const std::string regions =
       options.layout.empty() ? read_text_file(options.regions) : layout_regions_json(options.layout);
@@ -123,6 +126,8 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
   if (!options.layout.empty()) settings.empty = layout_empty_regions(options.layout);
   const Body body(avatar);
   const MadeMap map = with_suggestions([&] {
+    // As where a layout stands for a map, unless it is said how.
+    if (!options.layout.empty() && !options.is_given_texels) return make_layout_map(avatar, options.layout);
     const RegionPlan plan(body, parse_region_file(regions, name), name);
     return make_map(body, plan, settings, name, options.avatar);
   });
@@ -170,13 +175,19 @@ void add_make(CLI::App& map, Invocation& invocation) {
                    "--save-regions shows how the layouts are written")
       ->type_name("FILE.json")
       ->excludes(layout);
+  auto* per_triangle = verb->add_flag("--per-triangle", options->settings.per_triangle,
+                                      "One texel for each triangle of the avatar, in their order, instead of an image "
+                                      "in its UV space: for avatars whose left and right halves share one texture, or "
+                                      "that have no texture coordinates");
   verb->add_option("--size", options->settings.side, "Texels a side")
       ->capture_default_str()
-      ->check(help::whole_number(16, 16384));
+      ->check(help::whole_number(16, 16384))
+      ->excludes(per_triangle);
   verb->add_option("--padding", options->settings.padding,
                    "How many texels regions go on beyond the skin's edge in the texture, never onto other skin")
       ->capture_default_str()
-      ->check(help::whole_number(0, 64));
+      ->check(help::whole_number(0, 64))
+      ->excludes(per_triangle);
   verb->add_option("-o,--output", options->output, "The map to write, and OUT.json, which names its actuators")
       ->required()
       ->type_name("OUT.png");
@@ -184,7 +195,10 @@ void add_make(CLI::App& map, Invocation& invocation) {
                    "Write the layout's regions too, to begin a file of your own with")
       ->type_name("OUT.json");
   add_common_options(*verb, options->common);
-  verb->callback([options, &invocation] { run_make(*options, invocation); });
+  verb->callback([options, verb, &invocation] {
+    options->is_given_texels = verb->count("--size") + verb->count("--padding") + verb->count("--per-triangle") > 0;
+    run_make(*options, invocation);
+  });
 }
 
 // vestige map check
@@ -245,7 +259,8 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   const Avatar avatar = read_avatar(options.avatar, options.common);
   const ActuatorMapFiles files = read_map_files(avatar, options.map);
   if (files.png.empty()) throw UsageError(options.map, "there is nothing to check", "name a layout or a PNG");
-  const ActuatorMap map = parse_actuator_map(files.png, files.json, options.map);
+  const ActuatorMap map = parse_actuator_map(files, avatar, options.map);
+  for (const std::string& warning : map.warnings) warn(warning, options.common.verbosity());
   const MapCheck check = check_map(Body(avatar), map, options.avatar);
   print_summary(checked_text(options, check), {options.common.json}, options.common);
   nlohmann::ordered_json json = provenance(invocation.argv);

@@ -22,6 +22,14 @@ void say_what_matched(const RetargetReport& report, const std::string& path, Ver
 
 }  // namespace
 
+void add_unit_option(CLI::App& verb, std::string& unit) {
+  verb.add_option("--unit", unit,
+                  "How far the motion capture travels: auto scales it by the heights of both hips, so that feet do not "
+                  "slide; a unit keeps true distances")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "mm", "cm", "inch", "m"}));
+}
+
 std::optional<double> metres_of_unit(const std::string& unit) {
   static const std::map<std::string, double> metres = {{"mm", 0.001}, {"cm", 0.01}, {"inch", 0.0254}, {"m", 1.0}};
   const auto known = metres.find(unit);

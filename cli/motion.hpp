@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -14,6 +15,9 @@ namespace vestige::cli {
 inline bool is_motion_file(const std::string& animation) {
   return animation.ends_with(".bvh") || animation.ends_with(".BVH");
 }
+
+/// The flag --unit, of a motion.
+void add_unit_option(CLI::App& verb, std::string& unit);
 
 /// "cm", "m", …: how many metres it has; nothing for "auto".
 std::optional<double> metres_of_unit(const std::string& unit);

@@ -10,6 +10,7 @@
 
 #include "cli/help/help_text.hpp"
 #include "traces/error.hpp"
+#include "traces/trace.hpp"
 
 namespace vestige::cli {
 
@@ -76,6 +77,11 @@ void make_output_folder(const std::string& path) {
   make_folder(path);
 }
 
+void refuse_too_many_frames(double frames, const char* flag, const char* remedy) {
+  if (!(frames <= kMostTraceFrames))
+    throw UsageError(flag, fmt::format("a trace holds {:.0f} frames at most", kMostTraceFrames), remedy);
+}
+
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    const CommonOptions& options) {
   if (std::ranges::count_if(outputs, is_standard_output) > 1)
@@ -89,7 +95,7 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
         throw UsageError(path, "this result would replace a file that is read", "choose another name");
     }
     refuse_overwrite(path, options.overwrite());
-    if (!seen.insert(std::filesystem::absolute(path).lexically_normal()).second)
+    if (!seen.insert(std::filesystem::absolute(where_it_leads(path)).lexically_normal()).second)
       throw UsageError(path, "two results cannot share one file", "give each a name of its own");
   }
 }

@@ -49,6 +49,9 @@ void add_common_options(CLI::App& verb, CommonOptions& options);
 /// Makes the folder `path` and those above it, unless they exist; what is still empty when the program ends goes again.
 void make_output_folder(const std::string& path);
 
+/// Throws `UsageError` for more frames than a trace can hold.
+void refuse_too_many_frames(double frames, const char* flag, const char* remedy);
+
 /// Refuses, before any work is done, what could not be written at its end or would destroy what is read: existing files
 /// without --force, two results in one place, a result in the place of an input. Empty paths were not asked for.
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,

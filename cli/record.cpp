@@ -25,7 +25,6 @@ namespace vestige::cli {
 
 namespace {
 
-constexpr double kMostFrames = 4294967295.0;  // a trace numbers its frames in 32 bits
 constexpr double kManyFrames = 1e7;
 
 constexpr double kFarthest_m = 1e7;  // detector/CONTRACT.md, 2
@@ -49,8 +48,7 @@ struct RecordOptions {
 RecordingSettings settings_of(const RecordOptions& options) {
   RecordingSettings settings = options.recording;
   settings.origin_m = parse_vector(options.origin, "--origin");
-  if (settings.rate_hz * settings.duration_s > kMostFrames)
-    throw UsageError("--duration", "a trace holds 4294967295 frames at most", "record less, or at a lower --rate");
+  refuse_too_many_frames(settings.rate_hz * settings.duration_s, "--duration", "record less, or at a lower --rate");
   if (std::max({std::abs(settings.origin_m.x), std::abs(settings.origin_m.y), std::abs(settings.origin_m.z)}) >
       kFarthest_m)
     throw UsageError("--origin", fmt::format("'{}' is farther away than 1e7 m", options.origin),

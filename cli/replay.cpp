@@ -115,7 +115,7 @@ std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const 
   for (const TimedMap& timed : timed_maps) {
     const ActuatorMapFiles files = read_map_files(trace.avatar, timed.file);
     if (files.png.empty()) throw UsageError("--map-at", "'none' is no map", "name a PNG file, builtin or a layout");
-    MapChange change = {timed.time_s, parse_actuator_map(files.png, files.json, timed.file), nullptr};
+    MapChange change = {timed.time_s, parse_actuator_map(files, trace.avatar, timed.file), nullptr};
     if (change.map.actuator_count != trace.map.actuator_count)
       throw Error(timed.file,
                   fmt::format("names {} actuators, where the trace's map has {}", change.map.actuator_count,

@@ -30,11 +30,11 @@ Scene scene_of(std::vector<std::byte> avatar_glb, const std::string& name, Verbo
 }
 
 void give_map(Scene& scene, ActuatorMapFiles files, const SceneNames& names, Verbosity verbosity) {
-  if (!files.png.empty()) scene.map = parse_actuator_map(files.png, files.json, names.map);
+  if (!files.png.empty()) scene.map = parse_actuator_map(files, scene.avatar, names.map);
   scene.map_png = std::move(files.png);
   scene.map_json = std::move(files.json);
   warn_all(scene.map.warnings, verbosity);
-  if (!scene.map_png.empty() && !has_texture_coordinates(scene.avatar))
+  if (!scene.map_png.empty() && scene.map.triangle_count == 0 && !has_texture_coordinates(scene.avatar))
     warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", names.avatar),
          verbosity);
   if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
@@ -60,8 +60,7 @@ Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const 
 OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
     : reader(path), avatar(parse_avatar_glb(reader.avatar_glb(), path + ", avatar.glb")) {
   if (!reader.actuator_map_png().empty())
-    map =
-        parse_actuator_map(reader.actuator_map_png(), text_of(reader.actuator_map_json()), path + ", actuator_map.png");
+    map = parse_actuator_map(actuator_map_files(reader), avatar, path + ", actuator_map.png");
   if (verbosity == Verbosity::kVerbose) warn_all(avatar.warnings, verbosity);
 }
 

@@ -65,10 +65,12 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
                   "Its animation, looping: a name, an index, none, or motion capture that its joints follow as far as "
                   "their names tell ('vestige import' reports more) [default: the first]")
       ->type_name("NAME|INDEX|none|FILE.bvh");
-  verb.add_option("--map", choice.map,
-                  "The actuator map: a layout," + layout_list() +
-                      "\nor a greyscale PNG in UV space, whose FILE.json names the actuators if it exists "
-                      "[default: builtin for the built-in avatar, else none]")
+  add_unit_option(verb, choice.unit);
+  verb.add_option(
+          "--map", choice.map,
+          "The actuator map: a layout," + layout_list() +
+              "\nor a greyscale PNG in UV space or by triangle, whose FILE.json names the actuators if it exists "
+              "[default: builtin for the built-in avatar, else none]")
       ->type_name("builtin|none|LAYOUT|FILE.png");
   verb.add_option("--colliders", choice.colliders, describe_colliders())
       ->capture_default_str()
@@ -82,6 +84,8 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
 
 void check_scene_choice(const SceneChoice& choice) {
   if (!choice.from_file() && find_scenario(choice.colliders) == nullptr) throw no_scenario(choice.colliders);
+  if (choice.unit != "auto" && !is_motion_file(choice.animation))
+    throw UsageError("--unit", "no motion capture is played", "leave it out, or name a .bvh as --animation");
   if (!choice.nodes.empty() && !choice.from_gltf())
     throw UsageError("--nodes", "the colliders come from no glTF file", "leave it out, or name a .glb as --colliders");
   if (choice.count && choice.from_file())
@@ -89,7 +93,7 @@ void check_scene_choice(const SceneChoice& choice) {
 }
 
 void load_motion(const SceneChoice& choice, Avatar& avatar, Verbosity verbosity) {
-  if (is_motion_file(choice.animation)) add_motion(avatar, choice.animation, "auto", verbosity);
+  if (is_motion_file(choice.animation)) add_motion(avatar, choice.animation, choice.unit, verbosity);
 }
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,

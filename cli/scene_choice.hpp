@@ -16,6 +16,7 @@ namespace vestige::cli {
 struct SceneChoice {
   std::string avatar = "builtin";
   std::string animation;
+  std::string unit = "auto";  ///< of motion capture
   std::string map;
   std::string colliders = "swarm";
   std::string nodes;                   ///< of a glTF of colliders: a pattern of names
@@ -27,7 +28,7 @@ struct SceneChoice {
   std::uint32_t collider_count() const;
 };
 
-/// Adds --avatar, --animation, --map, --colliders, --nodes and --count.
+/// Adds --avatar, --animation, --unit, --map, --colliders, --nodes and --count.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
 /// Throws `UsageError` for a scenario that does not exist, and for flags that do nothing: a --count of colliders that

@@ -162,6 +162,13 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
 
 OpenSink::~OpenSink() = default;
 
+void OpenSink::warn_of_actuators_beyond(std::size_t actuators, Verbosity verbosity) const {
+  if (greeting_ && greeting_->actuator_count < actuators)
+    warn(fmt::format("{}: the board drives {} actuators; those beyond, up to {}, will not be felt", choice_.port,
+                     greeting_->actuator_count, actuators),
+         verbosity);
+}
+
 void OpenSink::commit() {
   if (file_ != nullptr) file_->commit();
 }

@@ -61,6 +61,8 @@ class OpenSink {
   ActuatorSink& sink() const { return *sink_; }
   /// What the board said; nothing where none answered, or none was asked.
   const std::optional<Greeting>& greeting() const { return greeting_; }
+  /// Warns where the board that answered drives fewer than these.
+  void warn_of_actuators_beyond(std::size_t actuators, Verbosity verbosity) const;
   /// Finishes a file.
   void commit();
 

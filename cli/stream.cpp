@@ -209,8 +209,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
 
   OpenTrace trace(options.trace, verbosity);
   if (!options.map.empty()) {
-    const ActuatorMapFiles files = read_map_files(trace.avatar, options.map);
-    trace.map = parse_actuator_map(files.png, files.json, options.map);
+    trace.map = parse_actuator_map(read_map_files(trace.avatar, options.map), trace.avatar, options.map);
     for (const std::string& warning : trace.map.warnings) warn(warning, verbosity);
   }
   const std::size_t actuator_count = trace.map.actuator_count;
@@ -230,14 +229,12 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   std::optional<StreamLog> log;
   if (!options.log.empty()) log.emplace(options.log, options.common.overwrite(), actuator_count);
   OpenSink sink(options.sink, trace.map.names, options.common);
-  if (sink.greeting() && sink.greeting()->actuator_count < actuator_count)
-    warn(fmt::format("{}: the board drives {} actuators; those beyond, up to {}, will not be felt", options.sink.port,
-                     sink.greeting()->actuator_count, actuator_count),
-         verbosity);
+  sink.warn_of_actuators_beyond(actuator_count, verbosity);
   const auto tell = [verbosity](const std::string& text) { warn(text, verbosity); };
   std::optional<ActuatorMapWatch> watch;
   if (watched)
-    watch.emplace(options.map, map_stamp, actuator_count, tell, laws.needs_layout() ? &trace.avatar : nullptr);
+    watch.emplace(options.map, map_stamp, actuator_count, trace.avatar,
+                  laws.needs_layout() ? ActuatorMapWatch::Layouts::kMeasured : ActuatorMapWatch::Layouts::kNone, tell);
 
   Streamed streamed;
   {
@@ -282,7 +279,7 @@ void add_stream(CLI::App& program, Invocation& invocation) {
   CLI::App* verb = add_verb(program, "stream", "Replay a trace in real time and drive a vest with it",
                             "  vestige stream man.mcap --port /dev/ttyUSB0\n"
                             "  vestige stream man.mcap --port osc://127.0.0.1:9000 --rate 2\n");
-  verb->add_option("TRACE", options->trace, "The trace")->required();
+  verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   add_sink_options(*verb, options->sink);
   const auto add_playing = [&](const char* name, auto& value, const char* description) {
     return verb->add_option(name, value, description)->group("Playing");

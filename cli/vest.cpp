@@ -36,12 +36,19 @@ bool rest(Sender& sender, std::chrono::duration<double> duration) {
   return !interrupted();
 }
 
+struct Checked {
+  SenderStatistics sent;
+  std::size_t actuators = 0;  ///< that ran, the last perhaps not to its end
+};
+
 /// Each actuator in turn; says which while it runs.
-SenderStatistics run_in_turn(const OpenSink& sink, std::size_t actuators, const CheckOptions& options) {
+Checked run_in_turn(const OpenSink& sink, std::size_t actuators, const CheckOptions& options) {
   Sender sender(sink.sink(), {}, [&](const std::string& text) { warn(text, options.common.verbosity()); });
   ActuatorFrame frame;
+  Checked checked;
   bool going = true;
   for (std::size_t i = 0; i < actuators && going; ++i) {
+    checked.actuators = i + 1;
     print_summary(fmt::format("actuator {} of {}\n", i + 1, actuators),
                   {options.common.json, options.sink.output_path()}, options.common);
     frame.duty.assign(actuators, 0);
@@ -52,7 +59,8 @@ SenderStatistics run_in_turn(const OpenSink& sink, std::size_t actuators, const 
     sender.post(frame, Sender::Clock::now());
     going = going && rest(sender, kPause);
   }
-  return sender.finish();
+  checked.sent = sender.finish();
+  return checked;
 }
 
 void run_check(const CheckOptions& options, Invocation& invocation) {
@@ -64,7 +72,9 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   OpenSink sink(options.sink, names, options.common,
                 options.actuators == 0 ? Driven::kAllOfTheBoard : Driven::kThoseNamed);
   if (options.actuators == 0 && sink.greeting()) actuators = sink.greeting()->actuator_count;
-  const SenderStatistics statistics = run_in_turn(sink, actuators, options);
+  sink.warn_of_actuators_beyond(actuators, options.common.verbosity());
+  const Checked checked = run_in_turn(sink, actuators, options);
+  const SenderStatistics& statistics = checked.sent;
   sink.commit();
 
   const bool acknowledges = sink.sink().acknowledges();
@@ -82,7 +92,11 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
     verdict += ", the last, which switches off, was not acknowledged";
   }
   if (!good) {
-    verdict += ": THE VEST DOES NOT HEAR EVERYTHING\n";
+    verdict += ": THE VEST DOES NOT HEAR EVERYTHING";
+    if (sink.greeting() && statistics.acknowledged <= 2) verdict += "; is --levels what the board takes?";
+    verdict += "\n";
+  } else if (interrupted()) {
+    verdict += fmt::format("; stopped at actuator {} of {}\n", checked.actuators, actuators);
   } else if (!acknowledges) {
     verdict += "; nothing answers on this way, so only what you felt counts\n";
   } else {

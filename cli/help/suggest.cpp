@@ -61,4 +61,14 @@ std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
   return CLI::ExtrasError(program.remaining(true)).what();
 }
 
+std::string help_remedy(const CLI::App& program) {
+  std::string name = program.get_name();
+  const CLI::App* verb = &program;
+  while (!verb->get_subcommands().empty()) {
+    verb = verb->get_subcommands().front();
+    name += " " + verb->get_name();
+  }
+  return fmt::format("'{} --help' {}", name, verb == &program ? "lists the verbs" : "explains it");
+}
+
 }  // namespace vestige::help

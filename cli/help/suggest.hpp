@@ -22,4 +22,7 @@ std::optional<std::string> unknown_verb_remedy(const CLI::App& program, const st
 /// although they may be the same, misspelt.
 std::string cause_of(const CLI::App& program, const CLI::ParseError& error);
 
+/// Which help to read about a command line that was not understood: the one of the verb that was named.
+std::string help_remedy(const CLI::App& program);
+
 }  // namespace vestige::help

@@ -313,6 +313,10 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige record", 2, {"--output"});
   expect_failure("vestige record --ouput x.mcap", 2, {"--ouput"}, "x.mcap");
   expect_failure("vestige replay small.mcap --planes t --texture t.exr", 2, {"not expected", "--texture"}, "t.exr");
+  expect_failure("ln -s both one && ln -s both two && vestige replay small.mcap --contacts one --timeline two", 2,
+                 {"two results cannot share one file"}, "both");
+  expect_failure("vestige map check --bogus", 2, {"--bogus", "'vestige map check --help' explains it"});
+  expect_failure("vestige --bogus", 2, {"--bogus", "'vestige --help' lists the verbs"});
   expect_failure("vestige record -o x.mcap --count 0", 2, {"--count"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --rate 0", 2, {"--rate"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --rate nan", 2, {"--rate"}, "x.mcap");
@@ -368,6 +372,7 @@ TEST_F(CommandLine, ReadsColliderFilesAndRefusesBrokenOnesByLine) {
   EXPECT_THAT(run(with(header + "0,7,-1,1,0\n9,7,1,1,0\n")).standard_error, HasSubstr("left out"));
   expect_failure(with("hello\n"), 1, {"c.csv, line 1", "time_s,id,x,y,z"});
   expect_failure(with(header), 1, {"c.csv", "no sample"});
+  expect_failure(with("frame,time_s,id,x,y,z,teleported\n"), 1, {"c.csv", "no sample"});
   expect_failure(with(header + "0,1,2,3\n"), 1, {"c.csv, line 2"});
   expect_failure(with(header + "0,1,2,3,4,5\n"), 1, {"c.csv, line 2"});
   expect_failure(with(header + "0,1,2,3,nan\n"), 1, {"c.csv, line 2", "finite"});

@@ -211,6 +211,15 @@ TEST_F(Exchange, MotionCaptureMovesTheBuiltInAvatar) {
   EXPECT_EQ(json_of("vestige inspect faster.mcap --json -")["messages"], 22);
   const auto other = run("vestige record --animation walk.bvh --rate 100 --duration 0.5 -o record.mcap");
   EXPECT_EQ(other.exit_code, 0) << other.standard_error;
+  const auto first_origin = [&](const char* flags) {
+    const std::string command =
+        std::string("vestige record --animation walk.bvh --rate 100 --duration 0.1 --force ") + flags;
+    EXPECT_EQ(run(command + " -o unit.mcap").exit_code, 0) << flags;
+    return run("vestige cat unit.mcap | grep /pose | tail -1").standard_output;
+  };
+  EXPECT_NE(first_origin("--unit m"), first_origin("--unit cm"));
+  EXPECT_EQ(first_origin("--unit auto"), first_origin(""));
+  expect_failure("vestige record --animation walk --unit cm -o b.mcap", 2, {"--unit", ".bvh"}, "b.mcap");
 }
 
 TEST_F(Exchange, WhatIsWrongWithAFileIsSaidByLineAndNothingIsWritten) {

@@ -51,6 +51,35 @@ TEST_F(Map, OfALayoutsOwnRegionFileIsTheLayout) {
   EXPECT_EQ(read_file(folder_ / "a.json"), read_file(folder_ / "b.json"));
 }
 
+TEST_F(Map, MayBeMadeByTriangle) {
+  EXPECT_THAT(run("vestige map make --layout torso16 --per-triangle -o vest.png").standard_output,
+              HasSubstr("16 actuators"));
+  EXPECT_EQ(nlohmann::json::parse(read_text_file(folder_ / "vest.json"))["triangles"], 4998);
+  EXPECT_EQ(run("vestige map check vest.png").exit_code, 0);
+  ASSERT_EQ(run("vestige record --colliders hug --count 50 --rate 60 --duration 1 --map vest.png -o a.mcap").exit_code,
+            0);
+  // Every detector looks it up: the published one on the GPU.
+  const auto paper = json_of("vestige replay a.mcap --detector paper --json -");
+  const auto cpu = json_of("vestige replay a.mcap --detector cpu --json -");
+  EXPECT_EQ(paper["actuators"], cpu["actuators"]);
+  EXPECT_EQ(
+      run("vestige replay a.mcap --detector cpu --verify geometry --surface mapped --law phantom --timeline a.csv "
+          "-q")
+          .exit_code,
+      0);
+  expect_failure("vestige map make --layout torso16 --per-triangle --size 64 -o b.png", 2, {"--size"}, "b.png");
+  EXPECT_EQ(
+      run("vestige replay a.mcap --timeline a.csv --force -q && vestige plot timeline a.csv --map vest.png -o a -q")
+          .exit_code,
+      0);
+  ASSERT_EQ(run("sed 's/\"skin\": \"[0-9a-f]/\"skin\": \"x/' vest.json > re.json && cp vest.png re.png").exit_code, 0);
+  expect_failure("vestige record --map re.png -o b.mcap", 1, {"re.png", "another avatar", "--per-triangle"}, "b.mcap");
+  const auto other = test::data("avatars/avatars/CesiumMan.glb");
+  VESTIGE_REQUIRE_DATA(other);
+  expect_failure("vestige record --map vest.png --avatar " + other.string() + " -o b.mcap", 1,
+                 {"vest.png", "4998 triangles", "4672", "--per-triangle"}, "b.mcap");
+}
+
 TEST_F(Map, CheckFailsWithCauseAndRemedy) {
   ASSERT_EQ(run("vestige avatar --map-output map.png && sed -i 's/\"grey\": 240/\"grey\": 241/; "
                 "s/\"actuators\": \\[/\"actuators\": [{\"grey\": 240}, /' map.json")
@@ -86,8 +115,10 @@ TEST_F(Map, SaysWhatIsWrongWithWhatItIsGiven) {
 TEST_F(Map, OfAnAvatarWithoutTextureCoordinatesIsRefused) {
   const auto path = test::data("avatars/skin/SimpleSkin.gltf");
   VESTIGE_REQUIRE_DATA(path);
-  expect_failure("vestige map make --layout torso16 -o a.png --avatar " + path.string(), 1,
-                 {"has no texture coordinates", "Blender"}, "a.png");
+  write("skin.json", R"({"regions": [{"name": "skin"}]})");
+  expect_failure("vestige map make --regions skin.json -o a.png --avatar " + path.string(), 1,
+                 {"has no texture coordinates", "--per-triangle"}, "a.png");
+  EXPECT_EQ(run("vestige map make --regions skin.json --per-triangle -o a.png --avatar " + path.string()).exit_code, 0);
   expect_failure("vestige map check builtin --avatar " + path.string(), 1, {"has no texture coordinates"});
 }
 

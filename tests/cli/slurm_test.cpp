@@ -49,10 +49,10 @@ constexpr const char* kInputs =
 
 TEST_F(Slurm, AKilledShardIsQueuedAgainAndTheMergedResultIsTheSame) {
   for (const char* name : {"a", "b", "c", "d"})
-    ASSERT_EQ(
-        run("vestige record --count 3 --rate 60 --duration 2 --seed " + std::to_string(*name) + " -o " + name + ".mcap")
-            .exit_code,
-        0);
+    ASSERT_EQ(run("vestige record --count 3 --rate 500 --duration 2 --seed " + std::to_string(*name) + " -o " + name +
+                  ".mcap")
+                  .exit_code,
+              0);
   ASSERT_EQ(run(std::string("vestige batch ") + kInputs + " -o whole").exit_code, 0);
   ASSERT_EQ(run(std::string("vestige batch slurm --shards 2 ") + kInputs + " -o out >submit.sh").exit_code, 0);
   const test::Outcome outcome = run_on_cluster(R"job(
@@ -77,13 +77,15 @@ worker_of() {
   done
   return 1
 }
-# In the middle: it has finished its first trace and works on its second.
-in_the_middle() { ls out/shards/2/items/*.json >/dev/null 2>&1 && worker_of 2 >/dev/null; }
+# In the middle, when it has finished its first trace and works on its second.
+killed_in_the_middle() {
+  local worker
+  ls out/shards/2/items/*.json >/dev/null 2>&1 && worker=$(worker_of 2) && kill -KILL "$worker" 2>/dev/null
+}
 queue_is_empty() { [ -z "$(squeue -h)" ]; }
 
 bash submit.sh
-await 60 "shard 2 to be in its middle" in_the_middle
-kill -KILL $(worker_of 2)
+await 60 "shard 2 to be in its middle" killed_in_the_middle
 await 200 "all jobs" queue_is_empty
 scontrol -o show job
 )job");

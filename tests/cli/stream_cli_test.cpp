@@ -360,6 +360,15 @@ TEST_F(StreamCommand, VestCheckRunsEachMotorInTurn) {
   for (const Row& row : pins) EXPECT_LE(6 - std::ranges::count(row.level, 0), 1) << row.time_s;
 }
 
+TEST_F(StreamCommand, VestCheckSaysThatItWasStoppedAndWhatTheBoardDoesNotDrive) {
+  const test::Outcome outcome =
+      run_with_board("timeout --preserve-status -s INT 1 vestige vest check --port vest --seconds 0.5 --actuators 12");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_output, HasSubstr("; stopped at actuator "));
+  EXPECT_THAT(outcome.standard_output, ::testing::Not(HasSubstr("hears everything")));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("the board drives 6 actuators"));
+}
+
 TEST_F(StreamCommand, VestCheckOfAVestThatIsUnpluggedFails) {
   const test::Outcome outcome = run_with_board(
       "vestige vest check --port vest --seconds 0.3 --json check.json & check=$!\n"

@@ -91,7 +91,7 @@ TEST_F(SweepCommandLine, MeasuresBesideARendererInAThreadOfItsOwn) {
     EXPECT_EQ(series["points"][0]["texture_hash"], json["series"][i / 2 * 2]["points"][0]["texture_hash"]);
   }
   EXPECT_GT(json["series"][1]["points"][0]["rendered_hz"], 0);
-  EXPECT_LE(json["series"][1]["points"][0]["rendered_hz"], 91);
+  EXPECT_LE(json["series"][1]["points"][0]["rendered_hz"], 120) << "paced, however short the run";
 }
 
 TEST_F(SweepCommandLine, GoesOnWithoutEmbree) {
@@ -130,6 +130,27 @@ TEST_F(GrowthCommandLine, MeasuresCollidersAndTrianglesAndWhatSkippingSaves) {
   }
   expect_failure("vestige growth small.mcap --count 21 --counts 1 --subdivisions 0 -o h", 1, {"21", "20"});
   expect_failure("vestige growth small.mcap --subdivisions 9 -o h", 2, {"--subdivisions"});
+}
+
+TEST_F(GrowthCommandLine, SplitsAMapOfTrianglesWithThem) {
+  ASSERT_EQ(run("vestige map make --layout torso16 --per-triangle -o vest.png -q && vestige record --colliders hug "
+                "--count 25 --rate 60 --duration 4 --map vest.png -o vest.mcap -q")
+                .exit_code,
+            0);
+  ASSERT_EQ(
+      run("vestige growth vest.mcap --detector paper,cpu --surface mapped --counts 25 --count 25 --subdivisions 1 "
+          "--min-time 0.01 --runs 1 --run-frames 200 --no-figure -o g -q")
+          .exit_code,
+      0);
+  // The finer skin lies where the coarser did, but for what bends.
+  const auto sizes = json_in("g/growth.json")["by_triangles"];
+  for (std::size_t series = 1; series <= 2; ++series) {
+    const auto contacts = [&](std::size_t level) {
+      return sizes[level]["series"][series]["points"][0]["contacts"].get<double>();
+    };
+    EXPECT_GT(contacts(0), 40);
+    EXPECT_NEAR(contacts(1) / contacts(0), 1, 0.1);
+  }
 }
 
 }  // namespace
