@@ -154,9 +154,10 @@ void add_agreement(const nlohmann::json& result, Claim claim, std::vector<Claim>
 
 void add_geometry_agreement(const nlohmann::json& result, Claim claim, std::vector<Claim>& claims) {
   for (const auto& method : result.at("methods")) {
-    claim.machine = machine_of(result, method);
+    claim.machine = machine_of(result, method.at("renderer") == "" ? nlohmann::json() : method);
     claim.claim =
-        fmt::format("`geometry` against `cpu` on {} adversarial pairs (`{}`): {} missed, {} winners differ",
+        fmt::format("`{}`{} against `cpu` on {} adversarial pairs (`{}`): {} missed, {} winners differ",
+                    method.value("detector", "geometry"), method.value("skip", false) ? " with skipping" : "",
                     method.at("pairs").get<std::uint64_t>(), method.at("method").get<std::string>(),
                     method.at("missed").get<std::uint64_t>(), method.at("winners_differing").get<std::uint64_t>());
     claims.push_back(claim);

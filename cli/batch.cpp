@@ -138,7 +138,8 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   check_outputs({batch.common.json}, batch.traces, batch.common);
   catch_interrupts();
   const std::size_t jobs = options.jobs != 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
-  std::vector<BatchFailure> failures = load_inputs(plan, batch.avatar, batch.maps, batch.law_parameters.actuator, jobs);
+  std::vector<BatchFailure> failures =
+      load_inputs(plan, batch.avatar, batch.maps, batch.law_parameters.actuator, jobs, [] { return !interrupted(); });
   if (failures.size() == plan.maps.size())
     throw Error("--maps", fmt::format("none of them can be used: {}", failures.front().cause), failures.front().remedy);
 

@@ -1,6 +1,7 @@
 #include "cli/sink_choice.hpp"
 
 #include <fmt/format.h>
+#include <strings.h>
 
 #include <algorithm>
 #include <charconv>
@@ -17,6 +18,13 @@ namespace vestige::cli {
 namespace {
 
 constexpr const char* kVestGroup = "Vest";
+
+/// The scheme of a URL may be in capitals (RFC 3986, section 3.1).
+std::string with_small_scheme(std::string port) {
+  for (const std::string_view scheme : {SinkChoice::kOscPrefix, SinkChoice::kFilePrefix})
+    if (::strncasecmp(port.c_str(), scheme.data(), scheme.size()) == 0) port.replace(0, scheme.size(), scheme);
+  return port;
+}
 
 std::uint64_t parse_address(const std::string& text) {
   std::uint64_t address = 0;
@@ -36,7 +44,12 @@ std::optional<XbeeOptions> xbee_options(const SinkChoice& choice) {
 
 /// Refuses flags that would say nothing, or not what they seem to.
 void check_sink_flags(const CLI::App& verb, const SinkChoice& choice) {
-  static_cast<void>(ttl_units(choice.ttl_ms));
+  // A state that stays is sent again in time only where it lives so long (`ttl_units` takes less).
+  constexpr int kLeastTtl_ms = 50;
+  constexpr int kMostTtl_ms = 2550;
+  if (choice.ttl_ms < kLeastTtl_ms || choice.ttl_ms > kMostTtl_ms || choice.ttl_ms % 10 != 0)
+    throw UsageError("--ttl", fmt::format("{} ms cannot be told to the vest", choice.ttl_ms),
+                     fmt::format("choose a multiple of 10 from {} to {}", kLeastTtl_ms, kMostTtl_ms));
   if (choice.port == SinkChoice::kFilePrefix) throw UsageError("--port", "names no file", "file:OUT");
   if (choice.is_osc() && verb.count("--ttl") != 0) throw UsageError("--ttl", "OSC has no time to live", "leave it out");
   const bool is_serial = !choice.is_osc() && !choice.is_file();
@@ -65,11 +78,17 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
       "Where frames go: a serial device (/dev/ttyUSB0: an XBee, or the board's USB); osc://HOST:PORT, parameters over "
       "UDP; file:OUT, a file of frames as on the wire; '-', the same on standard output")
       ->required()
+      ->transform(CLI::Validator(
+          [](std::string& port) {
+            port = with_small_scheme(port);
+            return std::string();
+          },
+          ""))
       ->type_name("DEVICE|URL|-");
   add("--baud", choice.baud, "Of the serial line, as the board was built for")->capture_default_str()->type_name("N");
-  add("--ttl", choice.ttl_ms, "The board switches all off when it hears nothing newer for so long, in ms")
+  add("--ttl", choice.ttl_ms,
+      "The board switches all off when it hears nothing newer for so long, in ms: 50 to 2550 in steps of 10")
       ->capture_default_str()
-      ->check(CLI::Range(50, 2550))
       ->type_name("MS");
   add("--levels", choice.levels,
       "duty: of vibrators; pressure: of pneumatic cells, the share of 1 m/s at which something is pushed into the skin")
@@ -118,7 +137,10 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
     if (!choice.osc_address.empty()) osc.address_template = choice.osc_address;
     if (choice.osc_value == "integer") osc.value = OscValue::kInteger;
     if (choice.osc_value == "boolean") osc.value = OscValue::kBoolean;
-    sink_ = std::make_unique<OscSink>(osc, actuator_names);
+    auto sink = std::make_unique<OscSink>(osc, actuator_names);
+    if (sink->is_refused())
+      warn(fmt::format("{}: nobody listens there now; frames are sent all the same", sink->name()), verbosity);
+    sink_ = std::move(sink);
     return;
   }
   if (choice.is_file()) {

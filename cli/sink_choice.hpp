@@ -33,11 +33,12 @@ struct SinkChoice {
   std::string osc_value = "float";
 
   Quantity quantity() const { return levels == "pressure" ? Quantity::kPressure : Quantity::kDuty; }
-  bool is_osc() const { return port.starts_with("osc:"); }
+  bool is_osc() const { return port.starts_with(kOscPrefix); }
   bool is_file() const { return port == "-" || port.starts_with(kFilePrefix); }
   /// The file that frames go to, "-", or empty.
   std::string output_path() const;
 
+  static constexpr std::string_view kOscPrefix = "osc:";
   static constexpr std::string_view kFilePrefix = "file:";
 };
 

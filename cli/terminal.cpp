@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "traces/descriptor.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::cli {
@@ -59,6 +60,7 @@ bool Progress::update(double share) {
 }
 
 void catch_interrupts() {
+  stop_waiting_when(interrupted);
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
   // Where it is ignored, as nohup does, the run is to outlive its terminal.

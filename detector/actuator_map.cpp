@@ -28,6 +28,7 @@ struct GreyImage {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<std::uint16_t> grey;
+  bool is_by_triangle = false;
 };
 
 struct PngSource {
@@ -90,6 +91,13 @@ bool read_rows(const PngReader& reader, std::vector<png_bytep>& rows) {
   return true;
 }
 
+bool is_by_triangle(const PngReader& reader) {
+  png_textp texts = nullptr;
+  const int count = png_get_text(reader.png(), reader.info(), &texts, nullptr);
+  return std::any_of(texts, texts + count,
+                     [](const png_text& text) { return text.key == kMapKeyword && text.text == kTriangleMap; });
+}
+
 GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name) {
   if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
     throw Error(name, "is not a PNG file", "export the actuator map as a greyscale PNG");
@@ -108,6 +116,7 @@ GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name)
   GreyImage image;
   image.width = png_get_image_width(reader.png(), reader.info());
   image.height = png_get_image_height(reader.png(), reader.info());
+  image.is_by_triangle = is_by_triangle(reader);
   const std::size_t sample_bytes = png_get_bit_depth(reader.png(), reader.info()) == 16 ? 2 : 1;
   const std::size_t texels = std::size_t{image.width} * image.height;
   std::vector<png_byte> pixels(texels * sample_bytes);
@@ -222,6 +231,9 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
   map.width = image.width;
   map.height = image.height;
   Sidecar listed = sidecar_json.empty() ? actuators_of(image, name, map.warnings) : parse_sidecar(sidecar_json, name);
+  if (image.is_by_triangle && listed.triangle_count == 0)
+    throw Error(name, "its texels are the triangles of an avatar, and no sidecar says of which",
+                "put the .json beside it that 'vestige map make' wrote with it");
   std::vector<std::uint16_t> actuator_of_grey(0x10000, 0);
   for (std::size_t i = 0; i < listed.grey.size(); ++i)
     actuator_of_grey[listed.grey[i]] = static_cast<std::uint16_t>(i + 1);

@@ -41,13 +41,18 @@ struct ActuatorMap {
   }
 };
 
+/// A tEXt chunk of this keyword and text marks a PNG whose texels are triangles: without its sidecar it is refused, not
+/// taken for an image in UV space.
+inline constexpr std::string_view kMapKeyword = "Actuator map";
+inline constexpr std::string_view kTriangleMap = "by triangle";
+
 /// Reads a PNG of 8 or 16 bit grey. Without a sidecar, actuators 1 … n are the distinct non-zero greys in ascending
 /// order. `sidecar_json` (may be empty) says which grey is which: {"actuators": [{"grey": 40, "name": "chest left",
 /// "position_m": [0.08, 1.3, 0.12]}, …]}, in the order of their numbers; a grey in the image that it does not list is
 /// an error. Name and position (three finite numbers) may be left out. With "triangles": N, the texels are the avatar's
 /// triangles, and with "skin" only those of the avatar of this `skin_digest`. `name` stands in errors: no PNG,
 /// truncated, colour or palette image, alpha channel, more than 65534 actuators, unusable sidecar, fewer texels than
-/// triangles.
+/// triangles, triangles whose number is not given.
 ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view sidecar_json, std::string_view name);
 
 /// SHA-256 of the avatar's triangles and bind positions, 64 hexadecimal digits.

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "traces/descriptor.hpp"
 #include "traces/error.hpp"
 
 namespace vestige {
@@ -30,8 +31,7 @@ AppendFile::AppendFile(std::filesystem::path path, Overwrite overwrite) : path_(
   path_ = where_it_leads(path_);
   refuse_overwrite(path_, overwrite);
   if (is_no_regular_file(path_)) {
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor_ < 0) throw system_error(path_, "could not open for writing", errno);
+    descriptor_ = open_device_for_writing(path_);
     return;
   }
   descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);

@@ -8,12 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/error.hpp"
-
 namespace vestige {
-
-/// The error of a file that could not be opened for reading.
-Error unreadable(const std::filesystem::path& path, int error_number);
 
 /// Reads a whole regular file ("-": standard input). Throws `Error`: missing, unreadable, a folder, or larger than
 /// `limit_bytes`.

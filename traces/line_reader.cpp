@@ -1,16 +1,10 @@
 #include "traces/line_reader.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 
 #include "traces/error.hpp"
-#include "traces/input_file.hpp"
-#include "traces/output_file.hpp"
 
 namespace vestige {
 
@@ -21,26 +15,13 @@ constexpr std::size_t kMostLineBytes = std::size_t{1} << 26;
 
 }  // namespace
 
-LineReader::LineReader(const std::filesystem::path& path)
-    : path_(path), name_(path == "-" ? "standard input" : path.string()) {
-  descriptor_ = path == "-" ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor_ < 0) throw unreadable(path, errno);
-  struct stat status = {};
-  if (::fstat(descriptor_, &status) == 0 && S_ISDIR(status.st_mode)) throw Error(name_, "is a folder", "name a file");
-  if (S_ISREG(status.st_mode)) file_bytes_ = static_cast<std::size_t>(status.st_size);
-}
-
-LineReader::~LineReader() {
-  if (descriptor_ > STDERR_FILENO) ::close(descriptor_);
-}
-
 bool LineReader::next(std::string_view& line) {
   std::size_t searched = begin_;
   std::size_t end = std::string::npos;
   while ((end = buffer_.find('\n', searched)) == std::string::npos) {
     searched = buffer_.size() - begin_;
     if (searched > kMostLineBytes)
-      throw Error(fmt::format("{}, line {}", name_, line_ + 1), "is longer than 64 MiB", "is it the file you meant?");
+      throw Error(fmt::format("{}, line {}", name(), line_ + 1), "is longer than 64 MiB", "is it the file you meant?");
     if (fill()) continue;
     if (begin_ == buffer_.size()) return false;
     end = buffer_.size();
@@ -59,17 +40,15 @@ bool LineReader::fill() {
   begin_ = 0;
   const std::size_t used = buffer_.size();
   buffer_.resize(used + kBlockBytes);
-  ssize_t count = 0;
-  do count = ::read(descriptor_, buffer_.data() + used, kBlockBytes);
-  while (count < 0 && errno == EINTR);
-  if (count < 0) throw system_error(path_, "could not read", errno);
-  buffer_.resize(used + static_cast<std::size_t>(count));
-  bytes_read_ += static_cast<std::size_t>(count);
+  const std::size_t count = input_.read(std::as_writable_bytes(std::span(buffer_).subspan(used)));
+  buffer_.resize(used + count);
+  bytes_read_ += count;
   return count > 0;
 }
 
 double LineReader::share() const {
-  return file_bytes_ == 0 ? 0 : std::min(1.0, static_cast<double>(bytes_read_) / static_cast<double>(file_bytes_));
+  const std::uint64_t all = input_.size_bytes();
+  return all == 0 ? 0 : std::min(1.0, static_cast<double>(bytes_read_) / static_cast<double>(all));
 }
 
 }  // namespace vestige

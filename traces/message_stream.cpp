@@ -76,12 +76,22 @@ void MessageStream::open(const mcap::RecordPlace& place) {
   const mcap::Bytes content = mcap::read_record_at(source_, place.offset, Opcode::kChunk, place.end(), content_);
   chunk_ = mcap::Cursor(mcap::expand_chunk(mcap::decode_chunk(content), expanded_));
   chunk_offset_ = place.offset;
+  misfit_told_ = false;
 }
 
 bool MessageStream::next_in_chunk(TraceMessage& message) {
   while (chunk_.remaining() > 0) {
     try {
       const mcap::InnerRecord record = mcap::next_record(chunk_);
+      const bool is_known =
+          record.opcode == Opcode::kSchema || record.opcode == Opcode::kChannel || record.opcode == Opcode::kMessage;
+      if (!is_known) continue;
+      if (!mcap::fits_its_fields(record)) {
+        // Once for a chunk, which may hold millions.
+        if (!std::exchange(misfit_told_, true))
+          report_({chunk_offset_, 0, "records in a Chunk: their fields do not fit into them"});
+        continue;
+      }
       if (record.opcode == Opcode::kSchema) table_.add(mcap::decode_schema(record.content));
       if (record.opcode == Opcode::kChannel) table_.add(mcap::decode_channel(record.content));
       if (record.opcode == Opcode::kMessage && take(chunk_offset_, record.content, message)) return true;

@@ -63,6 +63,7 @@ class MessageStream {
   Report report_;
   std::size_t next_place_ = 0;
   std::uint64_t chunk_offset_ = 0;
+  bool misfit_told_ = false;  ///< of this chunk
   mcap::Cursor chunk_ = mcap::Cursor({});
   mcap::RawBuffer content_;
   mcap::RawBuffer expanded_;

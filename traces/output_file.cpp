@@ -10,6 +10,8 @@
 #include <cstring>
 #include <utility>
 
+#include "traces/descriptor.hpp"
+
 namespace vestige {
 
 namespace {
@@ -135,8 +137,7 @@ OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite)
   std::error_code ignored;
   if (std::filesystem::exists(path_, ignored) && !std::filesystem::is_regular_file(path_, ignored)) {
     // A device or a pipe has no complete-or-absent: write to it as it comes.
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC);
-    if (descriptor_ < 0) throw system_error(path_, "could not open for writing", errno);
+    descriptor_ = open_device_for_writing(path_);
     return;
   }
   std::string name = (path_.parent_path() / fmt::format(".{}.XXXXXX", path_.filename().string())).string();

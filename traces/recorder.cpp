@@ -173,6 +173,8 @@ bool Recorder::Implementation::write(const TraceFrame& frame) {
   if (!first_ns_) {
     first_ns_ = frame.time_ns;
     split_ns_ = frame.time_ns;
+    // Now there is something in their place; were we killed later, they would be merged with it.
+    if (target_.limits.splits()) remove_stale_parts();
   }
   const bool beyond = is_beyond_part(frame);
   if (beyond || !has_room_for(frame)) {
@@ -256,8 +258,7 @@ void Recorder::Implementation::finish() {
   } else {
     finish_writer();
   }
-  // Left in place, parts of an earlier recording would be merged with the new ones.
-  if (target_.limits.splits()) remove_stale_parts();
+  if (target_.limits.splits() && !first_ns_) remove_stale_parts();
 }
 
 Recorder::Recorder(Target target) : implementation_(std::make_unique<Implementation>(std::move(target))) {}

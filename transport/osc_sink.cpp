@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 #include <lo/lo.h>
 #include <netdb.h>
+#include <poll.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <memory>
 #include <thread>
 #include <utility>
+
+#include "traces/descriptor.hpp"
 
 namespace vestige {
 
@@ -126,11 +130,27 @@ void OscSink::send_datagram(std::span<const std::byte> bytes) {
 }
 
 bool OscSink::reconnect() {
+  return Descriptor(connected_socket()).value() >= 0;
+}
+
+bool OscSink::is_refused() const {
+  constexpr int kPatience_ms = 50;
+  constexpr std::array<char, 16> kEmptyBundle = {'#', 'b', 'u', 'n', 'd', 'l', 'e', 0, 0, 0, 0, 0, 0, 0, 0, 1};
+  const Descriptor probe(connected_socket());
+  if (probe.value() < 0 || ::send(probe.value(), kEmptyBundle.data(), kEmptyBundle.size(), MSG_NOSIGNAL) < 0)
+    return false;
+  pollfd answer{.fd = probe.value(), .events = POLLIN, .revents = 0};
+  if (::poll(&answer, 1, kPatience_ms) <= 0) return false;
+  char ignored = 0;
+  return ::recv(probe.value(), &ignored, 1, MSG_DONTWAIT) < 0 && errno == ECONNREFUSED;
+}
+
+int OscSink::connected_socket() const {
   // Connecting a datagram socket sends nothing: it looks for a way to the host.
-  const int probe = ::socket(host_.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  const bool has_way = probe >= 0 && ::connect(probe, reinterpret_cast<const sockaddr*>(&host_), host_bytes_) == 0;
-  if (probe >= 0) ::close(probe);
-  return has_way;
+  Descriptor made(::socket(host_.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (made.value() < 0 || ::connect(made.value(), reinterpret_cast<const sockaddr*>(&host_), host_bytes_) != 0)
+    return -1;
+  return made.release();
 }
 
 }  // namespace vestige

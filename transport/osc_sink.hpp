@@ -16,8 +16,8 @@ namespace vestige {
 ///
 /// Every frame is one bundle (more where it would not fit into a network packet) with all values, also those that did
 /// not change: a datagram may be lost, and a receiver may start late; so each frame stands for itself, and the next one
-/// mends what a lost one left. That nobody listens is no error. OSC has no time to live: what a receiver does when
-/// frames cease is its own business.
+/// mends what a lost one left. That nobody listens is no error: see `is_refused`. OSC has no time to live: what a
+/// receiver does when frames cease is its own business.
 class OscSink final : public ActuatorSink {
  public:
   /// A name may be resolved here; IPv4 is preferred, as OSC programs listen there. Throws `UsageError` as
@@ -31,9 +31,14 @@ class OscSink final : public ActuatorSink {
   void send(const ActuatorFrame& frame, std::uint8_t sequence) override;
   void send_off(std::uint8_t sequence) override;
   bool reconnect() override;
+  /// Sends an empty bundle and waits a moment (50 ms) for the host's word that nobody listens at this port. Most hosts
+  /// give it; a firewall may keep it back.
+  bool is_refused() const;
   std::uint64_t bytes_sent() const override { return bytes_sent_; }
 
  private:
+  /// On which errors of the host come back; negative, with errno, where there is no way to it.
+  int connected_socket() const;
   void send_levels(std::span<const std::uint8_t> level);
   void send_datagram(std::span<const std::byte> bytes);
 

@@ -51,10 +51,11 @@ Error serial_open_error(const std::string& path, int number) {
       return serial_busy_error(path);
     case ENOENT:
     case ENOTDIR:
+      return {path, "there is no such device", list_candidates()};
     case ENODEV:
     case ENXIO:
     case EIO:
-      return {path, "there is no such device", list_candidates()};
+      return {path, "has no device behind it", list_candidates()};
     default:
       return {path, fmt::format("could not be opened: {}", std::generic_category().message(number)), ""};
   }

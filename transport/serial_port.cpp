@@ -19,6 +19,7 @@
 #include <system_error>
 #include <utility>
 
+#include "traces/descriptor.hpp"
 #include "transport/actuator_sink.hpp"
 #include "transport/serial_errors.hpp"
 
@@ -51,22 +52,6 @@ speed_t speed_constant(std::uint32_t baud) {
   throw UsageError("--baud", fmt::format("{} is not a standard rate", baud),
                    fmt::format("use what the board is set to, one of {}", fmt::join(bauds, ", ")));
 }
-
-/// Closes what was opened when something fails on the way.
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_(value) {}
-  ~Descriptor() {
-    if (value_ >= 0) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return value_; }
-  int release() { return std::exchange(value_, -1); }
-
- private:
-  int value_;
-};
 
 void set_raw(const std::string& path, int descriptor, std::uint32_t baud, speed_t speed) {
   const auto refuse = [&] {
@@ -107,14 +92,14 @@ int open_port(const std::string& path, std::uint32_t baud) {
   if (::stat(path.c_str(), &status) != 0) throw serial_open_error(path, errno);
   if (!S_ISCHR(status.st_mode)) throw not_serial_error(path);
   Descriptor port(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
-  if (port.get() < 0) throw serial_open_error(path, errno);
-  if (::isatty(port.get()) == 0) throw errno == ENOTTY ? not_serial_error(path) : serial_open_error(path, errno);
+  if (port.value() < 0) throw serial_open_error(path, errno);
+  if (::isatty(port.value()) == 0) throw errno == ENOTTY ? not_serial_error(path) : serial_open_error(path, errno);
   // The first keeps out ourselves and root, the second everybody else.
-  if (::flock(port.get(), LOCK_EX | LOCK_NB) != 0) throw serial_busy_error(path);
-  if (::ioctl(port.get(), TIOCEXCL) != 0) throw serial_open_error(path, errno);
-  set_raw(path, port.get(), baud, speed);
-  ask_for_low_latency(port.get());
-  ::tcflush(port.get(), TCIFLUSH);
+  if (::flock(port.value(), LOCK_EX | LOCK_NB) != 0) throw serial_busy_error(path);
+  if (::ioctl(port.value(), TIOCEXCL) != 0) throw serial_open_error(path, errno);
+  set_raw(path, port.value(), baud, speed);
+  ask_for_low_latency(port.value());
+  ::tcflush(port.value(), TCIFLUSH);
   return port.release();
 }
 

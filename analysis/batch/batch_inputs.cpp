@@ -93,7 +93,8 @@ void in_threads(std::size_t threads, std::size_t count, const Work& work) {
 }  // namespace
 
 std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar, const std::vector<std::string>& maps,
-                                      const std::string& actuator, std::size_t jobs) {
+                                      const std::string& actuator, std::size_t jobs,
+                                      const std::function<bool()>& go_on) {
   if (!actuator.empty()) plan.actuators = read_actuators(actuator);
   plan.avatar_given = avatar;
   if (avatar.empty())
@@ -112,6 +113,7 @@ std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar
   }
   std::vector<std::optional<BatchFailure>> failed(maps.size());
   in_threads(std::min(jobs, maps.size()), maps.size(), [&](std::size_t i) {
+    if (!go_on()) throw Error("batch", "was stopped before its first trace", "start it again");
     BatchMap& map = plan.maps[i];
     try {
       load_map(map, plan, builtin);

@@ -1,16 +1,14 @@
 #include "analysis/batch/batch_plan.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
 #include <filesystem>
 #include <set>
 
 #include "analysis/provenance.hpp"
+#include "traces/descriptor.hpp"
 #include "traces/output_file.hpp"
 #include "traces/sha256.hpp"
 #include "traces/utf8.hpp"
@@ -142,16 +140,10 @@ std::string program_version() {
 }
 
 std::string sha256_of_file(const std::string& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) throw system_error(path, "could not open", errno);
+  InputDescriptor input(path);
   Sha256 sha;
   std::vector<std::byte> buffer(std::size_t{1} << 18);
-  ssize_t count = 0;
-  while ((count = ::read(file, buffer.data(), buffer.size())) > 0)
-    sha.update(std::span(buffer).first(static_cast<std::size_t>(count)));
-  const int failure = errno;
-  ::close(file);
-  if (count < 0) throw system_error(path, "could not read", failure);
+  while (const std::size_t count = input.read(buffer)) sha.update(std::span(buffer).first(count));
   return sha.hex();
 }
 

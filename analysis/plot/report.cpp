@@ -190,7 +190,9 @@ class Report {
     MapSection section;
     section.map = name;
     section.contacts = contacts.all.size();
-    section.warnings = map.warnings;
+    // The batch knows more than the files do: how it made a layout.
+    const auto told = data.map_warnings.find(name);
+    section.warnings = told == data.map_warnings.end() ? map.warnings : told->second;
     for (const std::string& actuator : map.names)
       section.actuators.push_back(
           {actuator.empty() ? fmt::format("actuator {}", section.actuators.size() + 1) : actuator, 0});

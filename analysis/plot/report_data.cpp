@@ -155,6 +155,14 @@ void read_run(const std::filesystem::path& file, ReportData& data) {
   const JsonField laws = batch.at("laws");
   for (std::size_t i = 0; i < laws.count(); ++i) data.laws.push_back(file_name(laws.at(i)));
   if (batch.has("options")) read_law_options(batch.at("options"), data);
+  if (run.has("maps")) {
+    const JsonField maps = run.at("maps");
+    for (std::size_t i = 0; i < length(maps); ++i) {
+      const JsonField warnings = maps.at(i).at("warnings");
+      std::vector<std::string>& of_map = data.map_warnings[maps.at(i).at("name").text()];
+      for (std::size_t k = 0; k < length(warnings); ++k) of_map.push_back(warnings.at(k).text());
+    }
+  }
   const JsonField traces = run.at("traces");
   for (std::size_t i = 0; i < length(traces); ++i) {
     const JsonField field = traces.at(i);

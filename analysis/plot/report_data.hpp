@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,12 +69,13 @@ struct ReportData {
   std::vector<Candidate> ranking;  ///< best first
   std::vector<ReportTrace> traces;
   std::vector<ReportFailure> failures;
-  std::vector<std::string> laws;                                ///< in the order of the batch
-  LawOptions law_options;                                       ///< of all of them
-  std::string actuator;                                         ///< where the motors are from; empty: ideal ones
-  std::shared_ptr<const ActuatorModel> actuators;               ///< those motors
-  bool complete = true;                                         ///< false: the batch was stopped
-  std::vector<std::pair<std::string, std::string>> provenance;  ///< name and value, as they are shown
+  std::map<std::string, std::vector<std::string>> map_warnings;  ///< of the maps, as the batch was given them
+  std::vector<std::string> laws;                                 ///< in the order of the batch
+  LawOptions law_options;                                        ///< of all of them
+  std::string actuator;                                          ///< where the motors are from; empty: ideal ones
+  std::shared_ptr<const ActuatorModel> actuators;                ///< those motors
+  bool complete = true;                                          ///< false: the batch was stopped
+  std::vector<std::pair<std::string, std::string>> provenance;   ///< name and value, as they are shown
 
   /// Names of the ranked maps, best first.
   std::vector<std::string> maps() const;

@@ -139,6 +139,16 @@ TEST_F(ReportTest, NoNameBecomesMarkup) {
   test::words_of(folder_ / "batch/figures/box-timeline-phantom.svg");
 }
 
+TEST_F(ReportTest, RepeatsWhatTheBatchWarnedOf) {
+  run_["maps"] = {{{"name", "box"}, {"warnings", {"box: its halves share a texture"}}}};
+  ASSERT_EQ(report().exit_code, 0);
+  EXPECT_THAT(page(), HasSubstr("box: its halves share a texture"));
+  run_["maps"] = {{{"name", "box"}}};
+  const test::Outcome outcome = report("--force");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.standard_error, AllOf(HasSubstr("run.json"), HasSubstr("maps[0].warnings")));
+}
+
 TEST_F(ReportTest, MarksWhatIsAModel) {
   ranking_["rank_by"] = "information_bits";
   ASSERT_EQ(report().exit_code, 0);

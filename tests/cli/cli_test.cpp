@@ -392,6 +392,21 @@ TEST_F(CommandLine, ReportsAFullDiskAndLeavesNothingUnderTheFinalName) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_.path()), {}), 1) << run("ls -la").standard_output;
 }
 
+TEST_F(CommandLine, StopsWaitingForAPipeWhenItIsTold) {
+  record_small();
+  ASSERT_EQ(run("mkfifo pipe && vestige export small.mcap -o poses.csv --what poses").exit_code, 0);
+  const std::string interrupted = "timeout --preserve-status -s INT -k 10 1 vestige ";
+  for (const char* command : {"replay small.mcap --contacts pipe", "record -o pipe"})
+    expect_failure(interrupted + command, 1, {"pipe: waiting for it was stopped"});
+  // A writer that stays, and says nothing more.
+  expect_failure("(head -n 3 poses.csv; sleep 5) > pipe & " + interrupted + "import --poses pipe -o x.mcap", 1,
+                 {"pipe: waiting for it was stopped"}, "x.mcap");
+  // Nobody kept the pipe from being used: both ends open at their own time.
+  const test::Outcome piped = run("(sleep 0.3; cat pipe | wc -l) & vestige replay small.mcap --contacts pipe; wait");
+  EXPECT_EQ(piped.exit_code, 0) << piped.standard_error;
+  EXPECT_EQ(run("(sleep 0.3; cat small.mcap > pipe) & vestige inspect pipe").exit_code, 0);
+}
+
 TEST_F(CommandLine, SaysWhatToInstallWithoutAnyOpenGl) {
   record_small();
   // A loader path of stubs that are no libraries hides EGL and OSMesa.

@@ -74,6 +74,9 @@ TEST_F(Map, MayBeMadeByTriangle) {
       0);
   ASSERT_EQ(run("sed 's/\"skin\": \"[0-9a-f]/\"skin\": \"x/' vest.json > re.json && cp vest.png re.png").exit_code, 0);
   expect_failure("vestige record --map re.png -o b.mcap", 1, {"re.png", "another avatar", "--per-triangle"}, "b.mcap");
+  // Alone it would look like an image in UV space.
+  ASSERT_EQ(run("cp vest.png alone.png").exit_code, 0);
+  expect_failure("vestige record --map alone.png -o b.mcap", 1, {"alone.png", "no sidecar", ".json"}, "b.mcap");
   const auto other = test::data("avatars/avatars/CesiumMan.glb");
   VESTIGE_REQUIRE_DATA(other);
   expect_failure("vestige record --map vest.png --avatar " + other.string() + " -o b.mcap", 1,

@@ -19,6 +19,7 @@ namespace {
 
 using ::testing::Each;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 using Levels = std::vector<int>;
 
@@ -280,6 +281,11 @@ TEST_F(StreamCommand, ParametersGoByOscToWhoeverListens) {
   EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\x3f\x80\0\0", 8)));
   EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\0\0\0\0", 8)));
   EXPECT_GT(read_json("stream.json")["sent"], 0);
+  EXPECT_THAT(outcome.standard_error, Not(HasSubstr("nobody listens")));
+  // That listener has gone.
+  const test::Outcome alone = run("vestige stream trace.mcap --port OSC://127.0.0.1:$(cat port)");
+  EXPECT_EQ(alone.exit_code, 0) << alone.standard_error;
+  EXPECT_THAT(alone.standard_error, HasSubstr("nobody listens there now"));
 }
 
 TEST_F(StreamCommand, AnXbeeInApiModeGetsItsFrames) {
@@ -328,6 +334,9 @@ TEST_F(StreamCommand, WhatCannotBeStreamedIsRefusedWithItsReason) {
   expect_failure("vestige stream trace.mcap --port ./ttyUSB9", 1, {"ttyUSB9", "no such device"});
   expect_failure("vestige stream trace.mcap --port trace.mcap", 1, {"trace.mcap", "not a serial device"});
   expect_failure("vestige stream trace.mcap --port ./x --baud 12345", 2, {"--baud", "57600"});
+  for (const char* ttl : {"49", "51", "2560"})
+    expect_failure(fmt::format("vestige stream trace.mcap --port ./ttyUSB9 --ttl {}", ttl), 2,
+                   {"--ttl", "multiple of 10 from 50 to 2550"});
   expect_failure("vestige stream trace.mcap --port osc://localhost", 2, {"--port", "has no port"});
   expect_failure("vestige stream trace.mcap --port osc://localhost:9000 --baud 9600", 2, {"--baud"});
   expect_failure("vestige stream trace.mcap --port file:x --osc-address /a/{n}", 2, {"--osc-address"});

@@ -25,7 +25,7 @@ class AdversarialSource {
   explicit AdversarialSource(std::uint64_t seed) : random_(seed) {}
 
   AdversarialPairs draw(std::size_t triangles, std::size_t segments) {
-    const auto scale = std::ldexp(1.0F, pick<int>({-140, -60, -20, -7, -7, -7, -7, 0, 0, 20, 60}));
+    const auto scale = std::ldexp(1.0F, pick<int>({-140, -60, -20, -7, -7, -7, -7, 0, 0, 20, 38, 40, 42, 44, 60}));
     const float place = scale * pick<float>({0, 0, 0, 1, 100, 10000});
     const glm::vec3 centre = place * any_vector();
     const LooseTriangle shape = any_triangle(centre, scale);

@@ -14,10 +14,11 @@ namespace vestige::test {
 inline std::filesystem::path npm_package(const std::string& name) {
   const auto folder = std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/npm";
   // Test programs run beside each other: one of them fetches, the others wait until it is done. npm writes
-  // .package-lock.json last, when every package is complete.
+  // .package-lock.json last, when every package is complete. A registry may be out of reach for a moment.
   const std::string command = fmt::format(
       "cd '{}' && flock package.json sh -c "
-      "'test node_modules/.package-lock.json -nt package-lock.json || npm ci --no-audit --no-fund >&2'",
+      "'for pause in 0 5 20; do test node_modules/.package-lock.json -nt package-lock.json && exit 0; sleep $pause; "
+      "npm ci --no-audit --no-fund >&2 && exit 0; done; rm -rf node_modules; exit 1'",
       folder.string());
   if (std::system(command.c_str()) != 0) std::fputs("npm ci failed\n", stderr);
   return folder / "node_modules" / name;

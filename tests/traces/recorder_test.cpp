@@ -124,6 +124,15 @@ TEST_F(RecorderTest, RefusesPartsOfAnEarlierRecordingAndReplacesAllOfThemWhenAll
   EXPECT_THAT(existing_parts(folder_ / "man.mcap"), ElementsAre(folder_ / "man-0001.mcap", folder_ / "man-0002.mcap"));
 }
 
+TEST_F(RecorderTest, PartsOfAnEarlierRecordingGoBeforeTheNewOneCanBeCutShort) {
+  record({.split_s = 0.01}, 45);
+  overwrite_ = Overwrite::kAllow;
+  Recorder recorder(target({.split_s = 0.01}));
+  EXPECT_EQ(existing_parts(folder_ / "man.mcap").size(), 5U) << "without a frame nothing is replaced yet";
+  recorder.write(test::frame(0, kNodes, kColliders));
+  EXPECT_THAT(existing_parts(folder_ / "man.mcap"), ElementsAre(folder_ / "man-0001.mcap"));
+}
+
 TEST_F(RecorderTest, ARingKeepsTheLastSecondsOnly) {
   record({.ring_s = 0.01}, 20'000);
   EXPECT_EQ(indexes(folder_ / "man.mcap"), range(19'990, 20'000));

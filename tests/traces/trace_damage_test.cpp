@@ -145,6 +145,18 @@ TEST(TraceDamage, ADamagedChunkIsReportedWithItsOffset) {
   EXPECT_EQ(reader.warnings().size(), 1U) << "nothing is said twice";
 }
 
+TEST(TraceDamage, AMessageWhoseFieldsDoNotFitCostsItsFrameAlone) {
+  const test::TemporaryFolder folder;
+  SmallTrace trace = small_trace(folder, Compression::kNone);
+  test::shorten_first_message(trace);
+  write_bytes(folder / "a.mcap", trace.bytes);
+  TraceReader reader(folder / "a.mcap");
+  EXPECT_EQ(test::read_frames(reader).size(), kFrames - 1);
+  EXPECT_FALSE(reader.complete());
+  ASSERT_FALSE(reader.warnings().empty());
+  EXPECT_THAT(reader.warnings()[0], HasSubstr("their fields do not fit"));
+}
+
 TEST(TraceDamage, ABrokenSummaryIsNoLoss) {
   const test::TemporaryFolder folder;
   const SmallTrace trace = small_trace(folder, Compression::kZstd);

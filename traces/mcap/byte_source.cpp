@@ -1,16 +1,14 @@
 #include "traces/mcap/byte_source.hpp"
 
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <utility>
 
+#include "traces/descriptor.hpp"
 #include "traces/error.hpp"
-#include "traces/input_file.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige::mcap {
@@ -19,29 +17,6 @@ namespace {
 
 constexpr std::size_t kWindowBytes = 1 << 12;
 constexpr std::size_t kSpoolBlockBytes = 1 << 16;
-
-/// Closes what it holds unless it was released.
-class Descriptor {
- public:
-  explicit Descriptor(int value) : value_(value) {}
-  ~Descriptor() {
-    if (value_ > STDERR_FILENO) ::close(value_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int value() const { return value_; }
-  int release() { return std::exchange(value_, -1); }
-
- private:
-  int value_;
-};
-
-int open_for_reading(const std::filesystem::path& path) {
-  if (path == "-") return STDIN_FILENO;
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor >= 0) return descriptor;
-  throw unreadable(path, errno);
-}
 
 int nameless_file() {
   const std::filesystem::path folder = std::filesystem::temp_directory_path();
@@ -55,39 +30,21 @@ int nameless_file() {
   return descriptor;
 }
 
-int spool(int from, const std::filesystem::path& path) {
+int spool(InputDescriptor& input) {
   Descriptor copy(nameless_file());
   std::vector<std::byte> block(kSpoolBlockBytes);
-  for (;;) {
-    const ssize_t count = ::read(from, block.data(), block.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) throw system_error(path, "could not read", errno);
-    if (count == 0) return copy.release();
-    write_all(copy.value(), std::span(block).first(static_cast<std::size_t>(count)),
-              std::filesystem::temp_directory_path());
-  }
-}
-
-struct stat status_of(int descriptor, const std::filesystem::path& path) {
-  struct stat status = {};
-  if (::fstat(descriptor, &status) != 0) throw system_error(path, "could not read", errno);
-  return status;
+  while (const std::size_t count = input.read(block))
+    write_all(copy.value(), std::span(block).first(count), std::filesystem::temp_directory_path());
+  return copy.release();
 }
 
 }  // namespace
 
 FileSource::FileSource(const std::filesystem::path& path) : path_(path) {
-  Descriptor opened(open_for_reading(path_));
-  struct stat status = status_of(opened.value(), path_);
-  if (S_ISDIR(status.st_mode)) throw Error(path_.string(), "is a folder", "name a file");
-  if (!S_ISREG(status.st_mode) || path_ == "-") {
-    Descriptor copy(spool(opened.value(), path_));
-    status = status_of(copy.value(), path_);
-    descriptor_ = copy.release();
-  } else {
-    descriptor_ = opened.release();
-  }
-  size_ = static_cast<std::uint64_t>(status.st_size);
+  InputDescriptor input(path_);
+  const bool can_be_read_anywhere = input.is_regular() && path_ != "-";
+  descriptor_ = can_be_read_anywhere ? input.release() : spool(input);
+  size_ = can_be_read_anywhere ? input.size_bytes() : static_cast<std::uint64_t>(::lseek(descriptor_, 0, SEEK_END));
 }
 
 FileSource::~FileSource() {

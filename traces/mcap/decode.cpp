@@ -334,4 +334,9 @@ InnerRecord next_record(Cursor& cursor) {
   return {.opcode = opcode, .content = cursor.bytes(cursor.number<std::uint64_t>())};
 }
 
+bool fits_its_fields(const InnerRecord& record) {
+  if (record.opcode == Opcode::kMessage) return record.content.size() >= least_content_bytes(record.opcode).value_or(0);
+  return natural_content_bytes(record.opcode, record.content).has_value();
+}
+
 }  // namespace vestige::mcap

@@ -82,4 +82,7 @@ struct InnerRecord {
 };
 InnerRecord next_record(Cursor& cursor);
 
+/// Whether a record of a kind that may stand in a chunk holds what its fields need.
+bool fits_its_fields(const InnerRecord& record);
+
 }  // namespace vestige::mcap

@@ -10,16 +10,6 @@
 
 namespace vestige::mcap {
 
-namespace {
-
-/// Of records that may stand in a chunk.
-bool fits_its_fields(const InnerRecord& inner) {
-  if (inner.opcode == Opcode::kMessage) return inner.content.size() >= least_content_bytes(inner.opcode).value_or(0);
-  return natural_content_bytes(inner.opcode, inner.content).has_value();
-}
-
-}  // namespace
-
 std::uint32_t crc32_of(const ByteSource& source, std::uint64_t begin, std::uint64_t end) {
   constexpr std::uint64_t kBlockBytes = 1 << 16;
   std::vector<std::byte> block(kBlockBytes);
