@@ -254,7 +254,7 @@ TEST_F(Exchange, WhatIsWrongWithAFileIsSaidByLineAndNothingIsWritten) {
 
 /// 30 000 frames are about 120 MB; every way out and back gets by with 96 MiB of data.
 TEST_F(Exchange, LongTracesPassThroughLittleMemory) {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef VESTIGE_SANITIZED
   GTEST_SKIP() << "memory is not measured under sanitizers, which keep what is freed";
 #endif
   ASSERT_EQ(run("vestige record --colliders swarm --count 100 --rate 1000 --duration 30 -o long.mcap").exit_code, 0);

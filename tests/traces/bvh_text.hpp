@@ -16,13 +16,13 @@ inline std::string bvh_person(const std::string& motion) {
   const std::string site = "End Site\n{\nOFFSET 0 1 0\n}\n";
   std::string limbs;
   for (const auto& [side, x] : {std::pair("Left", 1), std::pair("Right", -1)}) {
-    const auto name = [&](const char* bone) { return std::string(side) + bone; };
+    const auto name = [begin = std::string(side)](const char* bone) { return begin + bone; };
     limbs += joint(name("UpLeg").c_str(), fmt::format("{} -5 0", 10 * x).c_str(),
                    joint(name("Leg").c_str(), "0 -45 0", joint(name("Foot").c_str(), "0 -45 0", site)));
   }
   std::string arms;
   for (const auto& [side, x] : {std::pair("Left", 1), std::pair("Right", -1)}) {
-    const auto name = [&](const char* bone) { return std::string(side) + bone; };
+    const auto name = [begin = std::string(side)](const char* bone) { return begin + bone; };
     arms += joint(name("Arm").c_str(), fmt::format("{} 35 0", 18 * x).c_str(),
                   joint(name("ForeArm").c_str(), fmt::format("{} 0 0", 28 * x).c_str(),
                         joint(name("Hand").c_str(), fmt::format("{} 0 0", 25 * x).c_str(), site)));
