@@ -137,15 +137,16 @@ std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar*
   return text + "  ]\n}\n";
 }
 
-std::vector<std::byte> png_of(const MapRaster& raster, const std::vector<MadeActuator>& actuators, bool per_triangle) {
-  std::vector<std::uint16_t> grey(raster.actuator.size());
-  std::ranges::transform(raster.actuator, grey.begin(), [&](std::uint16_t actuator) {
-    return actuator == 0 ? std::uint16_t{0} : actuators[actuator - 1U].grey;
+std::vector<std::byte> png_of(const MadeMap& map) {
+  std::vector<std::uint16_t> grey(map.raster.actuator.size());
+  std::ranges::transform(map.raster.actuator, grey.begin(), [&](std::uint16_t actuator) {
+    return actuator == 0 ? std::uint16_t{0} : map.actuators[actuator - 1U].grey;
   });
   std::optional<PngText> text;
-  if (per_triangle) text = {std::string(kMapKeyword), std::string(kTriangleMap)};
-  if (actuators.size() > kMostInEightBits) return grey_png(grey, raster.side, raster.side, text);
-  return grey_png(std::vector<std::uint8_t>(grey.begin(), grey.end()), raster.side, raster.side, text);
+  if (map.triangle_count != 0) text = {std::string(kMapKeyword), std::string(kTriangleMap)};
+  const std::uint32_t side = map.raster.side;
+  if (map.actuators.size() > kMostInEightBits) return grey_png(grey, side, side, text);
+  return grey_png(std::vector<std::uint8_t>(grey.begin(), grey.end()), side, side, text);
 }
 
 std::string name_of(const std::vector<MadeActuator>& actuators, std::uint16_t actuator) {
@@ -217,8 +218,7 @@ MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& se
     map.raster = rasterise(body.surface(), numbered, settings.side, settings.padding);
     map.misplaced_share = misplaced_share(body.surface(), map.raster, numbered);
   }
-  map.files = {png_of(map.raster, map.actuators, map.triangle_count != 0),
-               sidecar_of(map.actuators, map.triangle_count == 0 ? nullptr : &body.avatar())};
+  map.files = {png_of(map), sidecar_of(map.actuators, map.triangle_count == 0 ? nullptr : &body.avatar())};
   warn_of(map.raster, avatar_name, map);
   return map;
 }
