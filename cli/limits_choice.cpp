@@ -67,9 +67,9 @@ void add_limits_options(CLI::App& verb, LimitsChoice& choice) {
                   "No file becomes larger: the recording ends, or goes on in the next part (--split). With --ring, the "
                   "memory that it takes")
       ->type_name("SIZE");
-  verb.add_option(
-          "--split", choice.split,
-          "Write parts NAME-0001.mcap and so on, each a whole trace: 60s, 10min or 500MiB; 'vestige merge' joins them")
+  verb.add_option("--split", choice.split,
+                  "Write parts NAME-0001.mcap and so on, each a whole trace: 60s, 10min or 500MiB; 'vestige merge' "
+                  "joins them. With --force, all parts of an earlier recording go")
       ->type_name("SECONDS|SIZE");
   verb.add_flag("--sync", choice.sync, "Bring each chunk to disk at once, so that a power cut takes 100 ms at most");
 }

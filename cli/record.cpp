@@ -148,9 +148,13 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   // What came in live and found no room cannot be made again.
   if (lost.lost_something() || (options.live.is_live() && recorder.is_full())) invocation.exit_code = kDataLost;
 
+  if (!recorder.removed().empty())
+    warn(fmt::format("removed the earlier recording's {}", name_of(recorder.removed())), verbosity);
+
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;
   json["files"] = recorder.files();
+  json["removed"] = recorder.removed();
   json["frames"] = recorder.frame_count();
   json["recording_s"] = recording.count();
   json["bytes"] = recorder.bytes_written();

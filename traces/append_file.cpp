@@ -71,15 +71,21 @@ void AppendFile::sync() {
     fail("could not bring it to disk", errno);
 }
 
-void AppendFile::secure() {
-  sync();
+void AppendFile::keep() {
+  if (!worth_keeping_) take_name();
+  worth_keeping_ = true;
+}
+
+void AppendFile::take_name() {
   if (!is_file() || current_path_ == path_) return;
+  sync();
   if (::rename(current_path_.c_str(), path_.c_str()) != 0) fail("could not give it its name", errno);
   current_path_ = path_;
 }
 
 void AppendFile::close() {
   sync();
+  take_name();
   const int descriptor = std::exchange(descriptor_, -1);
   if (descriptor != STDOUT_FILENO && ::close(descriptor) != 0) {
     descriptor_ = -1;

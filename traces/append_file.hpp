@@ -13,9 +13,9 @@ namespace vestige {
 /// A file that grows under its own name, for recordings that must survive the death of their program; `OutputFile` is
 /// for everything that should be complete or absent.
 ///
-/// Bytes written before `secure` are its head. A new file appears at once under its name; an existing one that may be
-/// overwritten is replaced only by `secure`, when the head is safely on disk. Destroyed before `secure`, or before
-/// `keep`, it leaves nothing behind. "-", devices and pipes are just written to.
+/// A new file appears at once under its name; an existing one that may be overwritten is replaced only by `keep` or
+/// `close`, by what is then safely on disk. Destroyed before either, it leaves nothing behind, and what was there
+/// untouched. "-", devices and pipes are just written to.
 class AppendFile {
  public:
   /// Throws `Error`: it exists (and `Overwrite::kRefuse`), no such folder, permission.
@@ -27,16 +27,15 @@ class AppendFile {
   /// Appends. When that fails, the bytes of this call are taken away again; a file worth keeping is renamed to
   /// NAME.partial, any other removed, and the `Error` thrown says which, and why.
   void write(std::span<const std::byte> bytes);
-  /// Syncs the head and gives the file its name. Throws `Error`.
-  void secure();
-  /// From now on there is something worth keeping in it.
-  void keep() { worth_keeping_ = true; }
+  /// From now on there is something worth keeping in it, under its name. Throws `Error`.
+  void keep();
   /// Brings what was written to disk. Throws `Error`.
   void sync();
-  /// Syncs and closes. Throws `Error`.
+  /// Syncs, gives the file its name and closes it. Throws `Error`.
   void close();
 
  private:
+  void take_name();
   [[noreturn]] void fail(std::string_view doing, int error_number);
   std::filesystem::path set_aside();
   bool is_file() const { return !current_path_.empty(); }

@@ -9,7 +9,12 @@
 #include <utility>
 
 #include "traces/error.hpp"
+#include "traces/mcap/byte_source.hpp"
+#include "traces/mcap/decode.hpp"
+#include "traces/mcap/record_walker.hpp"
+#include "traces/mcap/summary.hpp"
 #include "traces/nanoseconds.hpp"
+#include "traces/trace_format.hpp"
 
 namespace vestige {
 
@@ -24,9 +29,26 @@ void note_in(TraceWriter& writer, const RecordingNote& note) {
 }
 
 Error too_small(const std::filesystem::path& path, std::uint64_t limit, std::uint64_t needed) {
-  return Error(path.string(),
-               fmt::format("{} bytes are too few: with avatar and map, one frame takes up to {}", limit, needed),
-               "allow more bytes a file");
+  return Error(
+      path.string(),
+      fmt::format("{} bytes a file (--max-size, --split) are too few: with avatar and map, one frame takes up to {}",
+                  limit, needed),
+      "allow more");
+}
+
+/// By its first record.
+bool is_trace(const std::filesystem::path& path) {
+  if (!std::filesystem::is_regular_file(path)) return false;
+  try {
+    const mcap::FileSource source(path);
+    mcap::require_mcap(source);
+    mcap::RawBuffer buffer;
+    const mcap::Bytes header =
+        mcap::read_record_at(source, mcap::kMagicBytes, mcap::Opcode::kHeader, source.size(), buffer);
+    return mcap::decode_header(header).profile == trace_format::kProfile;
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -73,6 +95,7 @@ class Recorder::Implementation {
   std::uint64_t frame_count() const { return finished_frames_ + (writer_ ? writer_->frame_count() : 0); }
   std::uint64_t bytes_written() const { return finished_bytes_ + (writer_ ? writer_->bytes_written() : 0); }
   const std::vector<std::filesystem::path>& files() const { return files_; }
+  const std::vector<std::filesystem::path>& removed() const { return removed_; }
 
  private:
   std::unique_ptr<TraceWriter> open(const std::filesystem::path& path) const;
@@ -83,13 +106,15 @@ class Recorder::Implementation {
   std::optional<std::uint64_t> most_bytes() const;
   void write_ring();
   void await_snapshot();
-  void remove_stale_parts() const;
+  void replace_stale_parts();
 
   Target target_;
   std::unique_ptr<TraceWriter> writer_;
   std::optional<FrameRing> ring_;
   std::future<void> snapshot_;
   std::vector<std::filesystem::path> files_;
+  std::vector<std::filesystem::path> stale_;  ///< parts of an earlier recording
+  std::vector<std::filesystem::path> removed_;
   std::uint64_t finished_frames_ = 0;
   std::uint64_t finished_bytes_ = 0;
   std::uint64_t parts_ = 0;  ///< begun, or snapshots
@@ -102,11 +127,15 @@ class Recorder::Implementation {
 
 Recorder::Implementation::Implementation(Target target) : target_(std::move(target)) {
   const RecordingLimits& limits = target_.limits;
-  if (limits.splits() && target_.writing.overwrite == Overwrite::kRefuse) {
-    const auto parts = existing_parts(target_.path);
-    if (!parts.empty())
-      throw Error(parts.front().string(), "already exists",
+  if (limits.splits()) {
+    stale_ = existing_parts(target_.path);
+    if (!stale_.empty() && target_.writing.overwrite == Overwrite::kRefuse)
+      throw Error(stale_.front().string(), "already exists",
                   "choose another name, or give --force to replace all parts");
+    for (const auto& part : stale_)
+      if (!is_trace(part))
+        throw Error(part.string(), "has the name of a part of an earlier recording, but is no trace of vestige",
+                    "move it away, or choose another name");
   }
   if (limits.ring_s) {
     refuse_overwrite(target_.path, target_.writing.overwrite);
@@ -170,11 +199,10 @@ bool Recorder::Implementation::write(const TraceFrame& frame) {
     has_frame_ = true;
     return true;
   }
-  if (!first_ns_) {
+  const bool is_first = !first_ns_;
+  if (is_first) {
     first_ns_ = frame.time_ns;
     split_ns_ = frame.time_ns;
-    // Now there is something in their place; were we killed later, they would be merged with it.
-    if (target_.limits.splits()) remove_stale_parts();
   }
   const bool beyond = is_beyond_part(frame);
   if (beyond || !has_room_for(frame)) {
@@ -190,6 +218,7 @@ bool Recorder::Implementation::write(const TraceFrame& frame) {
     split_ns_ = *first_ns_ + std::llround(parts * length_ns);
   }
   writer_->write(frame);
+  if (is_first && target_.limits.splits()) replace_stale_parts();
   return true;
 }
 
@@ -246,9 +275,15 @@ void Recorder::Implementation::write_ring() {
   if (snapshot_failure) std::rethrow_exception(snapshot_failure);
 }
 
-void Recorder::Implementation::remove_stale_parts() const {
-  for (const auto& part : existing_parts(target_.path))
-    if (std::find(files_.begin(), files_.end(), part) == files_.end()) std::filesystem::remove(part);
+/// As soon as there is something in their place: were we killed later, they would be merged with it.
+void Recorder::Implementation::replace_stale_parts() {
+  if (stale_.empty()) return;
+  writer_->close_chunk();
+  for (const auto& part : stale_) {
+    if (part == files_.front()) continue;
+    std::filesystem::remove(part);
+    removed_.push_back(part);
+  }
 }
 
 void Recorder::Implementation::finish() {
@@ -258,7 +293,6 @@ void Recorder::Implementation::finish() {
   } else {
     finish_writer();
   }
-  if (target_.limits.splits() && !first_ns_) remove_stale_parts();
 }
 
 Recorder::Recorder(Target target) : implementation_(std::make_unique<Implementation>(std::move(target))) {}
@@ -290,6 +324,9 @@ std::uint64_t Recorder::bytes_written() const {
 }
 const std::vector<std::filesystem::path>& Recorder::files() const {
   return implementation_->files();
+}
+const std::vector<std::filesystem::path>& Recorder::removed() const {
+  return implementation_->removed();
 }
 
 }  // namespace vestige

@@ -38,7 +38,8 @@ class Recorder {
     RecordingLimits limits;
   };
 
-  /// Throws `Error` also where parts of an earlier recording are in the way (`Overwrite::kRefuse`).
+  /// Throws `Error` also where parts of an earlier recording are in the way (`Overwrite::kRefuse`), or other files that
+  /// have the names of such.
   explicit Recorder(Target target);
   /// Without `finish`: keeps what there is, as `TraceWriter` does; a ring becomes a trace.
   ~Recorder();
@@ -63,6 +64,8 @@ class Recorder {
   std::uint64_t bytes_written() const;  ///< in the files; with a ring, known after `finish`
   /// The files that there are, in order.
   const std::vector<std::filesystem::path>& files() const;
+  /// Parts of an earlier recording that went as soon as this one's first frame was in its file.
+  const std::vector<std::filesystem::path>& removed() const;
 
  private:
   class Implementation;

@@ -128,7 +128,7 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
     for (const mcap::Schema& schema : viz_format::schemas()) writer_.write(schema);
     for (const mcap::Channel& channel : viz_format::channels()) writer_.write(channel);
   }
-  file_.secure();
+  file_.sync();
 }
 
 void TraceWriter::Implementation::define(Stream stream, const mcap::StringMap& metadata) {

@@ -5,12 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <thread>
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/error.hpp"
+#include "traces/input_file.hpp"
 #include "traces/recording_thread.hpp"
 #include "traces/trace_summary.hpp"
 
@@ -129,8 +131,29 @@ TEST_F(RecorderTest, PartsOfAnEarlierRecordingGoBeforeTheNewOneCanBeCutShort) {
   overwrite_ = Overwrite::kAllow;
   Recorder recorder(target({.split_s = 0.01}));
   EXPECT_EQ(existing_parts(folder_ / "man.mcap").size(), 5U) << "without a frame nothing is replaced yet";
+  EXPECT_THROW(record({.split_bytes = 100}, 1), Error);
+  EXPECT_EQ(existing_parts(folder_ / "man.mcap").size(), 5U) << "not even one frame fits";
+  EXPECT_EQ(indexes(folder_ / "man-0001.mcap"), range(0, 10)) << "the earlier one";
   recorder.write(test::frame(0, kNodes, kColliders));
   EXPECT_THAT(existing_parts(folder_ / "man.mcap"), ElementsAre(folder_ / "man-0001.mcap"));
+  EXPECT_EQ(recorder.removed().size(), 4U);
+}
+
+TEST_F(RecorderTest, WhatOnlyHasTheNameOfAPartIsNotRemoved) {
+  std::ofstream(folder_ / "man-0009.mcap") << "thesis";
+  overwrite_ = Overwrite::kAllow;
+  EXPECT_THROW(record({.split_s = 0.01}, 1), Error);
+  EXPECT_EQ(read_text_file(folder_ / "man-0009.mcap"), "thesis");
+}
+
+TEST_F(RecorderTest, AnEarlierRecordingStaysUntilAFrameCanReplaceIt) {
+  record({}, 10);
+  overwrite_ = Overwrite::kAllow;
+  EXPECT_THROW(record({.max_bytes = 100}, 1), Error);
+  { const Recorder without_frames(target({})); }
+  EXPECT_EQ(indexes(folder_ / "man.mcap"), range(0, 10));
+  record({}, 5);
+  EXPECT_EQ(indexes(folder_ / "man.mcap"), range(0, 5));
 }
 
 TEST_F(RecorderTest, ARingKeepsTheLastSecondsOnly) {
