@@ -132,6 +132,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
     check_outputs(all, {options.file}, options.common);
   }
   catch_interrupts();
+  require_frames(reader, options.file);
   const std::uint64_t total = reader.frame_count();
   const Overwrite overwrite = options.common.overwrite();
   std::vector<std::unique_ptr<FrameFile>> files;

@@ -83,6 +83,9 @@ void expand_folder(ImportOptions& options) {
   take("actuator_map.png", options.map);
   if (options.poses.empty())
     throw Error(options.from, "holds no poses.csv", "name a folder that 'vestige export' wrote");
+  if (options.avatar.empty())
+    throw Error(options.from, "holds no avatar.glb",
+                "put it back, or name --poses, --colliders and --avatar one by one");
   if (options.map.empty()) options.map = "none";
 }
 
@@ -211,11 +214,13 @@ void run_import(ImportOptions options, Invocation& invocation) {
   // The first frame is read before a file is begun: most mistakes show there.
   bool more = frames.next_pose(frame);
   if (more) frames.add_colliders(frame);
+  bool any_collider = false;
   StagedTrace trace(options.output, session, scene.avatar, scene.attachments(), writing);
   {
     Progress progress("Importing", verbosity);
     while (more) {
       trace.writer().write(frame);
+      any_collider = any_collider || !frame.colliders.empty();
       if (!progress.update(frames.share())) throw Error(options.output, "importing was stopped", "");
       more = frames.next_pose(frame);
       if (more) frames.add_colliders(frame);
@@ -223,6 +228,10 @@ void run_import(ImportOptions options, Invocation& invocation) {
   }
   frames.finish();
   trace.commit();
+  if (!options.colliders.empty() && options.from.empty() && !any_collider)
+    warn(fmt::format("--colliders {}: no frame has a collider; are its times those of the motion, 0 to {} s?",
+                     options.colliders, seconds(frame)),
+         verbosity);
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;

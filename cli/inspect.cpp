@@ -41,6 +41,7 @@ nlohmann::ordered_json to_json(const McapSummary& summary) {
                                  {"dropped", summary.dropped},
                                  {"dropped_by_topic", summary.dropped_by_topic},
                                  {"complete", summary.complete},
+                                 {"recovered", summary.recovered},
                                  {"warnings", summary.warnings}};
   if (summary.session) json["session"] = *summary.session;
   return json;
@@ -61,6 +62,7 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
     for (const auto& [topic, count] : summary.dropped_by_topic)
       text += fmt::format("  {:<20} {:>9} messages lost\n", topic, count);
   }
+  if (!summary.recovered.empty()) text += fmt::format("it {}\n", summary.recovered);
   if (verbose && summary.session)
     for (const auto& [key, value] : *summary.session) text += fmt::format("  {}: {}\n", key, value);
   return text;

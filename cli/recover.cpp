@@ -31,9 +31,11 @@ nlohmann::ordered_json to_json(const Recovery& recovery, const RecoverOptions& o
                                  {"damaged_attachments", recovery.damaged_attachments},
                                  {"metadata", recovery.metadata},
                                  {"bytes_lost", recovery.bytes_lost},
+                                 {"another_file_at", nullptr},
                                  {"unexplained_change", recovery.unexplained_change},
                                  {"repaired", recovery.repaired}};
   if (recovery.messages_lost) json["messages_lost"] = *recovery.messages_lost;
+  if (recovery.another_file_at) json["another_file_at"] = *recovery.another_file_at;
   return json;
 }
 
@@ -42,6 +44,11 @@ void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
     warn(fmt::format("{}: {}", options.file, text), options.common.verbosity());
   };
   if (recovery.bytes_lost > 0) say(fmt::format("{} bytes are lost", recovery.bytes_lost));
+  if (const auto at = recovery.another_file_at)
+    say(
+        fmt::format("at byte {} a second MCAP file begins, which is left out: `tail -c +{} {} > SECOND.mcap` makes a "
+                    "file of it",
+                    *at, *at + 1, options.file));
   if (recovery.chunks_lost > 0) say(fmt::format("{} chunks are lost", recovery.chunks_lost));
   if (recovery.chunks_partly > 0)
     say(

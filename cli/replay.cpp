@@ -351,7 +351,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
                     {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get(), drive.get()},
                     verification.expectation(), changes, [&](double share) { return progress.update(share); });
   }
-  if (result.frames == 0) throw Error(options.trace, "holds no frame", "record it again");
+  if (result.frames == 0) require_frames(trace.reader, options.trace);
   if (textures) textures->write(*texture_file);
   if (contacts) contacts->commit();
   if (texture_file) texture_file->commit();

@@ -12,7 +12,7 @@ void warn_of_damage(const std::string& file, const std::vector<mcap::Damage>& da
   constexpr std::size_t kMostTold = 20;
   for (std::size_t i = 0; i < damages.size() && i < kMostTold; ++i) warn(describe(damages[i], file), verbosity);
   if (damages.size() > kMostTold) warn(fmt::format("{}: and {} more", file, damages.size() - kMostTold), verbosity);
-  if (!damages.empty()) warn(fmt::format("{}: 'vestige recover' keeps more of it", file), verbosity);
+  if (!damages.empty()) warn(fmt::format("{}: 'vestige recover' may keep more of it", file), verbosity);
 }
 
 void run_rewrite(const std::string& file, const std::string& output, const RewriteOptions& how,

@@ -61,6 +61,7 @@ OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
     : reader(path), avatar(parse_avatar_glb(reader.avatar_glb(), path + ", avatar.glb")) {
   if (!reader.actuator_map_png().empty())
     map = parse_actuator_map(actuator_map_files(reader), avatar, path + ", actuator_map.png");
+  if (!reader.recovered().empty()) warn(fmt::format("{}: {}", path, reader.recovered()), verbosity);
   if (verbosity == Verbosity::kVerbose) warn_all(avatar.warnings, verbosity);
 }
 

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <utility>
 
+#include "cli/help/validators.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "transport/frame_file_sink.hpp"
@@ -85,7 +86,10 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
           },
           ""))
       ->type_name("DEVICE|URL|-");
-  add("--baud", choice.baud, "Of the serial line, as the board was built for")->capture_default_str()->type_name("N");
+  add("--baud", choice.baud, "Of the serial line, as the board was built for")
+      ->capture_default_str()
+      ->check(help::whole_number(1, 4'000'000))
+      ->type_name("N");
   add("--ttl", choice.ttl_ms,
       "The board switches all off when it hears nothing newer for so long, in ms: 50 to 2550 in steps of 10")
       ->capture_default_str()

@@ -215,7 +215,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   const std::size_t actuator_count = trace.map.actuator_count;
   if (actuator_count == 0)
     throw Error(options.trace, "holds no actuator map, so that nothing would be felt", "name one: --map FILE.png");
-  if (trace.reader.frame_count() == 0) throw Error(options.trace, "holds no frame", "record it again");
+  require_frames(trace.reader, options.trace);
   const std::size_t colliders = trace.reader.collider_ids().size();
   const std::string name =
       options.choice.detector == "auto"

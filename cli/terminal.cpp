@@ -19,11 +19,25 @@ namespace {
 
 constexpr int kBarCells = 30;
 
+/// One Ctrl-C can arrive twice: timeout(1), for one, signals its child and the group that the child is in.
+constexpr double kSameInterrupt_s = 0.5;
+
 volatile std::sig_atomic_t interrupt_seen = 0;
+timespec interrupted_at = {};
 
 void on_interrupt(int signal_number) {
-  interrupt_seen = 1;
+  if (interrupt_seen == 0) {
+    ::clock_gettime(CLOCK_MONOTONIC, &interrupted_at);
+    interrupt_seen = 1;
+    return;
+  }
+  timespec now = {};
+  ::clock_gettime(CLOCK_MONOTONIC, &now);
+  const double since_s = static_cast<double>(now.tv_sec - interrupted_at.tv_sec) +
+                         1e-9 * static_cast<double>(now.tv_nsec - interrupted_at.tv_nsec);
+  if (since_s < kSameInterrupt_s) return;
   std::signal(signal_number, SIG_DFL);
+  std::raise(signal_number);  // comes as soon as this returns
 }
 
 }  // namespace

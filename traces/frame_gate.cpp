@@ -1,6 +1,9 @@
 #include "traces/frame_gate.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <utility>
 
@@ -14,6 +17,22 @@ namespace {
 
 constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20;
 constexpr auto kLatest_ns = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+
+// What no CRC vouches for is not believed beyond these.
+constexpr double kFarthest_m = 1e9;
+constexpr float kLargestScale = 1e6F;
+constexpr float kRotationTolerance = 0.1F;
+constexpr std::uint64_t kShortestFrame_ns = 1000;
+constexpr std::size_t kLookedBack = 64;  ///< frames that may be wrong one after the other without ending a sequence
+
+bool is_near(const glm::dvec3& position_m) {
+  return glm::all(glm::lessThanEqual(glm::abs(position_m), glm::dvec3(kFarthest_m)));  // no NaN is
+}
+
+bool is_plausible_node(const NodeLocal& node) {
+  return is_near(node.translation) && glm::all(glm::lessThanEqual(glm::abs(node.scale), glm::vec3(kLargestScale))) &&
+         std::abs(glm::dot(node.rotation, node.rotation) - 1) <= kRotationTolerance;
+}
 
 bool is_frame_part(Stream stream) {
   return stream == Stream::kPose || stream == Stream::kColliders;
@@ -88,13 +107,31 @@ bool FrameGate::is_readable(const Held& held) {
   return true;
 }
 
+/// Whether a readable message says nothing that no recorder would.
+bool FrameGate::is_plausible(const Held& held) {
+  const auto time_ns = static_cast<std::int64_t>(held.message.log_time);
+  if (held.stream == Stream::kPose) {
+    decoder_.pose(held.data, pose_);
+    return decoder_.pose_time_ns(held.data) == time_ns && is_near(pose_.origin_m) &&
+           std::all_of(pose_.nodes.begin(), pose_.nodes.end(), is_plausible_node);
+  }
+  if (held.stream == Stream::kColliders) {
+    decoder_.colliders(held.data, colliders_);
+    return decoder_.colliders_time_ns(held.data) == time_ns &&
+           std::all_of(colliders_.begin(), colliders_.end(),
+                       [](const ColliderSample& collider) { return is_near(collider.position_m); });
+  }
+  return true;
+}
+
 bool FrameGate::clean(Group& group) {
   std::size_t poses = 0;
   std::size_t colliders = 0;
   std::uint64_t colliders_time_ns = 0;
   bool readable = true;
   std::erase_if(group.messages, [&](const Held& held) {
-    const bool keep = is_readable(held) && !(held.stream == Stream::kPose && poses > 0) &&
+    const bool is_good = is_readable(held) && (group.trust == Trust::kVerified || is_plausible(held));
+    const bool keep = is_good && !(held.stream == Stream::kPose && poses > 0) &&
                       !(held.stream == Stream::kColliders && colliders > 0);
     if (keep && held.stream == Stream::kPose) {
       ++poses;
@@ -123,12 +160,40 @@ void FrameGate::leave_out_frame(Group& group) {
   group.has_frame = false;
 }
 
+std::vector<bool> FrameGate::longest_sequence(const Group* next) const {
+  const auto can_follow = [](std::uint32_t sequence, std::uint64_t time_ns, const Group& after) {
+    return after.sequence > sequence && after.time_ns >= time_ns &&
+           after.sequence - sequence - 1 <= (after.time_ns - time_ns) / kShortestFrame_ns;
+  };
+  std::vector<std::size_t> length(waiting_.size(), 0);
+  std::vector<std::size_t> before(waiting_.size());
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < waiting_.size(); ++i) {
+    const Group& group = waiting_[i];
+    before[i] = i;
+    const bool precedes = next == nullptr || (group.sequence < next->sequence && group.time_ns <= next->time_ns);
+    if (!group.has_frame || !precedes) continue;
+    if (!last_sequence_ || can_follow(*last_sequence_, last_time_ns_, group)) length[i] = 1;
+    for (std::size_t j = i - std::min(i, kLookedBack); j < i; ++j) {
+      if (length[j] < std::max<std::size_t>(length[i], 1)) continue;
+      if (!can_follow(waiting_[j].sequence, waiting_[j].time_ns, group)) continue;
+      length[i] = length[j] + 1;
+      before[i] = j;
+    }
+    if (length[i] > length[last]) last = i;
+  }
+  std::vector<bool> chosen(waiting_.size(), false);
+  if (chosen.empty() || length[last] == 0) return chosen;
+  chosen[last] = true;
+  for (std::size_t i = last; before[i] != i; i = before[i]) chosen[before[i]] = true;
+  return chosen;
+}
+
 void FrameGate::release(const Group* next) {
-  for (Group& group : waiting_) {
-    const bool after_last = !last_sequence_ || (group.sequence > *last_sequence_ && group.time_ns >= last_time_ns_);
-    const bool before_next = next == nullptr || (group.sequence < next->sequence && group.time_ns <= next->time_ns);
-    if (group.has_frame && !(after_last && before_next)) leave_out_frame(group);
-    write(group);
+  const std::vector<bool> chosen = longest_sequence(next);
+  for (std::size_t i = 0; i < waiting_.size(); ++i) {
+    if (waiting_[i].has_frame && !chosen[i]) leave_out_frame(waiting_[i]);
+    write(waiting_[i]);
   }
   waiting_.clear();
   waiting_bytes_ = 0;

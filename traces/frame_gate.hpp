@@ -16,9 +16,10 @@ namespace vestige {
 /// Lets through what makes a trace that `TraceReader` reads to its end: whole frames that fit the avatar and come one
 /// after the other. Messages of other channels pass.
 ///
-/// A frame that no CRC vouches for must have a pose and colliders that agree on frame and time, and must lie between
-/// the frames around it that are vouched for: until the next of those it is held back. Needs one frame of memory, or
-/// 16 MiB where many unverified ones follow each other.
+/// A frame that no CRC vouches for must have a pose and colliders that agree on frame and time and that a recorder
+/// could have written, and must lie between the frames around it that are vouched for: until the next of those it is
+/// held back. Of those held back, the longest sequence passes that can have been recorded, at 1 MHz at most. Needs one
+/// frame of memory, or 16 MiB where many unverified ones follow each other.
 class FrameGate {
  public:
   using Write = std::function<void(const mcap::Message&)>;
@@ -56,6 +57,8 @@ class FrameGate {
   /// Leaves out what cannot be read; returns whether a good frame is left.
   bool clean(Group& group);
   bool is_readable(const Held& held);
+  bool is_plausible(const Held& held);
+  std::vector<bool> longest_sequence(const Group* next) const;
   void release(const Group* next);
   void write(Group& group);
   void leave_out_frame(Group& group);
@@ -65,6 +68,7 @@ class FrameGate {
   std::optional<std::size_t> node_count_;
   MessageDecoder decoder_;
   std::vector<ColliderSample> colliders_;
+  Pose pose_;
   Group group_;                ///< being put together
   std::deque<Group> waiting_;  ///< unverified frames
   std::size_t waiting_bytes_ = 0;

@@ -152,6 +152,16 @@ void LiveNdjson::leave_out(std::string_view cause) {
   if (problems_.size() < kMostBadLinesTold) problems_.push_back(fmt::format("line {}: {}", lines_, cause));
 }
 
+template <typename AnyJson>
+void LiveNdjson::note_unknown(const AnyJson& object, std::initializer_list<std::string_view> known) {
+  for (const auto& [name, value] : object.items()) {
+    if (std::find(known.begin(), known.end(), name) != known.end() || unknown_.size() >= kMostBadLinesTold) continue;
+    if (unknown_.insert(name).second)
+      problems_.push_back(fmt::format("line {}: '{}' means nothing and is ignored; there are {}", lines_, name,
+                                      fmt::join(known, ", ")));
+  }
+}
+
 void LiveNdjson::push(std::string_view bytes, std::int64_t now_ns, const TakeFrame& take) {
   while (!bytes.empty()) {
     const std::size_t end = bytes.find('\n');
@@ -190,6 +200,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
   try {
     const Json json = Json::parse(line);
     if (!json.is_object()) throw Malformed("is no JSON object");
+    note_unknown(json, {"frame", "time_s", "pose", "colliders", "teleported"});
     TraceFrame frame;
     frame.index = next_index_;
     if (const auto number = json.find("frame"); number != json.end()) {
@@ -203,6 +214,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     frame.pose = pose_;
     if (const auto pose = json.find("pose"); pose != json.end()) {
       if (!pose->is_object()) throw Malformed("'pose' is no object");
+      note_unknown(*pose, {"origin", "nodes", "joints"});
       frame.pose.origin_m = pose->contains("origin") ? position_of((*pose)["origin"], "origin") : rest_.origin_m;
       const FloatJson floats = pose_in_floats(line, *pose);
       if (const auto nodes = floats.find("nodes"); nodes != floats.end()) {
@@ -212,14 +224,17 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
         for (const auto& [name, joint] : joints->items()) {
           const auto node = node_of_.find(name);
           if (node == node_of_.end()) throw Malformed(fmt::format("the avatar has no node '{}'", name));
+          note_unknown(joint, {"t", "r", "s"});
           read_joint(joint, frame.pose.nodes[node->second]);
         }
       } else {
         throw Malformed("'pose' has neither 'nodes' nor 'joints'");
       }
     }
-    if (const auto colliders = json.find("colliders"); colliders != json.end())
+    if (const auto colliders = json.find("colliders"); colliders != json.end()) {
       frame.colliders = colliders_of(*colliders);
+      for (const Json& collider : *colliders) note_unknown(collider, {"id", "position"});
+    }
     if (const auto teleported = json.find("teleported"); teleported != json.end())
       frame.teleported = teleported_of(*teleported);
     pose_ = frame.pose;

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <initializer_list>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,12 +30,15 @@ class LiveNdjson {
   void finish(std::int64_t now_ns, const TakeFrame& take);
 
   std::uint64_t malformed() const { return malformed_; }  ///< lines left out
-  /// Why the first few were, one sentence each.
+  /// Why the first few were, one sentence each; and fields that mean nothing, which are ignored.
   const std::vector<std::string>& problems() const { return problems_; }
 
  private:
   void take_line(std::string_view line, std::int64_t now_ns, const TakeFrame& take);
   void leave_out(std::string_view cause);
+  /// Fields of an object that are none of `known`: told of once each.
+  template <typename AnyJson>
+  void note_unknown(const AnyJson& object, std::initializer_list<std::string_view> known);
 
   const std::map<std::string, std::size_t, std::less<>> node_of_;
   const Pose rest_;
@@ -45,6 +50,7 @@ class LiveNdjson {
   std::int64_t last_ns_ = 0;
   std::uint64_t malformed_ = 0;
   std::vector<std::string> problems_;
+  std::set<std::string> unknown_;  ///< fields that were told of
 };
 
 }  // namespace vestige

@@ -27,7 +27,6 @@ using mcap::RecordPlace;
 using mcap::Trust;
 using trace_format::Stream;
 
-constexpr std::string_view kRecoveredName = "recovered";  // traces/FORMAT.md
 constexpr std::string_view kDamagedSuffix = ".damaged";
 constexpr std::size_t kMostRepairsTold = 100;
 
@@ -131,6 +130,11 @@ void Recoverer::take_damages() {
 /// Tries what stands where the framing is broken, up to the next record that can be believed.
 void Recoverer::take_damage(const mcap::Damage& damage) {
   const bool behind_footer = walker_.footer_seen() && damage.offset >= walker_.position();
+  if (behind_footer && damage.bytes > mcap::kMagicBytes) {
+    result_.bytes_lost += damage.bytes;
+    if (damage.effect == mcap::DamageEffect::kAnotherFile) result_.another_file_at = damage.offset;
+    return;
+  }
   const bool mended = damage.effect == mcap::DamageEffect::kMended;
   if (damage.bytes == 0 || damage.offset < mcap::kMagicBytes || behind_footer || mended) {
     repaired(fmt::format("at byte {}: {}", damage.offset, damage.what));
@@ -333,7 +337,7 @@ void Recoverer::finish() {
   output_.write_definitions();
   if (result_.lost_something())
     output_.write(mcap::Metadata{
-        .name = std::string(kRecoveredName),
+        .name = std::string(trace_format::kRecoveredName),
         .metadata = {{"bytes_lost", fmt::format("{}", result_.bytes_lost)},
                      {"chunks_lost", fmt::format("{}", result_.chunks_lost)},
                      {"chunks_partly_lost", fmt::format("{}", result_.chunks_partly)},
@@ -348,6 +352,20 @@ void Recoverer::finish() {
 Recovery recover_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink,
                       const std::function<bool(double)>& progress) {
   return Recoverer(source, sink, gather_definitions(source)).run(progress);
+}
+
+std::string describe_recovered(const mcap::StringMap& metadata) {
+  constexpr std::array kCounts = {std::pair{"bytes_lost", "bytes lost"}, std::pair{"chunks_lost", "chunks lost"},
+                                  std::pair{"messages_lost", "messages lost"},
+                                  std::pair{"messages_left_out", "messages left out"},
+                                  std::pair{"messages_unverified", "messages that no CRC vouches for"}};
+  std::string counts;
+  for (const auto& [key, meaning] : kCounts) {
+    const auto found = metadata.find(key);
+    if (found == metadata.end() || found->second == "0") continue;
+    counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", found->second, meaning);
+  }
+  return "was recovered from a damaged file" + counts;
 }
 
 }  // namespace vestige

@@ -23,7 +23,8 @@ struct Recovery {
   std::uint64_t attachments = 0;                 ///< written
   std::vector<std::string> damaged_attachments;  ///< written too, as NAME.damaged
   std::uint64_t metadata = 0;
-  std::uint64_t bytes_lost = 0;       ///< of the file, that nothing could be made of
+  std::uint64_t bytes_lost = 0;  ///< of the file, that nothing could be made of, or that stand behind its end
+  std::optional<std::uint64_t> another_file_at;  ///< the byte where a second MCAP file begins, which is left out
   bool unexplained_change = false;    ///< a byte that no other CRC covers has changed: the data section's CRC is wrong
   std::vector<std::string> repaired;  ///< what was broken and is whole again, one sentence each; the first 100
 
@@ -45,5 +46,9 @@ struct Recovery {
 /// be recovered, reading failed, stopped; and what `sink` throws.
 Recovery recover_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink,
                       const std::function<bool(double)>& progress);
+
+/// What the metadata record `recovered` of a file says, as one clause: "was recovered from a damaged file: 12 messages
+/// lost, 3 that no CRC vouches for".
+std::string describe_recovered(const mcap::StringMap& metadata);
 
 }  // namespace vestige

@@ -12,6 +12,7 @@
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/message_stream.hpp"
+#include "traces/recover.hpp"
 #include "traces/sha256.hpp"
 #include "traces/trace.hpp"
 #include "traces/trace_messages.hpp"
@@ -146,6 +147,8 @@ class Contents {
   explicit Contents(TraceCheck& result) : result_(result) {}
 
   void take(const mcap::Metadata& metadata, std::uint64_t offset) {
+    if (metadata.name == trace_format::kRecoveredName)
+      report(offset, "it " + describe_recovered(metadata.metadata), "what was lost is not in it");
     if (metadata.name != trace_format::kSessionName) return;
     session_ = metadata.metadata;
     session_offset_ = offset;
@@ -269,6 +272,8 @@ TraceCheck Checker::finish() {
     result_.problems.add({.what = "no channel /pose says which nodes the poses have",
                           .consequence = "`vestige replay` refuses the file"});
   contents_.finish(node_count_);
+  if (result_.frames == 0 && result_.problems.count() == 0)
+    result_.problems.add({.what = "it holds no frame", .consequence = "there is nothing to replay"});
   return std::move(result_);
 }
 

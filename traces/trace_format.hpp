@@ -23,6 +23,7 @@ inline constexpr std::string_view kProfile = "vestige";
 inline constexpr std::string_view kVersion = "1";
 inline constexpr std::string_view kVersionKey = "format_version";
 inline constexpr std::string_view kSessionName = "session";
+inline constexpr std::string_view kRecoveredName = "recovered";  // what `recover` lost
 inline constexpr std::string_view kSha256Prefix = "sha256:";
 inline constexpr std::string_view kAvatarName = "avatar.glb";
 inline constexpr std::string_view kMapImageName = "actuator_map.png";

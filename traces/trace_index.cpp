@@ -21,6 +21,7 @@ void take_header(const mcap::Header& header, TraceIndex& index) {
 
 void take_metadata(mcap::Metadata metadata, TraceIndex& index) {
   if (metadata.name == trace_format::kSessionName) index.session = std::move(metadata.metadata);
+  if (metadata.name == trace_format::kRecoveredName) index.recovered = std::move(metadata.metadata);
 }
 
 void take_attachment(mcap::Bytes content, TraceIndex& index) {

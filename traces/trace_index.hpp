@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +16,7 @@ namespace vestige {
 struct TraceIndex {
   bool profile_is_ours = false;
   Session session;
+  std::optional<mcap::StringMap> recovered;  ///< the metadata record of that name
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> actuator_map_png;
   std::vector<std::byte> actuator_map_json;

@@ -105,6 +105,14 @@ std::size_t MessageDecoder::pose_node_count(mcap::Bytes message) {
   return nodes == nullptr ? 0 : nodes->size();
 }
 
+std::int64_t MessageDecoder::pose_time_ns(mcap::Bytes message) {
+  return verified<trace::PoseFrame>(message).time_ns();
+}
+
+std::int64_t MessageDecoder::colliders_time_ns(mcap::Bytes message) {
+  return verified<trace::ColliderFrame>(message).time_ns();
+}
+
 void MessageDecoder::colliders(mcap::Bytes message, std::vector<ColliderSample>& colliders) {
   const auto* vector = verified<trace::ColliderFrame>(message).colliders();
   colliders.clear();

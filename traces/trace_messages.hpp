@@ -45,6 +45,8 @@ class MessageDecoder {
   std::size_t pose(mcap::Bytes message, Pose& pose);
   /// As above, without decoding the nodes.
   std::size_t pose_node_count(mcap::Bytes message);
+  std::int64_t pose_time_ns(mcap::Bytes message);
+  std::int64_t colliders_time_ns(mcap::Bytes message);
   /// An id that occurs twice is malformed.
   void colliders(mcap::Bytes message, std::vector<ColliderSample>& colliders);
   /// The text in it is valid until the next call.

@@ -10,6 +10,7 @@
 #include "traces/error.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/message_stream.hpp"
+#include "traces/recover.hpp"
 #include "traces/trace_index.hpp"
 #include "traces/trace_messages.hpp"
 #include "traces/trace_nodes.hpp"
@@ -21,12 +22,15 @@ namespace {
 using mcap::Malformed;
 using trace_format::Stream;
 
+constexpr std::string_view kRecover = "`vestige recover` may still find some of it";
+
 }  // namespace
 
 class TraceReader::Implementation {
  public:
   explicit Implementation(const std::filesystem::path& path)
       : source_(path), index_(index_trace(source_)), frames_(*this, PoseDecoding::kFull) {
+    if (index_.recovered) recovered_ = describe_recovered(*index_.recovered);
     for (const mcap::Damage& damage : index_.damages) warn(damage);
     require_trace();
   }
@@ -34,6 +38,7 @@ class TraceReader::Implementation {
   const TraceIndex& index() const { return index_; }
   const std::vector<std::string>& node_names() const { return node_names_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
+  const std::string& recovered() const { return recovered_; }
   bool complete() const { return index_.has_footer && warnings_.empty(); }
   bool next(TraceFrame& frame) { return frames_.next(frame); }
   void rewind() { frames_.rewind(); }
@@ -90,6 +95,7 @@ class TraceReader::Implementation {
   TraceIndex index_;
   std::vector<std::string> node_names_;
   std::vector<std::string> warnings_;
+  std::string recovered_;
   std::optional<Census> census_;
   Frames frames_;
 };
@@ -105,7 +111,7 @@ void TraceReader::Implementation::require_trace() {
   frames_.rewind();
   const mcap::Channel* pose = index_.streams.find(Stream::kPose);
   if (pose == nullptr && index_.profile_is_ours && !warnings_.empty())
-    throw Error(warnings_.front(), "so that it holds no frame", "record it again");
+    throw Error(warnings_.front(), "so that it holds no frame", kRecover);
   if (pose == nullptr) {
     throw Error(file,
                 index_.profile_is_ours ? "is a trace without the channel /pose"
@@ -117,12 +123,12 @@ void TraceReader::Implementation::require_trace() {
   node_names_ = std::move(*names);
   if (index_.avatar_glb.empty()) {
     throw Error(file, warnings_.empty() ? "has no attachment avatar.glb" : "has no undamaged attachment avatar.glb",
-                "record it again, or attach the avatar it was recorded with");
+                "record it again, or take an undamaged copy of the file");
   }
   const auto nodes = glb_node_count(index_.avatar_glb);
   if (nodes && *nodes != node_names_.size()) {
     throw Error(file, fmt::format("its poses have {} nodes, its avatar has {}", node_names_.size(), *nodes),
-                "attach the avatar it was recorded with");
+                "record it again");
   }
 }
 
@@ -160,7 +166,7 @@ void TraceReader::Implementation::Frames::rewind() {
 void TraceReader::Implementation::Frames::refuse(std::string_view cause) const {
   throw Error(owner_.source_.name(),
               fmt::format("at byte {}: frame {}: {}", message_.offset, message_.message.sequence, cause),
-              "the file was put together wrongly: record it again");
+              "`vestige recover` leaves out what does not fit");
 }
 
 bool TraceReader::Implementation::Frames::next(TraceFrame& frame) {
@@ -263,6 +269,16 @@ bool TraceReader::complete() const {
 }
 const std::vector<std::string>& TraceReader::warnings() const {
   return implementation_->warnings();
+}
+
+const std::string& TraceReader::recovered() const {
+  return implementation_->recovered();
+}
+
+void require_frames(TraceReader& trace, const std::string& name) {
+  if (trace.frame_count() > 0) return;
+  if (!trace.warnings().empty()) throw Error(trace.warnings().front(), "so that it holds no frame", kRecover);
+  throw Error(name, "holds no frame", "record it again");
 }
 
 std::vector<std::string> damage_of(const TraceReader& trace, std::string_view name) {

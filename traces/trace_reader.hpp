@@ -53,11 +53,16 @@ class TraceReader {
   bool complete() const;
   /// What is wrong with the file, one sentence each, with byte offset. Grows while reading; nothing is said twice.
   const std::vector<std::string>& warnings() const;
+  /// What `recover` noted in the file if it wrote it from a damaged one: see `describe_recovered`. Else empty.
+  const std::string& recovered() const;
 
  private:
   class Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
+
+/// Throws `Error` where the trace holds no frame at all, and says why.
+void require_frames(TraceReader& trace, const std::string& name);
 
 /// What is wrong with a trace that is not `complete()`: its warnings, or else that; `name` stands in it. Empty for one
 /// that is.

@@ -12,6 +12,7 @@
 #include "traces/mcap/summary.hpp"
 #include "traces/message_stream.hpp"
 #include "traces/nanoseconds.hpp"
+#include "traces/recover.hpp"
 #include "traces/sha256.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_index.hpp"
@@ -45,6 +46,7 @@ class Gatherer {
     channels_.insert_or_assign(channel.id, std::move(channel));
   }
   void take(mcap::Metadata metadata) {
+    if (metadata.name == trace_format::kRecoveredName) summary_.recovered = describe_recovered(metadata.metadata);
     if (metadata.name == trace_format::kSessionName) summary_.session = std::move(metadata.metadata);
   }
   void take(const mcap::Attachment& attachment) {

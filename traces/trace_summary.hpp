@@ -39,6 +39,7 @@ struct McapSummary {
   std::uint64_t uncompressed_bytes = 0;
   std::vector<Attachment> attachments;
   std::optional<Session> session;  ///< the metadata record `session`, where there is one
+  std::string recovered;           ///< as `TraceReader::recovered`
   std::uint64_t start_ns = 0;      ///< first log_time
   std::uint64_t end_ns = 0;        ///< last log_time
   double duration_s = 0;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/batch/batch_plan.hpp"
 #include "traces/input_file.hpp"
 #include "traces/output_file.hpp"
 
@@ -188,6 +189,7 @@ std::optional<nlohmann::ordered_json> BatchFolder::finished(const std::string& n
     return json.is_object() && json.contains(field) && json[field] == value;
   };
   if (!says("key", key) || !says("trace_sha256", trace_sha256)) return std::nullopt;
+  if (!says("contacts_sha256", sha256_of_file(contacts(name)))) return std::nullopt;
   return json;
 }
 

@@ -112,6 +112,9 @@ std::optional<nlohmann::ordered_json> item_in(const ShardFolder& shard, const st
   if (!item.contains("key") || item["key"] != item_key(shard.run["batch"]))
     throw Error(path, "is a result of other maps, laws, options or another program than run.json says",
                 "run the shard's command again");
+  if (!item.contains("contacts_sha256") || item["contacts_sha256"] != sha256_of_file(contacts))
+    throw Error(contacts, "is not what its batch wrote: its SHA-256 is another",
+                "run the shard's command again, which makes it anew");
   return item;
 }
 

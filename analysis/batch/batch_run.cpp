@@ -256,7 +256,7 @@ class Run {
       shares_[i] = static_cast<double>(frames) / frame_count;
     }
     times.reading_s += lap_s();
-    if (frames == 0) throw Error(path, "holds no frame", "record it again");
+    require_frames(reader, path);
     item["frames"] = frames;
     item["colliders"] = ids.size();
     item["contacts"] = contacts;
@@ -283,8 +283,9 @@ class Run {
     return json;
   }
 
-  void store(const BatchTrace& trace, const Computed& computed, const ItemTimes& times) const {
+  void store(const BatchTrace& trace, Computed& computed, const ItemTimes& times) const {
     write_contact_recording(folder_.contacts(trace.name), *computed.recording);
+    computed.item["contacts_sha256"] = sha256_of_file(folder_.contacts(trace.name));
     write_json_file(folder_.item_run(trace.name), to_json(times));
     write_json_file(folder_.item(trace.name), computed.item);  // last: it says that all is there
   }

@@ -253,7 +253,7 @@ int draw_paraview(const Options& options) {
     result = export_to_paraview(trace, subject, settings, series, [&](double share) { return progress.update(share); });
   }
   const int damage = report_damage(options, trace);
-  if (result.frames == 0) throw Error(input.string(), "holds no frame", "record it again");
+  if (result.frames == 0) require_frames(trace, input.string());
   series.commit();
   if (result.interrupted) warn(options, fmt::format("stopped after {} frames", result.frames));
   if (!options.quiet)

@@ -32,9 +32,8 @@ namespace vestige::plot {
 namespace {
 
 constexpr std::size_t kRankedShown = 40;
-/// The batch takes a trace without its contacts for unfinished, and whatever else is there for finished.
 constexpr std::string_view kContactsRemedy =
-    "delete this file, and run the same 'vestige batch' (or 'batch merge') again: it writes the file anew";
+    "run the same 'vestige batch' (or 'batch merge') again: it writes the file anew";
 
 /// Thrown where the user stopped; not an error.
 struct Stopped {};

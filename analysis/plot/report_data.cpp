@@ -147,6 +147,11 @@ void read_law_options(const JsonField& options, ReportData& data) {
 void read_run(const std::filesystem::path& file, ReportData& data) {
   const nlohmann::json json = read_json(file, kRemedy);
   const JsonField run(json, file, kRemedy);
+  if (run.has("shard")) {
+    const double count = run.at("shard").at("count").within(1, kMost);
+    const double number = run.at("shard").at("number").within(1, count);
+    if (count > 1) data.shard = fmt::format("{:.0f} of {:.0f}", number, count);
+  }
   if (run.has("complete")) data.complete = truth(run.at("complete"));
   if (!data.complete && !run.has("traces"))
     throw Error(file.string(), "says that the batch was not finished, and has no trace yet", kGoOn);

@@ -75,6 +75,7 @@ struct ReportData {
   std::string actuator;                                          ///< where the motors are from; empty: ideal ones
   std::shared_ptr<const ActuatorModel> actuators;                ///< those motors
   bool complete = true;                                          ///< false: the batch was stopped
+  std::string shard;                                             ///< "1 of 3"; empty: the whole batch
   std::vector<std::pair<std::string, std::string>> provenance;   ///< name and value, as they are shown
 
   /// Names of the ranked maps, best first.

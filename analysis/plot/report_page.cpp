@@ -177,6 +177,8 @@ class Page {
 
   void cautions() {
     std::vector<std::string> cautions;
+    if (!data_.shard.empty())
+      cautions.push_back(fmt::format("This is shard {} of the batch: 'vestige batch merge' joins them.", data_.shard));
     if (!data_.complete) cautions.emplace_back("The batch was stopped before its end; what is shown is part of it.");
     if (!data_.failures.empty())
       cautions.push_back(fmt::format("{} could not be used and {} left out (<a href=\"#failures\">Failures</a>).",

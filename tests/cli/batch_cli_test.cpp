@@ -136,6 +136,8 @@ TEST_F(BatchCommandLine, ShardsMergeIntoTheBytesOfAWholeBatch) {
   ASSERT_EQ(run("cp -r part2 changed && sed -i 's/\"frames\": 100/\"frames\": 101/' changed/items/b.json").exit_code,
             0);
   expect_failure("vestige batch merge part1 part2 part3 changed -o m", 1, {"b.json", "differs"}, "m");
+  ASSERT_EQ(run("cp -r part2 emptied && head -1 part2/contacts/b.csv > emptied/contacts/b.csv").exit_code, 0);
+  expect_failure("vestige batch merge part1 emptied part3 -o m", 1, {"contacts/b.csv", "SHA-256"}, "m");
   ASSERT_EQ(run("cp -r part2 bare && rm bare/contacts/b.csv").exit_code, 0);
   expect_failure("vestige batch merge part1 bare part3 -o m", 1, {"contacts/b.csv", "missing"}, "m");
   ASSERT_EQ(run("rm changed/items/b.json").exit_code, 0);

@@ -29,6 +29,7 @@ using test::collider;
 using test::OscBuilder;
 using test::placement;
 using test::with_id;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -85,6 +86,17 @@ TEST_F(LiveLines, MayLeaveOutAllButTheBraces) {
   EXPECT_EQ(frames[1].pose.nodes[1].translation.y, 5.0F);
   EXPECT_EQ(frames[2].pose.nodes[1].translation.y, 5.0F) << "as the line before";
   EXPECT_EQ(frames[2].time_ns, 1'000'000'000);
+}
+
+TEST_F(LiveLines, FieldsThatMeanNothingAreToldOfOnce) {
+  const auto frames = read(R"({"colider": []}
+{"colider": [], "pose": {"joint": 1, "joints": {}}}
+)");
+  EXPECT_THAT(frames, SizeIs(2));
+  EXPECT_EQ(lines_->malformed(), 0U);
+  EXPECT_THAT(lines_->problems(),
+              ElementsAre(AllOf(HasSubstr("line 1"), HasSubstr("'colider'"), HasSubstr("colliders")),
+                          AllOf(HasSubstr("line 2"), HasSubstr("'joint'"))));
 }
 
 TEST_F(LiveLines, ThatAreWrongAreLeftOutAndCounted) {

@@ -15,6 +15,7 @@
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/trace_check.hpp"
+#include "traces/trace_summary.hpp"
 
 namespace vestige {
 namespace {
@@ -175,6 +176,67 @@ TEST(Recover, KeepsADamagedAttachmentUnderANameThatNobodyTakesForTheRealOne) {
   EXPECT_TRUE(outcome->recovery.lost_something());
   const std::string text(reinterpret_cast<const char*>(outcome->bytes.data()), outcome->bytes.size());
   EXPECT_THAT(text, HasSubstr("avatar.glb.damaged"));
+}
+
+TEST(Recover, SaysThatASecondFileBehindTheFirstIsLeftOut) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  std::vector<std::byte> twice = trace.bytes;
+  twice.insert(twice.end(), trace.bytes.begin(), trace.bytes.end());
+  const auto outcome = recover(twice);
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->recovery.another_file_at, trace.bytes.size());
+  EXPECT_EQ(outcome->recovery.bytes_lost, trace.bytes.size());
+  EXPECT_TRUE(outcome->recovery.lost_something());
+}
+
+TEST(Recover, LeavesOutWhatNoCrcVouchesForAndNobodyCanHaveRecorded) {
+  // One chunk, so that no intact frame bounds those of the damaged one.
+  const test::TemporaryFolder folder;
+  TraceWriterOptions options = test::steady_options(1 << 20);
+  options.compression = Compression::kNone;
+  test::write_trace(folder / "whole.mcap", kFrames, options);
+  const std::vector<std::byte> whole = read_file(folder / "whole.mcap");
+  const auto messages = test::message_places(whole);  // pose, colliders, pose, …
+  ASSERT_EQ(messages.size(), 2 * kFrames);
+  const auto damaged_at = [&](std::size_t frame, auto damage) {
+    std::vector<std::byte> bytes = whole;
+    damage(bytes, messages[2 * frame]);
+    damage(bytes, messages[2 * frame + 1]);
+    auto outcome = recover(bytes);
+    EXPECT_TRUE(outcome);
+    read_frames(*outcome);
+    EXPECT_EQ(intact(outcome->frames), kFrames - 1) << frame;
+    EXPECT_EQ(outcome->frames.size(), kFrames - 1) << frame;
+  };
+  for (const std::size_t frame : {std::size_t{0}, std::size_t{7}, std::size_t{kFrames - 1}}) {
+    // The frame's number, behind the channel's, in both of its messages.
+    damaged_at(frame,
+               [](std::vector<std::byte>& bytes, std::uint64_t content) { bytes[content + 2 + 3] = std::byte{0xA0}; });
+    // Its time, in the record but not in the message.
+    damaged_at(frame, [](std::vector<std::byte>& bytes, std::uint64_t content) {
+      bytes[content + 2 + 4 + 4] = std::byte{0x77};
+    });
+  }
+}
+
+TEST(Recover, AFileThatItWroteSaysWhatWasLost) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kNone);
+  std::vector<std::byte> damaged = trace.bytes;
+  damaged[trace.chunks[1].offset + 100] ^= std::byte{1};
+  const auto outcome = recover(damaged);
+  ASSERT_TRUE(outcome);
+  ASSERT_GT(outcome->recovery.messages_unverified, 0U);
+  const auto said = testing::AllOf(HasSubstr("was recovered from a damaged file"), HasSubstr("no CRC vouches for"));
+  const test::MemoryFile file;
+  file.assign(outcome->bytes);
+  EXPECT_THAT(TraceReader(file.path()).recovered(), said);
+  EXPECT_THAT(summarise_mcap(file.path()).recovered, said);
+  const mcap::MemorySource source(outcome->bytes);
+  const TraceCheck check = check_trace(source, test::go_on);
+  EXPECT_THAT(check.problems.kept(), testing::Contains(testing::Field(&mcap::Problem::what, said)));
+  EXPECT_EQ(TraceReader(folder / "whole.mcap").recovered(), "");
 }
 
 TEST(Recover, KeepsWhatFollowsAMessageWhoseFieldsDoNotFit) {

@@ -12,6 +12,7 @@
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/input_file.hpp"
 #include "traces/mcap/byte_source.hpp"
+#include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
 
 namespace vestige::test {
@@ -66,6 +67,26 @@ inline SmallTrace small_trace(const TemporaryFolder& folder, Compression compres
   }
   trace.head_end = trace.chunks.front().offset;
   return trace;
+}
+
+/// Where the contents of the messages of an uncompressed trace begin, in file order.
+inline std::vector<std::uint64_t> message_places(std::span<const std::byte> bytes) {
+  std::vector<std::uint64_t> places;
+  const mcap::MemorySource source(bytes);
+  mcap::RecordWalker walker(source);
+  mcap::RecordPlace place;
+  while (walker.next(place)) {
+    if (place.opcode != mcap::Opcode::kChunk) continue;
+    const mcap::Bytes content = bytes.subspan(place.content_offset(), place.content_bytes);
+    const mcap::Chunk chunk = mcap::decode_chunk(content);
+    mcap::Cursor cursor(chunk.records);
+    while (cursor.remaining() > 0) {
+      const mcap::InnerRecord record = mcap::next_record(cursor);
+      if (record.opcode == mcap::Opcode::kMessage)
+        places.push_back(static_cast<std::uint64_t>(record.content.data() - bytes.data()));
+    }
+  }
+  return places;
 }
 
 /// Shortens the first message, which is frame 0's pose, to 3 bytes, and fills its place with a record of an unknown

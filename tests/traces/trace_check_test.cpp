@@ -105,6 +105,27 @@ TEST_P(TraceCheckCompressed, NamesEveryFlippedByte) {
 INSTANTIATE_TEST_SUITE_P(Compressions, TraceCheckCompressed,
                          ::testing::Values(Compression::kNone, Compression::kLz4, Compression::kZstd));
 
+TEST(TraceCheck, NamesASecondFileBehindTheFirstAndHowToReadIt) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  std::vector<std::byte> twice = trace.bytes;
+  twice.insert(twice.end(), trace.bytes.begin(), trace.bytes.end());
+  const TraceCheck result = check(twice);
+  ASSERT_EQ(result.problems.count(), 1U) << text_of(result);
+  const Problem& problem = result.problems.kept().front();
+  EXPECT_EQ(problem.offset, trace.bytes.size());
+  EXPECT_THAT(problem.what, HasSubstr("second MCAP file"));
+  EXPECT_THAT(problem.consequence, HasSubstr(std::to_string(trace.bytes.size() + 1)));
+}
+
+TEST(TraceCheck, ATraceWithoutAFrameCannotBeReplayed) {
+  const test::TemporaryFolder folder;
+  test::write_trace(folder / "empty.mcap", 0, test::steady_options(1200));
+  const TraceCheck result = check(read_file(folder / "empty.mcap"));
+  EXPECT_EQ(result.problems.count(), 1U) << text_of(result);
+  EXPECT_FALSE(result.readable());
+}
+
 TEST(TraceCheck, FindsNothingInSoundFilesOfOthers) {
   VESTIGE_REQUIRE_DATA(test::data("mcap"));
   int count = 0;

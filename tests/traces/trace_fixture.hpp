@@ -51,7 +51,7 @@ inline TraceFrame frame(std::uint64_t index, std::size_t nodes, std::size_t coll
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto value = static_cast<float>(phase / (3.1 + static_cast<double>(i)));
     frame.pose.nodes.push_back({.translation = {value, -value, value / 3},
-                                .rotation = glm::quat(1 - value, value, value / 5, -value / 7),
+                                .rotation = glm::normalize(glm::quat(1 - value, value, value / 5, -value / 7)),
                                 .scale = {1 + value, 1, 1 - value}});
   }
   for (std::size_t i = 0; i < colliders; ++i) {

@@ -96,7 +96,11 @@ int main(int argc, char** argv) {
   app.add_option("--baud", options.baud, "Speed of the line")->capture_default_str()->check(CLI::Range(300, 2'000'000));
   app.add_option("--duration", options.duration_s, "Seconds until the end; else until a signal")
       ->check(CLI::NonNegativeNumber);
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
   try {
     simulate(options);
   } catch (const std::exception& error) {

@@ -48,7 +48,8 @@ void require_content(const ByteSource& source) {
 void require_mcap(const ByteSource& source) {
   require_content(source);
   if (!begins_with_magic(source))
-    throw Error(source.name(), "is no MCAP file: it does not begin with MCAP's magic bytes", "name a recorded trace");
+    throw Error(source.name(), "is no MCAP file: it does not begin with MCAP's magic bytes",
+                "name a recorded trace; if it is one, `vestige recover` may still read it");
   if (source.size() < kMagicBytes) throw Error(source.name(), "ends within its first bytes", "record it again");
 }
 
@@ -209,7 +210,16 @@ void RecordWalker::finish(std::uint64_t end) {
   if (magic < kMagicBytes || !is_magic(ahead_.at(end, magic)))
     damages_.push_back({end, rest, "the magic bytes that end the file are cut off or broken"});
   else if (rest > kMagicBytes)
-    damages_.push_back({end + kMagicBytes, rest - kMagicBytes, "bytes after the file's end, which were not read"});
+    note_bytes_behind(end + kMagicBytes);
+}
+
+void RecordWalker::note_bytes_behind(std::uint64_t end) {
+  const std::uint64_t rest = source_.size() - end;
+  if (rest > kMagicBytes && is_magic(ahead_.at(end, kMagicBytes)))
+    damages_.push_back(
+        {end, rest, "the file's end; a second MCAP file begins here, which was not read", DamageEffect::kAnotherFile});
+  else
+    damages_.push_back({end, rest, "bytes after the file's end, which were not read"});
 }
 
 bool RecordWalker::next(RecordPlace& place) {

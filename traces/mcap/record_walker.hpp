@@ -9,7 +9,8 @@
 
 namespace vestige::mcap {
 
-enum class DamageEffect { kLost, kMended };
+/// kAnotherFile: nothing is wrong with these bytes, but they are not read.
+enum class DamageEffect { kLost, kMended, kAnotherFile };
 
 /// A place in a file where something is wrong, and how much of the file it takes with it.
 struct Damage {
@@ -66,6 +67,7 @@ class RecordWalker {
   bool may_resume_at(const RecordPlace& place, bool messages_too);
   bool resynchronise();
   void begin_without_magic();
+  void note_bytes_behind(std::uint64_t end);
   void finish(std::uint64_t end);
 
   const ByteSource& source_;
