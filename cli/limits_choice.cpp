@@ -23,7 +23,10 @@ struct Unit {
 constexpr std::array kSizes = {Unit{"B", 1},           Unit{"kB", 1e3},           Unit{"MB", 1e6},
                                Unit{"GB", 1e9},        Unit{"TB", 1e12},          Unit{"KiB", 1024},
                                Unit{"MiB", 1048576.0}, Unit{"GiB", 1073741824.0}, Unit{"TiB", 1099511627776.0}};
-constexpr std::array kTimes = {Unit{"", 1}, Unit{"s", 1}, Unit{"min", 60}, Unit{"h", 3600}};
+constexpr std::array kTimes = {Unit{"", 1}, Unit{"ms", 1e-3}, Unit{"s", 1}, Unit{"min", 60}, Unit{"h", 3600}};
+
+/// Shorter parts would be a file for each frame.
+constexpr double kShortestPart_s = 0.01;
 
 /// Less than this no ring is bounded by: it is one block.
 constexpr std::uint64_t kSmallestRingBytes = std::uint64_t{2} << 20;
@@ -84,6 +87,9 @@ RecordingLimits limits_of(const LimitsChoice& choice, const std::string& output)
     if (!limits.splits())
       throw UsageError("--split", fmt::format("'{}' is neither a time nor a size", choice.split),
                        "give seconds, or a number with a unit: 60s, 10min, 500MB, 64MiB");
+    if (limits.split_s && *limits.split_s < kShortestPart_s)
+      throw UsageError("--split", fmt::format("'{}' is less than {} s", choice.split, kShortestPart_s),
+                       "give parts more time");
   }
   if (limits.ring_s && limits.splits())
     throw UsageError("--split", "a ring is written at once, so it has no parts", "leave out --ring or --split");

@@ -105,13 +105,12 @@ nlohmann::ordered_json made_json(const MakeOptions& options, const MadeMap& map,
   return json;
 }
 
-/// What `map check` would find wrong; returns whether it is anything.
-bool warn_of_problems(const MakeOptions& options, const MadeMap& map, const Body& body, const Avatar& avatar) {
+/// Of what `map check` would find wrong.
+void warn_of_problems(const MakeOptions& options, const MadeMap& map, const Body& body, const Avatar& avatar) {
   const MapCheck check = check_map(body, parse_actuator_map(map.files, avatar, options.output), options.avatar);
   for (const MapFinding& finding : check.findings)
     if (finding.severity == Severity::kProblem)
       warn(fmt::format("{}: {}\n  {}", options.output, finding.cause, finding.remedy), options.common.verbosity());
-  return !check.good();
 }
 
 void run_make(const MakeOptions& options, Invocation& invocation) {
@@ -154,7 +153,10 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
   json.update(made_json(options, map, body));
   write_json(options.common.json, json, options.common);
   print_summary(made_text(options, map, sidecar), {options.regions_output, options.common.json}, options.common);
-  if (!map.warnings.empty() || warn_of_problems(options, map, body, avatar)) invocation.exit_code = kDataLost;
+  if (map.warnings.empty())
+    warn_of_problems(options, map, body, avatar);
+  else
+    invocation.exit_code = kDataLost;
 }
 
 /// What is wrong with a layout's name; empty: nothing.

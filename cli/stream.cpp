@@ -201,6 +201,8 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   if (!options.map.empty() && options.choice.surface == "mapped")
     throw UsageError("--map", "may change while it is felt, which --surface mapped cannot follow",
                      "leave one of the two out");
+  if (options.map == "none")
+    throw UsageError("--map", "'none' has no actuator to switch", "name a map, or leave it out for the trace's own");
   const bool watched = !options.map.empty() && options.map != "builtin" && !is_layout(options.map);
   if (watched && options.choice.detector == "paper")
     throw UsageError("--map", "may change while it is felt, which --detector paper cannot follow",

@@ -101,6 +101,8 @@ mode_t new_file_mode() {
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code failure;
+  if (std::filesystem::exists(folder, failure) && !std::filesystem::is_directory(folder, failure))
+    throw Error(folder.string(), "is a file, where a folder is to be", "choose another name");
   std::filesystem::create_directories(folder, failure);
   if (failure) throw system_error(folder, "the folder cannot be made", failure.value());
 }

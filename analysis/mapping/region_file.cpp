@@ -49,7 +49,10 @@ class Fields {
   std::string text(const char* key, const char* example) const {
     if (!has(key)) throw Error(where_, fmt::format("has no '{}'", key), fmt::format("write \"{}\": {}", key, example));
     if (!at(key).is_string() || at(key).get<std::string>().empty()) refuse(key, "is not a text", example);
-    return at(key).get<std::string>();
+    auto text = at(key).get<std::string>();
+    const auto is_control = [](char letter) { return static_cast<unsigned char>(letter) < ' '; };
+    if (std::ranges::any_of(text, is_control)) refuse(key, "holds a control character", example);
+    return text;
   }
 
   /// One text or a list of them; empty where there is none.

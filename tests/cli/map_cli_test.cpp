@@ -56,6 +56,9 @@ TEST_F(Map, MayBeMadeByTriangle) {
               HasSubstr("16 actuators"));
   EXPECT_EQ(nlohmann::json::parse(read_text_file(folder_ / "vest.json"))["triangles"], 4998);
   EXPECT_EQ(run("vestige map check vest.png").exit_code, 0);
+  const test::Outcome split = run("vestige map make --layout paper6 --per-triangle -o split.png");
+  EXPECT_EQ(split.exit_code, 0);
+  EXPECT_THAT(split.standard_error, HasSubstr("2 pieces")) << "what 'map check' finds wrong";
   ASSERT_EQ(run("vestige record --colliders hug --count 50 --rate 60 --duration 1 --map vest.png -o a.mcap").exit_code,
             0);
   // Every detector looks it up: the published one on the GPU.
@@ -105,6 +108,8 @@ TEST_F(Map, SaysWhatIsWrongWithWhatItIsGiven) {
   write("mine.json", R"({"regions": [{"name": "arm", "below": ["upper_arm_lfet"]}]})");
   expect_failure("vestige map make --regions mine.json -o a.png", 1,
                  {"mine.json, region 'arm'", "did you mean 'upper_arm_left'?"}, "a.png");
+  write("mine.json", R"({"regions": [{"name": "a\u0000b"}]})");
+  expect_failure("vestige map make --regions mine.json -o a.png", 1, {"'name'", "control character"}, "a.png");
   write("mine.json", R"({"regions": [{"name": "arm", "hieght": [0, 1]}]})");
   expect_failure("vestige map make --regions mine.json -o a.png", 1, {"did you mean 'height'?"}, "a.json");
   write("mine.json", R"({"regions": [{"name": "a"}, {"name": "b", "part": "head"}]})");

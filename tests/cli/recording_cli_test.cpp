@@ -136,6 +136,7 @@ TEST_F(Recording, RefusesFlagsThatContradictEachOther) {
            {"--max-size nothing", "--max-size"},
            {"--max-size -5", "--max-size"},
            {"--split 5parsec", "--split"},
+           {"--split 1e-9", "--split"},
            {"--ring -1", "--ring"},
            {"--live vmc://nowhere", "--live"},
            {"--live tcp://127.0.0.1:5", "--live"},
