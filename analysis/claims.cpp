@@ -167,8 +167,9 @@ void add_geometry_agreement(const nlohmann::json& result, Claim claim, std::vect
 void add_exactness(const nlohmann::json& result, Claim claim, std::vector<Claim>& claims) {
   claim.machine = machine_of(result, nullptr);
   for (const auto& frame : result.at("frames")) {
-    claim.claim = fmt::format("exact decisions take {:.3f} times the time of plain double ones ({}, whole frame)",
-                              frame.at("ratio").get<double>(), frame.at("colliders").get<std::string>());
+    claim.claim = fmt::format(
+        "exact decisions take {:.3f} times the time of plain double ones ({}, whole frame, skip {})",
+        frame.at("ratio").get<double>(), frame.at("colliders").get<std::string>(), frame.value("skip", "off"));
     claims.push_back(claim);
   }
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <ctime>
 #include <fstream>
@@ -20,6 +21,10 @@
 #include "detector/contact_description.hpp"
 #include "detector/decision.hpp"
 #include "detector/detector.hpp"
+#include "detector/meshlet_candidates.hpp"
+#include "detector/meshlet_skin.hpp"
+#include "detector/meshlet_triangles.hpp"
+#include "detector/meshlets.hpp"
 #include "detector/skin_motion.hpp"
 #include "detector/triangle_boxes.hpp"
 #include "traces/animation_choice.hpp"
@@ -59,39 +64,94 @@ Decision decide_plainly(const Way& way, const Corners& triangle) {
   return {.contact = FirstContact{static_cast<float>(t), static_cast<std::int8_t>(determinant > 0 ? 1 : -1)}};
 }
 
-/// What `cpu` does with a frame, whoever decides.
-class FrameOfCpu {
+/// The first contact of each collider, whoever decides.
+class Winners {
  public:
-  explicit FrameOfCpu(const Avatar& avatar, const ActuatorMap& map) : avatar_(avatar), map_(map) {}
+  Winners(const Avatar& avatar, const ActuatorMap& map) : avatar_(avatar), map_(map) {}
 
+  void begin(const Frame& frame) { row_.assign(frame.columns, Contact()); }
   template <typename Decide>
-  const ContactRow& detect(const Frame& frame, Decide&& decide) {
-    row_.assign(frame.columns, Contact());
-    skin_.skin(avatar_, frame, Method::kStatic);
-    boxes_.build(avatar_, skin_, Method::kStatic);
-    for (const Segment& segment : frame.segments) {
-      const Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
-      Contact& winner = row_[segment.column];
-      boxes_.meet(segment, [&](std::uint32_t triangle) {
-        const Corners now = corners_of(avatar_, skin_.now, triangle);
-        const Decision decision = decide(way, now);
-        if (!decision.contact) return;
-        const float t = decision.contact->t;
-        if (t > winner.t || (t == winner.t && triangle > winner.triangle)) return;
-        winner = describe_contact(avatar_, map_, triangle, way, now, *decision.contact, frame.duration_s);
-      });
-    }
-    return row_;
+  void offer(const Frame& frame, const Segment& segment, std::uint32_t triangle, const Corners& now, Decide&& decide) {
+    const Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
+    Contact& winner = row_[segment.column];
+    const Decision decision = decide(way, now);
+    if (!decision.contact) return;
+    const float t = decision.contact->t;
+    if (t > winner.t || (t == winner.t && triangle > winner.triangle)) return;
+    winner = describe_contact(avatar_, map_, triangle, way, now, *decision.contact, frame.duration_s);
   }
+  const ContactRow& row() const { return row_; }
 
  private:
   const Avatar& avatar_;
   const ActuatorMap& map_;
-  SkinMotion skin_;
-  TriangleBoxes boxes_;
   ContactRow row_;
 };
 
+/// What `cpu` does with a frame, without skipping.
+class WholeFrame {
+ public:
+  static constexpr const char* kSkip = "off";
+  WholeFrame(const Avatar& avatar, const ActuatorMap& map) : avatar_(avatar), winners_(avatar, map) {}
+
+  template <typename Decide>
+  const ContactRow& detect(const Frame& frame, Decide&& decide) {
+    winners_.begin(frame);
+    skin_.skin(avatar_, frame, Method::kStatic);
+    boxes_.build(avatar_, skin_, Method::kStatic);
+    for (const Segment& segment : frame.segments)
+      boxes_.meet(segment, [&](std::uint32_t triangle) {
+        winners_.offer(frame, segment, triangle, corners_of(avatar_, skin_.now, triangle), decide);
+      });
+    return winners_.row();
+  }
+
+ private:
+  const Avatar& avatar_;
+  Winners winners_;
+  SkinMotion skin_;
+  TriangleBoxes boxes_;
+};
+
+/// What it does with one where it skips what no collider is near.
+class SkippingFrame {
+ public:
+  static constexpr const char* kSkip = "on";
+  SkippingFrame(const Avatar& avatar, const ActuatorMap& map)
+      : winners_(avatar, map), meshlets_(avatar), candidates_(avatar, meshlets_), skin_(avatar, meshlets_) {}
+
+  template <typename Decide>
+  const ContactRow& detect(const Frame& frame, Decide&& decide) {
+    winners_.begin(frame);
+    candidates_.find(frame, Method::kStatic);
+    for (const TouchedMeshlet& touched : candidates_.touched()) {
+      skin_.skin(touched.meshlet, frame.palette, corners_);
+      boxes_.bound(corners_, corners_, Method::kStatic);
+      const std::span<const std::uint32_t> numbers = candidates_.segments(touched);
+      const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
+      meets_.resize(numbers.size());
+      boxes_.meet(frame.segments, numbers, meets_.data());
+      for (std::size_t k = 0; k < numbers.size(); ++k)
+        for (std::uint32_t bits = meets_[k]; bits != 0; bits &= bits - 1) {
+          const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+          if (i >= triangles.size()) break;
+          winners_.offer(frame, frame.segments[numbers[k]], triangles[i], corners_.corners(i), decide);
+        }
+    }
+    return winners_.row();
+  }
+
+ private:
+  Winners winners_;
+  Meshlets meshlets_;
+  MeshletCandidates candidates_;
+  MeshletSkin skin_;
+  MeshletCorners corners_ = {};
+  MeshletTriangles boxes_;
+  std::vector<std::uint32_t> meets_;
+};
+
+template <typename FrameOfCpu>
 nlohmann::ordered_json measure_frames(const Avatar& avatar, const ActuatorMap& map, const std::string& colliders) {
   MovingScene scene{avatar, find_animation(avatar, "walk"), nullptr, {}, 1};
   scene.make_colliders = [&] { return find_scenario(colliders)->make(avatar, scene.animation, {100, 1}); };
@@ -130,9 +190,12 @@ nlohmann::ordered_json measure_frames(const Avatar& avatar, const ActuatorMap& m
         if ((*exact_row)[column].triangle != (*plain_row)[column].triangle) ++other_rows;
     }
   const double ratio = quantile(exact_us, 0.5) / quantile(plain_us, 0.5);
-  fmt::print("whole frame, static, {:<6} exact {:7.1f} us  plain double {:7.1f} us  ratio {:.3f}  other winners {}\n",
-             colliders, quantile(exact_us, 0.5), quantile(plain_us, 0.5), ratio, other_rows);
+  fmt::print(
+      "whole frame, static, {:<6} skip {:<3}  exact {:7.1f} us  plain double {:7.1f} us  ratio {:.3f}  "
+      "other winners {}\n",
+      colliders, FrameOfCpu::kSkip, quantile(exact_us, 0.5), quantile(plain_us, 0.5), ratio, other_rows);
   return {{"colliders", colliders},
+          {"skip", FrameOfCpu::kSkip},
           {"count", 100},
           {"frames", exact_us.size()},
           {"exact_us_median", quantile(exact_us, 0.5)},
@@ -208,7 +271,10 @@ void run(std::span<const std::string> arguments) {
   const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), "", "builtin");
   nlohmann::ordered_json json = provenance(arguments);
   json["frames"] = nlohmann::ordered_json::array();
-  for (const char* colliders : {"swarm", "hug"}) json["frames"].push_back(measure_frames(avatar, map, colliders));
+  for (const char* colliders : {"swarm", "hug"}) {
+    json["frames"].push_back(measure_frames<WholeFrame>(avatar, map, colliders));
+    json["frames"].push_back(measure_frames<SkippingFrame>(avatar, map, colliders));
+  }
 
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0, 1);
