@@ -41,9 +41,11 @@ void add_sweep(const nlohmann::json& result, const Claim& base, std::vector<Clai
     for (const auto& point : series.at("points")) {
       const int colliders = point.at("colliders").get<int>();
       if (!kQuotedCounts.contains(colliders)) continue;
-      fmt::format_to(std::back_inserter(claim.claim), "{} {:.0f} Hz ({:.0f} to {:.0f}) with {}",
-                     claim.claim.ends_with(" at") ? "" : ",", point.at("hz").get<double>(),
-                     point.at("hz_low").get<double>(), point.at("hz_high").get<double>(), colliders);
+      std::string interval;
+      if (!point.at("hz_low").is_null())
+        interval = fmt::format(" ({:.0f} to {:.0f})", point["hz_low"].get<double>(), point.at("hz_high").get<double>());
+      fmt::format_to(std::back_inserter(claim.claim), "{} {:.0f} Hz{} with {}", claim.claim.ends_with(" at") ? "" : ",",
+                     point.at("hz").get<double>(), interval, colliders);
     }
     if (claim.claim.ends_with(" at")) continue;  // none of the paper's counts
     claim.claim += " colliders";
@@ -183,6 +185,7 @@ nlohmann::json with_run(nlohmann::json result, const nlohmann::json& run) {
       if (gl.is_null()) gl = series.value("gl", nlohmann::json());
   for (const char* field : {"argv", "time", "commit", "dirty", "machine"}) result[field] = run.at(field);
   result["gl"] = gl;
+  if (run.contains("complete")) result["complete"] = run["complete"];
   return result;
 }
 
@@ -209,6 +212,8 @@ std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& fi
   }
   if (result.contains("methods")) add_geometry_agreement(result, base, claims);
   if (result.contains("decisions")) add_exactness(result, base, claims);
+  if (!result.value("complete", true))
+    for (Claim& claim : claims) claim.claim += " (**not complete**: stopped before its end, or from a damaged trace)";
   return claims;
 }
 

@@ -85,6 +85,9 @@ std::vector<double> mean_us(const SweepSeries& series) {
   return us;
 }
 
+/// Of a logarithm: two per cent.
+constexpr double kSameCost = 0.02;
+
 std::vector<Crossover> crossovers(std::span<const double> sizes, std::span<const CostLine> lines) {
   std::vector<Crossover> found;
   for (std::size_t a = 0; a < lines.size(); ++a)
@@ -93,7 +96,8 @@ std::vector<Crossover> crossovers(std::span<const double> sizes, std::span<const
         // By how much a costs more than b, before and after.
         const double before = std::log(lines[a].us[i - 1] / lines[b].us[i - 1]);
         const double after = std::log(lines[a].us[i] / lines[b].us[i]);
-        if (!(before * after < 0)) continue;
+        // As long as they cost the same within their noise, neither is faster.
+        if (!(before * after < 0) || std::abs(before) < kSameCost) continue;
         const double part = before / (before - after);
         const double at = std::exp(std::lerp(std::log(sizes[i - 1]), std::log(sizes[i]), part));
         const bool a_below = before < 0;

@@ -129,8 +129,16 @@ std::string growth_table(const Growth& growth, std::uint32_t colliders) {
   if (!growth.by_triangles.empty())
     text += fmt::format("\nWith {} collider{}:\n", colliders, colliders == 1 ? "" : "s") +
             text_of(table_by_triangles(growth));
-  text += fmt::format("Above {} pairs of collider and triangle: the mean of 3 frames, measured again and again.\n",
-                      kManyPairs);
+  const auto most_pairs = [&](std::size_t triangles, std::uint32_t count) { return std::uint64_t{triangles} * count; };
+  const bool few_frames =
+      std::ranges::any_of(growth.by_triangles,
+                          [&](const GrowthSize& size) { return most_pairs(size.triangles, colliders) > kManyPairs; }) ||
+      (!growth.by_triangles.empty() && !growth.by_colliders.empty() &&
+       most_pairs(growth.by_triangles.front().triangles, growth.by_colliders.front().points.back().colliders) >
+           kManyPairs);
+  if (few_frames)
+    text += fmt::format("Above {} pairs of collider and triangle: the mean of 3 frames, measured again and again.\n",
+                        kManyPairs);
   return text + text_of(ablations(growth.by_colliders));
 }
 

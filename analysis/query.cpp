@@ -143,7 +143,7 @@ std::string query_table(std::span<const QueryScore> scores, const QueryScore& to
   std::size_t width = kTotal.size();
   for (const QueryScore& score : scores) width = std::max(width, score.name.size());
   std::string table =
-      fmt::format("{:<{}}  queries  contacts  false +  false -  exactly  median us   p99 us   max us\n", "file", width);
+      fmt::format("{:<{}}  queries      true  false +  false -  exactly  median us   p99 us   max us\n", "file", width);
   const auto add = [&](std::string_view name, const QueryScore& score) {
     fmt::format_to(
         std::back_inserter(table), "{:<{}}  {:>7}  {:>8}  {:>7}  {:>7}  {:>7}  {:>9.2f}  {:>7.1f}  {:>7.1f}\n", name,
@@ -152,7 +152,9 @@ std::string query_table(std::span<const QueryScore> scores, const QueryScore& to
   };
   for (const QueryScore& score : scores) add(score.name, score);
   add(kTotal, total);
-  return table + "exactly: decided by exact arithmetic. us: thread CPU time, the least of three tries.\n";
+  return table +
+         "true: contacts there are. false +, -: found where there is none, missed. exactly: decided by exact "
+         "arithmetic.\nus: thread CPU time, the least of three tries.\n";
 }
 
 }  // namespace vestige

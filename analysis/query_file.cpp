@@ -25,17 +25,19 @@ constexpr std::string_view kFractionRemedy =
 constexpr std::string_view kHexadecimalRemedy =
     "each row is a name, a number, the truth 0 or 1, 0 or 1, and x, y, z of p, q, a, b, c as hexadecimal doubles: "
     "0x1.8p+1";
+constexpr std::string_view kNotSeven = "is not seven whole numbers";
 constexpr std::size_t kRowsPerQuery = 8;
 constexpr std::size_t kMostDigits = 2000;  ///< the least double has 324 behind its "1/"
 
 /// "-12" or "+12".
 cpp_int take_whole(CsvLines& lines) {
   std::string_view field;
-  if (!lines.take_text(field)) throw lines.error("is not seven whole numbers");
+  if (!lines.take_text(field)) throw lines.error(kNotSeven);
+  const std::string_view whole = field;
   const bool negative = field.starts_with('-');
   if (negative || field.starts_with('+')) field.remove_prefix(1);
   if (field.empty() || field.find_first_not_of("0123456789") != std::string_view::npos)
-    throw lines.error("is not seven whole numbers");
+    throw lines.error(fmt::format("'{}' is no whole number", whole));
   if (field.size() > kMostDigits)
     throw lines.error(fmt::format("a number has {} digits, more than {}", field.size(), kMostDigits));
   // A leading zero would make it octal.
@@ -45,10 +47,10 @@ cpp_int take_whole(CsvLines& lines) {
   return value;
 }
 
-double take_fraction(CsvLines& lines, Inexact inexact) {
+double take_fraction(CsvLines& lines, int axis, Inexact inexact) {
   const cpp_int numerator = take_whole(lines);
   const cpp_int denominator = take_whole(lines);
-  if (denominator.is_zero()) throw lines.error("a denominator is 0");
+  if (denominator.is_zero()) throw lines.error(fmt::format("the denominator of {} is 0", "xyz"[axis]));
   const cpp_rational exact(denominator > 0 ? numerator : cpp_int(-numerator), abs(denominator));
   const auto value = exact.convert_to<double>();
   if (!std::isfinite(value)) throw lines.error("a coordinate is beyond the largest double");
@@ -87,9 +89,9 @@ void read_fractions(CsvLines& lines, Inexact inexact, std::vector<Query>& querie
   std::size_t rows = 0;
   Query query;
   while (lines.next()) {
-    for (int axis = 0; axis < 3; ++axis) point[rows][axis] = take_fraction(lines, inexact);
+    for (int axis = 0; axis < 3; ++axis) point[rows][axis] = take_fraction(lines, axis, inexact);
     const bool truth = take_truth(lines);
-    if (!lines.at_end()) throw lines.error("is not seven whole numbers");
+    if (!lines.at_end()) throw lines.error(kNotSeven);
     if (rows == 0) {
       query.line = lines.line();
       query.truth = truth;
@@ -130,6 +132,7 @@ void read_hexadecimals(CsvLines& lines, std::vector<Query>& queries) {
 QueryFile parse_queries(std::string_view text, const std::string& name, Inexact inexact) {
   QueryFile file;
   file.name = name;
+  file.ends_in_newline = text.empty() || text.back() == '\n';
   if (CsvLines::has_header(text, kHeader)) {
     file.kind = QueryKind::kSegmentTriangle;
     CsvLines lines(text, name, kHeader, kHexadecimalRemedy);

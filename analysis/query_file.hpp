@@ -27,6 +27,7 @@ struct QueryFile {
   std::string name;
   QueryKind kind = QueryKind::kPointTriangle;
   std::vector<Query> queries;
+  bool ends_in_newline = true;  ///< false: its last number may have been cut
 };
 
 /// What to do with coordinates that no double equals: the file's truth is not about what a detector would then see.

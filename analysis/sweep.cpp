@@ -27,7 +27,9 @@ using Place = std::vector<TraceFrame>;
 std::vector<Place> read_places(TraceReader& trace, const SweepSettings& settings) {
   const std::uint64_t frames = trace.frame_count();
   if (frames < 2)
-    throw Error("the trace", fmt::format("has {} frames; a sweep needs at least 2", frames), "record a longer one");
+    throw Error("the trace",
+                fmt::format("has {} frame{}; two follow each other at least", frames, frames == 1 ? "" : "s"),
+                "record a longer one");
   const std::uint64_t length = std::min<std::uint64_t>(settings.run_frames + 1, frames);
   const std::uint64_t count = std::min<std::uint64_t>(settings.runs, std::max<std::uint64_t>(1, frames / length));
   std::vector<Place> places(count);

@@ -15,6 +15,8 @@ namespace vestige {
 namespace {
 
 constexpr double kNoisy = 0.05;
+/// From fewer repetitions no interval can be told.
+constexpr std::size_t kFewestForInterval = 2;
 
 /// HAVE 2010, Fig. 2 and §IV: a GeForce GTX 285 under Windows 7.
 struct PaperFigure {
@@ -69,14 +71,15 @@ std::string ratio_table(std::span<const SweepSeries> series, const Rival& rival)
 
 nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
   const Interval interval = bootstrap_frequency_hz(point.repetitions, seed);
+  const bool has_interval = point.repetitions.size() >= kFewestForInterval;
   const auto us = [&](double p) { return quantile(point.frame_us, p); };
   return {{"colliders", point.colliders},
           {"frames", point.frame_us.size()},
           {"pass_frames", point.pass_frames},
           {"frames_skipped", point.work.frames_skipped},
           {"hz", point.hz()},
-          {"hz_low", interval.low},
-          {"hz_high", interval.high},
+          {"hz_low", has_interval ? nlohmann::ordered_json(interval.low) : nullptr},
+          {"hz_high", has_interval ? nlohmann::ordered_json(interval.high) : nullptr},
           {"hz_median", 1e6 / us(0.5)},
           {"us_median", us(0.5)},
           {"us_p95", us(0.95)},
@@ -171,7 +174,9 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
     for (const SweepSeries& one : series) {
       const SweepPoint& point = one.points[p];
       const Interval interval = bootstrap_frequency_hz(point.repetitions, seed);
-      const std::string cell = fmt::format("{:.0f} ({:.0f} to {:.0f})", point.hz(), interval.low, interval.high);
+      std::string cell = fmt::format("{:.0f}", point.hz());
+      if (point.repetitions.size() >= kFewestForInterval)
+        cell += fmt::format(" ({:.0f} to {:.0f})", interval.low, interval.high);
       fmt::format_to(std::back_inserter(table), "  {:>34}", point.repetitions.empty() ? "-" : cell);
     }
     const std::string_view paper = paper_figure(series.front().points[p].colliders);

@@ -202,8 +202,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
     if (!measured.points.empty()) scenes.push_back(std::move(measured));
     if (interrupted()) break;
   }
-  if (scenes.empty())
-    throw Error("accuracy", "was stopped before anything had been measured", "start it again, with --force");
+  if (scenes.empty()) throw Error("accuracy", "was stopped before anything had been measured", "start it again");
 
   const std::vector<AccuracyContestant>& contestants = measurement.contestants();
   nlohmann::ordered_json results = results_json(options, choices.front(), scene);
@@ -218,7 +217,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   if (interrupted()) warn("stopped early; the rates that were measured were written", options.common.verbosity());
   print_summary(accuracy_table(scenes, contestants), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", errors_path, run_path), {options.common.json}, options.common);
-  if (!options.no_figure && !interrupted()) draw_figure("accuracy", options.output, options.common);
+  draw_or_remove_figure("accuracy", "accuracy", options.output, !options.no_figure && !interrupted(), options.common);
   if (interrupted()) invocation.exit_code = kDataLost;
 }
 

@@ -36,7 +36,9 @@ void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
 
 void check_contestant_choice(const ContestantChoice& choice) {
   parse_names(choice.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
-  parse_names(choice.contexts, {"egl", "osmesa", "auto"}, "--context");
+  if (parse_names(choice.contexts, {"egl", "osmesa", "auto"}, "--context").size() > 1 &&
+      choice.contexts.find("auto") != std::string::npos)
+    throw UsageError("--context", "'auto' is one of the others", "name egl and osmesa, or auto alone");
   parse_names(choice.skips, kSkipNames, "--skip");
 }
 

@@ -45,6 +45,11 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
   const std::uint32_t colliders = std::max(std::ranges::max(sweep.counts), options.settings.colliders);
   const std::string path = prepare_sweep(choice, {json_path}, colliders, invocation);
   OpenTrace trace(path, verbosity);
+  if (trace.reader.collider_ids().size() < options.settings.colliders)
+    throw Error("--count",
+                fmt::format("{} colliders asked for, the trace has {}", options.settings.colliders,
+                            trace.reader.collider_ids().size()),
+                "ask for fewer, or record a trace with more");
   Growth growth;
   {
     Progress progress("Measuring", verbosity);
@@ -72,7 +77,7 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
   for (const std::string& warning : wrong) warn(warning, verbosity);
   print_summary(growth_table(growth, options.settings.colliders), {common.json}, common);
   print_summary(fmt::format("written: {}\n", json_path), {common.json}, common);
-  if (!choice.no_figure && !interrupted()) draw_figure("growth", choice.output, common);
+  draw_or_remove_figure("growth", "growth", choice.output, !choice.no_figure && !interrupted(), common);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
   if (interrupted()) invocation.exit_code = kDataLost;
   if (!wrong.empty()) invocation.exit_code = kCheckFailed;

@@ -72,6 +72,7 @@ class MadeFolders {
 }  // namespace
 
 void make_output_folder(const std::string& path) {
+  if (path == "-") throw UsageError("-o -", "results are a folder of files", "name a folder");
   static MadeFolders made;
   made.expect(path);
   make_folder(path);

@@ -68,7 +68,15 @@ int run_plot(const std::vector<std::string>& arguments) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : kFailed;
 }
 
-void draw_figure(const std::string& kind, const std::string& folder, const CommonOptions& options) {
+void draw_or_remove_figure(const std::string& kind, const std::string& name, const std::string& folder, bool wanted,
+                           const CommonOptions& options) {
+  if (!wanted) {
+    // What --force has replaced must not stand beside a figure of what was there before.
+    std::error_code ignored;
+    for (const char* extension : {".png", ".svg"})
+      std::filesystem::remove(std::filesystem::path(folder) / (name + extension), ignored);
+    return;
+  }
   std::vector<std::string> arguments = {kind, folder};
   if (options.force) arguments.emplace_back("--force");
   if (options.quiet) arguments.emplace_back("-q");

@@ -66,6 +66,9 @@ void run_query(const QueryOptions& options, Invocation& invocation) {
   files.reserve(options.files.size());
   for (const std::string& path : options.files) {
     QueryFile file = read_query_file(path, rounded ? Inexact::kRound : Inexact::kRefuse);
+    if (!file.ends_in_newline) warn(fmt::format("{}: ends within a line; was it cut off?", path), verbosity);
+    if (truth_of(file, options) == QueryTruth::kExact && options.choice.detector == "exact" && !rounded)
+      warn(fmt::format("{}: has no truth of --method static: 'exact' is compared with itself", path), verbosity);
     files.push_back(rounded ? rounded_to_fp32(std::move(file)) : std::move(file));
   }
 

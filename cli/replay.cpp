@@ -155,9 +155,9 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
   } else {
     const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
     if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
-      throw Error(
-          options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
-          "name cpu, exact, geometry or paper, or what 'vestige replay --contacts FILE.csv' or '--json FILE' wrote");
+      throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
+                  "name cpu, exact, geometry, paper or embree, or what 'vestige replay --contacts FILE.csv' or '--json "
+                  "FILE' wrote");
     verification.texture_hash = json["texture_hash"].get<std::string>();
   }
   return verification;

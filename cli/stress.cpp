@@ -103,8 +103,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
     counts = run_stress(families, contestants.list, settings, [&](double share) { return progress.update(share); });
   }
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-  if (counts.empty())
-    throw Error("stress", "was stopped before anything had been measured", "start it again, with --force");
+  if (counts.empty()) throw Error("stress", "was stopped before anything had been measured", "start it again");
 
   nlohmann::ordered_json result;
   result["schema_version"] = 1;
@@ -122,7 +121,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   if (interrupted()) warn("stopped early; what was complete so far was written", verbosity);
   print_summary(stress_table(counts), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, run_path), {options.common.json}, options.common);
-  if (!options.no_figure && !interrupted()) draw_figure("stress", options.output, options.common);
+  draw_or_remove_figure("stress", "stress", options.output, !options.no_figure && !interrupted(), options.common);
   if (interrupted()) invocation.exit_code = kDataLost;
 }
 

@@ -52,6 +52,10 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   json["gl"] = first_gl(series);
   json["avatar"] = to_json(trace.avatar);
   json["trace"] = path;
+  json["surface"] = choice.contestants.choice.surface;
+  json["runs"] = options.settings.runs;
+  json["run_frames"] = options.settings.run_frames;
+  json["min_time_s"] = options.settings.min_time_s;
   json["complete"] = !interrupted();
   json["series"] = to_json(series, options.settings.seed);
   write_json(json_path, json, common);
@@ -69,7 +73,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   for (const std::string& warning : wrong) warn(warning, verbosity);
   print_summary(sweep_table(series, options.settings.seed), {common.json}, common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {common.json}, common);
-  if (!choice.no_figure && !interrupted()) draw_figure("sweep", choice.output, common);
+  draw_or_remove_figure("sweep", "frequency", choice.output, !choice.no_figure && !interrupted(), common);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
   if (interrupted()) invocation.exit_code = kDataLost;
   if (!wrong.empty()) invocation.exit_code = kCheckFailed;

@@ -56,7 +56,7 @@ void check_measured(const std::string& verb, std::span<const SweepSeries> series
   const bool nothing = std::ranges::all_of(series, [](const SweepSeries& one) {
     return std::ranges::all_of(one.points, [](const SweepPoint& point) { return point.repetitions.empty(); });
   });
-  if (nothing) throw Error(verb, "was stopped before anything had been measured", "start it again, with --force");
+  if (nothing) throw Error(verb, "was stopped before anything had been measured", "start it again");
 }
 
 }  // namespace vestige::cli

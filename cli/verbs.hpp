@@ -47,7 +47,8 @@ int complete(const CLI::App& program, const std::vector<std::string>& words);
 int run_plot(const std::vector<std::string>& arguments);
 
 /// Draws what a verb has just written into `folder`, as 'vestige plot KIND' does. What fails is only a warning: the
-/// results are there.
-void draw_figure(const std::string& kind, const std::string& folder, const CommonOptions& options);
+/// results are there. Where no figure is wanted, one that an earlier run left goes: NAME.png, NAME.svg.
+void draw_or_remove_figure(const std::string& kind, const std::string& name, const std::string& folder, bool wanted,
+                           const CommonOptions& options);
 
 }  // namespace vestige::cli

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "traces/csv.hpp"
 #include "traces/error.hpp"
@@ -48,14 +51,20 @@ std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path
     RecordedContact contact;
     glm::dvec2& weights = contact.barycentric;
     double ignored = 0;
+    bool finite = true;
     const auto skip = [&](int columns) {
-      while (columns > 0 && lines.take(ignored)) --columns;
+      while (columns > 0 && lines.take(ignored)) {
+        finite = finite && std::isfinite(ignored);
+        --columns;
+      }
       return columns == 0;
     };
     if (!lines.take(contact.frame) || !skip(1) || !lines.take(contact.collider) || !lines.take(contact.triangle) ||
         !lines.take(contact.t) || !lines.take(weights.x) || !lines.take(weights.y) || !skip(2) ||
         !lines.take(contact.actuator) || !skip(4) || !lines.at_end())
       throw lines.error("is no row of contacts");
+    if (!finite) throw lines.error("time, texture coordinates and position must be finite");
+    if (!(contact.t >= 0 && contact.t <= 1)) throw lines.error("t must be from 0 to 1");
     if (!(weights.x >= 0 && weights.x <= 1 && weights.y >= 0 && weights.y <= 1))
       throw lines.error("u and v must be weights from 0 to 1");
     check("frame", contact.frame, limits.frames);
@@ -63,6 +72,12 @@ std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path
     if (contact.actuator > limits.actuators) check("actuator", contact.actuator, limits.actuators);
     contacts.push_back(contact);
   }
+  const auto place = [](const RecordedContact& contact) { return std::pair(contact.frame, contact.collider); };
+  std::ranges::sort(contacts, {}, place);
+  const auto twice = std::ranges::adjacent_find(contacts, {}, place);
+  if (twice != contacts.end())
+    throw Error(path.string(), fmt::format("collider {} has two contacts in frame {}", twice->collider, twice->frame),
+                kRemedy);
   return contacts;
 }
 

@@ -44,8 +44,8 @@ struct ContactLimits {
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Reads back what `ContactsCsv` wrote. Throws `Error` naming file and line, also for a contact that refers to what is
-/// not there.
+/// Reads back what `ContactsCsv` wrote, whatever the order of its rows, ordered by frame and collider. Throws `Error`
+/// naming file and line, also for a contact that refers to what is not there.
 std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path, const ContactLimits& limits = {});
 
 }  // namespace vestige

@@ -126,12 +126,15 @@ class AccuracyFigure : public Figure {
   /// One each; where there are too many, one for each detector, whose methods the marks tell apart.
   Colour colour(std::size_t series) const {
     const std::vector<AccuracySeries>& all = result_.panels.front().series;
-    if (all.size() <= kLineColours.size()) return kLineColours[series];
     std::vector<std::string> detectors;
+    if (all.size() <= kLineColours.size()) {
+      for (const AccuracySeries& one : all) detectors.push_back(one.detector);
+      return line_colours(detectors)[series];
+    }
     for (const AccuracySeries& one : all)
       if (std::ranges::find(detectors, one.detector) == detectors.end()) detectors.push_back(one.detector);
     const auto found = std::ranges::find(detectors, all[series].detector);
-    return kLineColours[static_cast<std::size_t>(found - detectors.begin()) % kLineColours.size()];
+    return line_colours(detectors)[static_cast<std::size_t>(found - detectors.begin())];
   }
   static Mark mark_of(const AccuracySeries& series) {
     if (series.method == "static") return Mark::kCircle;

@@ -115,7 +115,11 @@ class GrowthFigure : public Figure {
     const auto all = kinds();
     return static_cast<std::size_t>(std::ranges::find(all, std::pair(line.detector, line.context)) - all.begin());
   }
-  Colour colour(const GrowthLine& line) const { return kLineColours[kind(line) % kLineColours.size()]; }
+  Colour colour(const GrowthLine& line) const {
+    std::vector<std::string> detectors;
+    for (const auto& [detector, context] : kinds()) detectors.push_back(detector);
+    return line_colours(detectors)[kind(line)];
+  }
 
   /// Hollow where nothing is skipped, so that twins of one colour differ in more than their dashes.
   void draw_mark(Canvas& canvas, const Place& place, const GrowthLine& line) const {

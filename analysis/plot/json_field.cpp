@@ -12,6 +12,8 @@ nlohmann::json read_json(const std::filesystem::path& file, std::string_view rem
     return nlohmann::json::parse(read_text_file(file));
   } catch (const nlohmann::json::parse_error& error) {
     throw Error(fmt::format("{}, byte {}", file.string(), error.byte), "is no JSON", remedy);
+  } catch (const nlohmann::json::out_of_range&) {
+    throw Error(file.string(), "holds a number beyond the largest double", remedy);
   }
 }
 

@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "analysis/plot/canvas.hpp"
 
@@ -20,6 +23,34 @@ inline constexpr Colour kPurple = {204, 121, 167};
 
 /// Lines on white: without yellow, which is too pale, and black (the published points).
 inline constexpr std::array<Colour, 6> kLineColours = {kBlue, kVermillion, kGreen, kPurple, kOrange, kSkyBlue};
+
+/// A line's colour for each: a detector has the same in every figure, and where it stands twice, the second takes one
+/// that is free.
+inline std::vector<Colour> line_colours(const std::vector<std::string>& detectors) {
+  constexpr std::array<std::string_view, kLineColours.size()> kOwners = {"paper",  "geometry",       "cpu",
+                                                                         "embree", "embree_default", "exact"};
+  std::array<bool, kLineColours.size()> taken = {};
+  std::vector<std::size_t> numbers(detectors.size(), kLineColours.size());
+  for (std::size_t i = 0; i < detectors.size(); ++i) {
+    const auto owner = std::ranges::find(kOwners, detectors[i]);
+    const auto number = static_cast<std::size_t>(owner - kOwners.begin());
+    if (owner == kOwners.end() || taken[number]) continue;
+    taken[number] = true;
+    numbers[i] = number;
+  }
+  std::vector<Colour> colours;
+  std::size_t next = 0;
+  for (std::size_t number : numbers) {
+    if (number == kLineColours.size()) {
+      const auto free = std::ranges::find(taken, false);
+      number = free == taken.end() ? next++ % kLineColours.size() : static_cast<std::size_t>(free - taken.begin());
+      taken[number] = true;
+    }
+    colours.push_back(kLineColours[number]);
+  }
+  return colours;
+}
+
 /// Actuators, told apart on white; grey is for unmapped skin.
 inline constexpr std::array<Colour, 7> kActuatorColours = {kBlue,    kOrange, kGreen, kVermillion,
                                                            kSkyBlue, kPurple, kBlack};

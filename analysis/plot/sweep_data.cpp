@@ -59,6 +59,8 @@ SweepSource read_source(const JsonField& document) {
   if (document.has("avatar"))
     source.avatar = phrase(document.at("avatar"), {{"triangles", " triangles"}, {"vertices", " vertices"}});
   source.commit = commit_of(document);
+  if (document.has("surface")) source.surface = document.at("surface").text();
+  if (document.has("complete")) source.complete = setting(document.at("complete")) == "on";
   return source;
 }
 

@@ -33,6 +33,8 @@ struct SweepSource {
   std::string machine;
   std::string avatar;
   std::string commit;
+  std::string surface;  ///< "mapped": of the mapped triangles only
+  bool complete = true;
 };
 
 struct Sweeps {

@@ -71,14 +71,22 @@ bool is_beside_renderer(const Sweeps& sweeps, const SweepSeries& series) {
   return series.renderer == "on" && has_twin(sweeps, series, &SweepSeries::renderer);
 }
 
+std::set<std::string> methods_of(const Sweeps& sweeps) {
+  std::set<std::string> methods;
+  for (const SweepSeries& series : sweeps.series) methods.insert(series.method);
+  return methods;
+}
+
+bool any_skips(const Sweeps& sweeps) {
+  return std::ranges::any_of(sweeps.series, [](const SweepSeries& series) { return series.skip == "on"; });
+}
+
 /// Names each series by its detector and by whatever else tells it from the others.
 std::vector<std::string> series_names(const Sweeps& sweeps) {
   std::set<std::string> contexts;
-  std::set<std::string> methods;
-  for (const SweepSeries& series : sweeps.series) {
+  for (const SweepSeries& series : sweeps.series)
     if (!series.context.empty()) contexts.insert(series.context);
-    methods.insert(series.method);
-  }
+  const std::set<std::string> methods = methods_of(sweeps);
   std::vector<std::string> names;
   for (const SweepSeries& series : sweeps.series) {
     std::string name = series.detector;
@@ -103,6 +111,9 @@ std::vector<std::string> small_print(const Sweeps& sweeps) {
   std::string first = "Frequency is frames / total time, whole round trip.";
   if (has_interval) first += " Shaded: 95 % bootstrap interval.";
   first += " Triangles: published lower bounds.";
+  if (any_skips(sweeps)) first += " cpu and geometry skip what no collider is near, unless it says otherwise.";
+  if (const auto methods = methods_of(sweeps); methods.size() == 1 && !methods.begin()->empty())
+    first += fmt::format(" Method: {}.", *methods.begin());
   lines = wrapped(first);
   for (std::size_t i = 0; i < sweeps.sources.size(); ++i) {
     const SweepSource& source = sweeps.sources[i];
@@ -110,6 +121,8 @@ std::vector<std::string> small_print(const Sweeps& sweeps) {
     if (!source.renderer.empty()) text += fmt::format("OpenGL: {}. ", source.renderer);
     if (!source.machine.empty()) text += fmt::format("Machine: {}. ", source.machine);
     if (!source.avatar.empty()) text += fmt::format("Avatar: {}. ", source.avatar);
+    if (source.surface == "mapped") text += "Mapped triangles only. ";
+    if (!source.complete) text += "Not complete: it was stopped before its end. ";
     text += fmt::format("Commit\u00a0{}.", source.commit);
     for (std::string& line : wrapped(text)) lines.push_back(std::move(line));
   }
@@ -177,7 +190,9 @@ class SweepFigure : public Figure {
     for (const SweepSeries& series : sweeps_.series)
       if (std::ranges::find(kinds, kind(series)) == kinds.end()) kinds.push_back(kind(series));
     const auto found = std::ranges::find(kinds, kind(sweeps_.series[index]));
-    return kLineColours[static_cast<std::size_t>(found - kinds.begin()) % kLineColours.size()];
+    std::vector<std::string> detectors;
+    for (const auto& one : kinds) detectors.push_back(one.front());
+    return line_colours(detectors)[static_cast<std::size_t>(found - kinds.begin())];
   }
 
   Axis x_axis(const Box& plot) const {

@@ -7,6 +7,7 @@ namespace vestige {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 nlohmann::json result() {
   return {{"argv", {"build/bin/vestige", "sweep", "-o", "out"}},
@@ -33,6 +34,15 @@ TEST(Claims, QuoteASweepAtThePapersCountsWithIntervalAndOrigin) {
   EXPECT_EQ(claims[0].machine, "Abacus, 2 cores; softpipe");
   EXPECT_EQ(claims[0].commit, "0123456789+");
   EXPECT_THAT(claims_table(claims), HasSubstr("[run/sweep.json](run/sweep.json)"));
+}
+
+TEST(Claims, SayWhatIsNotComplete) {
+  nlohmann::json record = result();
+  record["frames"] = 10;
+  record["recording_s"] = 2;
+  EXPECT_THAT(claims_of(record, "a.json")[0].claim, Not(HasSubstr("complete")));
+  record["complete"] = false;
+  EXPECT_THAT(claims_of(record, "a.json")[0].claim, HasSubstr("**not complete**"));
 }
 
 TEST(Claims, SumAStressUpAndTakeItsOriginFromTheRunBesideIt) {

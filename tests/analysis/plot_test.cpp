@@ -25,6 +25,7 @@ using test::PlotTest;
 using test::read_png;
 using test::words_of;
 using test::write_text;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -71,6 +72,25 @@ TEST_F(PlotTest, ASweepNamesItsSeriesThePublishedPointsAndWhereItComesFrom) {
         "Detection frequency (Hz)", "softpipe", "Fast & Cool 9000", "0123456789", "5000 triangles"})
     EXPECT_THAT(words, HasSubstr(expected));
   EXPECT_THAT(words, Not(HasSubstr("paper, no skipping")));  // it knows none, so there is nothing to tell apart
+}
+
+TEST_F(PlotTest, ASweepSaysWhatItWasMeasuredWithAndWhetherToItsEnd) {
+  std::string sweep = kSweep;
+  for (std::size_t at = sweep.find("static"); at != std::string::npos; at = sweep.find("static"))
+    sweep.replace(at, 6, "ccd");
+  sweep.insert(sweep.find('{') + 1, R"("surface": "mapped", "complete": false, )");
+  write_text(folder_ / "sweep.json", sweep);
+  EXPECT_EQ(run("sweep .").exit_code, 0);
+  const std::string words = words_of(folder_ / "frequency.svg");
+  for (const char* expected : {"Method: ccd", "Mapped triangles only", "Not complete"})
+    EXPECT_THAT(words, HasSubstr(expected));
+}
+
+TEST_F(PlotTest, AResultThatHoldsNoNumberOfADoubleNamesItsFile) {
+  write_text(folder_ / "sweep.json", R"({"series": [1e999]})");
+  const Outcome outcome = run("sweep .");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.standard_error, AllOf(HasSubstr("sweep.json"), HasSubstr("beyond the largest double")));
 }
 
 TEST_F(PlotTest, APngIsSixAndAHalfInchesWideAt300DotsPerInchAndNotBlank) {

@@ -205,6 +205,14 @@ TEST_F(CommandLine, VerifyTellsEqualFromDifferentRuns) {
   ASSERT_EQ(run("vestige replay small.mcap --contacts c.csv --json r.json").exit_code, 0);
   EXPECT_EQ(run("vestige replay small.mcap --verify r.json").exit_code, 0);
   EXPECT_EQ(run("vestige replay small.mcap --verify c.csv").exit_code, 0);
+  ASSERT_EQ(run("{ head -1 c.csv; tail -n +2 c.csv | tac; } > reversed.csv").exit_code, 0);
+  EXPECT_EQ(run("vestige replay small.mcap --verify reversed.csv").exit_code, 0) << "whatever the order of rows";
+  for (const char* field : {"nan", "inf", "5"}) {
+    ASSERT_EQ(run(std::string("awk -F, -v OFS=, 'NR==2{$5=\"") + field + "\"}1' c.csv > odd.csv").exit_code, 0);
+    expect_failure("vestige replay small.mcap --verify odd.csv", 1, {"odd.csv, line 2", "t must be from 0 to 1"});
+  }
+  ASSERT_EQ(run("{ cat c.csv; tail -1 c.csv; } > twice.csv").exit_code, 0);
+  expect_failure("vestige replay small.mcap --verify twice.csv", 1, {"twice.csv", "two contacts in frame"});
   const test::Outcome paper = run("vestige replay small.mcap --detector paper --verify cpu");
   EXPECT_EQ(paper.exit_code, 0);
   EXPECT_THAT(paper.standard_output, HasSubstr(" 0 contacts differ"));

@@ -13,6 +13,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class SweepCommandLine : public test::CommandLineTest {};
 class GrowthCommandLine : public test::CommandLineTest {};
@@ -92,6 +93,25 @@ TEST_F(SweepCommandLine, MeasuresBesideARendererInAThreadOfItsOwn) {
   }
   EXPECT_GT(json["series"][1]["points"][0]["rendered_hz"], 0);
   EXPECT_LE(json["series"][1]["points"][0]["rendered_hz"], 120) << "paced, however short the run";
+}
+
+TEST_F(SweepCommandLine, OneRepetitionHasNoInterval) {
+  record_small();
+  const test::Outcome sweep = run(
+      "vestige sweep small.mcap --detector cpu --counts 1 --min-time 1e-9 --runs 1 --run-frames 1 --no-figure -o s");
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output, Not(HasSubstr(" to ")));
+  EXPECT_TRUE(json_in("s/sweep.json")["series"][0]["points"][0]["hz_low"].is_null());
+}
+
+TEST_F(SweepCommandLine, NoFigureOfAnEarlierRunStandsBesideNewResults) {
+  record_small();
+  ASSERT_EQ(run("mkdir s && touch s/frequency.png s/frequency.svg s/mine.png").exit_code, 0);
+  ASSERT_EQ(
+      run("vestige sweep small.mcap --detector cpu --counts 1 --min-time 0.01 --no-figure --force -o s").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "s/frequency.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "s/frequency.svg"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "s/mine.png"));
 }
 
 TEST_F(SweepCommandLine, GoesOnWithoutEmbree) {
