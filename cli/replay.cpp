@@ -149,6 +149,9 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
     verification.detectors = std::make_unique<DetectorTeam>(options.threads, [&] {
       return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, planes);
     });
+  } else if (options.verify == "-" || options.verify == "auto") {
+    throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
+                     "name cpu, exact, geometry, paper or embree, or what an earlier replay wrote");
   } else if (options.verify.ends_with(".csv")) {
     verification.contacts = read_contacts_csv(options.verify);
     verification.from_csv = true;
@@ -412,10 +415,10 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->type_name("TIME=FILE.png|TIME=LAYOUT")
       ->expected(1)
       ->take_all();
-  add_result("--verify", options->verify,
-             "Compare with another detector (cpu, exact, geometry, paper), or with the --contacts or --json of an "
-             "earlier replay; exit "
-             "4 if contacts differ")
+  add_result(
+      "--verify", options->verify,
+      "Compare with another detector (cpu, exact, geometry, paper, embree), or with the --contacts (.csv) or --json "
+      "of an earlier replay; exit 4 if contacts differ by more than their times")
       ->type_name("DETECTOR|FILE");
   add_law_options(
       *verb, options->law, "Intensity",

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "analysis/plot/json_field.hpp"
+#include "traces/error.hpp"
 
 namespace vestige::plot {
 
@@ -61,6 +62,9 @@ GrowthResult read_growth(const std::filesystem::path& folder) {
       add(by_colliders, s, series, {points.at(p).at("colliders").within(1, kMostSize), us_of(points.at(p))});
   }
   const JsonField sizes = document.at("by_triangles");
+  if (sizes.value().is_array() && sizes.value().empty())
+    throw Error(path.string(), "was stopped before another size of the avatar was measured",
+                "run 'vestige growth' to its end");
   for (std::size_t i = 0; i < sizes.count(); ++i) {
     const double triangles = sizes.at(i).at("triangles").within(1, kMostSize);
     const JsonField series = sizes.at(i).at("series");

@@ -145,6 +145,40 @@ TEST(TraceDamage, ADamagedChunkIsReportedWithItsOffset) {
   EXPECT_EQ(reader.warnings().size(), 1U) << "nothing is said twice";
 }
 
+TEST(TraceDamage, NothingIsReadFromTheMiddleOfAChunkThatIsCut) {
+  // In a chunk that is not compressed, coordinates may look like a record that leads to the chunk's own messages.
+  const test::TemporaryFolder folder;
+  TraceWriterOptions options = test::steady_options(100'000);
+  options.compression = Compression::kNone;
+  test::write_trace(folder / "whole.mcap", 1000, options);
+  std::vector<std::byte> bytes = read_file(folder / "whole.mcap");
+  std::vector<mcap::RecordPlace> chunks;
+  {
+    const mcap::MemorySource source(bytes);
+    mcap::RecordWalker walker(source);
+    for (mcap::RecordPlace place; walker.next(place);)
+      if (place.opcode == mcap::Opcode::kChunk) chunks.push_back(place);
+  }
+  ASSERT_GE(chunks.size(), 2U);
+  std::vector<std::uint64_t> messages = test::message_places(bytes);
+  std::erase_if(messages, [&](std::uint64_t at) { return at < chunks[1].offset || at >= chunks[1].end(); });
+  const std::uint64_t liar = messages[2] + 60;
+  const std::uint64_t end = messages[messages.size() - 20] - mcap::kRecordHeadBytes;
+  const std::uint64_t length = end - liar - mcap::kRecordHeadBytes;
+  ASSERT_GT(length, std::uint64_t{1} << 16) << "long enough to be believed without a look at its fields";
+  std::memcpy(bytes.data() + liar + 1, &length, sizeof length);
+  bytes.resize(chunks[1].end() - 1);
+  for (const mcap::Opcode opcode : {mcap::Opcode::kAttachmentIndex, mcap::Opcode::kMessageIndex}) {
+    bytes[liar] = static_cast<std::byte>(opcode);
+    write_bytes(folder / "cut.mcap", bytes);
+    TraceReader reader(folder / "cut.mcap");
+    const auto frames = test::read_frames(reader);
+    ASSERT_FALSE(frames.empty());
+    EXPECT_EQ(frames.size(), frames.back().index + 1) << "those of the first chunk";
+    EXPECT_FALSE(reader.complete());
+  }
+}
+
 TEST(TraceDamage, AMessageWhoseFieldsDoNotFitCostsItsFrameAlone) {
   const test::TemporaryFolder folder;
   SmallTrace trace = small_trace(folder, Compression::kNone);

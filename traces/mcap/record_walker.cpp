@@ -38,6 +38,12 @@ bool begins_with_magic(const ByteSource& source) {
   return is_magic(begin);
 }
 
+/// Kinds of record that hold a few numbers, and a name at most.
+bool is_always_short(Opcode opcode) {
+  return opcode == Opcode::kDataEnd || opcode == Opcode::kAttachmentIndex || opcode == Opcode::kMetadataIndex ||
+         opcode == Opcode::kSummaryOffset;
+}
+
 void require_content(const ByteSource& source) {
   if (source.size() == 0)
     throw Error(source.name(), "is empty", "was its recording started, and did the disk have room?");
@@ -169,7 +175,7 @@ bool RecordWalker::mend(RecordPlace& place) {
 bool RecordWalker::may_resume_at(const RecordPlace& place, bool messages_too) {
   if (!is_known(place.opcode) || place.end() > source_.size()) return false;
   if (belongs_in_chunks(place.opcode) && !messages_too) return false;
-  if (place.opcode == Opcode::kDataEnd && place.content_bytes > 4096) return false;
+  if (is_always_short(place.opcode) && place.content_bytes > 4096) return false;
   if (!could_follow(place.end(), place.opcode)) return false;
   const bool tells = place.opcode != Opcode::kMessage && place.content_bytes <= kFieldBytes &&
                      looked_at_bytes_ + kFieldBytes <= kMostLookedAtBytes + place.offset;
@@ -177,6 +183,8 @@ bool RecordWalker::may_resume_at(const RecordPlace& place, bool messages_too) {
   if (place.end() == source_.size() || place.opcode == Opcode::kFooter) return true;
   const auto second = head_at(ahead_, place.end());
   if (!second) return true;
+  // Where messages lie in chunks, they follow nothing outside: this would be in the middle of a chunk that was cut.
+  if (belongs_in_chunks(second->opcode) && !messages_too) return false;
   return second->end() > source_.size() || could_follow(second->end(), second->opcode);
 }
 
