@@ -117,7 +117,9 @@ class GrowthFigure : public Figure {
   }
   Colour colour(const GrowthLine& line) const {
     std::vector<std::string> detectors;
-    for (const auto& [detector, context] : kinds()) detectors.push_back(detector);
+    const auto all = kinds();
+    detectors.reserve(all.size());
+    for (const auto& [detector, context] : all) detectors.push_back(detector);
     return line_colours(detectors)[kind(line)];
   }
 

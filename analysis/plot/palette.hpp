@@ -39,6 +39,7 @@ inline std::vector<Colour> line_colours(const std::vector<std::string>& detector
     numbers[i] = number;
   }
   std::vector<Colour> colours;
+  colours.reserve(numbers.size());
   std::size_t next = 0;
   for (std::size_t number : numbers) {
     if (number == kLineColours.size()) {

@@ -191,6 +191,7 @@ class SweepFigure : public Figure {
       if (std::ranges::find(kinds, kind(series)) == kinds.end()) kinds.push_back(kind(series));
     const auto found = std::ranges::find(kinds, kind(sweeps_.series[index]));
     std::vector<std::string> detectors;
+    detectors.reserve(kinds.size());
     for (const auto& one : kinds) detectors.push_back(one.front());
     return line_colours(detectors)[static_cast<std::size_t>(found - kinds.begin())];
   }
