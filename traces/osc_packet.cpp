@@ -47,7 +47,7 @@ OscArgument argument_of(char type, const lo_arg* argument) {
       return copied<double>(argument);
     case LO_STRING:
     case LO_SYMBOL:
-      return std::string(&argument->s);
+      return std::string(reinterpret_cast<const char*>(argument));
     default:
       return std::monostate();
   }

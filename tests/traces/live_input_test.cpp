@@ -148,6 +148,22 @@ TEST(OscPacket, HoldsMessagesOfBundlesWithinBundles) {
   EXPECT_EQ(std::get<float>(messages[2].arguments[1]), 0.5F);
 }
 
+/// Arguments stand on multiples of 4, wherever liblo's union would want to be.
+TEST(OscPacket, AStringMayFollowANumber) {
+  for (int numbers = 0; numbers < 3; ++numbers) {
+    const OscBuilder message(lo_message_new());
+    for (int i = 0; i < numbers; ++i) lo_message_add_float(message.get(), 0.5F);
+    lo_message_add_string(message.get(), "Hips");
+    lo_message_add_double(message.get(), 2.5);
+    const auto messages = decode_osc_packet(bytes_of("/VMC/Ext/Bone/Pos", message));
+    ASSERT_THAT(messages, SizeIs(1));
+    const std::vector<OscArgument>& arguments = messages[0].arguments;
+    ASSERT_THAT(arguments, SizeIs(numbers + 2));
+    EXPECT_EQ(std::get<std::string>(arguments[numbers]), "Hips");
+    EXPECT_EQ(std::get<double>(arguments.back()), 2.5);
+  }
+}
+
 TEST(OscPacket, CutAnywhereOrFlippedAnywhereIsRefusedOrRead) {
   const auto packet = bundle({bone("Hips", {1, 0, 0, 0}), bundle({collider(2, 1, 2, 3)})});
   for (std::size_t length = 0; length < packet.size(); ++length) {
