@@ -24,14 +24,18 @@ constexpr double kRenderedStretch_s = 0.2;
 /// Consecutive frames of the trace; the first only gives the segments of the second their start.
 using Place = std::vector<TraceFrame>;
 
+std::uint64_t place_length(std::uint64_t trace_frames, const SweepSettings& settings) {
+  return std::min<std::uint64_t>(settings.run_frames + 1, trace_frames);
+}
+
 std::vector<Place> read_places(TraceReader& trace, const SweepSettings& settings) {
   const std::uint64_t frames = trace.frame_count();
   if (frames < 2)
     throw Error("the trace",
                 fmt::format("has {} frame{}; two follow each other at least", frames, frames == 1 ? "" : "s"),
                 "record a longer one");
-  const std::uint64_t length = std::min<std::uint64_t>(settings.run_frames + 1, frames);
-  const std::uint64_t count = std::min<std::uint64_t>(settings.runs, std::max<std::uint64_t>(1, frames / length));
+  const std::uint64_t length = place_length(frames, settings);
+  const std::uint64_t count = sweep_places(frames, settings);
   std::vector<Place> places(count);
   TraceFrame frame;
   trace.rewind();
@@ -231,6 +235,11 @@ class Sweep {
 };
 
 }  // namespace
+
+std::uint32_t sweep_places(std::uint64_t trace_frames, const SweepSettings& settings) {
+  const std::uint64_t most = trace_frames / std::max<std::uint64_t>(1, place_length(trace_frames, settings));
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, settings.runs));
+}
 
 std::vector<SweepSeries> run_sweep(TraceReader& trace, const Avatar& avatar, const std::vector<Contestant>& contestants,
                                    const SweepSettings& settings, const std::function<bool(double)>& progress) {

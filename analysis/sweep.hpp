@@ -33,6 +33,9 @@ struct SweepSettings {
   std::uint64_t seed = 1;             ///< of the random order
 };
 
+/// The places that do not overlap in a trace of so many frames: `settings.runs`, or fewer.
+std::uint32_t sweep_places(std::uint64_t trace_frames, const SweepSettings& settings);
+
 /// HAVE 2010 Fig. 2, one point: detection frequency for a number of colliders.
 struct SweepPoint {
   std::uint32_t colliders = 0;

@@ -69,6 +69,7 @@ std::vector<Contestant> make_contestants(const ContestantChoice& choice, const A
         if (needs_opengl(detector)) make_gl_context(context_kind(context), choice.choice.device);
         if (is_embree(detector)) require_embree();
       } catch (const Error& error) {
+        if (choice.choice.device >= 0 && needs_opengl(detector)) throw;  // who names a device means no other
         warn(fmt::format("no series '{}'{}: {}", detector, context.empty() ? "" : " on " + context, error.what()),
              verbosity);
         continue;

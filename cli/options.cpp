@@ -80,7 +80,8 @@ void make_output_folder(const std::string& path) {
 
 void refuse_too_many_frames(double frames, const char* flag, const char* remedy) {
   if (!(frames <= kMostTraceFrames))
-    throw UsageError(flag, fmt::format("a trace holds {:.0f} frames at most", kMostTraceFrames), remedy);
+    throw UsageError(
+        flag, fmt::format("{:.3g} asked for, a trace holds {:.0f} frames at most", frames, kMostTraceFrames), remedy);
 }
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,

@@ -47,13 +47,14 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
                        [&](double share) { return progress.update(share); });
   }
   check_measured("sweep", series);
+  const std::uint32_t runs = sweep_places(trace.reader.frame_count(), options.settings);
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["gl"] = first_gl(series);
   json["avatar"] = to_json(trace.avatar);
   json["trace"] = path;
   json["surface"] = choice.contestants.choice.surface;
-  json["runs"] = options.settings.runs;
+  json["runs"] = runs;
   json["run_frames"] = options.settings.run_frames;
   json["min_time_s"] = options.settings.min_time_s;
   json["complete"] = !interrupted();
@@ -68,6 +69,10 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   times_file.commit();
 
   if (interrupted()) warn("stopped early; what was measured so far was written", verbosity);
+  if (runs < options.settings.runs)
+    warn(fmt::format("--runs {}: the trace has room for {} of {} frames each", options.settings.runs, runs,
+                     options.settings.run_frames),
+         verbosity);
   for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
   const std::vector<std::string> wrong = disagreements(series);
   for (const std::string& warning : wrong) warn(warning, verbosity);

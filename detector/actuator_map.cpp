@@ -14,6 +14,7 @@
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
 #include "traces/sha256.hpp"
+#include "traces/strict_json.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige {
@@ -156,9 +157,9 @@ std::optional<glm::dvec3> parse_position(const nlohmann::json& entry, const std:
 
 Sidecar parse_sidecar(std::string_view json, std::string_view name) {
   constexpr const char* kRemedy = R"(write {"actuators": [{"grey": 40, "name": "chest left"}, …]})";
-  const auto document = nlohmann::json::parse(json, nullptr, false);
+  const nlohmann::json document = parse_strict_json(json, fmt::format("{}, sidecar", name), kRemedy);
   if (!document.is_object() || !document.contains("actuators") || !document["actuators"].is_array())
-    throw Error(fmt::format("{}, sidecar", name), "is not JSON with a list 'actuators'", kRemedy);
+    throw Error(fmt::format("{}, sidecar", name), "has no list 'actuators'", kRemedy);
   Sidecar sidecar;
   if (document.contains("triangles")) {
     const auto& triangles = document["triangles"];
@@ -253,6 +254,11 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
                 "let 'vestige map make --per-triangle' write it anew");
   map.triangle_count = listed.triangle_count;
   map.skin_digest = listed.skin_digest;
+  if (map.triangle_count != 0 && map.skin_digest.empty())
+    map.warnings.push_back(
+        fmt::format("{}: its sidecar has no 'skin', which tells the avatar it was made for: any avatar of {} triangles "
+                    "will do.",
+                    name, map.triangle_count));
   if (map.triangle_count != 0 && std::any_of(map.actuator.begin() + static_cast<std::ptrdiff_t>(map.triangle_count),
                                              map.actuator.end(), [](std::uint16_t actuator) { return actuator != 0; }))
     throw Error(name, fmt::format("has texels behind its {} triangles that are not black", map.triangle_count),

@@ -9,6 +9,7 @@
 #include "detector/portable_math.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
+#include "traces/strict_json.hpp"
 
 namespace vestige {
 
@@ -145,8 +146,7 @@ std::vector<Motor> ActuatorModel::motors(const ActuatorMap& map) const {
 }
 
 ActuatorModel parse_actuator_model(std::string_view json, std::string_view name) {
-  const auto document = nlohmann::json::parse(json, nullptr, false);
-  if (document.is_discarded()) throw Error(name, "is not JSON", kRemedy);
+  const nlohmann::json document = parse_strict_json(json, name, kRemedy);
   ActuatorModel model;
   model.name_ = name;
   model.all_ = Parser(document, std::string(name)).parse(Motor(), false);

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "traces/strict_json.hpp"
+
 namespace vestige {
 
 namespace {
@@ -197,14 +199,7 @@ Error UnknownName::with_hint(const std::string& hint) const {
 
 std::vector<RegionSpec> parse_region_file(std::string_view json_text, std::string_view name) {
   constexpr const char* kRemedy = R"(write {"regions": [{"name": "chest", "part": "torso", "side": "front"}]})";
-  json document;
-  try {
-    document = json::parse(json_text);
-  } catch (const json::parse_error& error) {
-    throw Error(fmt::format("{}, byte {}", name, error.byte), "is not JSON from there on", kRemedy);
-  } catch (const json::exception&) {
-    throw Error(name, "is not JSON that can be read", kRemedy);
-  }
+  const json document = parse_strict_json(json_text, name, kRemedy);
   if (!document.is_object() || !document.contains("regions") || !document["regions"].is_array() ||
       document["regions"].empty())
     throw Error(name, "has no list 'regions'", kRemedy);

@@ -150,7 +150,8 @@ std::unique_ptr<GlContext> make_egl_surfaceless_context() {
 std::unique_ptr<GlContext> make_egl_device_context(int device) {
   const std::vector<EGLDeviceEXT> devices = query_devices();
   if (device < 0 || static_cast<std::size_t>(device) >= devices.size())
-    throw Error(fmt::format("--device {}", device), fmt::format("this machine has {} EGL devices", devices.size()),
+    throw Error(fmt::format("--device {}", device),
+                fmt::format("this machine has {} EGL device{}", devices.size(), devices.size() == 1 ? "" : "s"),
                 "'vestige devices' lists them");
   return EglContext::make(fmt::format("egl-device-{}", device), EGL_PLATFORM_DEVICE_EXT,
                           devices[static_cast<std::size_t>(device)]);

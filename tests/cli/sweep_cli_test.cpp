@@ -104,6 +104,25 @@ TEST_F(SweepCommandLine, OneRepetitionHasNoInterval) {
   EXPECT_TRUE(json_in("s/sweep.json")["series"][0]["points"][0]["hz_low"].is_null());
 }
 
+TEST_F(SweepCommandLine, SaysHowManyPlacesTheTraceHasRoomFor) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --detector cpu --counts 1 --min-time 1e-9 --runs 9999 --no-figure -o s");
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_error, HasSubstr("--runs 9999: the trace has room for "));
+  EXPECT_LT(json_in("s/sweep.json")["runs"], 9999);
+}
+
+/// Another than the one that was named is not measured in its stead.
+TEST_F(SweepCommandLine, RefusesADeviceThatIsNotThere) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --detector geometry,cpu --device 99 --counts 1 --no-figure -o s");
+  EXPECT_EQ(sweep.exit_code, 1);
+  EXPECT_THAT(sweep.standard_error, HasSubstr("--device 99: this machine has "));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "s"));
+}
+
 TEST_F(SweepCommandLine, NoFigureOfAnEarlierRunStandsBesideNewResults) {
   record_small();
   ASSERT_EQ(run("mkdir s && touch s/frequency.png s/frequency.svg s/mine.png").exit_code, 0);

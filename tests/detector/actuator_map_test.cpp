@@ -18,6 +18,7 @@ namespace vestige {
 namespace {
 
 using test::message_of;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 /// A PNG of these samples, `channels` a texel; 16-bit where `Sample` is.
@@ -89,6 +90,18 @@ TEST(ActuatorMap, TakesPositionsFromTheSidecarWhereItGivesThem) {
   }
 }
 
+TEST(ActuatorMap, RefusesASidecarThatSaysOneThingTwice) {
+  const auto png = make_png<std::uint8_t>({10}, 1, PNG_COLOR_TYPE_GRAY);
+  EXPECT_THAT(message_of([&] {
+                parse_actuator_map(png, R"({"actuators": [{"grey": 10, "name": "a", "grey": 11}]})", "map.png");
+              }),
+              HasSubstr("map.png, sidecar: an object has 'grey' twice"));
+  EXPECT_THAT(message_of([&] { parse_actuator_map(png, R"({"actuators": [)", "map.png"); }),
+              HasSubstr("map.png, sidecar, byte 16: is not JSON from there on"));
+  const char* same_name_apart = R"({"name": 1, "actuators": [{"grey": 10, "name": "a"}]})";
+  EXPECT_EQ(parse_actuator_map(png, same_name_apart, "map.png").names.at(0), "a");
+}
+
 TEST(ActuatorMap, TakesTheNearestTexelAndWrapsAround) {
   ActuatorMap map;
   map.width = 2;
@@ -152,6 +165,7 @@ TEST(ActuatorMap, MayGiveEachTriangleItsOwn) {
   const ActuatorMap map = parse_actuator_map(png, kSidecar, "map.png");
   for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(map.at(i, {0.9, 0.9}), greys[i] / 40) << i;
   EXPECT_EQ(map.at(5, {0.9, 0.9}), 0) << "no triangle of its";
+  EXPECT_THAT(map.warnings, ElementsAre(HasSubstr("any avatar of 5 triangles")));
 
   EXPECT_THAT(message_of([&] {
                 parse_actuator_map(png, R"({"triangles": 4, "actuators": [{"grey": 40}, {"grey": 80}]})", "map.png");

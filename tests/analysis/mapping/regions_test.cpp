@@ -99,6 +99,8 @@ TEST(Regions, ThatCannotBeSayWhichAndWhy) {
   EXPECT_THAT(cause(R"({"name": "a"}, {"name": "b"})"), HasSubstr("actuator 'b'"));
   EXPECT_THAT(message_of([] { parse_region_file("{\"regions\": [", "mine.json"); }),
               HasSubstr("mine.json, byte 14: is not JSON"));
+  EXPECT_THAT(message_of([] { parse_region_file(R"({"regions": [], "regions": []})", "mine.json"); }),
+              HasSubstr("an object has 'regions' twice"));
   EXPECT_THAT(message_of([] { parse_region_file("[]", "mine.json"); }), HasSubstr("no list 'regions'"));
 }
 
