@@ -217,7 +217,7 @@ void add_batch(CLI::App& program, Invocation& invocation) {
       "  vestige batch --maps builtin regions.png --traces man.mcap --laws binary,phantom -o judged\n");
   add_batch_options(*verb, options->batch);
   verb->add_option("--jobs", options->jobs, "Traces at a time, each on a processor of its own [default: all cores]")
-      ->check(CLI::Range(1, 1024))
+      ->check(help::whole_number(1, 1024))
       ->type_name("N");
   verb->add_option("--shard", options->shard,
                    "Only each N-th trace, from the I-th: to be merged with the other shards by 'vestige batch merge'")

@@ -5,6 +5,7 @@
 
 #include "analysis/batch/slurm_script.hpp"
 #include "cli/batch_options.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
 
@@ -51,11 +52,11 @@ void add_batch_slurm(CLI::App& batch, Invocation& invocation) {
       "  vestige batch slurm --shards 2 --maps paper6 --traces swarm hug --sbatch=--time=60 -o c >submit.sh\n");
   verb->add_option("--shards", options->shards, "Into how many jobs the traces are split")
       ->required()
-      ->check(CLI::Range(1, 1000000))
+      ->check(help::whole_number(1, 1000000))
       ->type_name("N");
   verb->add_option("--jobs", options->jobs, "Processors of each shard")
       ->capture_default_str()
-      ->check(CLI::Range(1, 1024))
+      ->check(help::whole_number(1, 1024))
       ->type_name("N");
   verb->add_option("--sbatch", options->sbatch, "A further option of sbatch, as in --sbatch=--partition=short")
       ->allow_extra_args(false)

@@ -15,6 +15,7 @@
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/provenance.hpp"
 #include "cli/detectors.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/law_choice.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
@@ -391,7 +392,7 @@ void add_replay(CLI::App& program, Invocation& invocation) {
                    "Detect on this many processor threads, frame by frame; the same result")
       ->group(kDetectorGroup)
       ->capture_default_str()
-      ->check(CLI::Range(1, 256));
+      ->check(help::whole_number(1, 256));
   const auto add_result = [&](const char* name, auto& value, const char* description) {
     return verb->add_option(name, value, description)->group("Results");
   };

@@ -133,7 +133,7 @@ void add_check(CLI::App& vest, Invocation& invocation) {
       ->type_name("N");
   verb->add_option("--level", options->level, "How strongly they run")
       ->capture_default_str()
-      ->check(CLI::Range(1, 255));
+      ->check(help::whole_number(1, 255));
   verb->add_option("--seconds", options->on_s, "How long each runs")
       ->capture_default_str()
       ->check(help::between(0.05, 60))

@@ -334,9 +334,10 @@ TEST_F(StreamCommand, WhatCannotBeStreamedIsRefusedWithItsReason) {
   expect_failure("vestige stream trace.mcap --port ./ttyUSB9", 1, {"ttyUSB9", "no such device"});
   expect_failure("vestige stream trace.mcap --port trace.mcap", 1, {"trace.mcap", "not a serial device"});
   expect_failure("vestige stream trace.mcap --port ./x --baud 12345", 2, {"--baud", "57600"});
-  for (const char* ttl : {"49", "51", "2560"})
+  for (const char* ttl : {"49", "2560", "abc"})
     expect_failure(fmt::format("vestige stream trace.mcap --port ./ttyUSB9 --ttl {}", ttl), 2,
-                   {"--ttl", "multiple of 10 from 50 to 2550"});
+                   {"--ttl", "whole number from 50 to 2550"});
+  expect_failure("vestige stream trace.mcap --port ./ttyUSB9 --ttl 51", 2, {"--ttl", "multiple of 10"});
   expect_failure("vestige stream trace.mcap --port osc://localhost", 2, {"--port", "has no port"});
   expect_failure("vestige stream trace.mcap --port osc://localhost:9000 --baud 9600", 2, {"--baud"});
   expect_failure("vestige stream trace.mcap --port file:x --osc-address /a/{n}", 2, {"--osc-address"});
