@@ -26,6 +26,10 @@ Reach reach(double low, double high, std::size_t count) {
           static_cast<std::ptrdiff_t>(std::clamp(std::floor(high - 0.5), -1.0, most))};
 }
 
+/// A dot's middle on the edge of two triangles belongs to both, whatever was rounded: what lies behind is not seen
+/// between.
+constexpr double kEdgeSlack = 1e-9;
+
 }  // namespace
 
 std::vector<Sample> draw_surface(const Surface& surface, const View& view) {
@@ -54,7 +58,7 @@ std::vector<Sample> draw_surface(const Surface& surface, const View& view) {
         const double x = static_cast<double>(column) + 0.5;
         const double u = ((x - a.x) * (c.y - a.y) - (y - a.y) * (c.x - a.x)) / area;
         const double v = ((b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)) / area;
-        if (u < 0 || v < 0 || u + v > 1) continue;
+        if (u < -kEdgeSlack || v < -kEdgeSlack || u + v > 1 + kEdgeSlack) continue;
         const auto depth = static_cast<float>(a.z + u * (b.z - a.z) + v * (c.z - a.z));
         Sample& sample = samples[static_cast<std::size_t>(row) * view.width + static_cast<std::size_t>(column)];
         if (depth > sample.depth)

@@ -3,6 +3,7 @@ find_package(EXPAT REQUIRED)
 
 vestige_test(plot_layout_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_layout_test.cpp ${CMAKE_CURRENT_LIST_DIR}/contact_density_test.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/depth_map_test.cpp
   LIBRARIES vestige_plotting)
 vestige_test(plot_test
   SOURCES ${CMAKE_CURRENT_LIST_DIR}/plot_test.cpp

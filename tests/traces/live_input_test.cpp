@@ -150,9 +150,9 @@ TEST(OscPacket, HoldsMessagesOfBundlesWithinBundles) {
 
 /// Arguments stand on multiples of 4, wherever liblo's union would want to be.
 TEST(OscPacket, AStringMayFollowANumber) {
-  for (int numbers = 0; numbers < 3; ++numbers) {
+  for (std::size_t numbers = 0; numbers < 3; ++numbers) {
     const OscBuilder message(lo_message_new());
-    for (int i = 0; i < numbers; ++i) lo_message_add_float(message.get(), 0.5F);
+    for (std::size_t i = 0; i < numbers; ++i) lo_message_add_float(message.get(), 0.5F);
     lo_message_add_string(message.get(), "Hips");
     lo_message_add_double(message.get(), 2.5);
     const auto messages = decode_osc_packet(bytes_of("/VMC/Ext/Bone/Pos", message));
