@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <limits>
 
 #include "analysis/plot/palette.hpp"
 
@@ -31,22 +31,43 @@ void RegionImage::outline(Raster& raster) const {
 }
 
 std::vector<RegionLabel> RegionImage::labels() const {
-  std::vector<float> distance = distances();
-  std::vector<std::pair<float, std::size_t>> best;
-  for (std::size_t i = 0; i < region_.size(); ++i) {
-    if (region_[i] <= 0) continue;
-    const auto actuator = static_cast<std::size_t>(region_[i]);
-    if (actuator >= best.size()) best.resize(actuator + 1);
-    best[actuator] = std::max(best[actuator], {distance[i], i});
-  }
-  std::vector<RegionLabel> labels;
+  struct Sight {
+    float depth = 0;  ///< of its innermost dot, in dots from its edge
+    double column = 0;
+    double row = 0;
+    double dots = 0;
+  };
+  const std::vector<float> distance = distances();
+  std::vector<Sight> sights;
+  const auto each_dot = [&](const auto& visit) {
+    for (std::size_t i = 0; i < region_.size(); ++i)
+      if (region_[i] > 0)
+        visit(static_cast<std::size_t>(region_[i]), distance[i], static_cast<double>(i % width_) + 0.5,
+              static_cast<double>(i / width_) + 0.5);
+  };
+  each_dot([&](std::size_t actuator, float depth, double column, double row) {
+    if (actuator >= sights.size()) sights.resize(actuator + 1);
+    Sight& sight = sights[actuator];
+    sight.depth = std::max(sight.depth, depth);
+    sight.column += column;
+    sight.row += row;
+    ++sight.dots;
+  });
+
+  // A strip is equally deep all along: of the dots that are nearly the deepest, the one nearest to the middle.
+  constexpr float kNearlyDeepest = 0.9F;
   constexpr float kLeastDots = 4;  // of a smaller sight a label would hide all
-  for (std::size_t actuator = 1; actuator < best.size(); ++actuator) {
-    const auto [dots, i] = best[actuator];
-    if (dots < kLeastDots) continue;
-    const std::size_t row = i / width_;
-    labels.push_back({actuator, static_cast<double>(i % width_) + 0.5, static_cast<double>(row) + 0.5});
-  }
+  std::vector<RegionLabel> labels(sights.size());
+  std::vector<double> off_middle(sights.size(), std::numeric_limits<double>::infinity());
+  each_dot([&](std::size_t actuator, float depth, double column, double row) {
+    const Sight& sight = sights[actuator];
+    if (depth < kLeastDots || depth < kNearlyDeepest * sight.depth) return;
+    const double off = std::hypot(column - sight.column / sight.dots, row - sight.row / sight.dots);
+    if (off >= off_middle[actuator]) return;
+    off_middle[actuator] = off;
+    labels[actuator] = {actuator, column, row};
+  });
+  std::erase_if(labels, [](const RegionLabel& label) { return label.actuator == 0; });
   return labels;
 }
 

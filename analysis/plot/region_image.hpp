@@ -27,7 +27,7 @@ class RegionImage {
   /// A dark line where regions meet, so that they are told apart in grey too.
   void outline(Raster& raster) const;
 
-  /// For every actuator that is seen, and not only as a sliver, the dot that is farthest from other regions.
+  /// For every actuator that is seen, and not only as a sliver, a dot far from other regions and near its middle.
   std::vector<RegionLabel> labels() const;
 
  private:

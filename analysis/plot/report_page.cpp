@@ -220,7 +220,8 @@ class Page {
     const double felt_most = *most->metrics[index].mean;
     if (felt_most < felt + kWorthSaying) return {};
     return fmt::format(
-        "{} lets {:.1f}\u00a0% of contacts be felt, {} {:.1f}\u00a0%; {} says nothing of those that are not.",
+        "{} lets {:.1f}\u00a0% of a trace's contacts be felt in the mean, {} {:.1f}\u00a0%; "
+        "{} says nothing of those that are not.",
         name_of(best()), 100 * felt, name_of(*most), 100 * felt_most, html_text(words_of_name(headline().name)));
   }
 
