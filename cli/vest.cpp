@@ -17,6 +17,7 @@ namespace {
 
 constexpr std::size_t kDefaultActuators = 6;  // the paper's vest
 constexpr std::chrono::milliseconds kPause(300);
+constexpr std::chrono::seconds kPatience(3);
 
 struct CheckOptions {
   CommonOptions common;
@@ -25,6 +26,17 @@ struct CheckOptions {
   int level = 255;
   double on_s = 0.7;
 };
+
+/// Waits until the board has the state, so that the next does not supersede it on a busy line; false when it never
+/// does.
+bool wait_until_heard(Sender& sender) {
+  const auto until = Sender::Clock::now() + kPatience;
+  while (!sender.heard() && Sender::Clock::now() < until && !interrupted()) {
+    sender.still_here();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return sender.heard();
+}
 
 /// Waits; false when the user pressed Ctrl-C.
 bool rest(Sender& sender, std::chrono::duration<double> duration) {
@@ -47,16 +59,21 @@ Checked run_in_turn(const OpenSink& sink, std::size_t actuators, const CheckOpti
   ActuatorFrame frame;
   Checked checked;
   bool going = true;
+  bool heard = sink.greeting().has_value();
+  const auto show = [&] {
+    sender.post(frame, Sender::Clock::now());
+    if (heard) heard = wait_until_heard(sender);
+  };
   for (std::size_t i = 0; i < actuators && going; ++i) {
     checked.actuators = i + 1;
     print_summary(fmt::format("actuator {} of {}\n", i + 1, actuators),
                   {options.common.json, options.sink.output_path()}, options.common);
     frame.duty.assign(actuators, 0);
     frame.duty[i] = static_cast<std::uint8_t>(options.level);
-    sender.post(frame, Sender::Clock::now());
+    show();
     going = rest(sender, std::chrono::duration<double>(options.on_s));
     frame.duty[i] = 0;
-    sender.post(frame, Sender::Clock::now());
+    show();
     going = going && rest(sender, kPause);
   }
   checked.sent = sender.finish();
@@ -79,13 +96,14 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
 
   const bool acknowledges = sink.sink().acknowledges();
   const bool all_answered = statistics.acknowledged == statistics.sent && statistics.off_acknowledged;
-  const bool good =
-      statistics.off_sent && statistics.links_lost == 0 && (!acknowledges || (sink.greeting() && all_answered));
+  const bool all_sent = statistics.off_sent && (statistics.superseded == 0 || interrupted());
+  const bool good = all_sent && statistics.links_lost == 0 && (!acknowledges || (sink.greeting() && all_answered));
   std::string verdict = fmt::format("sent {} frames", statistics.sent);
   if (acknowledges) verdict += fmt::format(", {} acknowledged", statistics.acknowledged);
   if (statistics.links_lost > 0)
     verdict +=
         fmt::format(", the link was lost {} time{}", statistics.links_lost, statistics.links_lost == 1 ? "" : "s");
+  if (statistics.superseded > 0) verdict += fmt::format(", {} could not be sent in time", statistics.superseded);
   if (!statistics.off_sent) {
     verdict += ", the last, which switches off, could not be sent";
   } else if (acknowledges && !statistics.off_acknowledged) {

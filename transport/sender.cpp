@@ -55,7 +55,7 @@ void Sender::post(const ActuatorFrame& frame, Clock::time_point since) {
   {
     const std::lock_guard lock(mutex_);
     if (mailbox_) supersede();
-    mailbox_ = {frame, since};
+    mailbox_ = {frame, since, ++posted_};
   }
   wake();
 }
@@ -159,10 +159,14 @@ void Sender::send_state() {
   const Posted* changed = take_posted();
   if (changed != nullptr) {
     state_ = changed->frame;
+    state_number_ = changed->number;
     has_state_ = true;
   }
-  sink_.send(state_, next_sequence(changed));
+  const std::uint8_t sequence = next_sequence(changed);
+  outstanding_[sequence].number = state_number_;
+  sink_.send(state_, sequence);
   note_sent();
+  if (!sink_.acknowledges()) heard_ = state_number_;
   if (changed != nullptr) note_written();
 }
 
@@ -198,7 +202,7 @@ void Sender::give_back() {
 }
 
 std::uint8_t Sender::next_sequence(const Posted* changed) {
-  outstanding_[++sequence_] = {true, changed != nullptr, changed != nullptr ? changed->since : Clock::time_point()};
+  outstanding_[++sequence_] = {true, changed != nullptr, changed != nullptr ? changed->since : Clock::time_point(), 0};
   if (statistics_.acknowledged != 0)
     statistics_.most_unanswered =
         std::max<std::uint64_t>(statistics_.most_unanswered, static_cast<std::uint8_t>(sequence_ - answered_));
@@ -227,6 +231,7 @@ void Sender::receive() {
     if (!place.waiting) continue;
     place.waiting = false;
     answered_ = answer.sequence;  // and with it all before it, since the line keeps their order
+    heard_ = std::max<std::uint64_t>(heard_, place.number);
     ++statistics_.acknowledged;
     if (place.changed) statistics_.acknowledged_after.add(seconds(Clock::now() - place.since));
   }

@@ -70,6 +70,10 @@ class Sender {
   /// what the sink threw.
   void post(const ActuatorFrame& frame, Clock::time_point since);
 
+  /// Whether the state that was left last has been acknowledged; where the sink never acknowledges, whether it was
+  /// sent.
+  bool heard() const { return heard_ == posted_; }
+
   /// Says that whoever leaves states is alive. When neither this nor `post` has been called for a second, nothing is
   /// refreshed any more, so that the board's ttl switches it off; what has no ttl is switched off.
   void still_here() { alive_ = Clock::now().time_since_epoch().count(); }
@@ -85,6 +89,7 @@ class Sender {
   struct Posted {
     ActuatorFrame frame;
     Clock::time_point since;
+    std::uint64_t number = 0;  ///< counts states from 1
   };
   /// A change that is being written.
   struct InFlight {
@@ -95,6 +100,7 @@ class Sender {
     bool waiting = false;
     bool changed = false;
     Clock::time_point since;
+    std::uint64_t number = 0;  ///< of the state that it carried; 0: none, or off
   };
 
   /// Empties the mailbox of what will not be sent.
@@ -133,6 +139,8 @@ class Sender {
   std::vector<SentState> log_;
   std::uint64_t superseded_ = 0;
   std::atomic<Clock::rep> alive_ = Clock::now().time_since_epoch().count();
+  std::atomic<std::uint64_t> posted_ = 0;  ///< how many states
+  std::atomic<std::uint64_t> heard_ = 0;   ///< the newest that is known to have arrived
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;
@@ -141,6 +149,7 @@ class Sender {
   std::optional<std::vector<std::uint8_t>> posted_before_;
   // The sender thread's.
   ActuatorFrame state_;
+  std::uint64_t state_number_ = 0;
   bool has_state_ = false;
   bool linked_ = true;
   bool deserted_ = false;  ///< nobody has been there for a second

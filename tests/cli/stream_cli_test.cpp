@@ -98,7 +98,7 @@ TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
   record("--count 60 --rate 500 --duration 3");
   ASSERT_EQ(run("vestige replay -q trace.mcap --timeline timeline.csv").exit_code, 0);
   const test::Outcome outcome =
-      run_with_board("vestige stream trace.mcap --port vest --log log.csv --json stream.json");
+      run_with_board("vestige stream trace.mcap --port vest --ttl 2000 --log log.csv --json stream.json");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
 
   // Every change of the timeline was sent, or is said to have been superseded.
@@ -142,7 +142,8 @@ TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
 TEST_F(StreamCommand, PressuresArriveAtTheValvesInAllTheirLevels) {
   record("--count 60 --rate 500 --duration 2");
   const test::Outcome outcome = run_with_board(
-      "vestige stream trace.mcap --port vest --levels pressure --log log.csv --json stream.json", "vest-valves");
+      "vestige stream trace.mcap --port vest --ttl 2000 --levels pressure --log log.csv --json stream.json",
+      "vest-valves");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   std::vector<Row> sent = read_log(folder_ / "log.csv");
   std::erase_if(sent, [](const Row& row) { return row.state != "sent"; });
@@ -182,7 +183,7 @@ TEST_F(StreamCommand, AnInterruptedStreamSwitchesTheVestOff) {
   record("--colliders hug --rate 100 --duration 1");
   for (const std::string signal : {"INT", "TERM"}) {
     const test::Outcome outcome =
-        run_with_board("vestige stream trace.mcap --port vest --loop --hold 1e6 --json " + signal +
+        run_with_board("vestige stream trace.mcap --port vest --ttl 2000 --loop --hold 1e6 --json " + signal +
                        ".json & stream=$!\nsleep 1.5; kill -" + signal + " $stream; wait $stream");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
     EXPECT_TRUE(read_json(signal + ".json")["off_acknowledged"]);
@@ -352,9 +353,12 @@ TEST_F(StreamCommand, WhatCannotBeStreamedIsRefusedWithItsReason) {
   EXPECT_EQ(run("vestige stream bare.mcap --port file:x --map builtin").exit_code, 0);
 }
 
+/// It hardly ever has the processor, as on a busy machine, and must leave out no motor for that.
 TEST_F(StreamCommand, VestCheckRunsEachMotorInTurn) {
-  const test::Outcome outcome =
-      run_with_board("vestige vest check --port vest --seconds 0.2 --level 100 --json check.json");
+  const test::Outcome outcome = run_with_board(
+      "vestige vest check --port vest --seconds 0.1 --level 100 --ttl 2000 --json check.json & check=$!\n"
+      "sleep 0.5; for i in $(seq 20); do kill -STOP $check; sleep 0.2; kill -CONT $check; sleep 0.003; "
+      "done; wait $check");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_output, HasSubstr("actuator 6 of 6"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("the vest hears everything"));

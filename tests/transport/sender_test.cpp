@@ -150,6 +150,24 @@ TEST_F(SenderTest, ABusyLineGetsTheLatestStateAndTheOthersAreReported) {
   EXPECT_EQ(log[2].fate, SentState::Fate::kSent);
 }
 
+TEST_F(SenderTest, AStateIsHeardWhenItWasAnswered) {
+  Sender sender(vest, options(), note);
+  EXPECT_TRUE(sender.heard());
+  vest.locked([&] { vest.silent = true; });
+  post(sender, {1});
+  EXPECT_FALSE(sender.heard());
+  until([&] { return vest.told().size() > 2; });
+  EXPECT_FALSE(sender.heard());
+  vest.locked([&] { vest.silent = false; });
+  until([&] { return sender.heard(); });  // a repetition of it was answered
+  vest.locked([&] { vest.busy = true; });
+  post(sender, {2});
+  EXPECT_FALSE(sender.heard());
+  vest.locked([&] { vest.busy = false; });
+  until([&] { return sender.heard(); });
+  EXPECT_THAT(changes(), ElementsAre(Duties{1}, Duties{2}));
+}
+
 TEST_F(SenderTest, TheLastStateIsStillSentBeforeTheOff) {
   Sender sender(vest, options(), note);
   post(sender, {1});
