@@ -40,12 +40,12 @@ struct Extent {
   std::size_t bottom = 0;
 };
 
-/// The drawn boxes from left to right: what is not white at 70 % of the page's height, where no words are.
+/// The drawn boxes from left to right: what is not white at 80 % of the page's height, where no words and numbers are.
 std::vector<Extent> boxes(const Picture& picture) {
   const auto is_white = [&](std::size_t column, std::size_t row) {
     return picture.pixels[row * picture.width + column] == test::kWhite;
   };
-  const std::size_t row = picture.height * 7 / 10;
+  const std::size_t row = picture.height * 8 / 10;
   std::vector<Extent> found;
   for (std::size_t column = 1; column < picture.width; ++column) {
     if (is_white(column, row)) continue;
