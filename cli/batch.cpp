@@ -136,6 +136,10 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   const Shard shard = parse_shard(options.shard, plan.traces.size());
   const std::size_t headline = metric_to_rank_by(batch.rank_by);
   check_outputs({batch.common.json}, batch.traces, batch.common);
+  if (plan.has_scenario())
+    warn_of_many_frames(plan.recording.rate_hz * plan.recording.duration_s,
+                        "Ctrl-C stops, and the same command goes on with the trace after the last that is finished",
+                        verbosity);
   catch_interrupts();
   const std::size_t jobs = options.jobs != 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
   std::vector<BatchFailure> failures =

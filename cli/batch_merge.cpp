@@ -46,7 +46,7 @@ void copy_files(const MergedShards& shards, const BatchFolder& folder) {
     const auto name = shards.batch["traces"][i]["name"].get<std::string>();
     copy_file(from / ("contacts/" + name + ".csv"), folder.contacts(name));
     copy_file(from / ("traces/" + name + ".mcap"), folder.trace(name));
-    copy_file(from / ("items/" + name + ".run.json"), folder.item_run(name));
+    copy_file(from / ("times/" + name + ".json"), folder.item_times(name));
     copy_file(from / ("items/" + name + ".json"), folder.item(name));
   }
 }

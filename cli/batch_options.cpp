@@ -36,16 +36,15 @@ std::string scenario_names() {
   return text;
 }
 
-/// A misspelt scenario is no file of that name either: better said at once than after all other traces.
-void refuse_misspelt_scenarios(const std::vector<BatchTrace>& traces) {
-  std::vector<std::string_view> names;
-  for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
-  for (const BatchTrace& trace : traces) {
+/// A misspelt name is no file of that name either: better said at once than after everything else.
+void refuse_misspelt(const std::vector<std::string>& given, const char* flag, const char* what,
+                     const std::vector<std::string_view>& names) {
+  for (const std::string& word : given) {
     std::error_code ignored;
-    if (trace.scenario != nullptr || std::filesystem::exists(trace.given, ignored)) continue;
-    if (const std::string meant = help::did_you_mean(trace.given, names); !meant.empty())
-      throw UsageError("--traces", fmt::format("{}: there is no such file", trace.given),
-                       fmt::format("{}the scenarios are: {}", meant, fmt::join(names, ", ")));
+    if (std::ranges::find(names, word) != names.end() || std::filesystem::exists(word, ignored)) continue;
+    if (const std::string meant = help::did_you_mean(word, names); !meant.empty())
+      throw UsageError(flag, fmt::format("{}: there is no such file", word),
+                       fmt::format("{}the {} are: {}", meant, what, fmt::join(names, ", ")));
   }
 }
 
@@ -104,7 +103,13 @@ BatchPlan plan_of(const BatchOptions& options) {
   if (options.output == "-") throw UsageError("-o -", "a batch is a folder of files", "name a folder");
   BatchPlan plan;
   plan.traces = name_traces(options.traces);
-  refuse_misspelt_scenarios(plan.traces);
+  std::vector<std::string_view> names;
+  for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
+  refuse_misspelt(options.traces, "--traces", "scenarios", names);
+  const std::vector<std::string> layouts = layout_names();
+  names.assign(layouts.begin(), layouts.end());
+  names.emplace_back("builtin");
+  refuse_misspelt(options.maps, "--maps", "layouts", names);
   plan.laws = parse_names(options.laws, kLaws, "--laws");
   const auto refuse_without = [&](bool given, const char* flag, const char* law) {
     if (given && std::ranges::find(plan.laws, law) == plan.laws.end())

@@ -146,17 +146,17 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
                      map.left_out.size(), fmt::join(map.left_out, ", ")),
          options.common.verbosity());
 
-  write_bytes(options.output, map.files.png, options.common);
-  write_bytes(sidecar, std::as_bytes(std::span(map.files.json)), options.common);
-  write_bytes(options.regions_output, std::as_bytes(std::span(regions)), options.common);
+  write_together({{options.output, map.files.png},
+                  {sidecar, std::as_bytes(std::span(map.files.json))},
+                  {options.regions_output, std::as_bytes(std::span(regions))}},
+                 options.common);
   nlohmann::ordered_json json = provenance(invocation.argv);
   json.update(made_json(options, map, body));
   write_json(options.common.json, json, options.common);
   print_summary(made_text(options, map, sidecar), {options.regions_output, options.common.json}, options.common);
-  if (map.warnings.empty())
-    warn_of_problems(options, map, body, avatar);
-  else
-    invocation.exit_code = kDataLost;
+  if (map.warnings.empty()) warn_of_problems(options, map, body, avatar);
+  // Skin that should fire and does not, or fires another actuator.
+  if (!map.raster.conflicts.empty() || map.raster.triangles_left_out > 0) invocation.exit_code = kDataLost;
 }
 
 /// What is wrong with a layout's name; empty: nothing.

@@ -84,6 +84,11 @@ void refuse_too_many_frames(double frames, const char* flag, const char* remedy)
         flag, fmt::format("{:.3g} asked for, a trace holds {:.0f} frames at most", frames, kMostTraceFrames), remedy);
 }
 
+void warn_of_many_frames(double frames, std::string_view way_out, Verbosity verbosity) {
+  constexpr double kMany = 1e7;
+  if (frames > kMany) warn(fmt::format("{:.0f} frames will take long; {}", frames, way_out), verbosity);
+}
+
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    const CommonOptions& options) {
   if (std::ranges::count_if(outputs, is_standard_output) > 1)

@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/terminal.hpp"
@@ -51,6 +52,9 @@ void make_output_folder(const std::string& path);
 
 /// Throws `UsageError` for more frames than a trace can hold.
 void refuse_too_many_frames(double frames, const char* flag, const char* remedy);
+
+/// Warns of a number of frames that may be a mistyped rate or duration. `way_out`: how to end early.
+void warn_of_many_frames(double frames, std::string_view way_out, Verbosity verbosity);
 
 /// Refuses, before any work is done, what could not be written at its end or would destroy what is read: existing files
 /// without --force, two results in one place, a result in the place of an input. Empty paths were not asked for.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <memory>
+#include <vector>
 
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
@@ -14,6 +16,18 @@ void write_bytes(const std::string& path, std::span<const std::byte> bytes, cons
   OutputFile file(path, options.overwrite());
   file.write(bytes);
   file.commit();
+}
+
+void write_together(std::initializer_list<std::pair<std::string, std::span<const std::byte>>> files,
+                    const CommonOptions& options) {
+  std::vector<std::unique_ptr<OutputFile>> written;
+  for (const auto& [path, bytes] : files) {
+    if (path.empty()) continue;
+    written.push_back(std::make_unique<OutputFile>(path, options.overwrite()));
+    written.back()->write(bytes);
+    written.back()->flush();
+  }
+  for (const auto& file : written) file->commit();
 }
 
 void check_extension(const char* flag, const std::string& path, std::string_view extension, std::string_view what) {

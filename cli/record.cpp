@@ -25,8 +25,6 @@ namespace vestige::cli {
 
 namespace {
 
-constexpr double kManyFrames = 1e7;
-
 constexpr double kFarthest_m = 1e7;  // detector/CONTRACT.md, 2
 
 /// When a live recording's chunks are closed, so that with the time until somebody looks nothing waits for 100 ms.
@@ -119,9 +117,8 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   }
 
   const double frames = settings.rate_hz * settings.duration_s;
-  if (!options.live.is_live() && frames > kManyFrames)
-    warn(fmt::format("{:.0f} frames will take long; Ctrl-C ends the trace early, complete up to there", frames),
-         verbosity);
+  if (!options.live.is_live())
+    warn_of_many_frames(frames, "Ctrl-C ends the trace early, complete up to there", verbosity);
   catch_interrupts();
   if (limits.ring_s) catch_snapshots();
   const auto start = std::chrono::steady_clock::now();

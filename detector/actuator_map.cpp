@@ -99,9 +99,26 @@ bool is_by_triangle(const PngReader& reader) {
                      [](const png_text& text) { return text.key == kMapKeyword && text.text == kTriangleMap; });
 }
 
+/// libpng would call it damaged.
+void refuse_too_large(std::span<const std::byte> png, std::string_view name) {
+  constexpr std::size_t kWidth = 16;  // of IHDR, which comes first, in bytes from the file's beginning
+  if (png.size() < kWidth + 8) return;
+  const auto number = [&](std::size_t offset) {
+    std::uint32_t value = 0;
+    for (const std::byte byte : png.subspan(offset, 4)) value = value << 8U | std::to_integer<std::uint32_t>(byte);
+    return value;
+  };
+  const std::uint32_t width = number(kWidth);
+  const std::uint32_t height = number(kWidth + 4);
+  if (width > kMaxSide || height > kMaxSide)
+    throw Error(name, fmt::format("is {} x {} texels, and a map has at most {} a side", width, height, kMaxSide),
+                "export it smaller, without interpolation");
+}
+
 GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name) {
   if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0)
     throw Error(name, "is not a PNG file", "export the actuator map as a greyscale PNG");
+  refuse_too_large(bytes, name);
   PngSource source = {bytes, 0, {}};
   const PngReader reader(source);
   const auto fail = [&] {
@@ -155,11 +172,41 @@ std::optional<glm::dvec3> parse_position(const nlohmann::json& entry, const std:
   return glm::dvec3(list[0].get<double>(), list[1].get<double>(), list[2].get<double>());
 }
 
-Sidecar parse_sidecar(std::string_view json, std::string_view name) {
+/// Whatever is written about an actuator, a terminal, a CSV and an SVG can show.
+std::string parse_name(const nlohmann::json& entry, std::size_t number, const std::string& where) {
+  if (!entry.contains("name")) return fmt::format("actuator {}", number);
+  constexpr const char* kRemedy = R"(write "name": "chest left", or leave it out)";
+  const nlohmann::json& name = entry["name"];
+  if (!name.is_string() || name.get<std::string>().empty()) throw Error(where, "'name' is not a text", kRemedy);
+  const auto text = name.get<std::string>();
+  if (std::ranges::any_of(text, [](char letter) { return static_cast<unsigned char>(letter) < ' ' || letter == 0x7F; }))
+    throw Error(where, "'name' holds a control character", kRemedy);
+  return text;
+}
+
+/// A misspelt field says nothing, and would be missed by nobody.
+void warn_of_fields(const nlohmann::json& object, const std::vector<std::string>& known, const std::string& where,
+                    std::vector<std::string>& warnings) {
+  for (const auto& [key, value] : object.items())
+    if (std::ranges::find(known, key) == known.end())
+      warnings.push_back(fmt::format("{}: has a field '{}' that means nothing here; there are: {}.", where, key,
+                                     fmt::join(known, ", ")));
+}
+
+void warn_of_names(const Sidecar& sidecar, std::string_view name, std::vector<std::string>& warnings) {
+  std::map<std::string, std::size_t> first;
+  for (std::size_t i = 0; i < sidecar.names.size(); ++i)
+    if (const auto [found, is_new] = first.emplace(sidecar.names[i], i); !is_new)
+      warnings.push_back(fmt::format("{}, sidecar: actuators {} and {} are both called '{}'.", name, found->second + 1,
+                                     i + 1, sidecar.names[i]));
+}
+
+Sidecar parse_sidecar(std::string_view json, std::string_view name, std::vector<std::string>& warnings) {
   constexpr const char* kRemedy = R"(write {"actuators": [{"grey": 40, "name": "chest left"}, …]})";
   const nlohmann::json document = parse_strict_json(json, fmt::format("{}, sidecar", name), kRemedy);
   if (!document.is_object() || !document.contains("actuators") || !document["actuators"].is_array())
     throw Error(fmt::format("{}, sidecar", name), "has no list 'actuators'", kRemedy);
+  warn_of_fields(document, {"actuators", "triangles", "skin"}, fmt::format("{}, sidecar", name), warnings);
   Sidecar sidecar;
   if (document.contains("triangles")) {
     const auto& triangles = document["triangles"];
@@ -178,10 +225,11 @@ Sidecar parse_sidecar(std::string_view json, std::string_view name) {
     if (std::ranges::find(sidecar.grey, grey) != sidecar.grey.end())
       throw Error(where, fmt::format("grey {} is listed twice", grey), "give every actuator its own grey");
     sidecar.grey.push_back(grey);
-    const bool named = entry.contains("name") && entry["name"].is_string();
-    sidecar.names.push_back(named ? entry["name"].get<std::string>() : fmt::format("actuator {}", sidecar.grey.size()));
+    warn_of_fields(entry, {"grey", "name", "position_m"}, where, warnings);
+    sidecar.names.push_back(parse_name(entry, sidecar.grey.size(), where));
     sidecar.position_m.push_back(parse_position(entry, where));
   }
+  warn_of_names(sidecar, name, warnings);
   return sidecar;
 }
 
@@ -231,7 +279,8 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
   ActuatorMap map;
   map.width = image.width;
   map.height = image.height;
-  Sidecar listed = sidecar_json.empty() ? actuators_of(image, name, map.warnings) : parse_sidecar(sidecar_json, name);
+  Sidecar listed =
+      sidecar_json.empty() ? actuators_of(image, name, map.warnings) : parse_sidecar(sidecar_json, name, map.warnings);
   if (image.is_by_triangle && listed.triangle_count == 0)
     throw Error(name, "its texels are the triangles of an avatar, and no sidecar says of which",
                 "put the .json beside it that 'vestige map make' wrote with it");
@@ -301,7 +350,8 @@ ActuatorMapFiles read_actuator_map_files(const std::string& map) {
   const auto sidecar = std::filesystem::path(map).replace_extension(".json");
   ActuatorMapFiles files = {read_file(map), ""};
   if (files.png.empty()) throw Error(map, "is empty", "export the actuator map as a greyscale PNG");
-  if (!std::filesystem::exists(sidecar)) return files;
+  std::error_code ignored;  // a link that leads nowhere is there, and cannot be read
+  if (!std::filesystem::exists(std::filesystem::symlink_status(sidecar, ignored))) return files;
   files.json = read_text_file(sidecar);
   if (files.json.empty())
     throw Error(sidecar.string(), "is empty", "list the actuators in it, or remove it: then each grey level is one");

@@ -22,9 +22,10 @@ namespace vestige {
 
 namespace {
 
-constexpr const char* kFolders[] = {"items", "contacts", "traces", "maps"};
+constexpr const char* kFolders[] = {"items", "times", "contacts", "traces", "maps"};
 constexpr const char* kLockName = ".lock";
 constexpr const char* kPage = "report.html";
+constexpr const char* kFigures = "figures";  // the page's
 constexpr const char* kResults[] = {"scores.csv", "scores.json", "ranking.csv", "ranking.json"};
 constexpr const char* kShards = "shards";  // of a Slurm run that is merged into this folder, with their logs
 constexpr const char* kLogs = "logs";
@@ -117,6 +118,7 @@ BatchFolder::BatchFolder(std::filesystem::path folder, const nlohmann::ordered_j
     earlier_run_ = nlohmann::ordered_json::parse(read_text_file(run.string()), nullptr, false);
   for (const char* name : kFolders) make_folder(folder_ / name);
   remove_leftovers(batch);
+  remove_replaced(batch);
 }
 
 void BatchFolder::refuse_others(const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other) const {
@@ -161,23 +163,61 @@ void BatchFolder::remove_leftovers(const nlohmann::ordered_json& batch) const {
   std::set<std::string> recorded;
   std::set<std::string> maps;
   add_names(items, traces, ".json");
-  add_names(items, traces, ".run.json");
   add_names(contacts, traces, ".csv");
   add_names(recorded, traces, ".mcap");
-  for (const std::string& name : recorded) growing.insert("." + name);
+  for (const std::string& name : recorded) {
+    growing.insert("." + name);
+    growing.insert("." + name + ".partial");  // of a full disk
+  }
   recorded.insert(growing.begin(), growing.end());
   add_names(maps, batch.at("maps"), ".png");
   add_names(maps, batch.at("maps"), ".json");
   remove(folder_ / "items", items, {});
+  remove(folder_ / "times", items, {});
   remove(folder_ / "contacts", contacts, {});
   remove(folder_ / "traces", recorded, growing);
   remove(folder_ / "maps", maps, {});
 }
 
+/// What an earlier batch, which this one replaces, wrote for maps and traces that this one does not have.
+void BatchFolder::remove_replaced(const nlohmann::ordered_json& batch) const {
+  const auto names_in = [](const nlohmann::ordered_json& of, const char* list) {
+    std::set<std::string> found;
+    add_names(found, of.at(list), "");
+    std::erase_if(found, [](const std::string& name) { return name.find('/') != std::string::npos; });  // none of ours
+    return found;
+  };
+  std::vector<std::string> replaced;
+  try {
+    const std::set<std::string> traces = names_in(batch, "traces");
+    for (const std::string& name : names_in(earlier_run_.at("batch"), "traces"))
+      if (!traces.contains(name))
+        replaced.insert(replaced.end(), {item(name), item_times(name), contacts(name), trace(name)});
+    const std::set<std::string> maps = names_in(batch, "maps");
+    for (const std::string& name : names_in(earlier_run_.at("batch"), "maps"))
+      if (!maps.contains(name)) replaced.insert(replaced.end(), {map_png(name), map_json(name)});
+  } catch (const nlohmann::json::exception&) {
+    return;  // there was no batch, or none that says what it wrote
+  }
+  std::error_code ignored;
+  for (const std::string& path : replaced) std::filesystem::remove(path, ignored);
+}
+
+void BatchFolder::remove_page() const {
+  std::error_code ignored;
+  if (!std::filesystem::remove(folder_ / kPage, ignored)) return;
+  std::vector<std::filesystem::path> figures;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / kFigures, ignored))
+    if (const auto extension = entry.path().extension(); extension == ".svg" || extension == ".png")
+      figures.push_back(entry.path());
+  for (const auto& path : figures) std::filesystem::remove(path, ignored);
+  std::filesystem::remove(folder_ / kFigures, ignored);  // unless somebody else's files are there
+}
+
 void BatchFolder::remove_results(const nlohmann::ordered_json& run) const {
   std::error_code ignored;
   for (const char* name : kResults) std::filesystem::remove(folder_ / name, ignored);
-  if (!has_results_of(earlier_run_, run)) std::filesystem::remove(folder_ / kPage, ignored);
+  if (!has_results_of(earlier_run_, run)) remove_page();
 }
 
 std::optional<nlohmann::ordered_json> BatchFolder::finished(const std::string& name, const std::string& key,

@@ -30,7 +30,7 @@ class FolderLock {
 ///   run.json                where it comes from, its inputs, what failed, what took how long
 ///   scores.csv|json         map, trace, law, then each metric
 ///   ranking.csv|json        a row for each map and law
-///   items/NAME.json         a trace's scores; items/NAME.run.json: where and when, and what it took
+///   items/NAME.json         a trace's scores; times/NAME.json: where and when, and what it took
 ///   contacts/NAME.csv       a trace's contacts
 ///   traces/NAME.mcap        a scenario, recorded
 ///   maps/NAME.png|json, avatar.glb
@@ -42,7 +42,7 @@ class BatchFolder {
   BatchFolder(std::filesystem::path folder, const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other);
 
   std::string item(const std::string& name) const { return file("items", name, ".json"); }
-  std::string item_run(const std::string& name) const { return file("items", name, ".run.json"); }
+  std::string item_times(const std::string& name) const { return file("times", name, ".json"); }
   std::string contacts(const std::string& name) const { return file("contacts", name, ".csv"); }
   std::string trace(const std::string& name) const { return file("traces", name, ".mcap"); }
   /// Where a scenario's trace grows until it is complete.
@@ -63,6 +63,8 @@ class BatchFolder {
   std::string file(std::string_view folder, std::string_view name, std::string_view extension) const;
   void refuse_others(const nlohmann::ordered_json& batch, const Shard& shard, OtherBatch other) const;
   void remove_leftovers(const nlohmann::ordered_json& batch) const;
+  void remove_replaced(const nlohmann::ordered_json& batch) const;
+  void remove_page() const;
 
   std::filesystem::path folder_;
   FolderLock lock_;

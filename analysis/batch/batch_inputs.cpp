@@ -10,7 +10,9 @@
 #include <thread>
 #include <utility>
 
+#include "analysis/mapping/body.hpp"
 #include "analysis/mapping/layouts.hpp"
+#include "analysis/mapping/map_check.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
 #include "traces/input_file.hpp"
@@ -55,6 +57,17 @@ ActuatorMapFiles map_files(const std::string& given, const Avatar& avatar, bool 
   return read_map_files(avatar, given);
 }
 
+/// What 'vestige map check' says makes results wrong.
+void add_problems(BatchMap& map, const ActuatorMap& parsed, const BatchPlan& plan) {
+  constexpr std::size_t kMostTold = 3;
+  std::size_t problems = 0;
+  for (const MapFinding& finding : check_map(Body(plan.avatar), parsed, plan.avatar_given).findings)
+    if (finding.severity == Severity::kProblem && ++problems <= kMostTold)
+      map.warnings.push_back(fmt::format("{}; {}", finding.cause, finding.remedy));
+  if (problems > kMostTold)
+    map.warnings.push_back(fmt::format("and {} more problems, which 'vestige map check' tells", problems - kMostTold));
+}
+
 void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
   map.files = map_files(map.given, plan.avatar, builtin_avatar);
   ActuatorMap parsed = parse_actuator_map(map.files, plan.avatar, map.given);
@@ -62,6 +75,7 @@ void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
     throw Error(map.given, "has no actuator", "paint regions other than black, or list actuators in the sidecar");
   if (plan.actuators.model) static_cast<void>(plan.actuators.model->motors(parsed));  // throws what they lack
   map.warnings = parsed.warnings;
+  if (map.given != "builtin" && !is_layout(map.given)) add_problems(map, parsed, plan);
   Sha256 sha;
   sha.update(map.files.png);
   sha.update(std::as_bytes(std::span(map.files.json)));

@@ -11,7 +11,7 @@ nlohmann::ordered_json trace_record(const BatchTrace& trace, const nlohmann::ord
   nlohmann::ordered_json record = {{"name", trace.name}, {"given", trace.given}, {"sha256", item["trace_sha256"]}};
   for (const char* field : {"frames", "colliders", "contacts", "damage"}) record[field] = item[field];
   record["earlier"] = earlier;
-  const std::string path = folder.item_run(trace.name);
+  const std::string path = folder.item_times(trace.name);
   const nlohmann::ordered_json run = std::filesystem::exists(path)
                                          ? read_json_object(path, "remove it: it is needed for nothing but timings")
                                          : nlohmann::ordered_json::object();

@@ -199,10 +199,11 @@ void warn_of_gaps(BatchResults& results) {
   std::size_t least = results.traces;
   for (const RankedCandidate& ranked : results.ranking) least = std::min(least, ranked.metrics[results.headline].n);
   if (least < results.traces)
-    results.warnings.push_back(
-        fmt::format("some maps and laws have a {} on {} of {} traces only, since nothing was felt on the others: their "
-                    "means are of easier or harder traces",
-                    headline.name, least, results.traces));
+    results.warnings.push_back(fmt::format(
+        "some maps and laws have a {} on {} of {} traces{}, since nothing was felt on the others, or nothing "
+        "that this metric looks at{}",
+        headline.name, least == 0 ? "none" : std::to_string(least), results.traces, least == 0 ? "" : " only",
+        least == 0 ? "" : ": their means are of easier or harder traces"));
   const auto coverage = std::ranges::find(metrics(), kCoverage, &Metric::name);
   if (coverage == metrics().end() || headline.name == kCoverage) return;
   const auto place = static_cast<std::size_t>(coverage - metrics().begin());
@@ -302,6 +303,9 @@ std::string describe(const BatchResults& results, std::size_t rows) {
     text += fmt::format("  ... {} more in ranking.csv\n", results.ranking.size() - rows);
   if (marked)
     text += "=: not distinguishable from rank 1 on these traces (the interval of the paired difference holds 0)\n";
+  if (results.traces > 1 && results.traces < kFewTraces)
+    text +=
+        fmt::format("{} traces are few: intervals are rough, and hold for traces like these only\n", results.traces);
   if (std::ranges::any_of(beside, [](std::size_t m) { return metrics()[m].model_based; }))
     text += "*: of a model, no user study\n";
   return text;

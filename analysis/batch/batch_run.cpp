@@ -286,7 +286,7 @@ class Run {
   void store(const BatchTrace& trace, Computed& computed, const ItemTimes& times) const {
     write_contact_recording(folder_.contacts(trace.name), *computed.recording);
     computed.item["contacts_sha256"] = sha256_of_file(folder_.contacts(trace.name));
-    write_json_file(folder_.item_run(trace.name), to_json(times));
+    write_json_file(folder_.item_times(trace.name), to_json(times));
     write_json_file(folder_.item(trace.name), computed.item);  // last: it says that all is there
   }
 

@@ -10,6 +10,9 @@
 
 namespace vestige {
 
+/// Over fewer, intervals are rough.
+constexpr std::size_t kFewTraces = 10;
+
 /// One candidate's values of each metric: [metric][trace]. NaN: the metric has no value there (nothing was felt, …).
 using CandidateValues = std::vector<std::vector<double>>;
 

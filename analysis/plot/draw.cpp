@@ -169,6 +169,8 @@ int draw_body(Options options) {
     body.subject = body_subject(options, damage);
     warn_of(options, body.subject);
     body.has_contacts = !options.contacts.empty();
+    if (body.subject.map.actuator_count == 0 && !body.has_contacts && !options.map.empty() && options.map != "none")
+      throw Error(options.map, "has no actuator", "paint regions other than black");
     if (body.subject.map.actuator_count == 0 && !body.has_contacts)
       throw Error(input, "there is no actuator map, and no contact", "name a --map, or --contacts, or both");
     if (body.has_contacts) body.contacts = read_contacts_csv(options.contacts, limits_of(options, body.subject));

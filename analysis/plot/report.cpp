@@ -214,7 +214,7 @@ class Report {
     for (const std::string& law : data.laws) errors.push_back(errors_of(contacts.shown, *layout, data, law));
     section.errors.push_back(draw(
         name + "-errors", *error_figure(std::move(errors), contacts.shown.time_s.front(), contacts.shown.time_s.back()),
-        fmt::format("Localisation error of each contact of {} over time; line: median. Red, below: not felt.",
+        fmt::format("Localisation error of each contact of {} over time; line: median. Orange, below: not felt.",
                     contacts.shown_trace)));
     std::vector<std::string> laws = data.laws;
     std::stable_partition(laws.begin(), laws.end(),  // clang 14 does not take std::ranges::stable_partition

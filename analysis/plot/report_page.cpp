@@ -8,6 +8,7 @@
 #include <iterator>
 #include <string_view>
 
+#include "analysis/batch/ranking.hpp"
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/html.hpp"
 #include "analysis/plot/report_style.hpp"
@@ -16,8 +17,6 @@
 namespace vestige::plot {
 
 namespace {
-
-constexpr std::size_t kFewTraces = 10;
 
 /// Laws that 'vestige batch' knows.
 struct LawWords {

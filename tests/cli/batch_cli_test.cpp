@@ -30,8 +30,7 @@ class BatchCommandLine : public test::CommandLineTest {
 
   /// Everything that must be the same bytes for equal work.
   void expect_same_results(const std::string& a, const std::string& b) const {
-    EXPECT_EQ(run("diff -r --exclude=run.json --exclude='*.run.json' --exclude=.lock " + a + " " + b).standard_output,
-              "");
+    EXPECT_EQ(run("diff -r --exclude=run.json --exclude=times --exclude=.lock " + a + " " + b).standard_output, "");
     for (const char* name : {"scores.csv", "scores.json", "ranking.csv", "ranking.json"})
       EXPECT_TRUE(std::filesystem::exists(folder_ / a / name)) << name;
   }
@@ -290,7 +289,7 @@ TEST_F(BatchCommandLine, JudgesWithMotorsAndWithoutAndWithTheLawsParameters) {
   for (const char* shard : {"1", "2"})
     ASSERT_EQ(run(command + "--actuator slow.json --shard " + shard + "/2 -o part" + shard).exit_code, 0);
   ASSERT_EQ(run("vestige batch merge part1 part2 -o merged").exit_code, 0);
-  EXPECT_EQ(run("diff -r --exclude=run.json --exclude='*.run.json' --exclude=.lock --exclude=report.html "
+  EXPECT_EQ(run("diff -r --exclude=run.json --exclude=times --exclude=.lock --exclude=report.html "
                 "--exclude=figures slow merged")
                 .standard_output,
             "");
@@ -325,10 +324,10 @@ TEST_F(BatchCommandLine, RemovesItsOwnLeftoversAndNothingElse) {
   const std::string command = "vestige batch --maps builtin --traces a.mcap --laws binary -o home";
   const std::vector<std::string> others = {
       ".bashrc", ".gitignore", ".run.json.abc123", "items/.gitkeep", "items/.other.json.abc123", "traces/.b.mcap"};
-  const std::vector<std::string> leftovers = {"items/.a.json.abc123",   "items/.a.run.json.ABC123",
-                                              "contacts/.a.csv.abc123", "traces/.a.mcap",
-                                              "traces/..a.mcap.abc123", "maps/.builtin.png.abc123"};
-  for (const char* name : {"home/items", "home/contacts", "home/traces", "home/maps"})
+  const std::vector<std::string> leftovers = {
+      "items/.a.json.abc123",   "times/.a.json.ABC123",     "contacts/.a.csv.abc123", "traces/.a.mcap",
+      "traces/..a.mcap.abc123", "maps/.builtin.png.abc123", "traces/.a.mcap.partial"};
+  for (const char* name : {"home/items", "home/times", "home/contacts", "home/traces", "home/maps"})
     std::filesystem::create_directories(folder_ / name);
   for (const std::string& name : others) write("home/" + name, "mine");
   for (const std::string& name : leftovers) write("home/" + name, "half");
@@ -398,6 +397,50 @@ TEST_F(BatchCommandLine, WarnsOfWhatIsOddAboutAMap) {
   }
 }
 
+TEST_F(BatchCommandLine, WarnsOfMapsThatMapCheckRejects) {
+  record({"a.mcap", "b.mcap"});
+  ASSERT_EQ(run("vestige map make --layout torso16 -o far.png && "
+                "sed -i -E 's/\"position_m\":\\[-?/\"position_m\":[9/' far.json")
+                .exit_code,
+            0);
+  const test::Outcome batch = run("vestige batch --maps far.png torso16 --traces a.mcap b.mcap --laws phantom -o out");
+  EXPECT_EQ(batch.exit_code, 0);
+  EXPECT_THAT(batch.standard_error, AllOf(HasSubstr("map 'far': actuator"), HasSubstr("its position_m is"),
+                                          HasSubstr("and 13 more problems, which 'vestige map check' tells")));
+  EXPECT_THAT(batch.standard_error, Not(HasSubstr("map 'torso16'")));
+}
+
+TEST_F(BatchCommandLine, TracesOfLikeNamesKeepTheirFilesApart) {
+  record({"a.mcap", "a.run.mcap"});
+  const std::string command = "vestige batch --maps builtin --traces a.mcap a.run.mcap --laws binary -o out";
+  ASSERT_EQ(run(command).exit_code, 0);
+  EXPECT_THAT(run(command).standard_output, HasSubstr("2 traces were finished by an earlier run"));
+  EXPECT_EQ(run("vestige batch merge out -o merged").exit_code, 0);
+}
+
+TEST_F(BatchCommandLine, WhatItReplacesIsGone) {
+  record({"a.mcap", "b.mcap"});
+  write_map("mine.png");
+  ASSERT_EQ(run("vestige batch --maps builtin mine.png --traces a.mcap b.mcap --laws binary -o out").exit_code, 0);
+  ASSERT_EQ(run("mkdir out/figures && touch out/report.html out/figures/ranking.svg out/figures/notes.txt "
+                "out/items/mine.json")
+                .exit_code,
+            0);
+  ASSERT_EQ(run("vestige batch --maps builtin --traces a.mcap --laws binary -o out --force").exit_code, 0);
+  for (const char* name :
+       {"items/b.json", "times/b.json", "contacts/b.csv", "maps/mine.png", "report.html", "figures/ranking.svg"})
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out" / name)) << name;
+  for (const char* name :
+       {"items/a.json", "times/a.json", "contacts/a.csv", "maps/builtin.png", "figures/notes.txt", "items/mine.json"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
+}
+
+TEST_F(BatchCommandLine, WarnsOfARateThatMustBeAMistake) {
+  EXPECT_THAT(run("timeout --preserve-status -s INT 1 vestige batch --maps builtin --traces hug --rate 1e8 -o out")
+                  .standard_error,
+              HasSubstr("200000000 frames will take long"));
+}
+
 TEST_F(BatchCommandLine, ATraceWhoseContactsAreGoneIsRunAgain) {
   record({"a.mcap", "b.mcap"});
   const std::string command = "vestige batch --maps builtin --traces a.mcap b.mcap --laws binary -o out";
@@ -444,6 +487,8 @@ TEST_F(BatchCommandLine, RefusesWhatWouldDoNothing) {
   expect_failure("vestige batch --maps builtin --traces a.mcap -o -", 2, {"-o -", "folder"}, "-");
   expect_failure("vestige batch --maps builtin --traces swarn -o none", 2,
                  {"swarn: there is no such file", "did you mean 'swarm'?"}, "none");
+  expect_failure("vestige batch --maps papr6 --traces a.mcap -o none", 2,
+                 {"papr6: there is no such file", "did you mean 'paper6'?"}, "none");
   expect_failure("vestige batch --maps builtin --traces nowhere.mcap -o none", 1, {"nowhere.mcap"}, "none");
   const std::string scenario = "vestige batch --maps builtin --traces slide -o none ";
   expect_failure(scenario + "--duration 1e300", 2, {"4294967295 frames"}, "none");

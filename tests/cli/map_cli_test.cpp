@@ -98,6 +98,24 @@ TEST_F(Map, CheckFailsWithCauseAndRemedy) {
   EXPECT_EQ(run("vestige map check builtin").exit_code, 0);
 }
 
+TEST_F(Map, IsWrittenWithItsSidecarOrNotAtAll) {
+  // Once the map itself is written, the disk is full.
+  ASSERT_EQ(run("ln -s /dev/full a.json").exit_code, 0);
+  expect_failure("vestige map make --layout torso16 --force -o a.png", 1, {"a.json", "No space left"}, "a.png");
+  // A sidecar that cannot be read is not as if there were none.
+  ASSERT_EQ(run("vestige map make --layout torso16 -o b.png && ln -sf nowhere b.json").exit_code, 0);
+  expect_failure("vestige map check b.png", 1, {"b.json"});
+}
+
+TEST_F(Map, ThatEachTriangleHasItsOwnActuatorIsNoLoss) {
+  const auto avatar = test::data("avatars/avatars/KayKit_Knight.glb");
+  VESTIGE_REQUIRE_DATA(avatar);
+  const test::Outcome made = run("vestige map make --layout torso16 -o knight.png --avatar " + avatar.string());
+  EXPECT_EQ(made.exit_code, 0);
+  EXPECT_THAT(made.standard_error, HasSubstr("each triangle has one instead"));
+  EXPECT_THAT(made.standard_output, HasSubstr("a texel for each triangle"));
+}
+
 TEST_F(Map, SaysWhatIsWrongWithWhatItIsGiven) {
   expect_failure("vestige map make -o a.png", 2, {"--layout", "--regions"}, "a.png");
   expect_failure("vestige map make --layout torso17 -o a.png", 2, {"torso17"}, "a.png");

@@ -102,6 +102,31 @@ TEST(ActuatorMap, RefusesASidecarThatSaysOneThingTwice) {
   EXPECT_EQ(parse_actuator_map(png, same_name_apart, "map.png").names.at(0), "a");
 }
 
+TEST(ActuatorMap, RefusesNamesThatCannotBeShown) {
+  const auto png = make_png<std::uint8_t>({10}, 1, PNG_COLOR_TYPE_GRAY);
+  for (const char* name : {"5", "null", R"("")", R"("a\nb")", R"("a\u001b[31mred")", R"("a\u007f")"}) {
+    const std::string sidecar = fmt::format(R"({{"actuators": [{{"grey": 10, "name": {}}}]}})", name);
+    EXPECT_THAT(message_of([&] { parse_actuator_map(png, sidecar, "map.png"); }), HasSubstr("actuators[0]: 'name' "))
+        << name;
+  }
+}
+
+TEST(ActuatorMap, WarnsOfFieldsThatMeanNothingAndOfNamesThatStandTwice) {
+  const auto png = make_png<std::uint8_t>({10, 20}, 2, PNG_COLOR_TYPE_GRAY);
+  const char* sidecar =
+      R"({"skn": "", "actuators": [{"grey": 10, "name": "a", "positon_m": [0, 0, 0]}, {"grey": 20, "name": "a"}]})";
+  EXPECT_THAT(parse_actuator_map(png, sidecar, "map.png").warnings,
+              ElementsAre(HasSubstr("map.png, sidecar: has a field 'skn'"),
+                          HasSubstr("map.png, sidecar, actuators[0]: has a field 'positon_m'"),
+                          HasSubstr("actuators 1 and 2 are both called 'a'")));
+}
+
+TEST(ActuatorMap, RefusesAnImageThatIsTooLargeAsWhatItIs) {
+  const auto png = make_png<std::uint8_t>(std::vector<std::uint8_t>(16385, 10), 16385, PNG_COLOR_TYPE_GRAY);
+  EXPECT_THAT(message_of([&] { parse_actuator_map(png, "", "map.png"); }),
+              HasSubstr("is 16385 x 1 texels, and a map has at most 16384 a side"));
+}
+
 TEST(ActuatorMap, TakesTheNearestTexelAndWrapsAround) {
   ActuatorMap map;
   map.width = 2;
