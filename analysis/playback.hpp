@@ -22,7 +22,8 @@ struct PlaybackResult {
   std::uint64_t missed_deadlines = 0;   ///< frames that were not done when the next one was due
   std::uint64_t non_finite_frames = 0;  ///< as `FrameBuilder` counts them
   std::uint64_t non_finite_segments = 0;
-  double duration_s = 0;  ///< by the clock on the wall
+  double most_late_s = 0;  ///< between when a frame was due and when it was begun
+  double duration_s = 0;   ///< by the clock on the wall
 };
 
 /// What a playback tells and asks, in its own thread.
@@ -36,6 +37,8 @@ struct PlaybackCalls {
   std::function<Law()> make_law;
   /// Before each frame: false ends the playback. May exchange the actuator map.
   std::function<bool(double share)> go_on;
+  /// Once, when a frame begins a second too late: the detector cannot keep up, or the process was stopped.
+  std::function<void()> fell_behind;
   /// After each frame: what the vest is to be told, and when the frame was due.
   std::function<void(const ActuatorFrame&, Clock::time_point due)> take;
 };

@@ -42,6 +42,7 @@ int run(int argc, char** argv) {
       "collision "
       "detector, measure that detector, and turn contacts into a haptic vest's vibration",
       "vestige");
+  program.option_defaults()->disable_flag_override();  // --loop=3 is no three rounds
   program.formatter(std::make_shared<help::HelpFormatter>(
       "  vestige record -o man.mcap\n"
       "  vestige replay man.mcap --contacts contacts.csv --timeline timeline.csv\n"));
@@ -111,6 +112,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // A closed pipe is an error of write(), not a silent death that leaves temporary files behind.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // so is a file that ulimit -f does not allow
   try {
     return vestige::cli::run(argc, argv);
   } catch (const vestige::UsageError& error) {

@@ -177,8 +177,8 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
   frame_bytes_ = state_bytes(choice, sent);
   // Two may be on their way when the next one is due.
   if (2 * line_time_s() > choice.ttl_ms / 1e3)
-    warn(fmt::format("{}: a frame takes {:.0f} ms on the line: the board will switch itself off between frames\n  Use "
-                     "a faster --baud, or a longer --ttl.",
+    warn(fmt::format("{}: a frame takes {:.0f} ms on the line: one that is late or lost, and the board switches itself "
+                     "off\n  Use a faster --baud, or a longer --ttl.",
                      choice.port, line_time_s() * 1e3),
          verbosity);
   serial_ = sink.get();

@@ -65,6 +65,7 @@ struct Streamed {
   PlaybackResult playback;
   SenderStatistics sender;
   std::uint64_t maps_reloaded = 0;
+  bool fell_behind = false;
 };
 
 /// What the trace's contacts become, run by run: pressures where the sink asks for them, else what --law says.
@@ -124,6 +125,7 @@ nlohmann::ordered_json to_json(const Streamed& streamed, const StreamOptions& op
   json["loops"] = streamed.playback.loops;
   json["duration_s"] = streamed.playback.duration_s;
   json["missed_deadlines"] = streamed.playback.missed_deadlines;
+  json["most_late_s"] = streamed.playback.most_late_s;
   json["sent"] = sender.sent;
   json["changes"] = sender.changes;
   json["superseded"] = sender.superseded;
@@ -151,8 +153,10 @@ std::string describe(const LatencyHistogram& latency) {
 std::string summary(const Streamed& streamed, const OpenSink& sink) {
   const PlaybackResult& playback = streamed.playback;
   const SenderStatistics& sender = streamed.sender;
-  std::string text = fmt::format("{} frames in {:.2f} s, {} contacts, {} deadlines missed\n", playback.frames,
-                                 playback.duration_s, playback.contacts, playback.missed_deadlines);
+  std::string text =
+      fmt::format("{} frames in {:.2f} s, {} contacts, {} deadlines missed{}\n", playback.frames, playback.duration_s,
+                  playback.contacts, playback.missed_deadlines,
+                  streamed.fell_behind ? fmt::format(", up to {:.1f} s late", playback.most_late_s) : "");
   text += fmt::format("sent {} frames, {} of them changes; {} changes superseded by newer ones", sender.sent,
                       sender.changes, sender.superseded);
   text += sink.sink().acknowledges() ? fmt::format("; {} acknowledged\n", sender.acknowledged) : "\n";
@@ -254,6 +258,13 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
       sender.still_here();
       return progress.update(share);
     };
+    calls.fell_behind = [&] {
+      streamed.fell_behind = true;
+      tell(
+          fmt::format("{}: a second late: '{}' does not keep up with the trace, or the machine was busy; what is felt "
+                      "comes late and lasts longer\n  Take a faster --detector, or a lower --rate.",
+                      options.trace, name));
+    };
     calls.take = [&](const ActuatorFrame& frame, Sender::Clock::time_point due) {
       sender.post(frame, due);
       if (log) log->write(sender.take_log());
@@ -271,7 +282,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   const int damage = report_damage(trace.reader, options.trace, verbosity);
   const bool cut_short = interrupted() && !options.playback.loop;
   if (cut_short) warn(fmt::format("stopped after {} frames", streamed.playback.frames), verbosity);
-  invocation.exit_code = losses != kDone || damage != kDone || cut_short ? kDataLost : kDone;
+  invocation.exit_code = losses != kDone || damage != kDone || cut_short || streamed.fell_behind ? kDataLost : kDone;
 }
 
 }  // namespace

@@ -178,7 +178,7 @@ std::string parse_name(const nlohmann::json& entry, std::size_t number, const st
   constexpr const char* kRemedy = R"(write "name": "chest left", or leave it out)";
   const nlohmann::json& name = entry["name"];
   if (!name.is_string() || name.get<std::string>().empty()) throw Error(where, "'name' is not a text", kRemedy);
-  const auto text = name.get<std::string>();
+  auto text = name.get<std::string>();
   if (std::ranges::any_of(text, [](char letter) { return static_cast<unsigned char>(letter) < ' ' || letter == 0x7F; }))
     throw Error(where, "'name' holds a control character", kRemedy);
   return text;
@@ -348,11 +348,13 @@ ActuatorMapFiles read_actuator_map_files(const std::string& map) {
   if (map == "none") return {};
   if (map == "builtin") return {builtin_actuator_map_png(), builtin_actuator_map_json()};
   const auto sidecar = std::filesystem::path(map).replace_extension(".json");
-  ActuatorMapFiles files = {read_file(map), ""};
+  constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // twice that of all texels
+  constexpr std::uint64_t kMostSidecarBytes = std::uint64_t{1} << 26;
+  ActuatorMapFiles files = {read_file(map, kMostBytes), ""};
   if (files.png.empty()) throw Error(map, "is empty", "export the actuator map as a greyscale PNG");
   std::error_code ignored;  // a link that leads nowhere is there, and cannot be read
   if (!std::filesystem::exists(std::filesystem::symlink_status(sidecar, ignored))) return files;
-  files.json = read_text_file(sidecar);
+  files.json = read_text_file(sidecar, kMostSidecarBytes);
   if (files.json.empty())
     throw Error(sidecar.string(), "is empty", "list the actuators in it, or remove it: then each grey level is one");
   return files;

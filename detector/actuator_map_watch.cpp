@@ -65,6 +65,10 @@ void ActuatorMapWatch::run(const std::stop_token& stop) {
 }
 
 void ActuatorMapWatch::read() try {
+  // A pipe might never end.
+  for (const auto& file : {std::filesystem::path(file_), std::filesystem::path(file_).replace_extension(".json")})
+    if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
+      throw Error(file.string(), "is no regular file any more", "write it anew under its name");
   ActuatorMap map = parse_actuator_map(read_actuator_map_files(file_), avatar_, file_);
   if (map.actuator_count != actuator_count_)
     throw Error(file_, fmt::format("now names {} actuators, where {} are in use", map.actuator_count, actuator_count_),

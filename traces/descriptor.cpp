@@ -54,6 +54,7 @@ InputDescriptor::InputDescriptor(const std::filesystem::path& path)
   if (S_ISDIR(status.st_mode)) throw Error(name_, "is a folder", "name a file");
   if (path != "-") let_wait(descriptor_.value());
   is_regular_ = S_ISREG(status.st_mode);
+  is_device_ = S_ISCHR(status.st_mode);
   if (is_regular_) size_bytes_ = static_cast<std::uint64_t>(status.st_size);
 }
 

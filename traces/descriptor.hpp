@@ -33,6 +33,8 @@ class InputDescriptor {
   const std::string& name() const { return name_; }
   /// Whether it has a size and can be read anywhere.
   bool is_regular() const { return is_regular_; }
+  /// Whether it is a character device, such as a terminal or /dev/zero.
+  bool is_device() const { return is_device_; }
   /// 0 unless `is_regular()`.
   std::uint64_t size_bytes() const { return size_bytes_; }
 
@@ -44,6 +46,7 @@ class InputDescriptor {
   std::string name_;
   Descriptor descriptor_;
   bool is_regular_ = false;
+  bool is_device_ = false;
   std::uint64_t size_bytes_ = 0;
 };
 

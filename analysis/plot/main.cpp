@@ -53,6 +53,7 @@ void add_common_options(CLI::App& command, Options& options, const char* output_
 int run(int argc, char** argv) {
   Options options;
   CLI::App app("Draw results, traces and avatars as figures, SVG and PNG (300 dots per inch)", "vestige plot");
+  app.option_defaults()->disable_flag_override();
   app.formatter(
       std::make_shared<help::HelpFormatter>("  vestige plot sweep results/sweep\n"
                                             "  vestige plot body man.mcap --contacts contacts.csv\n"));
@@ -258,6 +259,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   // A closed pipe is an error of write(), not a silent death that leaves temporary files behind.
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // so is a file that ulimit -f does not allow
   try {
     return run(argc, argv);
   } catch (const vestige::UsageError& error) {

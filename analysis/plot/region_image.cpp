@@ -40,10 +40,11 @@ std::vector<RegionLabel> RegionImage::labels() const {
   const std::vector<float> distance = distances();
   std::vector<Sight> sights;
   const auto each_dot = [&](const auto& visit) {
-    for (std::size_t i = 0; i < region_.size(); ++i)
-      if (region_[i] > 0)
-        visit(static_cast<std::size_t>(region_[i]), distance[i], static_cast<double>(i % width_) + 0.5,
-              static_cast<double>(i / width_) + 0.5);
+    for (std::size_t row = 0; row < height_; ++row)
+      for (std::size_t column = 0; column < width_; ++column)
+        if (const std::int32_t actuator = at(column, row); actuator > 0)
+          visit(static_cast<std::size_t>(actuator), distance[row * width_ + column], static_cast<double>(column) + 0.5,
+                static_cast<double>(row) + 0.5);
   };
   each_dot([&](std::size_t actuator, float depth, double column, double row) {
     if (actuator >= sights.size()) sights.resize(actuator + 1);

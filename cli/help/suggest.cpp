@@ -56,6 +56,9 @@ std::optional<std::string> unknown_verb_remedy(const CLI::App& program, const st
 }
 
 std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
+  constexpr std::string_view kOverride = " was given a disallowed flag override";  // CLI11's words
+  if (const std::string cause = error.what(); cause.ends_with(kOverride))
+    return fmt::format("--{} takes no value", cause.substr(0, cause.size() - kOverride.size()));
   const bool is_missing = error.get_name() == "RequiredError" || error.get_name() == "RequiresError";
   if (!is_missing || program.remaining_size(true) == 0) return error.what();
   return CLI::ExtrasError(program.remaining(true)).what();

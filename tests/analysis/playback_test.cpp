@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <thread>
 #include <vector>
 
 #include "detector/actuator_drive.hpp"
@@ -63,10 +64,12 @@ class PlaybackTest : public ::testing::Test {
                  double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
     };
     calls.go_on = [&](double) { return taken.size() < frames; };
+    calls.fell_behind = [&] { ++fell_behind; };
     calls.take = [&](const ActuatorFrame& frame, PlaybackCalls::Clock::time_point due) {
       if (taken.empty()) first = due;
       EXPECT_GE(PlaybackCalls::Clock::now(), due);
       taken.push_back({frame.time_s, frame.duty[0], due - first});
+      std::this_thread::sleep_for(nap);
     };
     result = play(reader, avatar, detector, options, calls);
     return taken;
@@ -74,7 +77,17 @@ class PlaybackTest : public ::testing::Test {
 
   const test::TemporaryFolder folder;
   PlaybackResult result;
+  int fell_behind = 0;
+  std::chrono::milliseconds nap{0};  ///< with each frame
 };
+
+TEST_F(PlaybackTest, WhatIsMoreThanASecondLateIsSaidOnce) {
+  write_trace({0, 0.01, 0.02, 0.03});
+  nap = std::chrono::milliseconds(600);
+  EXPECT_EQ(played({}).size(), 4U);
+  EXPECT_EQ(fell_behind, 1);
+  EXPECT_GE(result.most_late_s, 1.7);
+}
 
 TEST_F(PlaybackTest, EachFrameIsDueAtTheTracesOwnTimeWhateverTheOthersTook) {
   write_trace({1, 1.02, 1.03, 1.1});

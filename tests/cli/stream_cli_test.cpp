@@ -330,6 +330,25 @@ TEST_F(StreamCommand, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame) {
   EXPECT_FALSE(read_json("stream.json")["off_acknowledged"]);
 }
 
+TEST_F(StreamCommand, ADetectorThatCannotKeepUpIsSaid) {
+  record("--rate 10000 --duration 0.03");
+  const test::Outcome outcome =
+      run("vestige stream trace.mcap --port file:frames --detector exact --rate 10 --json stream.json");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("'exact' does not keep up with the trace"));
+  EXPECT_GT(read_json("stream.json")["most_late_s"].get<double>(), 1);
+}
+
+TEST_F(StreamCommand, AMapThatBecomesAPipeIsRefusedAndTheStreamEnds) {
+  record("--rate 1000 --duration 1");
+  ASSERT_EQ(run("vestige map make --layout paper6 -o map.png").exit_code, 0);
+  const test::Outcome outcome =
+      run("timeout 20 vestige stream trace.mcap --port file:frames --map map.png --loop & stream=$!\n"
+          "sleep 1; rm map.png; mkfifo map.png; sleep 1; kill -INT $stream; wait $stream");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_error, HasSubstr("map.png: is no regular file any more"));
+}
+
 TEST_F(StreamCommand, WhatCannotBeStreamedIsRefusedWithItsReason) {
   record("--count 2 --rate 60 --duration 0.2");
   expect_failure("vestige stream trace.mcap --port ./ttyUSB9", 1, {"ttyUSB9", "no such device"});
@@ -344,6 +363,9 @@ TEST_F(StreamCommand, WhatCannotBeStreamedIsRefusedWithItsReason) {
   expect_failure("vestige stream trace.mcap --port file:x --osc-address /a/{n}", 2, {"--osc-address"});
   expect_failure("vestige stream trace.mcap", 2, {"--port"});
   expect_failure("vestige stream nothing.mcap --port file:x", 1, {"nothing.mcap"});
+  expect_failure("vestige stream /dev/zero --port file:x", 1, {"/dev/zero", "is a device"}, "x");
+  expect_failure("vestige stream trace.mcap --port file:x --loop=3", 2, {"--loop takes no value"}, "x");
+  expect_failure("ulimit -f 16; vestige avatar builtin -q -o x.glb", 1, {"x.glb", "File too large"}, "x.glb");
   expect_failure("vestige stream trace.mcap --port file:trace.mcap", 2, {"trace.mcap"});
   expect_failure("vestige stream trace.mcap --port file:x --rate nan", 2, {"--rate"});
   expect_failure("vestige stream trace.mcap --port file:x --map builtin --surface mapped", 2, {"--map", "--surface"});

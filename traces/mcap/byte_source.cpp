@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "traces/descriptor.hpp"
 #include "traces/error.hpp"
+#include "traces/mcap/record.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige::mcap {
@@ -33,8 +35,14 @@ int nameless_file() {
 int spool(InputDescriptor& input) {
   Descriptor copy(nameless_file());
   std::vector<std::byte> block(kSpoolBlockBytes);
-  while (const std::size_t count = input.read(block))
+  bool first = true;
+  while (const std::size_t count = input.read(block)) {
+    // A pipe may bring a file whose beginning is damaged; a device that brings anything else might never end.
+    if (std::exchange(first, false) && input.is_device() &&
+        (count < kMagicBytes || std::memcmp(block.data(), kMagic, kMagicBytes) != 0))
+      throw Error(input.name(), "is a device, and what comes from it is no MCAP file", "name a file, or a pipe");
     write_all(copy.value(), std::span(block).first(count), std::filesystem::temp_directory_path());
+  }
   return copy.release();
 }
 
