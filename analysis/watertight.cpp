@@ -15,7 +15,7 @@ namespace vestige {
 
 namespace {
 
-constexpr std::size_t kSegmentsPerFrame = 1024;
+constexpr std::size_t kSegmentsAtOnce = 1024;
 constexpr std::size_t kInsidePoints = 256;
 constexpr std::size_t kMostTries = 100'000;
 
@@ -92,8 +92,8 @@ void add_world_frames(const StressOrder& order, Aim aim, Random& random, std::ve
   before.pose.origin_m = glm::dvec3(order.magnitude);
   const Frame first = FrameBuilder(avatar, {}, Method::kStatic).next(before);
   const ClosedSkin skin(avatar, first.palette, random);
-  for (std::size_t done = 0; done < order.cases; done += kSegmentsPerFrame) {
-    const std::size_t count = std::min(kSegmentsPerFrame, order.cases - done);
+  for (std::size_t done = 0; done < order.cases; done += kSegmentsAtOnce) {
+    const std::size_t count = std::min(kSegmentsAtOnce, order.cases - done);
     before.colliders.clear();
     TraceFrame now = before;
     now.index = 1;
@@ -121,8 +121,8 @@ void add_float_frames(const StressOrder& order, Aim aim, Random& random, std::ve
   build_palette(avatar, world, glm::dvec3(order.magnitude), frame.palette);
   frame.palette_before = frame.palette;
   const ClosedSkin skin(avatar, frame.palette, random);
-  for (std::size_t done = 0; done < order.cases; done += kSegmentsPerFrame) {
-    frame.columns = std::min(kSegmentsPerFrame, order.cases - done);
+  for (std::size_t done = 0; done < order.cases; done += kSegmentsAtOnce) {
+    frame.columns = std::min(kSegmentsAtOnce, order.cases - done);
     frame.segments = segments_of(skin, frame.columns, aim, random);
     frames.push_back(frame);
   }
@@ -132,7 +132,7 @@ template <Aim kAim, Where kWhere>
 StressScene watertight(StressOrder order) {
   StressScene scene;
   scene.judge = StressJudge::kMustHit;
-  scene.frames.reserve(order.cases / kSegmentsPerFrame + 1);
+  scene.frames.reserve(order.cases / kSegmentsAtOnce + 1);
   Random random = order.random;
   if (kWhere == Where::kDoubleOrigin) {
     add_world_frames(order, kAim, random, scene.frames);
@@ -150,13 +150,15 @@ constexpr const char* kMeaning =
 constexpr const char* kInDouble = "metres from the origin, of avatar and colliders in double coordinates";
 constexpr const char* kInFloat = "metres from the origin, as fp32 coordinates";
 
-constexpr StressBody kMannequin = StressBody::kMannequin;
 constexpr std::array<StressFamily, 4> kWatertightFamilies = {{
-    {"watertight", "vertex", kMeaning, kInDouble, kWorld_m, kMannequin, watertight<Aim::kVertex, Where::kDoubleOrigin>},
-    {"watertight", "edge", kMeaning, kInDouble, kWorld_m, kMannequin, watertight<Aim::kEdge, Where::kDoubleOrigin>},
-    {"watertight", "vertex, raw fp32", kMeaning, kInFloat, kFloat_m, kMannequin,
+    {"watertight", "vertex", kMeaning, kInDouble, kWorld_m, StressBody::kMannequin,
+     watertight<Aim::kVertex, Where::kDoubleOrigin>},
+    {"watertight", "edge", kMeaning, kInDouble, kWorld_m, StressBody::kMannequin,
+     watertight<Aim::kEdge, Where::kDoubleOrigin>},
+    {"watertight", "vertex, raw fp32", kMeaning, kInFloat, kFloat_m, StressBody::kMannequin,
      watertight<Aim::kVertex, Where::kFloat>},
-    {"watertight", "edge, raw fp32", kMeaning, kInFloat, kFloat_m, kMannequin, watertight<Aim::kEdge, Where::kFloat>},
+    {"watertight", "edge, raw fp32", kMeaning, kInFloat, kFloat_m, StressBody::kMannequin,
+     watertight<Aim::kEdge, Where::kFloat>},
 }};
 
 }  // namespace

@@ -24,7 +24,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint64_t kMostGlbBytes = std::numeric_limits<std::uint32_t>::max();
 constexpr int kFloat = 5126;
 constexpr int kUnsignedShort = 5123;
 constexpr const char* kTooLarge = "export fewer frames: --rate 60, or a part of it that 'vestige trim' cuts out";
@@ -251,7 +251,7 @@ void FrameGltf::write(const TraceFrame& frame) {
   }
   note_what_varies();
   columns_.append(row_);
-  if (columns_.rows() * varying_floats_ * sizeof(float) > kMostBytes)
+  if (columns_.rows() * varying_floats_ * sizeof(float) > kMostGlbBytes)
     throw Error(path_.string(), "would be larger than the 4 GiB that a GLB can hold", kTooLarge);
   last_row_ = row_;
 }
@@ -390,7 +390,7 @@ void FrameGltf::commit() {
   std::string text = json.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::uint64_t total = 12 + 8 + text.size() + 8 + bin_bytes;
-  if (total > kMostBytes)
+  if (total > kMostGlbBytes)
     throw Error(path_.string(), fmt::format("needs {} bytes, more than the 4 GiB that a GLB can hold", total),
                 kTooLarge);
   const auto put = [&](std::uint64_t word) {

@@ -55,10 +55,10 @@ nlohmann::ordered_json to_json(const ItemTimes& times) {
 struct Stopped {};
 
 /// One batch under way.
-class Run {
+class BatchRun {
  public:
-  Run(const BatchPlan& plan, const Shard& shard, const BatchFolder& folder,
-      const std::function<std::unique_ptr<Detector>()>& make_detector)
+  BatchRun(const BatchPlan& plan, const Shard& shard, const BatchFolder& folder,
+           const std::function<std::unique_ptr<Detector>()>& make_detector)
       : plan_(plan), folder_(folder), make_detector_(make_detector), key_(item_key(to_json(plan))) {
     for (std::size_t i = 0; i < plan.traces.size(); ++i)
       if (shard.has(i)) mine_.push_back(i);
@@ -314,7 +314,7 @@ class Run {
 BatchOutcome run_batch(const BatchPlan& plan, const Shard& shard, const BatchFolder& folder, std::size_t jobs,
                        const std::function<std::unique_ptr<Detector>()>& make_detector,
                        const std::function<bool(const BatchProgress&)>& progress) {
-  return Run(plan, shard, folder, make_detector).run(jobs, progress);
+  return BatchRun(plan, shard, folder, make_detector).run(jobs, progress);
 }
 
 }  // namespace vestige

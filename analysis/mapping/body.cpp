@@ -26,7 +26,7 @@ constexpr double kWrist = 0.40;
 /// One that is wider holds its arms out.
 constexpr double kArmsHang = 0.35;
 
-struct Extent {
+struct Reach {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
 
@@ -194,7 +194,7 @@ int Body::node_at(const SkinPoint& point) const {
 
 void Body::find_middle() {
   const Box& bounds = surface_.bounds();
-  Extent torso;
+  Reach torso;
   for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i) {
     const SkinPoint middle = {i, glm::dvec3(1.0 / 3)};
     if (part_at(middle) != SkinPart::kTorso) continue;
@@ -208,9 +208,9 @@ void Body::find_vest() {
   std::vector<glm::dmat4> world;
   const Pose rest = rest_pose(avatar());
   world_matrices(avatar(), rest, world);
-  Extent hips;
-  Extent necks;
-  Extent torso;
+  Reach hips;
+  Reach necks;
+  Reach torso;
   if (understanding_ == Understanding::kJoints)
     for (const PaletteEntry& entry : avatar().palette) {
       const auto i = static_cast<std::size_t>(entry.node);
