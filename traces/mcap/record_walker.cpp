@@ -22,7 +22,8 @@ bool is_known(Opcode opcode) {
 }
 
 bool is_magic(Bytes bytes) {
-  return bytes.size() <= kMagicBytes && std::memcmp(bytes.data(), kMagic, bytes.size()) == 0;
+  // No bytes may have no address, which memcmp may not be given.
+  return bytes.empty() || (bytes.size() <= kMagicBytes && std::memcmp(bytes.data(), kMagic, bytes.size()) == 0);
 }
 
 bool belongs_in_chunks(Opcode opcode) {
