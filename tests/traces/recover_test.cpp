@@ -273,6 +273,34 @@ TEST(Recover, GivesAChannelNoSchemaThatComesAfterItsMessages) {
   EXPECT_THAT(reader.damages(), ::testing::IsEmpty());
 }
 
+// A fuzzer's finding: what expands to much that is no record kept it busy for half a minute.
+TEST(Recover, FindsMessagesBehindMuchThatIsNone) {
+  constexpr std::size_t kMuch = std::size_t{8} << 20;
+  for (const std::byte garbage : {std::byte{0}, static_cast<std::byte>(mcap::Opcode::kMessage)}) {
+    mcap::ByteBuffer records;
+    append_record(records, mcap::Channel{.id = 1, .topic = "/a", .message_encoding = "json", .metadata = {}});
+    const auto append_message = [&](std::uint32_t number) {
+      append_record(
+          records,
+          mcap::Message{.channel_id = 1, .sequence = number, .log_time = number, .publish_time = number, .data = {}});
+    };
+    append_message(0);
+    append_message(1);  // not believed, for what follows it
+    records.insert(records.end(), kMuch, garbage);
+    append_message(2);
+    mcap::ByteBuffer bytes;
+    mcap::append_magic(bytes);
+    append_record(bytes, mcap::Header{});
+    append_record(
+        bytes,
+        mcap::Chunk{.uncompressed_size = records.size(), .uncompressed_crc = 1, .compression = "", .records = records});
+    const auto outcome = recover(bytes);
+    ASSERT_TRUE(outcome);
+    EXPECT_EQ(outcome->recovery.messages, 2U);
+    EXPECT_EQ(outcome->recovery.messages_unverified, 2U);
+  }
+}
+
 TEST(Recover, LeavesOutFramesThatComeTwice) {
   const test::TemporaryFolder folder;
   const SmallTrace trace = small_trace(folder, Compression::kZstd);

@@ -39,7 +39,7 @@ int spool(InputDescriptor& input) {
   while (const std::size_t count = input.read(block)) {
     // A pipe may bring a file whose beginning is damaged; a device that brings anything else might never end.
     if (std::exchange(first, false) && input.is_device() &&
-        (count < kMagicBytes || std::memcmp(block.data(), kMagic, kMagicBytes) != 0))
+        (count < kMagicBytes || !is_magic(std::span(block).first(kMagicBytes))))
       throw Error(input.name(), "is a device, and what comes from it is no MCAP file", "name a file, or a pipe");
     write_all(copy.value(), std::span(block).first(count), std::filesystem::temp_directory_path());
   }

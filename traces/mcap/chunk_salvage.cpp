@@ -25,6 +25,16 @@ std::string_view likely_compression(std::string_view name, Bytes data) {
   return name;
 }
 
+/// Those that `belongs_in_chunks`.
+constexpr std::array kInner = {Opcode::kSchema, Opcode::kChannel, Opcode::kMessage};
+
+/// Where the first such byte stands from `position` on; the size where there is none.
+std::size_t find(Bytes bytes, Opcode opcode, std::size_t position) {
+  const void* found = std::memchr(bytes.data() + position, static_cast<int>(opcode), bytes.size() - position);
+  if (found == nullptr) return bytes.size();
+  return static_cast<std::size_t>(static_cast<const std::byte*>(found) - bytes.data());
+}
+
 }  // namespace
 
 ChunkRemains salvage_chunk(Bytes content, RawBuffer& out) {
@@ -68,6 +78,18 @@ bool is_whole_chunk(Bytes content, RawBuffer& out) {
   }
 }
 
+/// The first place from `position` on where a record may begin by its opcode. What is found further on is kept, so that
+/// no byte is looked at twice for one opcode.
+std::size_t SalvagedRecords::next_opcode(std::size_t position) {
+  if (position == records_.size() || belongs_in_chunks(opcode_at(position))) return position;
+  std::size_t nearest = records_.size();
+  for (std::size_t i = 0; i < kInner.size(); ++i) {
+    if (!next_[i] || *next_[i] < position) next_[i] = find(records_, kInner[i], position);
+    nearest = std::min(nearest, *next_[i]);
+  }
+  return nearest;
+}
+
 std::uint64_t SalvagedRecords::length_at(std::size_t offset) const {
   std::uint64_t length = 0;
   std::memcpy(&length, records_.data() + offset + 1, sizeof length);
@@ -76,29 +98,28 @@ std::uint64_t SalvagedRecords::length_at(std::size_t offset) const {
 
 /// Whether a record that may stand in a chunk could begin here, even if its end is missing.
 bool SalvagedRecords::is_head(std::size_t offset) const {
-  const auto opcode = static_cast<Opcode>(records_[offset]);
-  if (opcode != Opcode::kSchema && opcode != Opcode::kChannel && opcode != Opcode::kMessage) return false;
+  const Opcode opcode = opcode_at(offset);
+  if (!belongs_in_chunks(opcode)) return false;
   if (records_.size() - offset < kRecordHeadBytes) return true;
   const std::uint64_t length = length_at(offset);
-  return length >= least_content_bytes(opcode).value_or(0) && length <= kMaxChunkBytes;
+  return length <= kMaxChunkBytes && length >= least_content_bytes(opcode).value_or(0);
 }
 
+/// Of what is no record, its length gives most away.
 bool SalvagedRecords::is_believable(std::size_t offset) const {
   const std::size_t rest = records_.size() - offset;
-  if (rest < kRecordHeadBytes || !is_head(offset)) return false;
+  if (rest < kRecordHeadBytes) return false;
   const std::uint64_t length = length_at(offset);
-  if (length > rest - kRecordHeadBytes) return false;
+  if (length > rest - kRecordHeadBytes || !is_head(offset)) return false;
   const std::size_t end = offset + kRecordHeadBytes + static_cast<std::size_t>(length);
   return end == records_.size() || is_head(end);
 }
 
 bool SalvagedRecords::next(InnerRecord& record) {
-  while (position_ < records_.size() && !is_believable(position_)) {
-    ++position_;
-    ++skipped_;
-  }
+  position_ = next_opcode(position_);
+  while (position_ < records_.size() && !is_believable(position_)) position_ = next_opcode(position_ + 1);
   if (position_ == records_.size()) return false;
-  record.opcode = static_cast<Opcode>(records_[position_]);
+  record.opcode = opcode_at(position_);
   record.content = records_.subspan(position_ + kRecordHeadBytes, static_cast<std::size_t>(length_at(position_)));
   position_ += kRecordHeadBytes + record.content.size();
   return true;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <optional>
+
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record.hpp"
@@ -30,16 +33,17 @@ class SalvagedRecords {
   explicit SalvagedRecords(Bytes records) : records_(records) {}
 
   bool next(InnerRecord& record);
-  std::uint64_t skipped_bytes() const { return skipped_; }
 
  private:
+  std::size_t next_opcode(std::size_t position);
   bool is_head(std::size_t offset) const;
+  Opcode opcode_at(std::size_t offset) const { return static_cast<Opcode>(records_[offset]); }
   std::uint64_t length_at(std::size_t offset) const;
   bool is_believable(std::size_t offset) const;
 
   Bytes records_;
   std::size_t position_ = 0;
-  std::uint64_t skipped_ = 0;
+  std::array<std::optional<std::size_t>, 3> next_;  ///< by opcode, where it stands next
 };
 
 }  // namespace vestige::mcap

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -38,8 +39,18 @@ enum class Opcode : std::uint8_t {
   kDataEnd = 0x0F,
 };
 
+/// Whether a record may stand in a Chunk.
+constexpr bool belongs_in_chunks(Opcode opcode) {
+  return opcode == Opcode::kSchema || opcode == Opcode::kChannel || opcode == Opcode::kMessage;
+}
+
 using Bytes = std::span<const std::byte>;
 using StringMap = std::map<std::string, std::string>;
+
+/// Whether a file may begin with these: the magic bytes, or as many of them as there are.
+inline bool is_magic(Bytes bytes) {
+  return bytes.size() <= kMagicBytes && std::ranges::equal(bytes, std::as_bytes(std::span(kMagic)).first(bytes.size()));
+}
 
 // Times are nanoseconds since the file's own epoch. Offsets count from the start of the file unless said otherwise.
 // A member of type `Bytes` refers to the buffer that was decoded, or that the caller keeps until it is written.

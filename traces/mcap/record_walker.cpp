@@ -21,15 +21,6 @@ bool is_known(Opcode opcode) {
   return least_content_bytes(opcode).has_value();
 }
 
-bool is_magic(Bytes bytes) {
-  // No bytes may have no address, which memcmp may not be given.
-  return bytes.empty() || (bytes.size() <= kMagicBytes && std::memcmp(bytes.data(), kMagic, bytes.size()) == 0);
-}
-
-bool belongs_in_chunks(Opcode opcode) {
-  return opcode == Opcode::kSchema || opcode == Opcode::kChannel || opcode == Opcode::kMessage;
-}
-
 /// Whether the source begins with the magic bytes, or with as many of them as it has bytes.
 bool begins_with_magic(const ByteSource& source) {
   std::array<std::byte, kMagicBytes> magic = {};

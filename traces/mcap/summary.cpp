@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
@@ -22,7 +21,7 @@ Footer read_tail(const ByteSource& source) {
   std::array<std::byte, kTailBytes> tail = {};
   source.read_at(source.size() - kTailBytes, tail);
   const Bytes bytes = tail;
-  if (std::memcmp(bytes.last(kMagicBytes).data(), kMagic, kMagicBytes) != 0) throw Malformed("it has no footer");
+  if (!is_magic(bytes.last(kMagicBytes))) throw Malformed("it has no footer");
   Cursor cursor(bytes);
   if (cursor.number<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kFooter) ||
       cursor.number<std::uint64_t>() != kFooterContentBytes)
