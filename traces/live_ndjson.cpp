@@ -31,7 +31,7 @@ std::map<std::string, std::size_t, std::less<>> nodes_by_name(const Avatar& avat
 }
 
 template <typename Number, typename AnyJson>
-Number number_of(const AnyJson& json) {
+Number number_of(const AnyJson& json, std::string_view name) {
   constexpr Number kInfinity = std::numeric_limits<Number>::infinity();
   if (json.is_number()) return json.template get<Number>();
   if (json.is_string()) {
@@ -40,7 +40,7 @@ Number number_of(const AnyJson& json) {
     if (text == "inf") return kInfinity;
     if (text == "-inf") return -kInfinity;
   }
-  throw Malformed("something that must be a number is none");
+  throw Malformed(fmt::format("'{}' has {} where a number must be", name, json.type_name()));
 }
 
 template <typename AnyJson>
@@ -50,16 +50,16 @@ void require_array(const AnyJson& json, std::size_t size, std::string_view name)
 
 glm::dvec3 position_of(const Json& json, std::string_view name) {
   require_array(json, 3, name);
-  return {number_of<double>(json[0]), number_of<double>(json[1]), number_of<double>(json[2])};
+  return {number_of<double>(json[0], name), number_of<double>(json[1], name), number_of<double>(json[2], name)};
 }
 
-glm::vec3 vector_of(const FloatJson& json, std::size_t at) {
-  return {number_of<float>(json[at]), number_of<float>(json[at + 1]), number_of<float>(json[at + 2])};
+glm::vec3 vector_of(const FloatJson& json, std::size_t at, std::string_view name) {
+  return {number_of<float>(json[at], name), number_of<float>(json[at + 1], name), number_of<float>(json[at + 2], name)};
 }
 
-glm::quat rotation_of(const FloatJson& json, std::size_t at) {
-  return {number_of<float>(json[at + 3]), number_of<float>(json[at]), number_of<float>(json[at + 1]),
-          number_of<float>(json[at + 2])};
+glm::quat rotation_of(const FloatJson& json, std::size_t at, std::string_view name) {
+  const glm::vec3 xyz = vector_of(json, at, name);
+  return {number_of<float>(json[at + 3], name), xyz.x, xyz.y, xyz.z};
 }
 
 std::uint32_t id_of(const Json& json) {
@@ -82,8 +82,9 @@ void read_nodes(const FloatJson& nodes, Pose& pose) {
   require_array(nodes, pose.nodes.size(), "nodes");
   for (std::size_t i = 0; i < pose.nodes.size(); ++i) {
     require_array(nodes[i], 10, "nodes' element");
-    pose.nodes[i] = {
-        .translation = vector_of(nodes[i], 0), .rotation = rotation_of(nodes[i], 3), .scale = vector_of(nodes[i], 7)};
+    pose.nodes[i] = {.translation = vector_of(nodes[i], 0, "nodes"),
+                     .rotation = rotation_of(nodes[i], 3, "nodes"),
+                     .scale = vector_of(nodes[i], 7, "nodes")};
   }
 }
 
@@ -91,15 +92,15 @@ void read_joint(const FloatJson& joint, NodeLocal& node) {
   if (!joint.is_object()) throw Malformed("a joint is no object");
   if (const auto t = joint.find("t"); t != joint.end()) {
     require_array(*t, 3, "t");
-    node.translation = vector_of(*t, 0);
+    node.translation = vector_of(*t, 0, "t");
   }
   if (const auto r = joint.find("r"); r != joint.end()) {
     require_array(*r, 4, "r");
-    node.rotation = rotation_of(*r, 0);
+    node.rotation = rotation_of(*r, 0, "r");
   }
   if (const auto s = joint.find("s"); s != joint.end()) {
     require_array(*s, 3, "s");
-    node.scale = vector_of(*s, 0);
+    node.scale = vector_of(*s, 0, "s");
   }
 }
 
@@ -129,7 +130,7 @@ std::vector<std::uint32_t> teleported_of(const Json& json) {
 }
 
 std::int64_t time_of(const Json& json, std::int64_t last_ns) {
-  const auto time_s = number_of<double>(json);
+  const auto time_s = number_of<double>(json, "time_s");
   if (!(time_s >= 0 && time_s < kMost_s)) throw Malformed(fmt::format("'time_s' is {}, which is no time", time_s));
   const std::int64_t time_ns = std::llround(time_s * kNanosecondsPerSecond);
   if (time_ns < last_ns) throw Malformed(fmt::format("'time_s' is {}, before the line before", time_s));

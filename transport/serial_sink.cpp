@@ -7,8 +7,6 @@
 
 namespace vestige {
 
-namespace {}  // namespace
-
 SerialSink::SerialSink(SerialSinkOptions options) : options_(std::move(options)), ttl_(ttl_units(options_.ttl_ms)) {
   if (options_.xbee) unwrapper_.emplace(options_.xbee->escaping);
   open();

@@ -109,6 +109,7 @@ TEST_F(LiveLines, ThatAreWrongAreLeftOutAndCounted) {
       "{\"time_s\":-1}\n",
       "{\"time_s\":\"inf\"}\n",
       "{\"time_s\":1e300}\n",
+      "{\"time_s\":\"soon\"}\n",
       "{\"pose\":5}\n",
       "{\"pose\":{}}\n",
       "{\"pose\":{\"nodes\":[]}}\n",
@@ -132,6 +133,12 @@ TEST_F(LiveLines, ThatAreWrongAreLeftOutAndCounted) {
     EXPECT_THAT(lines_->problems()[0], HasSubstr("line 2: ")) << line.substr(0, 80);
     EXPECT_EQ(frames.back().index, 5U);
   }
+}
+
+TEST_F(LiveLines, SayWhereANumberIsMissing) {
+  read("{\"time_s\":\"soon\"}\n{\"colliders\":[{\"id\":1,\"position\":[0,null,0]}]}\n");
+  EXPECT_THAT(lines_->problems(), ElementsAre("line 1: 'time_s' has string where a number must be",
+                                              "line 2: 'position' has null where a number must be"));
 }
 
 // Open Sound Control.

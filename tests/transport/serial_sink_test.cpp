@@ -102,7 +102,7 @@ TEST(SerialSink, GoesOnWithoutABoardThatSaysNothing) {
   SerialSink sink(options);
   EXPECT_FALSE(sink.greet().has_value());
   EXPECT_TRUE(becomes_ready(sink));
-  line.read();
+  line.read_exactly(sink.bytes_sent());
   sink.send(duties({9}), 1);
   EXPECT_EQ(line.read_exactly(9), encode_state(Quantity::kDuty, Bytes{9}, 1, 20));
 }
