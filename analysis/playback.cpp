@@ -17,7 +17,6 @@ using Clock = PlaybackCalls::Clock;
 
 constexpr auto kSlice = 50ms;  ///< of waiting, so that an interrupt is answered
 constexpr double kGap_s = 0.2;
-constexpr double kBehind_s = 1;
 
 Clock::duration to_duration(double duration_s) {
   // Beyond a century the clock's count would overflow.
@@ -104,9 +103,9 @@ PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector
       }
       going = run->wait_for(frame.time_s, static_cast<double>(run->frames()) / frame_count);
       if (!going) break;
-      const double late_s = seconds(Clock::now() - run->due(frame.time_s));
-      if (late_s > kBehind_s && result.most_late_s <= kBehind_s) calls.fell_behind();
-      result.most_late_s = std::max(result.most_late_s, late_s);
+      const bool was_behind = result.fell_behind();
+      result.most_late_s = std::max(result.most_late_s, seconds(Clock::now() - run->due(frame.time_s)));
+      if (result.fell_behind() && !was_behind) calls.fell_behind();
       detector.detect(frame, row);
       run->take(frame.time_s, row);
       ++result.frames;

@@ -24,6 +24,9 @@ struct PlaybackResult {
   std::uint64_t non_finite_segments = 0;
   double most_late_s = 0;  ///< between when a frame was due and when it was begun
   double duration_s = 0;   ///< by the clock on the wall
+
+  /// Whether a frame began a second too late: the detector cannot keep up, or the process was stopped.
+  bool fell_behind() const { return most_late_s > 1; }
 };
 
 /// What a playback tells and asks, in its own thread.
@@ -37,7 +40,7 @@ struct PlaybackCalls {
   std::function<Law()> make_law;
   /// Before each frame: false ends the playback. May exchange the actuator map.
   std::function<bool(double share)> go_on;
-  /// Once, when a frame begins a second too late: the detector cannot keep up, or the process was stopped.
+  /// Once, as soon as `PlaybackResult::fell_behind`.
   std::function<void()> fell_behind;
   /// After each frame: what the vest is to be told, and when the frame was due.
   std::function<void(const ActuatorFrame&, Clock::time_point due)> take;

@@ -50,7 +50,11 @@ void write_inputs(const BatchPlan& plan, const BatchFolder& folder) {
   for (const BatchMap& map : plan.maps) {
     if (map.sha256.empty()) continue;
     write_file(folder.map_png(map.name), {reinterpret_cast<const char*>(map.files.png.data()), map.files.png.size()});
-    if (!map.files.json.empty()) write_file(folder.map_json(map.name), map.files.json);
+    if (!map.files.json.empty()) {
+      write_file(folder.map_json(map.name), map.files.json);
+    } else {
+      std::filesystem::remove(folder.map_json(map.name));  // an earlier batch's map of this name may have had one
+    }
   }
 }
 

@@ -26,8 +26,13 @@ struct BatchMergeOptions {
   std::string output;
 };
 
+/// Where there is none, none stays there of an earlier batch.
 void copy_file(const std::filesystem::path& from, const std::string& to) {
-  if (std::filesystem::exists(from)) write_file(to, read_text_file(from));
+  if (std::filesystem::exists(from)) {
+    write_file(to, read_text_file(from));
+  } else {
+    std::filesystem::remove(to);
+  }
 }
 
 /// The files of each trace, and those of the whole batch, which every shard has.

@@ -344,10 +344,14 @@ ActuatorMapFiles actuator_map_files(const TraceReader& trace) {
   return {{png.begin(), png.end()}, std::string(text_of(trace.actuator_map_json()))};
 }
 
+std::filesystem::path sidecar_path(std::filesystem::path map) {
+  return map.replace_extension(".json");
+}
+
 ActuatorMapFiles read_actuator_map_files(const std::string& map) {
   if (map == "none") return {};
   if (map == "builtin") return {builtin_actuator_map_png(), builtin_actuator_map_json()};
-  const auto sidecar = std::filesystem::path(map).replace_extension(".json");
+  const auto sidecar = sidecar_path(map);
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // twice that of all texels
   constexpr std::uint64_t kMostSidecarBytes = std::uint64_t{1} << 26;
   ActuatorMapFiles files = {read_file(map, kMostBytes), ""};
@@ -358,6 +362,13 @@ ActuatorMapFiles read_actuator_map_files(const std::string& map) {
   if (files.json.empty())
     throw Error(sidecar.string(), "is empty", "list the actuators in it, or remove it: then each grey level is one");
   return files;
+}
+
+std::string sha256_of(const ActuatorMapFiles& files) {
+  Sha256 sha;
+  sha.update(files.png);
+  sha.update(std::as_bytes(std::span(files.json)));
+  return sha.hex();
 }
 
 }  // namespace vestige

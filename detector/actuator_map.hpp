@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -72,8 +73,14 @@ ActuatorMap parse_actuator_map(const ActuatorMapFiles& files, const Avatar& avat
 /// Those that a trace carries; empty where it has none.
 ActuatorMapFiles actuator_map_files(const TraceReader& trace);
 
-/// `map`: "none" (both are empty), "builtin", or a PNG file, whose sidecar is the .json of the same name, if there is
-/// one. Throws `Error` where a file cannot be read.
+/// Where the sidecar of a map in a PNG file is: the .json of the same name.
+std::filesystem::path sidecar_path(std::filesystem::path map);
+
+/// `map`: "none" (both are empty), "builtin", or a PNG file with its sidecar, if there is one. Throws `Error` where a
+/// file cannot be read.
 ActuatorMapFiles read_actuator_map_files(const std::string& map);
+
+/// SHA-256 of the PNG and then the sidecar, 64 lower-case hexadecimal digits.
+std::string sha256_of(const ActuatorMapFiles& files);
 
 }  // namespace vestige

@@ -36,8 +36,7 @@ std::optional<WatchedMap> ActuatorMapWatch::take() {
 
 std::string ActuatorMapWatch::stamp(const std::string& file) {
   std::string text;
-  const auto sidecar = std::filesystem::path(file).replace_extension(".json").string();
-  for (const std::string& name : {file, sidecar}) {
+  for (const std::string& name : {file, sidecar_path(file).string()}) {
     struct stat status = {};
     if (::stat(name.c_str(), &status) == 0)
       text +=
@@ -66,7 +65,7 @@ void ActuatorMapWatch::run(const std::stop_token& stop) {
 
 void ActuatorMapWatch::read() try {
   // A pipe might never end.
-  for (const auto& file : {std::filesystem::path(file_), std::filesystem::path(file_).replace_extension(".json")})
+  for (const auto& file : {std::filesystem::path(file_), sidecar_path(file_)})
     if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
       throw Error(file.string(), "is no regular file any more", "write it anew under its name");
   ActuatorMap map = parse_actuator_map(read_actuator_map_files(file_), avatar_, file_);

@@ -76,11 +76,8 @@ void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
   if (plan.actuators.model) static_cast<void>(plan.actuators.model->motors(parsed));  // throws what they lack
   map.warnings = parsed.warnings;
   if (map.given != "builtin" && !is_layout(map.given)) add_problems(map, parsed, plan);
-  Sha256 sha;
-  sha.update(map.files.png);
-  sha.update(std::as_bytes(std::span(map.files.json)));
   map.layout = std::make_shared<const ActuatorLayout>(plan.avatar, std::move(parsed));
-  map.sha256 = sha.hex();
+  map.sha256 = sha256_of(map.files);
 }
 
 /// Calls `work` for each of 0 … count - 1. Throws what it throws, once all threads have ended.

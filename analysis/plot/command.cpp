@@ -4,6 +4,7 @@
 
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/headless_window.hpp"
+#include "cli/terminal.hpp"
 #include "traces/error.hpp"
 
 namespace vestige::plot {
@@ -37,9 +38,9 @@ int write_figure(const Options& options, const std::filesystem::path& stem,
     warn(options, fmt::format("{}: left out: {}\n  install libegl1 and libgl1-mesa-dri, or convert the SVG: "
                               "rsvg-convert -d 300 -p 300",
                               png.string(), error.what()));
-    return kIncomplete;
+    return cli::kDataLost;
   }
-  return kDone;
+  return cli::kDone;
 }
 
 std::filesystem::path stem_of(const Options& options) {

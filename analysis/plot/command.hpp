@@ -15,12 +15,6 @@
 
 namespace vestige::plot {
 
-// Exit codes.
-inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;
-inline constexpr int kWrongUsage = 2;
-inline constexpr int kIncomplete = 3;
-
 /// What the command line says, of every kind of figure.
 struct Options {
   std::vector<std::filesystem::path> inputs;
@@ -53,7 +47,7 @@ void warn(const Options& options, const std::vector<std::string>& texts);
 /// Writes a file and says so.
 void write_file(const Options& options, const std::filesystem::path& path, std::string_view bytes);
 
-/// Writes STEM.svg and STEM.png. Without OpenGL the second is left out, which is `kIncomplete`.
+/// Writes STEM.svg and STEM.png. Without OpenGL the second is left out, which is `cli::kDataLost`.
 int write_figure(const Options& options, const std::filesystem::path& stem,
                  const std::function<std::unique_ptr<Figure>()>& make_figure);
 

@@ -44,9 +44,9 @@ void warn_of(const Options& options, const Subject& subject) {
 
 /// What is wrong with a trace that was read to its end; its part of the exit code.
 int report_damage(const Options& options, const TraceReader& trace) {
-  if (trace.complete()) return kDone;
+  if (trace.complete()) return cli::kDone;
   warn(options, damage_of(trace, options.inputs.front().string()));
-  return kIncomplete;
+  return cli::kDataLost;
 }
 
 /// Contacts of another avatar or map are not drawn. With --map, contacts name actuators of a map that is not there.
@@ -163,7 +163,7 @@ int draw_body(Options options) {
     throw UsageError("plot body", "needs either a trace or --avatar", "name one of them");
   const std::string input = options.inputs.empty() ? options.avatar : options.inputs.front().string();
   if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-body";
-  int damage = kDone;
+  int damage = cli::kDone;
   const int drawn = write_figure(options, stem_of(options), [&] {
     Body body;
     body.subject = body_subject(options, damage);
@@ -176,14 +176,14 @@ int draw_body(Options options) {
     if (body.has_contacts) body.contacts = read_contacts_csv(options.contacts, limits_of(options, body.subject));
     return body_figure(std::move(body));
   });
-  return drawn == kDone ? damage : drawn;
+  return drawn == cli::kDone ? damage : drawn;
 }
 
 int draw_scene(Options options) {
   const std::filesystem::path& input = options.inputs.front();
   if (options.output.empty()) options.output = std::filesystem::path(input).replace_extension().string() + "-scene";
   options.moments.trail_s = options.trail_ms / 1000;
-  int damage = kDone;
+  int damage = cli::kDone;
   const int drawn = write_figure(options, stem_of(options), [&] {
     TraceReader trace(input);
     Scene scene;
@@ -200,7 +200,7 @@ int draw_scene(Options options) {
     scene.moments = read_moments(trace, input.string(), times, options.moments, contacts);
     return scene_figure(scene);
   });
-  return drawn == kDone ? damage : drawn;
+  return drawn == cli::kDone ? damage : drawn;
 }
 
 int draw_report(const Options& options) {
@@ -217,13 +217,13 @@ int draw_report(const Options& options) {
   }
   if (outcome.interrupted) {
     warn(options, "stopped; nothing was written");
-    return kIncomplete;
+    return cli::kDataLost;
   }
   warn(options, outcome.warnings);
   if (!options.quiet)
     print_message(fmt::format("wrote {}, and {} figures in {}\n", outcome.page.string(), outcome.figures,
                               (outcome.page.parent_path() / "figures").string()));
-  return outcome.has_pictures ? kDone : kIncomplete;
+  return outcome.has_pictures ? cli::kDone : cli::kDataLost;
 }
 
 int draw_paraview(const Options& options) {
@@ -261,7 +261,7 @@ int draw_paraview(const Options& options) {
   if (!options.quiet)
     print_message(fmt::format("wrote {}.pvd: {} steps of {} frames, {} contacts\n", stem.string(), series.steps(),
                               result.frames, result.contacts));
-  return result.interrupted ? kIncomplete : damage;
+  return result.interrupted ? cli::kDataLost : damage;
 }
 
 }  // namespace vestige::plot

@@ -2,11 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <memory>
-#include <new>
 #include <string>
 #include <string_view>
 
@@ -17,6 +15,7 @@
 #include "cli/help/manual.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/terminal.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
 #include "version.hpp"
@@ -222,7 +221,7 @@ int run(int argc, char** argv) {
                          ? help::completions(table, {argv + 2, argv + argc})
                          : help::manual_page(table, help::VerbPages::kNone, vestige::kVersion, vestige::kCommitDate));
     if (std::fflush(stdout) != 0) throw vestige::system_error("standard output", "could not write", errno);
-    return plot::kDone;
+    return vestige::cli::kDone;
   }
   if (!word.empty() && word.front() != '-')
     if (const auto remedy = help::unknown_verb_remedy(app, word))
@@ -237,7 +236,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     vestige::print_message(
         fmt::format("vestige: error: {}\n  {}\n", help::cause_of(app, error), help::help_remedy(app)));
-    return plot::kWrongUsage;
+    return vestige::cli::kWrongUsage;
   }
   if (options.output == "-")
     throw vestige::UsageError("-o -", "a plot is two files, and standard output is one", "name OUT");
@@ -257,19 +256,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // A closed pipe is an error of write(), not a silent death that leaves temporary files behind.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // so is a file that ulimit -f does not allow
-  try {
-    return run(argc, argv);
-  } catch (const vestige::UsageError& error) {
-    vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
-    return plot::kWrongUsage;
-  } catch (const std::bad_alloc&) {
-    vestige::print_message("vestige: error: out of memory\n");
-    return plot::kFailed;
-  } catch (const std::exception& error) {
-    vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
-    return plot::kFailed;
-  }
+  return vestige::cli::run_program(run, argc, argv);
 }

@@ -26,13 +26,14 @@
 #include "traces/avatar_gltf.hpp"
 #include "traces/error.hpp"
 #include "traces/output_file.hpp"
+#include "traces/sha256.hpp"
 
 namespace vestige::plot {
 
 namespace {
 
 constexpr std::size_t kRankedShown = 40;
-constexpr std::string_view kContactsRemedy =
+constexpr std::string_view kFileRemedy =
     "run the same 'vestige batch' (or 'batch merge') again: it writes the file anew";
 
 /// Thrown where the user stopped; not an error.
@@ -51,7 +52,7 @@ ContactRecording read_trace_contacts(const std::filesystem::path& file) {
   } catch (const Error& error) {
     if (!std::filesystem::exists(file))
       throw Error(file.string(), "is missing", "run the same 'vestige batch' (or 'batch merge') again: it writes it");
-    throw Error("contacts", error.fault(), kContactsRemedy);
+    throw Error("contacts", error.fault(), kFileRemedy);
   }
 }
 
@@ -65,12 +66,11 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
       if (contact.triangle >= avatar.triangles.size())
         throw Error(file.string(),
                     fmt::format("names triangle {}, and avatar.glb has {}", contact.triangle, avatar.triangles.size()),
-                    kContactsRemedy);
+                    kFileRemedy);
       const glm::dvec2& weights = contact.barycentric;
       constexpr double kSlack = 1e-9;
       if (!(weights.x >= 0 && weights.y >= 0 && weights.x + weights.y <= 1 + kSlack))
-        throw Error(file.string(), fmt::format("contact {}: u and v are no weights from 0 to 1", i + 1),
-                    kContactsRemedy);
+        throw Error(file.string(), fmt::format("contact {}: u and v are no weights from 0 to 1", i + 1), kFileRemedy);
       RecordedContact one;
       one.triangle = contact.triangle;
       one.barycentric = contact.barycentric;
@@ -84,8 +84,26 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
   return contacts;
 }
 
-ActuatorMap read_batch_map(const std::filesystem::path& folder, const std::string& map, const Avatar& avatar) {
-  return read_map((folder / "maps" / (map + ".png")).string(), avatar);
+/// Throws where a file is another than the one that was judged.
+void require_judged(const std::filesystem::path& file, const std::string& sha256, const std::string& judged) {
+  if (judged.empty() || sha256 == judged) return;
+  throw Error(file.string(), "is not what the batch judged (SHA-256 in run.json): it was changed since", kFileRemedy);
+}
+
+Avatar read_batch_avatar(const std::filesystem::path& folder, const ReportData& data) {
+  const std::filesystem::path file = folder / "avatar.glb";
+  const std::vector<std::byte> glb = read_avatar_glb(file.string());
+  require_judged(file, sha256_hex(glb), data.avatar_sha256);
+  return parse_avatar_glb(glb, file.string());
+}
+
+ActuatorMap read_batch_map(const std::filesystem::path& folder, const ReportData& data, const std::string& map,
+                           const Avatar& avatar) {
+  const std::string file = (folder / "maps" / (map + ".png")).string();
+  const ActuatorMapFiles files = read_actuator_map_files(file);
+  const auto judged = data.map_sha256.find(map);
+  if (judged != data.map_sha256.end()) require_judged(file, sha256_of(files), judged->second);
+  return parse_actuator_map(files, avatar, file);
 }
 
 /// What the actuators are told over the trace.
@@ -129,8 +147,7 @@ class Report {
     folder_.emplace(options_.output / "figures", options_.overwrite);
     outcome_.page = page_file;
 
-    const std::filesystem::path glb = batch_ / "avatar.glb";
-    const Avatar avatar = parse_avatar_glb(read_avatar_glb(glb.string()), glb.string());
+    const Avatar avatar = read_batch_avatar(batch_, data);
     const Contacts contacts = read_contacts(batch_, data, avatar);
     const std::vector<std::string> maps = data.maps();
     const std::size_t pictured = std::min(options_.top, maps.size());
@@ -147,7 +164,7 @@ class Report {
     }
     const MapPictures pictures(avatar, contacts.all);
     for (std::size_t i = 0; i < maps.size(); ++i) {
-      ActuatorMap map = read_batch_map(batch_, maps[i], avatar);
+      ActuatorMap map = read_batch_map(batch_, data, maps[i], avatar);
       page.unfelt.push_back({maps[i], contacts.all.size(), pictures.unfelt_count(map)});
       if (i < pictured) page.maps.push_back(section(data, maps[i], avatar, contacts, pictures, std::move(map)));
     }

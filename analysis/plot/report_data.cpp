@@ -160,6 +160,11 @@ void read_run(const std::filesystem::path& file, ReportData& data) {
   const JsonField laws = batch.at("laws");
   for (std::size_t i = 0; i < laws.count(); ++i) data.laws.push_back(file_name(laws.at(i)));
   if (batch.has("options")) read_law_options(batch.at("options"), data);
+  if (batch.at("avatar").has("sha256")) data.avatar_sha256 = batch.at("avatar").at("sha256").text();
+  if (batch.has("maps"))
+    for (std::size_t i = 0; i < length(batch.at("maps")); ++i)
+      if (const JsonField map = batch.at("maps").at(i); map.has("sha256"))
+        data.map_sha256[map.at("name").text()] = map.at("sha256").text();
   if (run.has("maps")) {
     const JsonField maps = run.at("maps");
     for (std::size_t i = 0; i < length(maps); ++i) {

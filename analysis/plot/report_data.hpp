@@ -70,6 +70,8 @@ struct ReportData {
   std::vector<ReportTrace> traces;
   std::vector<ReportFailure> failures;
   std::map<std::string, std::vector<std::string>> map_warnings;  ///< of the maps, as the batch was given them
+  std::string avatar_sha256;                                     ///< of avatar.glb; empty: not said
+  std::map<std::string, std::string> map_sha256;                 ///< of the judged maps: PNG, then sidecar
   std::vector<std::string> laws;                                 ///< in the order of the batch
   LawOptions law_options;                                        ///< of all of them
   std::string actuator;                                          ///< where the motors are from; empty: ideal ones

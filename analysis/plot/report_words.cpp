@@ -49,8 +49,4 @@ std::string estimate_text(const Estimate& estimate, const ReportMetric& metric) 
   return text + (estimate.traces == 1 ? " (one trace)" : "");
 }
 
-std::string counted(std::size_t count, std::string_view thing) {
-  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
-}
-
 }  // namespace vestige::plot

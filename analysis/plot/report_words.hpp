@@ -18,7 +18,4 @@ std::string number_text(double value);
 /// "12.3 mm (95 % interval 11.0 to 13.9)", "12.3 mm (one trace)", "no value".
 std::string estimate_text(const Estimate& estimate, const ReportMetric& metric);
 
-/// "1 trace", "4 traces"
-std::string counted(std::size_t count, std::string_view thing);
-
 }  // namespace vestige::plot

@@ -6,6 +6,7 @@
 
 #include "tests/analysis/box_avatar.hpp"
 #include "tests/support/process.hpp"
+#include "traces/sha256.hpp"
 
 namespace vestige {
 namespace {
@@ -223,6 +224,23 @@ TEST_F(ReportTest, WhatIsThereStaysUnlessForced) {
   EXPECT_EQ(page(), before);
   ASSERT_EQ(report("--force").exit_code, 0);
   EXPECT_THAT(page(), HasSubstr("fedcba9876"));
+}
+
+TEST_F(ReportTest, RefusesAnAvatarOrMapOtherThanTheJudged) {
+  const std::string map =
+      read_text_file(folder_ / "batch/maps/box.png") + read_text_file(folder_ / "batch/maps/box.json");
+  const std::string avatar = read_text_file(folder_ / "batch/avatar.glb");
+  const auto sha256 = [](const std::string& bytes) { return sha256_hex(std::as_bytes(std::span(bytes))); };
+  const std::string other = sha256("other");
+  run_["batch"]["maps"] = {{{"name", "box"}, {"given", "box.png"}, {"sha256", other}}};
+  EXPECT_THAT(report().standard_error,
+              AllOf(HasSubstr("box.png"), HasSubstr("changed since"), HasSubstr("run the same 'vestige batch'")));
+  run_["batch"]["maps"][0]["sha256"] = sha256(map);
+  run_["batch"]["avatar"]["sha256"] = other;
+  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("avatar.glb"), HasSubstr("changed since")));
+  expect_nothing_written();
+  run_["batch"]["avatar"]["sha256"] = sha256(avatar);
+  EXPECT_EQ(report().exit_code, 0);
 }
 
 TEST_F(ReportTest, NamesWhatIsWrongWithAFolderAndWritesNothing) {
