@@ -112,8 +112,7 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
   check_extension("--map-output", options.map_output, ".png", "a PNG");
   check_extension("--uv", options.uv_output, ".png", "a PNG");
   std::string sidecar;
-  if (!options.map_output.empty() && options.map_output != "-")
-    sidecar = std::filesystem::path(options.map_output).replace_extension(".json").string();
+  if (!options.map_output.empty() && options.map_output != "-") sidecar = sidecar_path(options.map_output).string();
   check_outputs({options.output, options.map_output, sidecar, options.uv_output, options.common.json}, {options.avatar},
                 options.common);
   for (const auto& [flag, path] : {std::pair("-o -", options.output), std::pair("--map-output -", options.map_output),

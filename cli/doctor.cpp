@@ -5,6 +5,7 @@
 
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
+#include "traces/number_text.hpp"
 #include "traces/trace_check.hpp"
 
 namespace vestige::cli {
@@ -69,13 +70,12 @@ std::string describe(const TraceCheck& check, const std::string& file) {
   }
   const std::uint64_t shown = check.problems.kept().size();
   if (check.problems.count() > shown) text += fmt::format("{}: and {} more\n", file, check.problems.count() - shown);
-  const std::string content =
-      check.is_trace ? fmt::format("{} frames can be read", check.frames)
-                     : fmt::format("{} messages, {} attachments; no trace of ours, so only its framing was checked",
-                                   check.container.messages, check.container.attachments);
+  const std::string content = check.is_trace ? fmt::format("{} can be read", counted(check.frames, "frame"))
+                                             : fmt::format("{}, {}; no trace of ours, so only its framing was checked",
+                                                           counted(check.container.messages, "message"),
+                                                           counted(check.container.attachments, "attachment"));
   const std::uint64_t count = check.problems.count();
-  text += fmt::format("{}: {}; {}\n", file,
-                      count == 0 ? "no problem" : fmt::format("{} problem{}", count, count == 1 ? "" : "s"),
+  text += fmt::format("{}: {}; {}\n", file, count == 0 ? "no problem" : counted(count, "problem"),
                       check.readable() || count == 0 ? content : "nothing in it can be read");
   return text;
 }

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
+#include "traces/number_text.hpp"
 #include "traces/trace_summary.hpp"
 
 namespace vestige::cli {
@@ -50,15 +51,15 @@ nlohmann::ordered_json to_json(const McapSummary& summary) {
 std::string describe(const McapSummary& summary, const std::string& path, bool verbose) {
   std::string text = fmt::format("{}: {}, profile '{}', written by {}\n", path,
                                  summary.complete ? "complete" : "NOT complete", summary.profile, summary.library);
-  text += fmt::format("{} messages in {:.3f} s, {} chunks, {} bytes\n", summary.messages, summary.duration_s,
-                      summary.chunks, summary.file_bytes);
+  text += fmt::format("{} in {:.3f} s, {}, {} bytes\n", counted(summary.messages, "message"), summary.duration_s,
+                      counted(summary.chunks, "chunk"), summary.file_bytes);
   for (const auto& channel : summary.channels)
     text += fmt::format("  {:<20} {:>9} messages {:>10.1f} Hz  {} ({})\n", channel.topic, channel.messages,
                         channel.rate_hz, channel.schema, channel.encoding);
   for (const auto& attachment : summary.attachments)
     text += fmt::format("  {:<20} {:>9} bytes     sha256 {}\n", attachment.name, attachment.bytes, attachment.sha256);
   if (summary.dropped != 0) {
-    text += fmt::format("{} messages were lost while recording\n", summary.dropped);
+    text += fmt::format("lost {} while recording\n", counted(summary.dropped, "message"));
     for (const auto& [topic, count] : summary.dropped_by_topic)
       text += fmt::format("  {:<20} {:>9} messages lost\n", topic, count);
   }

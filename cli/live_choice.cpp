@@ -7,6 +7,7 @@
 #include "traces/error.hpp"
 #include "traces/host_port.hpp"
 #include "traces/humanoid.hpp"
+#include "traces/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -82,10 +83,10 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
                 choice.is_lines() ? "give a line of JSON for each frame: see traces/FORMAT.md"
                                   : "let the sender send to this machine and port, and no firewall forbid it");
   if (counts.malformed > 0 && choice.is_lines())
-    warn(fmt::format("{}: {} lines could not be read and are left out", source, counts.malformed), verbosity);
+    warn(fmt::format("{}: left out {} that could not be read", source, counted(counts.malformed, "line")), verbosity);
   if (counts.lost_something() && !choice.is_lines())
-    warn(fmt::format("{}: lost {} frames that came too late, {} datagrams that could not be read, {} that nobody took",
-                     source, counts.late, counts.malformed, counts.overflowed),
+    warn(fmt::format("{}: lost {} that came too late, {} that could not be read, {} that nobody took", source,
+                     counted(counts.late, "frame"), counted(counts.malformed, "datagram"), counts.overflowed),
          verbosity);
   return counts;
 }

@@ -1,12 +1,9 @@
 #include <fmt/format.h>
 
 #include <cerrno>
-#include <csignal>
 #include <cstdio>
-#include <exception>
 #include <iostream>
 #include <memory>
-#include <new>
 #include <utility>
 
 #include "cli/help/help_text.hpp"
@@ -110,19 +107,5 @@ int run(int argc, char** argv) {
 }  // namespace vestige::cli
 
 int main(int argc, char** argv) {
-  // A closed pipe is an error of write(), not a silent death that leaves temporary files behind.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // so is a file that ulimit -f does not allow
-  try {
-    return vestige::cli::run(argc, argv);
-  } catch (const vestige::UsageError& error) {
-    vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
-    return vestige::cli::kWrongUsage;
-  } catch (const std::bad_alloc&) {
-    vestige::print_message("vestige: error: out of memory\n");
-    return vestige::cli::kFailed;
-  } catch (const std::exception& error) {
-    vestige::print_message(fmt::format("vestige: error: {}\n", error.what()));
-    return vestige::cli::kFailed;
-  }
+  return vestige::cli::run_program(vestige::cli::run, argc, argv);
 }

@@ -121,7 +121,7 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
   if (options.output == "-") throw UsageError("-o -", "a map is two files, and standard output is one", "name OUT.png");
   check_extension("-o", options.output, ".png", "a PNG");
   check_extension("--save-regions", options.regions_output, ".json", "JSON");
-  const std::string sidecar = std::filesystem::path(options.output).replace_extension(".json").string();
+  const std::string sidecar = sidecar_path(options.output).string();
   check_outputs({options.output, sidecar, options.regions_output, options.common.json},
                 {options.avatar, options.regions}, options.common);
 

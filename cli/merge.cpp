@@ -7,6 +7,7 @@
 
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
+#include "traces/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -45,8 +46,8 @@ void run_merge(const MergeOptions& options, Invocation& invocation) {
                      other.file, options.files.front(), fmt::join(other.keys, ", ")),
          verbosity);
   if (merged.missing_frames > 0)
-    warn(fmt::format("{}: {} frames between its first and its last were in none of the files", options.output,
-                     merged.missing_frames),
+    warn(fmt::format("{}: lacks {} between its first and its last, found in none of the files", options.output,
+                     counted(merged.missing_frames, "frame")),
          verbosity);
   write_json(options.common.json,
              {{"files", options.files},
@@ -57,7 +58,8 @@ void run_merge(const MergeOptions& options, Invocation& invocation) {
               {"missing_frames", merged.missing_frames},
               {"complete", merged.damages.empty()}},
              options.common);
-  print_summary(fmt::format("{}: {} frames of {} files\n", options.output, merged.frames, options.files.size()),
+  print_summary(fmt::format("{}: {} of {}\n", options.output, counted(merged.frames, "frame"),
+                            counted(options.files.size(), "file")),
                 {options.output, options.common.json}, options.common);
   if (!merged.damages.empty()) invocation.exit_code = kDataLost;
 }

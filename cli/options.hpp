@@ -14,15 +14,6 @@
 
 namespace vestige::cli {
 
-/// Exit codes: what a script may rely on.
-enum ExitCode {
-  kDone = 0,
-  kFailed = 1,
-  kWrongUsage = 2,
-  kDataLost = 3,     ///< done, but data was lost, repaired or dropped
-  kCheckFailed = 4,  ///< --verify found a difference
-};
-
 /// One run of the program: what it was called with, and what it will answer.
 struct Invocation {
   std::vector<std::string> argv;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
+#include "traces/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -43,21 +44,19 @@ void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
   const auto say = [&](const std::string& text) {
     warn(fmt::format("{}: {}", options.file, text), options.common.verbosity());
   };
-  if (recovery.bytes_lost > 0) say(fmt::format("{} bytes are lost", recovery.bytes_lost));
+  if (recovery.bytes_lost > 0) say(fmt::format("lost {}", counted(recovery.bytes_lost, "byte")));
   if (const auto at = recovery.another_file_at)
     say(
         fmt::format("at byte {} a second MCAP file begins, which is left out: `tail -c +{} {} > SECOND.mcap` makes a "
                     "file of it",
                     *at, *at + 1, options.file));
-  if (recovery.chunks_lost > 0) say(fmt::format("{} chunks are lost", recovery.chunks_lost));
+  if (recovery.chunks_lost > 0) say(fmt::format("lost {}", counted(recovery.chunks_lost, "chunk")));
   if (recovery.chunks_partly > 0)
-    say(
-        fmt::format("{} chunks are damaged; {} messages of theirs still decode and are kept, though no CRC vouches for "
-                    "them",
-                    recovery.chunks_partly, recovery.messages_unverified));
-  if (recovery.messages_lost.value_or(0) > 0) say(fmt::format("{} of its messages are lost", *recovery.messages_lost));
+    say(fmt::format("kept {} of {}, for which no CRC vouches", counted(recovery.messages_unverified, "message"),
+                    counted(recovery.chunks_partly, "damaged chunk")));
+  if (recovery.messages_lost.value_or(0) > 0) say(fmt::format("lost {}", counted(*recovery.messages_lost, "message")));
   if (recovery.messages_left_out > 0)
-    say(fmt::format("{} messages contradict the rest, and are left out", recovery.messages_left_out));
+    say(fmt::format("left out {} that contradicted the rest", counted(recovery.messages_left_out, "message")));
   for (const std::string& name : recovery.damaged_attachments)
     say(fmt::format("the attachment {0} is damaged; it is kept as {0}.damaged", name));
   if (recovery.unexplained_change)
@@ -79,8 +78,9 @@ void run_recover(const RecoverOptions& options, Invocation& invocation) {
   file.commit();
   warn_of_losses(recovery, options);
   write_json(options.common.json, to_json(recovery, options), options.common);
-  std::string text = fmt::format("{}: {} messages, {} attachments{}\n", options.output, recovery.messages,
-                                 recovery.attachments, recovery.lost_something() ? "" : "; nothing was lost");
+  std::string text =
+      fmt::format("{}: {}, {}{}\n", options.output, counted(recovery.messages, "message"),
+                  counted(recovery.attachments, "attachment"), recovery.lost_something() ? "" : "; nothing was lost");
   for (const std::string& repair : recovery.repaired) text += fmt::format("  repaired: {}\n", repair);
   print_summary(text, {options.output, options.common.json}, options.common);
   if (recovery.lost_something()) invocation.exit_code = kDataLost;

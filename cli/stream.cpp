@@ -65,7 +65,6 @@ struct Streamed {
   PlaybackResult playback;
   SenderStatistics sender;
   std::uint64_t maps_reloaded = 0;
-  bool fell_behind = false;
 };
 
 /// What the trace's contacts become, run by run: pressures where the sink asks for them, else what --law says.
@@ -156,7 +155,7 @@ std::string summary(const Streamed& streamed, const OpenSink& sink) {
   std::string text =
       fmt::format("{} frames in {:.2f} s, {} contacts, {} deadlines missed{}\n", playback.frames, playback.duration_s,
                   playback.contacts, playback.missed_deadlines,
-                  streamed.fell_behind ? fmt::format(", up to {:.1f} s late", playback.most_late_s) : "");
+                  playback.fell_behind() ? fmt::format(", up to {:.1f} s late", playback.most_late_s) : "");
   text += fmt::format("sent {} frames, {} of them changes; {} changes superseded by newer ones", sender.sent,
                       sender.changes, sender.superseded);
   text += sink.sink().acknowledges() ? fmt::format("; {} acknowledged\n", sender.acknowledged) : "\n";
@@ -259,7 +258,6 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
       return progress.update(share);
     };
     calls.fell_behind = [&] {
-      streamed.fell_behind = true;
       tell(
           fmt::format("{}: a second late: '{}' does not keep up with the trace, or the machine was busy; what is felt "
                       "comes late and lasts longer\n  Take a faster --detector, or a lower --rate.",
@@ -282,7 +280,8 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   const int damage = report_damage(trace.reader, options.trace, verbosity);
   const bool cut_short = interrupted() && !options.playback.loop;
   if (cut_short) warn(fmt::format("stopped after {} frames", streamed.playback.frames), verbosity);
-  invocation.exit_code = losses != kDone || damage != kDone || cut_short || streamed.fell_behind ? kDataLost : kDone;
+  invocation.exit_code =
+      losses != kDone || damage != kDone || cut_short || streamed.playback.fell_behind() ? kDataLost : kDone;
 }
 
 }  // namespace

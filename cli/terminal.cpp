@@ -8,6 +8,8 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <exception>
+#include <new>
 #include <utility>
 
 #include "traces/descriptor.hpp"
@@ -71,6 +73,24 @@ bool Progress::update(double share) {
     std::fflush(stderr);
   }
   return !interrupted();
+}
+
+int run_program(int (*run)(int argc, char** argv), int argc, char** argv) {
+  // A closed pipe is an error of write(), not a silent death that leaves temporary files behind.
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // so is a file that ulimit -f does not allow
+  try {
+    return run(argc, argv);
+  } catch (const UsageError& error) {
+    print_message(fmt::format("vestige: error: {}\n", error.what()));
+    return kWrongUsage;
+  } catch (const std::bad_alloc&) {
+    print_message("vestige: error: out of memory\n");
+    return kFailed;
+  } catch (const std::exception& error) {
+    print_message(fmt::format("vestige: error: {}\n", error.what()));
+    return kFailed;
+  }
 }
 
 void catch_interrupts() {

@@ -7,6 +7,19 @@
 
 namespace vestige::cli {
 
+/// Exit codes: what a script may rely on.
+enum ExitCode {
+  kDone = 0,
+  kFailed = 1,
+  kWrongUsage = 2,
+  kDataLost = 3,     ///< done, but data was lost, repaired or dropped
+  kCheckFailed = 4,  ///< --verify found a difference
+};
+
+/// A program's `main`: what `run` returns; where it throws, the message goes to standard error, and kWrongUsage
+/// (`UsageError`) or kFailed is returned.
+int run_program(int (*run)(int argc, char** argv), int argc, char** argv);
+
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
 /// "vestige: warning: …" on standard error; with kQuiet, nothing.

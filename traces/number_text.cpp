@@ -81,4 +81,8 @@ std::int64_t nanoseconds_of(double time_s) {
   return std::llround(time_s * 1e9);
 }
 
+std::string counted(std::uint64_t count, std::string_view thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 }  // namespace vestige

@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "traces/trace.hpp"
 
 namespace vestige {
 
-// Numbers as text, each the shortest that reads back to the same bits. All append to `out`.
+// Numbers as text. What appends to `out` is the shortest that reads back to the same bits.
 
 /// As JSON has it: a zero with a sign is -0.0, NaN and infinities are the strings "nan", "inf" and "-inf".
 void append_json(std::string& out, float value);
@@ -27,5 +28,8 @@ void append_seconds(std::string& out, std::int64_t time_ns);
 
 /// The reverse, of seconds read as a double: exact below 2^52 ns (52 days). Precondition: |time_s| < 9e9.
 std::int64_t nanoseconds_of(double time_s);
+
+/// "1 trace", "4 traces"
+std::string counted(std::uint64_t count, std::string_view thing);
 
 }  // namespace vestige

@@ -171,12 +171,12 @@ TEST_F(Recording, OfLinesCountsThoseThatItCannotRead) {
   const test::Outcome outcome = run("vestige record --live - -o again.mcap < man.ndjson");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.standard_error, HasSubstr("line 51: "));
-  EXPECT_THAT(outcome.standard_error, HasSubstr("2 lines could not be read"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("left out 2 lines that could not be read"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("51 frames"));
   const auto json = json_of("vestige inspect again.mcap --json -");
   EXPECT_EQ(json["dropped"], 4);
   EXPECT_EQ(json["dropped_by_topic"]["/pose"], 2);
-  EXPECT_THAT(run("vestige inspect again.mcap").standard_output, HasSubstr("4 messages were lost while recording"));
+  EXPECT_THAT(run("vestige inspect again.mcap").standard_output, HasSubstr("lost 4 messages while recording"));
 }
 
 TEST_F(Recording, OfNothingIsNoTrace) {
@@ -225,7 +225,7 @@ TEST_F(Recording, OfTheVmcProtocolIsWhatWasSent) {
   recorder.signal(SIGINT);
   EXPECT_EQ(recorder.wait(), 3);
   const std::string error = read_text_file(folder_ / "error");
-  EXPECT_THAT(error, HasSubstr("1 datagrams that could not be read"));
+  EXPECT_THAT(error, HasSubstr("1 datagram that could not be read"));
   EXPECT_THAT(error, HasSubstr("Hips, LeftUpperArm"));
   EXPECT_THAT(error, HasSubstr("lacks: Tail"));
   const auto frames = frames_of("vr.mcap");
