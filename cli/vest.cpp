@@ -109,12 +109,13 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   } else if (acknowledges && !statistics.off_acknowledged) {
     verdict += ", the last, which switches off, was not acknowledged";
   }
+  if (interrupted()) verdict += fmt::format("; stopped at actuator {} of {}", checked.actuators, actuators);
   if (!good) {
     verdict += ": THE VEST DOES NOT HEAR EVERYTHING";
     if (sink.greeting() && statistics.acknowledged <= 2) verdict += "; is --levels what the board takes?";
     verdict += "\n";
   } else if (interrupted()) {
-    verdict += fmt::format("; stopped at actuator {} of {}\n", checked.actuators, actuators);
+    verdict += "\n";
   } else if (!acknowledges) {
     verdict += "; nothing answers on this way, so only what you felt counts\n";
   } else {

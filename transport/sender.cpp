@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 constexpr auto kIdle = 100ms;
 constexpr auto kLineBusy = 500us;  ///< looked at again after this
 constexpr auto kBetweenTries = 250ms;
-constexpr auto kPatience = 100ms;  ///< for the answers to the last frames
+constexpr auto kPatience = 250ms;  ///< for the answers to the last frames: one takes 0.1 s at 1200 baud
 constexpr auto kDeserted = 1s;
 
 double seconds(Sender::Clock::duration duration) {
@@ -289,20 +289,22 @@ void Sender::switch_off() try {
     receive();
   }
   wait_for_last_answer();
-  for (int attempt = 0; attempt < 2; ++attempt) {
-    if (attempt != 0) {  // zeros, which every board understands
-      std::ranges::fill(state_.duty, std::uint8_t{0});
-      sink_.send(state_, next_sequence(nullptr));
-      note_sent();
-    }
+  sink_.send_off(next_sequence(nullptr));
+  note_sent();
+  statistics_.off_sent = true;
+  if (!sink_.acknowledges()) return;
+  const std::uint8_t first_off = sequence_;
+  wait_for_last_answer();
+  if (outstanding_[first_off].waiting) {
+    std::ranges::fill(state_.duty, std::uint8_t{0});  // which every board understands
+    sink_.send(state_, next_sequence(nullptr));
+    note_sent();
     sink_.send_off(next_sequence(nullptr));
     note_sent();
-    statistics_.off_sent = true;
-    if (!sink_.acknowledges()) return;
     wait_for_last_answer();
-    statistics_.off_acknowledged = !outstanding_[sequence_].waiting;
-    if (statistics_.off_acknowledged) return;
   }
+  // The first may have been answered late.
+  statistics_.off_acknowledged = !outstanding_[first_off].waiting || !outstanding_[sequence_].waiting;
 } catch (const LinkLost& lost) {
   lose_link(lost);
 }

@@ -81,8 +81,8 @@ class Sender {
   /// With `keep_log`: what became of states, in their order, as far as it is known and was not told before.
   std::vector<SentState> take_log();
 
-  /// Sends the last state, waits for its answer, switches everything off and waits for that one's answer, 0.1 s at
-  /// most and then once more. Throws what the sink threw.
+  /// Sends the last state, waits for its answer, switches everything off and waits for that one's answer, 0.25 s
+  /// at most and then once more. Throws what the sink threw.
   SenderStatistics finish();
 
  private:
