@@ -6,6 +6,7 @@
 #include <chrono>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -58,6 +59,7 @@ class PretendedVest : public ActuatorSink {
 
   bool busy = false;
   bool silent = false;
+  bool answers_offs_late = false;  ///< the first when the second comes, the second never
   bool unplugged = false;
   bool broken = false;
   bool breaks_once = false;
@@ -72,12 +74,20 @@ class PretendedVest : public ActuatorSink {
       if (broken || std::exchange(breaks_once, false)) throw Error("a vest", "burns", "use water");
       if (unplugged) throw LinkLost("a vest", "is unplugged", "plug it in");
       told_.push_back(told);
-      if (!silent) answers.push_back({told.sequence, std::exchange(restarted, false), false, receive_errors});
+      if (silent) return;
+      const Acknowledgement answer = {told.sequence, std::exchange(restarted, false), false, receive_errors};
+      if (told.off && answers_offs_late) {
+        if (late_) answers.push_back(*late_);
+        late_ = answer;
+      } else {
+        answers.push_back(answer);
+      }
     });
   }
 
   std::mutex mutex_;
   std::vector<Told> told_;
+  std::optional<Acknowledgement> late_;
 };
 
 class SenderTest : public ::testing::Test {
@@ -186,6 +196,16 @@ TEST_F(SenderTest, AnOffThatIsNotAnsweredIsRepeatedWithZeros) {
   EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}, Duties{0}, Duties{}));
   EXPECT_FALSE(statistics.off_acknowledged);
   EXPECT_EQ(statistics.acknowledged, 0U);
+}
+
+TEST_F(SenderTest, AnOffThatIsAnsweredLateIsAnswered) {
+  vest.answers_offs_late = true;
+  Sender sender(vest, options(), note);
+  post(sender, {200});
+  until([&] { return sender.heard(); });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}, Duties{0}, Duties{}));
+  EXPECT_TRUE(statistics.off_acknowledged);
 }
 
 TEST_F(SenderTest, AVestThatWasUnpluggedGetsTheLatestStateWhenItIsBack) {
