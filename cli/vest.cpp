@@ -51,6 +51,7 @@ bool rest(Sender& sender, std::chrono::duration<double> duration) {
 struct Checked {
   SenderStatistics sent;
   std::size_t actuators = 0;  ///< that ran, the last perhaps not to its end
+  bool stopped = false;       ///< by the user, before the last had run
 };
 
 /// Each actuator in turn; says which while it runs.
@@ -76,6 +77,7 @@ Checked run_in_turn(const OpenSink& sink, std::size_t actuators, const CheckOpti
     show();
     going = going && rest(sender, kPause);
   }
+  checked.stopped = !going;
   checked.sent = sender.finish();
   return checked;
 }
@@ -96,25 +98,24 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
 
   const bool acknowledges = sink.sink().acknowledges();
   const bool all_answered = statistics.acknowledged == statistics.sent && statistics.off_acknowledged;
-  const bool all_sent = statistics.off_sent && (statistics.superseded == 0 || interrupted());
+  const bool all_sent = statistics.off_sent && (statistics.superseded == 0 || checked.stopped);
   const bool good = all_sent && statistics.links_lost == 0 && (!acknowledges || (sink.greeting() && all_answered));
-  std::string verdict = fmt::format("sent {} frames", statistics.sent);
+  std::string verdict = "sent " + counted(statistics.sent, "frame");
   if (acknowledges) verdict += fmt::format(", {} acknowledged", statistics.acknowledged);
   if (statistics.links_lost > 0)
-    verdict +=
-        fmt::format(", the link was lost {} time{}", statistics.links_lost, statistics.links_lost == 1 ? "" : "s");
+    verdict += fmt::format(", the link was lost {}", counted(statistics.links_lost, "time"));
   if (statistics.superseded > 0) verdict += fmt::format(", {} could not be sent in time", statistics.superseded);
   if (!statistics.off_sent) {
     verdict += ", the last, which switches off, could not be sent";
   } else if (acknowledges && !statistics.off_acknowledged) {
     verdict += ", the last, which switches off, was not acknowledged";
   }
-  if (interrupted()) verdict += fmt::format("; stopped at actuator {} of {}", checked.actuators, actuators);
+  if (checked.stopped) verdict += fmt::format("; stopped at actuator {} of {}", checked.actuators, actuators);
   if (!good) {
     verdict += ": THE VEST DOES NOT HEAR EVERYTHING";
     if (sink.greeting() && statistics.acknowledged <= 2) verdict += "; is --levels what the board takes?";
     verdict += "\n";
-  } else if (interrupted()) {
+  } else if (checked.stopped) {
     verdict += "\n";
   } else if (!acknowledges) {
     verdict += "; nothing answers on this way, so only what you felt counts\n";
@@ -138,7 +139,7 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   json["good"] = good;
   write_json(options.common.json, json, options.common);
   if (!good) invocation.exit_code = kCheckFailed;
-  if (interrupted()) invocation.exit_code = kDataLost;
+  if (checked.stopped) invocation.exit_code = kDataLost;
 }
 
 void add_check(CLI::App& vest, Invocation& invocation) {

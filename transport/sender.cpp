@@ -20,8 +20,8 @@ using namespace std::chrono_literals;
 constexpr auto kIdle = 100ms;
 constexpr auto kLineBusy = 500us;  ///< looked at again after this
 constexpr auto kBetweenTries = 250ms;
-constexpr auto kPatience = 250ms;  ///< for the answers to the last frames: one takes 0.1 s at 1200 baud
-constexpr auto kDeserted = 1s;
+constexpr auto kPatience = 250ms;     ///< for the last frames, and for the answer to a state
+constexpr auto kPatienceForOff = 1s;  ///< for the answer of a board that has answered before
 
 double seconds(Sender::Clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
@@ -131,7 +131,7 @@ bool Sender::has_changed() {
 }
 
 void Sender::look_for_life(Clock::time_point now) {
-  const bool deserted = now > Clock::time_point(Clock::duration(alive_)) + kDeserted;
+  const bool deserted = now > Clock::time_point(Clock::duration(alive_)) + options_.deserted;
   if (deserted && !deserted_ && linked_ && has_state_) {
     sink_.send_off(next_sequence(nullptr));
     note_sent();
@@ -268,8 +268,9 @@ void Sender::try_reconnecting() {
   on_event_(fmt::format("{}: the link is back", sink_.name()));
 }
 
-void Sender::wait_for_last_answer() {
-  const auto until = Clock::now() + kPatience;
+void Sender::wait_for_last_answer(Clock::duration patience) {
+  const auto until = Clock::now() + patience;
+  receive();
   while (sink_.acknowledges() && outstanding_[sequence_].waiting && Clock::now() < until) {
     wait(until);
     receive();
@@ -280,28 +281,32 @@ void Sender::switch_off() try {
   if (!linked_ && !sink_.reconnect()) return;  // a board's ttl has switched it off
   linked_ = true;
   const auto until = Clock::now() + kPatience;
-  while (has_changed() && Clock::now() < until) {
-    if (may_send(Clock::now())) {
+  while (has_changed()) {
+    const auto now = Clock::now();
+    if (may_send(now)) {
       send_state();
+    } else if (now >= until) {
+      break;
     } else {
-      wait(next_chance(Clock::now()));
+      wait(next_chance(now));
     }
     receive();
   }
-  wait_for_last_answer();
+  wait_for_last_answer(kPatience);
   sink_.send_off(next_sequence(nullptr));
   note_sent();
   statistics_.off_sent = true;
   if (!sink_.acknowledges()) return;
+  const Clock::duration patience = statistics_.acknowledged == 0 ? kPatience : kPatienceForOff;
   const std::uint8_t first_off = sequence_;
-  wait_for_last_answer();
+  wait_for_last_answer(patience);
   if (outstanding_[first_off].waiting) {
     std::ranges::fill(state_.duty, std::uint8_t{0});  // which every board understands
     sink_.send(state_, next_sequence(nullptr));
     note_sent();
     sink_.send_off(next_sequence(nullptr));
     note_sent();
-    wait_for_last_answer();
+    wait_for_last_answer(patience);
   }
   // The first may have been answered late.
   statistics_.off_acknowledged = !outstanding_[first_off].waiting || !outstanding_[sequence_].waiting;

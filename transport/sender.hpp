@@ -20,7 +20,9 @@ namespace vestige {
 struct SenderOptions {
   std::chrono::microseconds floor = std::chrono::milliseconds(5);     ///< between two frames, at least
   std::chrono::microseconds refresh = std::chrono::milliseconds(20);  ///< an unchanged state is sent again after this
-  bool keep_log = false;                                              ///< for `take_log`
+  /// When neither `post` nor `still_here` has been called for so long, nothing is refreshed any more.
+  std::chrono::milliseconds deserted = std::chrono::seconds(1);
+  bool keep_log = false;  ///< for `take_log`
 };
 
 /// What became of a changed state.
@@ -74,15 +76,15 @@ class Sender {
   /// sent.
   bool heard() const { return heard_ == posted_; }
 
-  /// Says that whoever leaves states is alive. When neither this nor `post` has been called for a second, nothing is
+  /// Says that whoever leaves states is alive. When neither this nor `post` has been called for `deserted`, nothing is
   /// refreshed any more, so that the board's ttl switches it off; what has no ttl is switched off.
   void still_here() { alive_ = Clock::now().time_since_epoch().count(); }
 
   /// With `keep_log`: what became of states, in their order, as far as it is known and was not told before.
   std::vector<SentState> take_log();
 
-  /// Sends the last state, waits for its answer, switches everything off and waits for that one's answer, 0.25 s
-  /// at most and then once more. Throws what the sink threw.
+  /// Sends the last state, waits 0.25 s at most for its answer, switches everything off and waits for that one's
+  /// answer, 1 s at most (0.25 s where nothing was ever answered) and then once more. Throws what the sink threw.
   SenderStatistics finish();
 
  private:
@@ -121,7 +123,7 @@ class Sender {
   void give_back();
   std::uint8_t next_sequence(const Posted* changed);
   void note_sent();
-  void wait_for_last_answer();
+  void wait_for_last_answer(Clock::duration patience);
   void receive();
   void count_faults(const Acknowledgement& answer);
   void lose_link(const LinkLost& lost);

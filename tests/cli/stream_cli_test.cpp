@@ -166,7 +166,7 @@ TEST_F(StreamCommand, AVestThatIsUnpluggedWhileItIsDrivenIsFoundAgain) {
       run(board +
           "before.csv >/dev/null 2>&1 & first=$!\nfor i in $(seq 200); do [ -e vest ] && break; sleep 0.05; done\n"
           "vestige stream trace.mcap --port vest --loop --hold 1e6 --json stream.json & stream=$!\n"
-          "sleep 1; kill -INT $first; wait $first; sleep 0.5\n" +
+          "sleep 3; kill -INT $first; wait $first; sleep 0.5\n" +
           board +
           "after.csv >/dev/null 2>&1 & second=$!\n"
           "sleep 3; kill -INT $stream; wait $stream; code=$?; kill -INT $second; wait $second; exit $code");
@@ -184,7 +184,7 @@ TEST_F(StreamCommand, AnInterruptedStreamSwitchesTheVestOff) {
   for (const std::string signal : {"INT", "TERM"}) {
     const test::Outcome outcome =
         run_with_board("vestige stream trace.mcap --port vest --ttl 2000 --loop --hold 1e6 --json " + signal +
-                       ".json & stream=$!\nsleep 1.5; kill -" + signal + " $stream; wait $stream");
+                       ".json & stream=$!\nsleep 3; kill -" + signal + " $stream; wait $stream");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
     EXPECT_TRUE(read_json(signal + ".json")["off_acknowledged"]);
     const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
@@ -198,7 +198,7 @@ TEST_F(StreamCommand, AnInterruptedStreamSwitchesTheVestOff) {
 TEST_F(StreamCommand, AStreamThatIsInterruptedBeforeItsEndSaysSo) {
   record("--colliders hug --rate 100 --duration 5");
   const test::Outcome outcome = run_with_board(
-      "vestige stream trace.mcap --port vest --json stream.json & stream=$!\nsleep 1.5; kill -INT $stream; wait "
+      "vestige stream trace.mcap --port vest --json stream.json & stream=$!\nsleep 3; kill -INT $stream; wait "
       "$stream");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.standard_error, HasSubstr("stopped"));
@@ -211,7 +211,7 @@ TEST_F(StreamCommand, AStreamThatIsInterruptedBeforeItsEndSaysSo) {
 TEST_F(StreamCommand, AKilledStreamLeavesNoMotorRunning) {
   record("--colliders hug --rate 100 --duration 1");
   run_with_board(
-      "vestige stream -q trace.mcap --port vest --loop --hold 1e6 & stream=$!\nsleep 1.5; kill -KILL $stream\n"
+      "vestige stream -q trace.mcap --port vest --loop --hold 1e6 & stream=$!\nsleep 3; kill -KILL $stream\n"
       "wait $stream; sleep 0.5");
   const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
   ASSERT_FALSE(pins.empty());
@@ -236,9 +236,9 @@ TEST_F(StreamCommand, AMapThatIsEditedWhileItIsFeltIsReadAgainAndABadOneIsNot) {
       0);
   const test::Outcome outcome =
       run("vestige stream trace.mcap --port file:frames --map map.png --loop --log log.csv "
-          "--json stream.json & stream=$!\nsleep 1\n" +
+          "--json stream.json & stream=$!\nsleep 3\n" +
           make +
-          "20 new.png; mv new.png map.png\nsleep 1\necho nonsense >map.png\nsleep 1\n"
+          "20 new.png; mv new.png map.png\nsleep 3\necho nonsense >map.png\nsleep 3\n"
           "kill -INT $stream; wait $stream");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_EQ(read_json("stream.json")["maps_reloaded"], 1);
@@ -340,11 +340,11 @@ TEST_F(StreamCommand, ADetectorThatCannotKeepUpIsSaid) {
 }
 
 TEST_F(StreamCommand, AMapThatBecomesAPipeIsRefusedAndTheStreamEnds) {
-  record("--rate 1000 --duration 1");
+  record("--colliders hug --rate 100 --duration 1");
   ASSERT_EQ(run("vestige map make --layout paper6 -o map.png").exit_code, 0);
   const test::Outcome outcome =
       run("timeout 20 vestige stream trace.mcap --port file:frames --map map.png --loop & stream=$!\n"
-          "sleep 1; rm map.png; mkfifo map.png; sleep 1; kill -INT $stream; wait $stream");
+          "sleep 3; rm map.png; mkfifo map.png; sleep 3; kill -INT $stream; wait $stream");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_error, HasSubstr("map.png: is no regular file any more"));
 }
@@ -398,7 +398,7 @@ TEST_F(StreamCommand, VestCheckRunsEachMotorInTurn) {
 
 TEST_F(StreamCommand, VestCheckSaysThatItWasStoppedAndWhatTheBoardDoesNotDrive) {
   const test::Outcome outcome =
-      run_with_board("timeout --preserve-status -s INT 1 vestige vest check --port vest --seconds 0.5 --actuators 12");
+      run_with_board("timeout --preserve-status -s INT 3 vestige vest check --port vest --seconds 0.5 --actuators 12");
   EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_output, HasSubstr("; stopped at actuator "));
   EXPECT_THAT(outcome.standard_output, ::testing::Not(HasSubstr("hears everything")));
@@ -407,8 +407,8 @@ TEST_F(StreamCommand, VestCheckSaysThatItWasStoppedAndWhatTheBoardDoesNotDrive) 
 
 TEST_F(StreamCommand, VestCheckOfAVestThatIsUnpluggedFails) {
   const test::Outcome outcome = run_with_board(
-      "vestige vest check --port vest --seconds 0.3 --json check.json & check=$!\n"
-      "sleep 1.5; kill -INT $board; wait $board; wait $check");
+      "vestige vest check --port vest --seconds 1 --json check.json & check=$!\n"
+      "sleep 3; kill -INT $board; wait $board; wait $check");
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_THAT(outcome.standard_output, HasSubstr("the link was lost"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("DOES NOT HEAR"));

@@ -40,6 +40,8 @@ void simulate(const Options& options) {
   // What a USB adapter would hold: the rest waits in the terminal, where a client sees it.
   constexpr std::size_t kAdapterBytes = 64;
   constexpr std::int64_t kStep_us = 500;
+  constexpr double kCatchUp_s = 1e-3;
+  constexpr double kCycles_s = 1e-6;  // what rounding to whole ones may leave
 
   if (!options.duties.empty())
     vestige::refuse_overwrite(options.duties, options.force ? vestige::Overwrite::kAllow : vestige::Overwrite::kRefuse);
@@ -60,15 +62,19 @@ void simulate(const Options& options) {
       power_cycle = 0;
       board.power_cycle();
     }
-    board.run_until(start_s + std::chrono::duration<double>(Clock::now() - start).count());
-    if (board.waiting() < kAdapterBytes) {
-      const auto bytes = terminal.read(kAdapterBytes - board.waiting());
-      bytes_in += bytes.size();
-      board.send(bytes);
-    }
-    const auto bytes = board.take_received();
-    bytes_out += bytes.size();
-    terminal.write(bytes);
+    // In steps, since a machine that is busy elsewhere leaves much to catch up with.
+    const double now_s = start_s + std::chrono::duration<double>(Clock::now() - start).count();
+    do {
+      board.run_until(std::min(now_s, board.time_s() + kCatchUp_s));
+      if (board.waiting() < kAdapterBytes) {
+        const auto bytes = terminal.read(kAdapterBytes - board.waiting());
+        bytes_in += bytes.size();
+        board.send(bytes);
+      }
+      const auto bytes = board.take_received();
+      bytes_out += bytes.size();
+      terminal.write(bytes);
+    } while (board.time_s() < now_s - kCycles_s);
   }
   if (!options.duties.empty()) board.write_duties(options.duties);
   fmt::print(stderr, "simulated_board: {:.3f} s, {} bytes received, {} bytes sent, {} start{}\n", board.time_s(),
