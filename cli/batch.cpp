@@ -18,6 +18,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
+#include "traces/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -46,15 +47,11 @@ Shard parse_shard(const std::string& text, std::size_t traces) {
 /// The inputs' own bytes, so that the folder can be looked at and drawn without the inputs.
 void write_inputs(const BatchPlan& plan, const BatchFolder& folder) {
   write_file(folder.top("avatar.glb"), {reinterpret_cast<const char*>(plan.avatar_glb.data()), plan.avatar_glb.size()});
-  if (plan.actuators.model) write_file(folder.top("actuator.json"), plan.actuators.json);
+  write_or_remove_file(folder.top("actuator.json"), plan.actuators.json);
   for (const BatchMap& map : plan.maps) {
     if (map.sha256.empty()) continue;
     write_file(folder.map_png(map.name), {reinterpret_cast<const char*>(map.files.png.data()), map.files.png.size()});
-    if (!map.files.json.empty()) {
-      write_file(folder.map_json(map.name), map.files.json);
-    } else {
-      std::filesystem::remove(folder.map_json(map.name));  // an earlier batch's map of this name may have had one
-    }
+    write_or_remove_file(folder.map_json(map.name), map.files.json);
   }
 }
 
@@ -93,13 +90,13 @@ std::string summary(const BatchOutcome& outcome, const nlohmann::ordered_json& r
   const auto earlier = static_cast<std::size_t>(std::ranges::count_if(outcome.items, &BatchItem::earlier));
   const nlohmann::ordered_json& totals = run["totals"];
   const std::size_t detected = outcome.items.size() - earlier;
-  std::string text = fmt::format("detected {} trace{} once, {} scores", detected, detected == 1 ? "" : "s",
-                                 totals["scores"].get<std::size_t>());
-  if (earlier != 0) text += fmt::format(" ({} traces were finished by an earlier run)", earlier);
+  std::string text = fmt::format("detected {} once, {}", counted(detected, "trace"),
+                                 counted(totals["scores"].get<std::size_t>(), "score"));
+  if (earlier != 0) text += fmt::format(" ({} finished by an earlier run)", counted(earlier, "trace"));
   text += fmt::format(
-      "\nprocessor time: reading {:.2f} s, detecting {:.2f} s, all maps and laws {:.2f} s; {:.2f} s with {} jobs\n",
+      "\nprocessor time: reading {:.2f} s, detecting {:.2f} s, all maps and laws {:.2f} s; {:.2f} s with {}\n",
       totals["reading_s"].get<double>(), totals["detection_s"].get<double>(), totals["scoring_s"].get<double>(),
-      run["wall_s"].get<double>(), run["jobs"].get<std::size_t>());
+      run["wall_s"].get<double>(), counted(run["jobs"].get<std::size_t>(), "job"));
   if (!run["failures"].empty()) {
     text += "left out:\n";
     for (const nlohmann::ordered_json& failure : run["failures"])
@@ -184,7 +181,8 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   folder.remove_results(ended.run);
   if (outcome.interrupted) {
     write_json_file(folder.top("run.json"), ended.run);
-    warn(fmt::format("stopped; {} traces are finished, and the same command goes on from there", outcome.items.size()),
+    warn(fmt::format("stopped; {} finished, and the same command goes on from there",
+                     counted(outcome.items.size(), "trace")),
          verbosity);
     write_json(batch.common.json, ended.run, batch.common);
     invocation.exit_code = kDataLost;

@@ -14,6 +14,7 @@
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
+#include "traces/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -26,13 +27,8 @@ struct BatchMergeOptions {
   std::string output;
 };
 
-/// Where there is none, none stays there of an earlier batch.
 void copy_file(const std::filesystem::path& from, const std::string& to) {
-  if (std::filesystem::exists(from)) {
-    write_file(to, read_text_file(from));
-  } else {
-    std::filesystem::remove(to);
-  }
+  write_or_remove_file(to, std::filesystem::exists(from) ? read_text_file(from) : "");
 }
 
 /// The files of each trace, and those of the whole batch, which every shard has.
@@ -129,10 +125,10 @@ void run_merge_shards(const BatchMergeOptions& options, Invocation& invocation) 
       invocation.exit_code = kDataLost;
     }
   }
-  print_summary(describe(results, kRowsShown) + fmt::format("merged {} shards: {} traces, {} scores\nwritten: {}\n",
-                                                            shards.runs.size(), shards.items.size(),
-                                                            run["totals"]["scores"].get<std::size_t>(), options.output),
-                {options.common.json}, options.common);
+  const std::string merged = fmt::format("merged {}: {}, {}\nwritten: {}\n", counted(shards.runs.size(), "shard"),
+                                         counted(shards.items.size(), "trace"),
+                                         counted(run["totals"]["scores"].get<std::size_t>(), "score"), options.output);
+  print_summary(describe(results, kRowsShown) + merged, {options.common.json}, options.common);
   run["ranking"] = read_json_object(folder.top("ranking.json"), "");
   write_json(options.common.json, run, options.common);
 }

@@ -84,7 +84,8 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
   const auto add_recording = [&](const char* name, auto& value, const char* description, const char* type) {
     return verb.add_option(name, value, description)->group(kScenarioGroup)->type_name(type);
   };
-  add_recording("--rate", options.rate_hz, "Frames per second [default: 1000]", "HZ")->check(help::kPositive);
+  add_recording("--rate", options.rate_hz, "Frames per second [default: 1000]", "HZ")
+      ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
   add_recording("--duration", options.duration_s, "How long, in seconds [default: 2]", "S")->check(help::kPositive);
   add_recording("--count", options.count, "Colliders [default: 100; slide: 1]", "N")
       ->check(help::whole_number(1, 1000000));

@@ -18,6 +18,7 @@
 #include "cli/verbs.hpp"
 #include "traces/colliders.hpp"
 #include "traces/error.hpp"
+#include "traces/number_text.hpp"
 #include "traces/recorder.hpp"
 #include "traces/recording.hpp"
 
@@ -46,7 +47,8 @@ struct RecordOptions {
 RecordingSettings settings_of(const RecordOptions& options) {
   RecordingSettings settings = options.recording;
   settings.origin_m = parse_vector(options.origin, "--origin");
-  refuse_too_many_frames(settings.rate_hz * settings.duration_s, "--duration", "record less, or at a lower --rate");
+  if (!options.live.is_lines())  // which have no rate
+    refuse_too_many_frames(settings.rate_hz * settings.duration_s, "--duration", "record less, or at a lower --rate");
   if (std::max({std::abs(settings.origin_m.x), std::abs(settings.origin_m.y), std::abs(settings.origin_m.z)}) >
       kFarthest_m)
     throw UsageError("--origin", fmt::format("'{}' is farther away than 1e7 m", options.origin),
@@ -120,7 +122,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   if (!options.live.is_live())
     warn_of_many_frames(frames, "Ctrl-C ends the trace early, complete up to there", verbosity);
   catch_interrupts();
-  if (limits.ring_s) catch_snapshots();
+  catch_snapshots(limits.ring_s && options.output != "-" ? Snapshots::kWanted : Snapshots::kIgnored);
   const auto start = std::chrono::steady_clock::now();
   Recorder recorder({.path = options.output,
                      .session = session_of(options, animation, invocation),
@@ -161,8 +163,8 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   write_json(options.common.json, json, options.common);
   const std::string rate = options.live.is_lines() ? "" : fmt::format(" at {} Hz", settings.rate_hz);
   print_summary(
-      fmt::format("{}: {} frame{}{}, {:.1f} MB\n", name_of(recorder.files()), recorder.frame_count(),
-                  recorder.frame_count() == 1 ? "" : "s", rate, static_cast<double>(recorder.bytes_written()) / 1e6),
+      fmt::format("{}: {}{}, {:.1f} MB\n", name_of(recorder.files()), counted(recorder.frame_count(), "frame"), rate,
+                  static_cast<double>(recorder.bytes_written()) / 1e6),
       {options.output, options.common.json}, options.common);
 }
 
@@ -177,9 +179,10 @@ void add_record(CLI::App& program, Invocation& invocation) {
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")
       ->type_name("HZ")
       ->capture_default_str()
-      ->check(help::kPositive);
-  verb->add_option("--duration", options->recording.duration_s,
-                   "How long, in seconds; what comes live, by default until it ends")
+      ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
+  verb->add_option(
+          "--duration", options->recording.duration_s,
+          "How long, in seconds; what comes live, by default until it ends, and by datagrams from the first one")
       ->type_name("S")
       ->capture_default_str()
       ->check(help::kPositive);

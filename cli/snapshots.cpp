@@ -14,8 +14,8 @@ void on_snapshot(int) {
 
 }  // namespace
 
-void catch_snapshots() {
-  std::signal(SIGUSR1, on_snapshot);
+void catch_snapshots(Snapshots snapshots) {
+  std::signal(SIGUSR1, snapshots == Snapshots::kWanted ? on_snapshot : SIG_IGN);
 }
 
 bool snapshot_wanted() {

@@ -2,8 +2,10 @@
 
 namespace vestige::cli {
 
-/// From now on SIGUSR1 asks for a snapshot.
-void catch_snapshots();
+enum class Snapshots { kWanted, kIgnored };
+
+/// From now on SIGUSR1 asks for a snapshot, or does nothing; by itself it would end the program.
+void catch_snapshots(Snapshots snapshots);
 
 /// Whether one was asked for since the last call.
 bool snapshot_wanted();

@@ -243,6 +243,15 @@ void write_file(const std::string& path, std::string_view text) {
   file.commit();
 }
 
+void write_or_remove_file(const std::string& path, std::string_view text) {
+  if (!text.empty()) return write_file(path, text);
+  std::error_code failure;
+  std::filesystem::remove(path, failure);
+  if (failure)
+    throw Error(path, fmt::format("is left of an earlier batch and cannot be removed: {}", failure.message()),
+                "remove it, or choose another -o");
+}
+
 void write_json_file(const std::string& path, const nlohmann::ordered_json& json) {
   write_file(path, json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }

@@ -33,7 +33,7 @@ class FolderLock {
 ///   items/NAME.json         a trace's scores; times/NAME.json: where and when, and what it took
 ///   contacts/NAME.csv       a trace's contacts
 ///   traces/NAME.mcap        a scenario, recorded
-///   maps/NAME.png|json, avatar.glb
+///   maps/NAME.png|json, avatar.glb, actuator.json
 /// Each file is complete or absent. An item's file is written last, so that one that is there has all of its files.
 class BatchFolder {
  public:
@@ -74,7 +74,10 @@ class BatchFolder {
 /// Writes a file that is complete or absent, in the place of an older one.
 void write_file(const std::string& path, std::string_view text);
 
-/// The same, with an indent of 2.
+/// The same, but where `text` is empty, for there is none, one that an earlier batch left goes. Throws `Error`.
+void write_or_remove_file(const std::string& path, std::string_view text);
+
+/// `write_file`, with an indent of 2.
 void write_json_file(const std::string& path, const nlohmann::ordered_json& json);
 
 /// Reads a JSON object. Throws `Error` naming the file.

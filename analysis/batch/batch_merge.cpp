@@ -13,6 +13,7 @@
 #include "analysis/batch/batch_plan.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
+#include "traces/sha256.hpp"
 
 namespace vestige {
 
@@ -118,6 +119,26 @@ std::optional<nlohmann::ordered_json> item_in(const ShardFolder& shard, const st
   return item;
 }
 
+/// What is copied from one folder for all of them (avatar, motors, maps) must still be what it judged.
+void check_inputs(const ShardFolder& shard) {
+  const auto check = [&](const char* what, const std::vector<std::string>& files, const nlohmann::ordered_json& of) {
+    if (!of.is_object() || of.at("sha256").is_null()) return;  // ideal motors, or a map that could not be used
+    Sha256 sha;
+    for (const std::string& file : files)
+      if (const std::string path = shard.path(file); std::filesystem::exists(path)) sha.update(read_file(path));
+    if (of.at("sha256") != sha.hex())
+      throw Error(shard.path(files.front()) + what, "is missing, or not what was judged: its SHA-256 is another",
+                  "run the shard's command again, which writes it anew");
+  };
+  const nlohmann::ordered_json& batch = shard.run["batch"];
+  check("", {"avatar.glb"}, batch["avatar"]);
+  check("", {"actuator.json"}, batch["options"].value("actuator", nlohmann::ordered_json()));
+  for (const nlohmann::ordered_json& map : batch["maps"]) {
+    const std::string file = "maps/" + map["name"].get<std::string>();
+    check(" or its sidecar", {file + ".png", file + ".json"}, map);
+  }
+}
+
 void add_failures(const std::vector<ShardFolder>& shards, MergedShards& merged) {
   std::map<std::pair<std::string, std::string>, nlohmann::ordered_json> by_name;
   for (const ShardFolder& shard : shards)
@@ -139,6 +160,7 @@ MergedShards read_shards(const std::vector<std::string>& folders) {
   check_same_batch(shards);
   check_none_missing(shards);
   std::ranges::stable_sort(shards, {}, [](const ShardFolder& shard) { return shard.shard.number; });
+  check_inputs(shards.front());
 
   MergedShards merged;
   merged.batch = shards.front().run["batch"];

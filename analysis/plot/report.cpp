@@ -25,6 +25,7 @@
 #include "detector/intensity.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/error.hpp"
+#include "traces/input_file.hpp"
 #include "traces/output_file.hpp"
 #include "traces/sha256.hpp"
 
@@ -33,8 +34,6 @@ namespace vestige::plot {
 namespace {
 
 constexpr std::size_t kRankedShown = 40;
-constexpr std::string_view kFileRemedy =
-    "run the same 'vestige batch' (or 'batch merge') again: it writes the file anew";
 
 /// Thrown where the user stopped; not an error.
 struct Stopped {};
@@ -84,17 +83,11 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
   return contacts;
 }
 
-/// Throws where a file is another than the one that was judged.
-void require_judged(const std::filesystem::path& file, const std::string& sha256, const std::string& judged) {
-  if (judged.empty() || sha256 == judged) return;
-  throw Error(file.string(), "is not what the batch judged (SHA-256 in run.json): it was changed since", kFileRemedy);
-}
-
 Avatar read_batch_avatar(const std::filesystem::path& folder, const ReportData& data) {
-  const std::filesystem::path file = folder / "avatar.glb";
-  const std::vector<std::byte> glb = read_avatar_glb(file.string());
+  const std::string file = (folder / "avatar.glb").string();
+  const std::vector<std::byte> glb = read_file(file);  // a torn one is told before it is parsed
   require_judged(file, sha256_hex(glb), data.avatar_sha256);
-  return parse_avatar_glb(glb, file.string());
+  return parse_avatar_glb(glb, file);
 }
 
 ActuatorMap read_batch_map(const std::filesystem::path& folder, const ReportData& data, const std::string& map,
@@ -102,7 +95,8 @@ ActuatorMap read_batch_map(const std::filesystem::path& folder, const ReportData
   const std::string file = (folder / "maps" / (map + ".png")).string();
   const ActuatorMapFiles files = read_actuator_map_files(file);
   const auto judged = data.map_sha256.find(map);
-  if (judged != data.map_sha256.end()) require_judged(file, sha256_of(files), judged->second);
+  if (judged != data.map_sha256.end())
+    require_judged(file + " or its sidecar", sha256_of(files), judged->second);  // one SHA-256 is of both
   return parse_actuator_map(files, avatar, file);
 }
 

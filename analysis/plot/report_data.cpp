@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "analysis/plot/json_field.hpp"
 #include "traces/error.hpp"
+#include "traces/input_file.hpp"
+#include "traces/sha256.hpp"
 
 namespace vestige::plot {
 
@@ -141,7 +144,16 @@ void read_law_options(const JsonField& options, ReportData& data) {
   if (options.has("full_speed_m_per_s"))
     data.law_options.full_speed_m_per_s = options.at("full_speed_m_per_s").within(kLeast, kMost);
   if (options.has("sigma_mm")) data.law_options.sigma_m = options.at("sigma_mm").within(kLeast, kMost) / 1e3;
-  if (options.has("actuator")) data.actuator = options.at("actuator").at("given").text();
+  if (!options.has("actuator")) return;
+  const JsonField actuator = options.at("actuator");
+  data.actuator = actuator.at("given").text();
+  if (actuator.has("sha256")) data.actuator_sha256 = actuator.at("sha256").text();
+}
+
+std::shared_ptr<const ActuatorModel> read_actuators(const std::string& file, const ReportData& data) {
+  const std::string text = read_text_file(file);
+  require_judged(file, sha256_hex(std::as_bytes(std::span(text))), data.actuator_sha256);
+  return std::make_shared<const ActuatorModel>(parse_actuator_model(text, file));
 }
 
 void read_run(const std::filesystem::path& file, ReportData& data) {
@@ -208,6 +220,11 @@ const Candidate& ReportData::best_of(const std::string& map) const {
   return *std::ranges::find(ranking, map, &Candidate::map);
 }
 
+void require_judged(const std::string& file, const std::string& sha256, const std::string& judged) {
+  if (judged.empty() || sha256 == judged) return;
+  throw Error(file, "is not what the batch judged (SHA-256 in run.json): it was changed since", kFileRemedy);
+}
+
 ReportData read_report(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder))
     throw Error(folder.string(), std::filesystem::exists(folder) ? "is no folder" : "there is no such folder",
@@ -219,8 +236,7 @@ ReportData read_report(const std::filesystem::path& folder) {
   ReportData data;
   read_ranking(folder / "ranking.json", data);
   read_run(folder / "run.json", data);
-  if (!data.actuator.empty())
-    data.actuators = std::make_shared<const ActuatorModel>(read_actuator_model((folder / "actuator.json").string()));
+  if (!data.actuator.empty()) data.actuators = read_actuators((folder / "actuator.json").string(), data);
   return data;
 }
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,6 +14,10 @@
 #include "detector/intensity.hpp"
 
 namespace vestige::plot {
+
+/// What mends a file of the folder that is damaged.
+inline constexpr std::string_view kFileRemedy =
+    "run the same 'vestige batch' (or 'batch merge') again: it writes the file anew";
 
 /// A mean over traces and its 95 % interval; nothing where a batch has none (no value, fewer than two traces).
 struct Estimate {
@@ -75,6 +80,7 @@ struct ReportData {
   std::vector<std::string> laws;                                 ///< in the order of the batch
   LawOptions law_options;                                        ///< of all of them
   std::string actuator;                                          ///< where the motors are from; empty: ideal ones
+  std::string actuator_sha256;                                   ///< of actuator.json; empty: not said
   std::shared_ptr<const ActuatorModel> actuators;                ///< those motors
   bool complete = true;                                          ///< false: the batch was stopped
   std::string shard;                                             ///< "1 of 3"; empty: the whole batch
@@ -86,8 +92,11 @@ struct ReportData {
   const Candidate& best_of(const std::string& map) const;
 };
 
-/// Reads ranking.json and run.json. Throws `Error` naming file and field; of a folder without a ranking it says what to
-/// run.
+/// Throws `Error` where `file` is not what was judged. `judged`: the SHA-256 in run.json; empty: not said.
+void require_judged(const std::string& file, const std::string& sha256, const std::string& judged);
+
+/// Reads ranking.json, run.json and actuator.json. Throws `Error` naming file and field; of a folder without a ranking
+/// it says what to run.
 ReportData read_report(const std::filesystem::path& folder);
 
 }  // namespace vestige::plot

@@ -226,9 +226,9 @@ TEST_F(ReportTest, WhatIsThereStaysUnlessForced) {
   EXPECT_THAT(page(), HasSubstr("fedcba9876"));
 }
 
-TEST_F(ReportTest, RefusesAnAvatarOrMapOtherThanTheJudged) {
-  const std::string map =
-      read_text_file(folder_ / "batch/maps/box.png") + read_text_file(folder_ / "batch/maps/box.json");
+TEST_F(ReportTest, RefusesAnAvatarMapOrMotorsOtherThanTheJudged) {
+  const std::string sidecar = read_text_file(folder_ / "batch/maps/box.json");
+  const std::string map = read_text_file(folder_ / "batch/maps/box.png") + sidecar;
   const std::string avatar = read_text_file(folder_ / "batch/avatar.glb");
   const auto sha256 = [](const std::string& bytes) { return sha256_hex(std::as_bytes(std::span(bytes))); };
   const std::string other = sha256("other");
@@ -238,8 +238,20 @@ TEST_F(ReportTest, RefusesAnAvatarOrMapOtherThanTheJudged) {
   run_["batch"]["maps"][0]["sha256"] = sha256(map);
   run_["batch"]["avatar"]["sha256"] = other;
   EXPECT_THAT(report().standard_error, AllOf(HasSubstr("avatar.glb"), HasSubstr("changed since")));
-  expect_nothing_written();
   run_["batch"]["avatar"]["sha256"] = sha256(avatar);
+  test::write_text(folder_ / "batch/avatar.glb", avatar.substr(0, avatar.size() / 2));
+  EXPECT_THAT(report().standard_error,
+              AllOf(HasSubstr("avatar.glb"), HasSubstr("changed since"), HasSubstr("run the same 'vestige batch'")));
+  test::write_text(folder_ / "batch/avatar.glb", avatar);
+  test::write_text(folder_ / "batch/maps/box.json", sidecar + "\n");
+  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("box.png or its sidecar"), HasSubstr("changed since")));
+  test::write_text(folder_ / "batch/maps/box.json", sidecar);
+  const std::string motors = R"({"rise_ms": 400})";
+  run_["batch"]["options"]["actuator"] = {{"given", "slow.json"}, {"sha256", sha256(motors)}};
+  test::write_text(folder_ / "batch/actuator.json", R"({"rise_ms": 300})");
+  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("actuator.json"), HasSubstr("changed since")));
+  test::write_text(folder_ / "batch/actuator.json", motors);
+  expect_nothing_written();
   EXPECT_EQ(report().exit_code, 0);
 }
 

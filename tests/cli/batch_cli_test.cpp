@@ -205,7 +205,7 @@ TEST_F(BatchCommandLine, TracesOfLikeNamesKeepTheirFilesApart) {
   record({"a.mcap", "a.run.mcap"});
   const std::string command = "vestige batch --maps builtin --traces a.mcap a.run.mcap --laws binary -o out";
   ASSERT_EQ(run(command).exit_code, 0);
-  EXPECT_THAT(run(command).standard_output, HasSubstr("2 traces were finished by an earlier run"));
+  EXPECT_THAT(run(command).standard_output, HasSubstr("2 traces finished by an earlier run"));
   EXPECT_EQ(run("vestige batch merge out -o merged").exit_code, 0);
 }
 
@@ -234,7 +234,8 @@ TEST_F(BatchCommandLine, RefusesWhatWouldDoNothing) {
   expect_failure("vestige batch --maps builtin --traces nowhere.mcap -o none", 1, {"nowhere.mcap"}, "none");
   const std::string scenario = "vestige batch --maps builtin --traces slide -o none ";
   expect_failure(scenario + "--duration 1e300", 2, {"4294967295 frames"}, "none");
-  expect_failure(scenario + "--rate 1e300", 2, {"4294967295 frames"}, "none");
+  expect_failure(scenario + "--rate 1e9 --duration 100", 2, {"4294967295 frames"}, "none");
+  expect_failure(scenario + "--rate 1e300", 2, {"--rate", "0.001 to 1000000000"}, "none");
   expect_failure("vestige batch --maps builtin merge a b -o none", 2, {"--maps", "merge"}, "none");
   expect_failure("vestige batch slurm --shards 2 --maps builtin --traces a.mcap -o none", 2, {"--shards"}, "none");
 }

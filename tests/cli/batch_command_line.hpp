@@ -31,10 +31,6 @@ class BatchCommandLine : public CommandLineTest {
       EXPECT_TRUE(std::filesystem::exists(folder_ / a / name)) << name;
   }
 
-  nlohmann::json json_in(const std::string& path) const {
-    return nlohmann::json::parse(read_text_file(folder_ / path));
-  }
-
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
 
   void write_map(const std::string& name) const {

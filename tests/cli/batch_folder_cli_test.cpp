@@ -49,6 +49,11 @@ TEST_F(BatchCommandLine, ShardsMergeIntoTheBytesOfAWholeBatch) {
   expect_failure("vestige batch merge part1 emptied part3 -o m", 1, {"contacts/b.csv", "SHA-256"}, "m");
   ASSERT_EQ(run("cp -r part2 bare && rm bare/contacts/b.csv").exit_code, 0);
   expect_failure("vestige batch merge part1 bare part3 -o m", 1, {"contacts/b.csv", "missing"}, "m");
+  ASSERT_EQ(run("cp -r part1 repainted && echo >>repainted/maps/builtin.json").exit_code, 0);
+  expect_failure("vestige batch merge repainted part2 part3 -o m", 1,
+                 {"repainted/maps/builtin.png or its sidecar", "SHA-256", "run the shard's command again"}, "m");
+  ASSERT_EQ(run("cp -r part1 bodiless && rm bodiless/avatar.glb").exit_code, 0);
+  expect_failure("vestige batch merge bodiless part2 part3 -o m", 1, {"bodiless/avatar.glb", "missing"}, "m");
   ASSERT_EQ(run("rm changed/items/b.json").exit_code, 0);
   expect_failure("vestige batch merge part1 changed part3 -o m", 1, {"b.json", "missing"}, "m");
   ASSERT_EQ(run("sed -i 's/\"complete\": true/\"complete\": false/' changed/run.json").exit_code, 0);
@@ -91,7 +96,7 @@ TEST_F(BatchCommandLine, RunsAgainWhatHasChangedAndNothingElse) {
 
   expect_failure("vestige batch --maps builtin --traces a.mcap --laws binary -o out", 1, {"another batch", "--force"});
   EXPECT_THAT(run("vestige batch --maps builtin --traces a.mcap --laws binary -o out --force").standard_output,
-              HasSubstr("detected 0 traces once, 1 scores"));
+              HasSubstr("detected 0 traces once, 1 score (1 trace finished by an earlier run)"));
   ASSERT_EQ(run("mkdir mine && echo precious >mine/scores.csv").exit_code, 0);
   expect_failure("vestige batch --maps builtin --traces a.mcap -o mine", 1, {"mine", "scores.csv", "--force"});
   EXPECT_EQ(read_text_file(folder_ / "mine/scores.csv"), "precious\n");
@@ -203,6 +208,24 @@ TEST_F(BatchCommandLine, WhatItReplacesIsGone) {
   for (const char* name :
        {"items/a.json", "times/a.json", "contacts/a.csv", "maps/builtin.png", "figures/notes.txt", "items/mine.json"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "out" / name)) << name;
+}
+
+TEST_F(BatchCommandLine, TheSidecarAndMotorsOfAnEarlierBatchAreGone) {
+  record({"a.mcap"});
+  write_map("mine.png");
+  write("mine.json", builtin_actuator_map_json());
+  write("slow.json", R"({"rise_ms": 400})");
+  const std::string command = "vestige batch --maps mine.png --traces a.mcap --laws binary -o out";
+  const std::vector<std::string> files = {"out/maps/mine.json", "out/actuator.json", "whole/maps/mine.json",
+                                          "whole/actuator.json"};
+  ASSERT_EQ(run(command + " --actuator slow.json && vestige batch merge out -o whole").exit_code, 0);
+  for (const std::string& file : files) EXPECT_TRUE(std::filesystem::exists(folder_ / file)) << file;
+  std::filesystem::remove(folder_ / "mine.json");
+  ASSERT_EQ(run(command + " --force && vestige batch merge out -o whole --force").exit_code, 0);
+  for (const std::string& file : files) EXPECT_FALSE(std::filesystem::exists(folder_ / file)) << file;
+  // What cannot be removed is said: a folder that is not empty.
+  std::filesystem::create_directories(folder_ / "out/actuator.json/mine");
+  expect_failure(command, 1, {"out/actuator.json", "cannot be removed", "remove it"});
 }
 
 TEST_F(BatchCommandLine, ATraceWhoseContactsAreGoneIsRunAgain) {
