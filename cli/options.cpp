@@ -120,7 +120,7 @@ void write_json(const std::string& path, const nlohmann::ordered_json& json, con
 
 void print_summary(std::string_view text, const std::vector<std::string>& output_paths, const CommonOptions& options) {
   if (options.quiet) return;
-  fmt::print(std::ranges::any_of(output_paths, is_standard_output) ? stderr : stdout, "{}", text);
+  fmt::print(std::ranges::any_of(output_paths, is_standard_output) ? stderr : stdout, "{}", printable(text));
 }
 
 glm::dvec3 parse_vector(const std::string& text, const std::string& flag) {

@@ -1,10 +1,12 @@
 #include "cli/terminal.hpp"
 
+#include <fcntl.h>
 #include <fmt/color.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -45,7 +47,7 @@ void on_interrupt(int signal_number) {
 }  // namespace
 
 void warn(std::string_view text, Verbosity verbosity) {
-  if (verbosity != Verbosity::kQuiet) print_message(fmt::format("vestige: warning: {}\n", text));
+  if (verbosity != Verbosity::kQuiet) print_message(fmt::format("vestige: warning: {}\n", printable(text)));
 }
 
 Progress::Progress(std::string label, Verbosity verbosity)
@@ -75,7 +77,21 @@ bool Progress::update(double share) {
   return !interrupted();
 }
 
+namespace {
+
+/// Where a standard stream was closed, the first file that is opened would take its place, and messages would end up in
+/// it. What takes it here refuses to be read or written, as one that is closed does.
+void fill_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    [[maybe_unused]] const int taken = ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
+}  // namespace
+
 int run_program(int (*run)(int argc, char** argv), int argc, char** argv) {
+  fill_closed_streams();
   // A closed pipe is an error of write(), not a silent death that leaves temporary files behind.
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);  // so is a file that ulimit -f does not allow

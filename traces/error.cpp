@@ -8,7 +8,15 @@ namespace {
 
 constexpr std::string_view kBeforeRemedy = "\n  ";
 
-/// File names may hold what moves a terminal's cursor.
+std::string compose(std::string_view where, std::string_view cause, std::string_view remedy) {
+  std::string text;
+  text.append(where).append(": ").append(cause);
+  if (!remedy.empty()) text.append(kBeforeRemedy).append(remedy);
+  return printable(text);
+}
+
+}  // namespace
+
 std::string printable(std::string_view text) {
   std::string safe;
   safe.reserve(text.size());
@@ -23,14 +31,6 @@ std::string printable(std::string_view text) {
   }
   return safe;
 }
-
-std::string compose(std::string_view where, std::string_view cause, std::string_view remedy) {
-  std::string text;
-  text.append(where).append(": ").append(cause);
-  if (!remedy.empty()) text.append(kBeforeRemedy).append(remedy);
-  return printable(text);
-}
-}  // namespace
 
 Error::Error(std::string_view where, std::string_view cause, std::string_view remedy)
     : std::runtime_error(compose(where, cause, remedy)) {}

@@ -27,6 +27,9 @@ class ReaderGone : public Error {
   using Error::Error;
 };
 
+/// Names out of files may hold what moves a terminal's cursor: control characters as \xHH, but for line ends.
+std::string printable(std::string_view text);
+
 /// Writes to standard error. Where that is closed, nobody is told, and nothing fails for it.
 void print_message(const std::string& text);
 

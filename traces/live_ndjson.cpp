@@ -22,12 +22,35 @@ using FloatJson = nlohmann::basic_json<std::map, std::vector, std::string, bool,
 
 constexpr std::size_t kMostLineBytes = std::size_t{16} << 20;
 constexpr std::size_t kMostBadLinesTold = 10;
-constexpr double kMost_s = 9e9;  ///< nanoseconds in 63 bits
+constexpr std::size_t kDeepestJson = 128;  ///< nesting
+constexpr double kMost_s = 9e9;            ///< nanoseconds in 63 bits
 
 std::map<std::string, std::size_t, std::less<>> nodes_by_name(const Avatar& avatar) {
   std::map<std::string, std::size_t, std::less<>> nodes;
   for (std::size_t i = 0; i < avatar.nodes.size(); ++i) nodes.emplace(avatar.nodes[i].name, i);
   return nodes;
+}
+
+/// How deep arrays and objects are nested in JSON text, without parsing it; of what is no JSON, any number. Nlohmann's
+/// library parses whatever depth, but copies by recursion.
+std::size_t depth_of(std::string_view text) {
+  std::size_t depth = 0;
+  std::size_t deepest = 0;
+  bool is_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char character = text[i];
+    if (is_string) {
+      if (character == '\\') ++i;
+      if (character == '"') is_string = false;
+    } else if (character == '"') {
+      is_string = true;
+    } else if (character == '[' || character == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if ((character == ']' || character == '}') && depth > 0) {
+      --depth;
+    }
+  }
+  return deepest;
 }
 
 template <typename Number, typename AnyJson>
@@ -199,6 +222,7 @@ void LiveNdjson::finish(std::int64_t now_ns, const TakeFrame& take) {
 void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const TakeFrame& take) {
   if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
   try {
+    if (depth_of(line) > kDeepestJson) throw Malformed(fmt::format("is nested deeper than {}", kDeepestJson));
     const Json json = Json::parse(line);
     if (!json.is_object()) throw Malformed("is no JSON object");
     note_unknown(json, {"frame", "time_s", "pose", "colliders", "teleported"});
@@ -208,8 +232,8 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
       if (!number->is_number_unsigned()) throw Malformed("'frame' is no whole number");
       frame.index = number->get<std::uint64_t>();
       if (frame.index < next_index_) throw Malformed(fmt::format("frame {} comes again, or too late", frame.index));
-      if (frame.index > std::numeric_limits<std::uint32_t>::max()) throw Malformed("'frame' has more than 32 bits");
     }
+    if (frame.index > std::numeric_limits<std::uint32_t>::max()) throw Malformed("its number has more than 32 bits");
     const auto time = json.find("time_s");
     frame.time_ns = time == json.end() ? std::max(now_ns, last_ns_) : time_of(*time, last_ns_);
     frame.pose = pose_;

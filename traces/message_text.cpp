@@ -21,6 +21,18 @@ std::string json_text(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
+/// JSON as it stands, numbers and names that stand twice too, but on one line.
+void append_compact(std::string& out, std::string_view json) {
+  if (json.starts_with("\xEF\xBB\xBF")) json.remove_prefix(3);  // a byte order mark
+  bool is_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char character = json[i];
+    if (character == '"') is_string = !is_string;
+    if (is_string && character == '\\') out += json[i++];
+    if (is_string || std::string_view(" \t\r\n").find(character) == std::string_view::npos) out += json[i];
+  }
+}
+
 /// RFC 4648, section 4.
 void append_base64(std::string& out, mcap::Bytes bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -80,9 +92,9 @@ void MessageText::append_event(mcap::Bytes data) {
 
 void MessageText::append_foreign(mcap::Bytes data, const mcap::Channel& channel) {
   if (channel.message_encoding == "json") {
-    const auto json = nlohmann::json::parse(text_of(data), nullptr, false);
-    if (!json.is_discarded()) {
-      text_ += "\"data\":" + json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+    if (const std::string_view json = text_of(data); nlohmann::json::accept(json)) {
+      text_ += "\"data\":";
+      append_compact(text_, json);
       return;
     }
   }

@@ -15,8 +15,8 @@ namespace vestige {
 ///     /colliders  [{"id", "position": [x, y, z]}, …]
 ///     /events     {"kind", "collider", "count", "text"}
 ///
-/// Of others: what a message encoded as JSON says, or `data_base64` in place of `data`. Floats are the shortest that
-/// read back to the same bits, NaN and infinities the strings "nan", "inf" and "-inf".
+/// Of others: a message encoded as JSON as it stands, without its line ends, or `data_base64` in place of `data`.
+/// Floats are the shortest that read back to the same bits, NaN and infinities the strings "nan", "inf" and "-inf".
 class MessageText {
  public:
   /// The line without its end. A message of ours that cannot be decoded throws `mcap::Malformed`.

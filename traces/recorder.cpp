@@ -6,6 +6,7 @@
 #include <cmath>
 #include <exception>
 #include <future>
+#include <limits>
 #include <utility>
 
 #include "traces/error.hpp"
@@ -19,6 +20,8 @@
 namespace vestige {
 
 namespace {
+
+constexpr double kLatest_ns = 9.2e18;  ///< of 63 bits
 
 void note_in(TraceWriter& writer, const RecordingNote& note) {
   if (note.kind == RecordingNote::Kind::kDropped) {
@@ -215,7 +218,9 @@ bool Recorder::Implementation::write(const TraceFrame& frame) {
   if (target_.limits.split_s && frame.time_ns >= split_ns_) {
     const double length_ns = *target_.limits.split_s * kNanosecondsPerSecond;
     const double parts = std::floor(static_cast<double>(frame.time_ns - *first_ns_) / length_ns) + 1;
-    split_ns_ = *first_ns_ + std::llround(parts * length_ns);
+    const double end_ns = static_cast<double>(*first_ns_) + parts * length_ns;
+    split_ns_ =
+        end_ns < kLatest_ns ? *first_ns_ + std::llround(parts * length_ns) : std::numeric_limits<std::int64_t>::max();
   }
   writer_->write(frame);
   if (is_first && target_.limits.splits()) replace_stale_parts();

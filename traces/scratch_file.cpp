@@ -10,13 +10,23 @@
 #include <cstdlib>
 #include <vector>
 
+#include "traces/error.hpp"
+
 namespace vestige {
+
+std::filesystem::path temporary_folder() {
+  std::error_code failure;
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
+  if (failure)
+    throw Error("the folder for temporary files", failure.message(), "let TMPDIR name a folder that can be written");
+  return folder;
+}
 
 ScratchFile::ScratchFile(const std::filesystem::path& beside, ScratchName keep) : beside_(beside) {
   std::error_code ignored;
   const bool is_stream =
       beside == "-" || (std::filesystem::exists(beside, ignored) && !std::filesystem::is_regular_file(beside, ignored));
-  const auto folder = is_stream                  ? std::filesystem::temp_directory_path()
+  const auto folder = is_stream                  ? temporary_folder()
                       : beside.has_parent_path() ? beside.parent_path()
                                                  : std::filesystem::path(".");
   std::string name = (folder / ".vestige.XXXXXX").string();

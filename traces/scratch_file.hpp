@@ -9,6 +9,9 @@
 
 namespace vestige {
 
+/// The folder for temporary files: $TMPDIR, else /tmp. Throws `Error` where it is none.
+std::filesystem::path temporary_folder();
+
 enum class ScratchName { kNone, kKept };
 
 /// A file that goes when this object does: for what does not fit into memory before it is written in order. It lies in

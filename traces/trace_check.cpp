@@ -13,6 +13,7 @@
 #include "traces/mcap/summary.hpp"
 #include "traces/message_stream.hpp"
 #include "traces/recover.hpp"
+#include "traces/session_check.hpp"
 #include "traces/sha256.hpp"
 #include "traces/trace.hpp"
 #include "traces/trace_messages.hpp"
@@ -183,18 +184,8 @@ void Contents::finish(std::optional<std::size_t> pose_nodes) {
     report(0, "there is no metadata record 'session'", "nothing says how it was recorded");
     return;
   }
-  for (const auto& [key, value] : *session_) {
-    if (key == trace_format::kVersionKey && value != trace_format::kVersion)
-      report(session_offset_, fmt::format("its format version is '{}', not {}", value, trace_format::kVersion),
-             "a later vestige wrote it; what is new in it is not understood");
-    if (!key.starts_with(trace_format::kSha256Prefix)) continue;
-    const std::string name = key.substr(trace_format::kSha256Prefix.size());
-    const auto attached = sha256_.find(name);
-    if (attached != sha256_.end() && attached->second != value)
-      report(session_offset_,
-             fmt::format("the attachment {} is not the one that was recorded: its SHA-256 differs", name),
-             "the frames may not fit it");
-  }
+  for (SessionProblem& problem : check_session(*session_, sha256_))
+    report(session_offset_, std::move(problem.what), std::move(problem.consequence));
 }
 
 class Checker {

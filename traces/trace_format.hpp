@@ -11,9 +11,11 @@
 ///     Header      profile "vestige", library "vestige VERSION"
 ///     Metadata    "session": format_version, sha256 of each attachment ("sha256:NAME"), and what the recorder adds
 ///     Attachments avatar.glb, then actuator_map.png and actuator_map.json where there is a map
-///     Schemas, Channels   outside chunks, so that no damaged chunk takes them along; the head is synced before any
-///     frame Chunks      a frame's messages stand together in one chunk: [events], /pose, /colliders Summary     with
-///     everything that MCAP offers
+///     Schemas, Channels   outside chunks, so that no damaged chunk takes them along
+///     Chunks      a frame's messages stand together in one chunk: [events], /pose, /colliders
+///     Summary     with everything that MCAP offers
+///
+/// The head, up to Channels, is synced before any frame.
 ///
 /// Messages are FlatBuffers (schemas/*.fbs). log_time is the frame's time in nanoseconds from 0, sequence its index,
 /// publish_time equals log_time. /events exists only when something happened.

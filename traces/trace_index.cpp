@@ -6,6 +6,8 @@
 
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
+#include "traces/session_check.hpp"
+#include "traces/sha256.hpp"
 #include "traces/trace_format.hpp"
 
 namespace vestige {
@@ -19,8 +21,11 @@ void take_header(const mcap::Header& header, TraceIndex& index) {
   index.profile_is_ours = header.profile == trace_format::kProfile;
 }
 
-void take_metadata(mcap::Metadata metadata, TraceIndex& index) {
-  if (metadata.name == trace_format::kSessionName) index.session = std::move(metadata.metadata);
+void take_metadata(mcap::Metadata metadata, std::uint64_t offset, TraceIndex& index) {
+  if (metadata.name == trace_format::kSessionName) {
+    index.session = std::move(metadata.metadata);
+    index.session_offset = offset;
+  }
   if (metadata.name == trace_format::kRecoveredName) index.recovered = std::move(metadata.metadata);
 }
 
@@ -64,7 +69,7 @@ TraceIndex from_summary(const mcap::ByteSource& source, const mcap::Summary& sum
   };
   for (const mcap::MetadataIndex& entry : summary.metadata_indexes)
     guarded(entry.offset, entry.length, Opcode::kMetadata,
-            [&](mcap::Bytes content) { take_metadata(mcap::decode_metadata(content), index); });
+            [&](mcap::Bytes content) { take_metadata(mcap::decode_metadata(content), entry.offset, index); });
   for (const mcap::AttachmentIndex& entry : summary.attachment_indexes)
     guarded(entry.offset, entry.length, Opcode::kAttachment,
             [&](mcap::Bytes content) { take_attachment(content, index); });
@@ -94,7 +99,7 @@ void take_record(const mcap::RecordPlace& place, const mcap::RecordWalker& walke
       index.streams.add(mcap::decode_channel(walker.content(place, buffer)));
       break;
     case Opcode::kMetadata:
-      take_metadata(mcap::decode_metadata(walker.content(place, buffer)), index);
+      take_metadata(mcap::decode_metadata(walker.content(place, buffer)), place.offset, index);
       break;
     case Opcode::kAttachment:
       take_attachment(walker.content(place, buffer), index);
@@ -122,14 +127,32 @@ TraceIndex by_scanning(const mcap::ByteSource& source) {
   return index;
 }
 
-}  // namespace
+void check(TraceIndex& index) {
+  std::map<std::string, std::string> sha256;
+  const auto note = [&](std::string_view name, mcap::Bytes data) {
+    if (!data.empty()) sha256.emplace(name, sha256_hex(data));
+  };
+  note(trace_format::kAvatarName, index.avatar_glb);
+  note(trace_format::kMapImageName, index.actuator_map_png);
+  note(trace_format::kMapTextName, index.actuator_map_json);
+  for (const SessionProblem& problem : check_session(index.session, sha256))
+    index.damages.push_back({index.session_offset, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
+}
 
-TraceIndex index_trace(const mcap::ByteSource& source) {
+TraceIndex read_index(const mcap::ByteSource& source) {
   const mcap::SummaryResult result = mcap::read_summary(source);
   if (result.summary && covers_everything(*result.summary)) return from_summary(source, *result.summary);
   TraceIndex index = by_scanning(source);
   if (index.has_footer && !result.summary)
     index.damages.push_back({source.size(), 0, fmt::format("the file's end: {}", result.problem)});
+  return index;
+}
+
+}  // namespace
+
+TraceIndex index_trace(const mcap::ByteSource& source) {
+  TraceIndex index = read_index(source);
+  check(index);
   return index;
 }
 

@@ -16,6 +16,7 @@ namespace vestige {
 struct TraceIndex {
   bool profile_is_ours = false;
   Session session;
+  std::uint64_t session_offset = 0;
   std::optional<mcap::StringMap> recovered;  ///< the metadata record of that name
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> actuator_map_png;

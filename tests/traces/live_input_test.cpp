@@ -111,6 +111,7 @@ TEST_F(LiveLines, ThatAreWrongAreLeftOutAndCounted) {
       "{\"time_s\":1e300}\n",
       "{\"time_s\":\"soon\"}\n",
       "{\"pose\":5}\n",
+      "{\"pose\":{\"x\":" + std::string(100000, '[') + std::string(100000, ']') + ",\"nodes\":[1e39]}}\n",
       "{\"pose\":{}}\n",
       "{\"pose\":{\"nodes\":[]}}\n",
       "{\"pose\":{\"nodes\":[[1,2],[3]]}}\n",
@@ -133,6 +134,11 @@ TEST_F(LiveLines, ThatAreWrongAreLeftOutAndCounted) {
     EXPECT_THAT(lines_->problems()[0], HasSubstr("line 2: ")) << line.substr(0, 80);
     EXPECT_EQ(frames.back().index, 5U);
   }
+}
+
+TEST_F(LiveLines, BehindTheLastNumberAreLeftOut) {
+  EXPECT_THAT(read("{\"frame\":4294967295}\n{}\n{}\n"), SizeIs(1));
+  EXPECT_EQ(lines_->malformed(), 2U);
 }
 
 TEST_F(LiveLines, SayWhereANumberIsMissing) {
@@ -406,6 +412,7 @@ TEST_F(Vmc, AMalformedDatagramChangesNothingAndIsCounted) {
       bundle({collider(1, 0, 0, 0), bone("LeftUpperArm", {1, 0, 0, 0}, {INFINITY, 0, 0})}),
       bundle({collider(1, 0, 0, 0), collider(-1, 0, 0, 0)}),
       bundle({collider(1, 0, 0, 0), collider(2, NAN, 0, 0)}),
+      bundle({collider(1, 0, 0, 0), bone("Hips", {1, 0, 0, 0}, {1e38, 0, 0})}),
   };
   for (const auto& datagram : wrong) EXPECT_FALSE(state.take(datagram));
   EXPECT_EQ(state.malformed(), wrong.size());

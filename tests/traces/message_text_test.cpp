@@ -14,7 +14,7 @@ namespace {
 
 using trace_format::Stream;
 
-nlohmann::json printed(Stream stream, mcap::Bytes data, const std::string& encoding = "flatbuffer") {
+std::string line_of(Stream stream, mcap::Bytes data, const std::string& encoding) {
   MessageText text;
   mcap::Channel channel;
   channel.topic = "/a \"b\"";
@@ -22,7 +22,11 @@ nlohmann::json printed(Stream stream, mcap::Bytes data, const std::string& encod
   const std::string line =
       text.line({.channel_id = 1, .sequence = 7, .log_time = 8, .publish_time = 9, .data = data}, channel, stream);
   EXPECT_EQ(line.find('\n'), std::string::npos);
-  const auto json = nlohmann::json::parse(line);
+  return line;
+}
+
+nlohmann::json printed(Stream stream, mcap::Bytes data, const std::string& encoding = "flatbuffer") {
+  const auto json = nlohmann::json::parse(line_of(stream, data, encoding));
   EXPECT_EQ(json["topic"], "/a \"b\"");
   EXPECT_EQ(json["sequence"], 7);
   EXPECT_EQ(json["log_time"], 8);
@@ -72,6 +76,17 @@ TEST(MessageText, EventsAndMessagesOfOthersAreThere) {
     const std::string bytes = raw;
     EXPECT_EQ(printed(Stream::kForeign, std::as_bytes(std::span(bytes)), "cdr")["data_base64"], coded);
   }
+}
+
+TEST(MessageText, JsonOfOthersStaysAsItIsButForSpace) {
+  const auto shown = [](const std::string& json) {
+    const std::string line = line_of(Stream::kForeign, std::as_bytes(std::span(json)), "json");
+    return line.substr(line.find("\"data\":"));
+  };
+  EXPECT_EQ(shown("{\"b\" : 18446744073709551617,\r\n\t\"a\":\"\\\\ \",\"a\":\"\\\" }\"}"),
+            "\"data\":{\"b\":18446744073709551617,\"a\":\"\\\\ \",\"a\":\"\\\" }\"}}");
+  const std::string deep = std::string(100000, '[') + std::string(100000, ']');
+  EXPECT_EQ(shown(deep), "\"data\":" + deep + "}");
 }
 
 }  // namespace

@@ -101,6 +101,10 @@ TEST_F(RecorderTest, SplitsByTimeIntoWholeTraces) {
   EXPECT_EQ(indexes(files[2]), range(20, 25));
 }
 
+TEST_F(RecorderTest, PartsMayBeLongerThanAnyTimeThereIs) {
+  EXPECT_THAT(record({.split_s = 1e12}, 5), ElementsAre(folder_ / "man-0001.mcap"));
+}
+
 TEST_F(RecorderTest, SplitsBySizeWithoutLosingAFrame) {
   for (const RecordingLimits& limits :
        {RecordingLimits{.split_bytes = 20'000}, RecordingLimits{.max_bytes = 20'000, .split_s = 1000.0}}) {

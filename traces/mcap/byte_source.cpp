@@ -12,6 +12,7 @@
 #include "traces/error.hpp"
 #include "traces/mcap/record.hpp"
 #include "traces/output_file.hpp"
+#include "traces/scratch_file.hpp"
 
 namespace vestige::mcap {
 
@@ -21,7 +22,7 @@ constexpr std::size_t kWindowBytes = 1 << 12;
 constexpr std::size_t kSpoolBlockBytes = 1 << 16;
 
 int nameless_file() {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path();
+  const std::filesystem::path folder = temporary_folder();
   int descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (descriptor >= 0) return descriptor;
   // Not every file system knows O_TMPFILE.
@@ -41,7 +42,7 @@ int spool(InputDescriptor& input) {
     if (std::exchange(first, false) && input.is_device() &&
         (count < kMagicBytes || !is_magic(std::span(block).first(kMagicBytes))))
       throw Error(input.name(), "is a device, and what comes from it is no MCAP file", "name a file, or a pipe");
-    write_all(copy.value(), std::span(block).first(count), std::filesystem::temp_directory_path());
+    write_all(copy.value(), std::span(block).first(count), temporary_folder());
   }
   return copy.release();
 }

@@ -91,7 +91,7 @@ void Check::report(const RecordPlace& place, std::string what, std::string conse
 
 std::string Check::consequence_of(const Damage& damage) const {
   if (damage.offset < kMagicBytes)
-    return "no reader opens the file; of a damaged trace `vestige recover` makes one that they do";
+    return "no reader opens the file; `vestige recover` writes one that they open, if it is a trace";
   if (damage.effect == DamageEffect::kAnotherFile)
     return fmt::format("no reader sees it: `tail -c +{} FILE > SECOND.mcap` makes a file of it", damage.offset + 1);
   if (facts_.has_footer) return "readers may refuse the file";
