@@ -67,8 +67,10 @@ bool Printer::take(const mcap::StreamRecord& record) {
       return print(record);
     }
   } catch (const mcap::Malformed& malformed) {
-    if (record.opcode == Opcode::kMessage)
-      damages_.push_back({record.offset, 0, fmt::format("a Message: {}", malformed.what())});
+    // Once for what is alike.
+    const std::string what = fmt::format("a Message: {}", malformed.what());
+    if (record.opcode == Opcode::kMessage && (damages_.empty() || damages_.back().what != what))
+      damages_.push_back({record.offset, 0, what});
   }
   return true;
 }

@@ -59,6 +59,7 @@ void FrameGate::take(const mcap::Message& message, Trust trust) {
   held.stream = stream;
   held.data.assign(message.data.begin(), message.data.end());
   group_.bytes += held.data.size() + sizeof held;
+  if (group_.bytes > kMostWaitingBytes) end_group();
 }
 
 void FrameGate::finish() {

@@ -79,6 +79,7 @@ class Recoverer {
   void take_inner(Opcode opcode, Bytes content, Trust trust);
   void write(const mcap::Message& message);
   void learn_node_count();
+  std::uint64_t bytes_of_rebuilt(const mcap::Damage& damage);
   void repaired(std::string what);
   void count_messages();
   void finish();
@@ -96,6 +97,7 @@ class Recoverer {
   std::uint32_t crc_ = mcap::crc32(std::as_bytes(std::span(mcap::kMagic)));
   std::uint64_t crc_end_ = mcap::kMagicBytes;  ///< up to where crc_ reaches
   bool data_ended_ = false;
+  bool nodes_known_ = false;
 };
 
 void Recoverer::repaired(std::string what) {
@@ -117,8 +119,10 @@ Recovery Recoverer::run(const std::function<bool(double)>& progress) {
 }
 
 void Recoverer::learn_node_count() {
+  if (nodes_known_) return;
   const mcap::Channel* pose = output_.streams().find(Stream::kPose);
   if (pose == nullptr) return;
+  nodes_known_ = true;
   if (const auto names = parse_node_names(*pose)) gate_.set_node_count(names->size());
 }
 
@@ -136,7 +140,8 @@ void Recoverer::take_damage(const mcap::Damage& damage) {
     return;
   }
   const bool mended = damage.effect == mcap::DamageEffect::kMended;
-  if (damage.bytes == 0 || damage.offset < mcap::kMagicBytes || behind_footer || mended) {
+  const bool only_magic = damage.offset + damage.bytes <= mcap::kMagicBytes;
+  if (damage.bytes == 0 || only_magic || behind_footer || mended) {
     repaired(fmt::format("at byte {}: {}", damage.offset, damage.what));
     return;
   }
@@ -145,6 +150,7 @@ void Recoverer::take_damage(const mcap::Damage& damage) {
   const auto opcode = static_cast<Opcode>(first[0]);
   if (is_rebuilt(opcode)) {
     repaired(fmt::format("at byte {}: a {} was broken", damage.offset, mcap::name_of(opcode)));
+    if (!data_ended_) result_.bytes_lost += damage.bytes - bytes_of_rebuilt(damage);
     return;
   }
   if (data_ended_) return;
@@ -168,6 +174,24 @@ void Recoverer::take_damage(const mcap::Damage& damage) {
   } else {
     take_misnamed(content, damage.offset);
   }
+}
+
+/// How much of a damaged place belongs to the record that begins there: by its length, or else by its fields.
+std::uint64_t Recoverer::bytes_of_rebuilt(const mcap::Damage& damage) {
+  const std::uint64_t end = damage.offset + damage.bytes;
+  if (damage.bytes < mcap::kRecordHeadBytes) return damage.bytes;
+  std::array<std::byte, mcap::kRecordHeadBytes> head = {};
+  source_.read_at(damage.offset, head);
+  mcap::Cursor cursor{Bytes(head)};
+  const auto opcode = static_cast<Opcode>(cursor.number<std::uint8_t>());
+  const auto content_bytes = cursor.number<std::uint64_t>();
+  const std::uint64_t rest = damage.bytes - mcap::kRecordHeadBytes;
+  if (content_bytes <= rest) return mcap::kRecordHeadBytes + content_bytes;
+  if (end == source_.size()) return damage.bytes;  // the file was cut inside the record
+  const std::uint64_t looked_at = std::min<std::uint64_t>(rest, mcap::kMaxChunkBytes);
+  source_.read_at(damage.offset + mcap::kRecordHeadBytes, content_.reset(static_cast<std::size_t>(looked_at)));
+  const auto natural = mcap::natural_content_bytes(opcode, content_.bytes());
+  return natural && *natural <= rest ? mcap::kRecordHeadBytes + *natural : 0;
 }
 
 void Recoverer::take(const RecordPlace& place) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <utility>
 
 #include "traces/definitions.hpp"
@@ -39,6 +40,7 @@ class Rewriter {
   mcap::StreamReader reader_;
   McapOutput output_;
   Rewritten result_;
+  std::set<std::uint16_t> undefined_;                                   ///< channels
   std::uint64_t first_ns_ = std::numeric_limits<std::uint64_t>::max();  ///< of all messages there are
   std::uint64_t last_ns_ = 0;
   std::uint64_t chunk_offset_ = 0;
@@ -101,9 +103,11 @@ void Rewriter::take_message(const mcap::StreamRecord& record) {
   last_ns_ = std::max(last_ns_, message.log_time);
   if (!range_.contains(message.log_time)) {
     ++result_.left_out;
-  } else if (!output_.write(message)) {
-    result_.damages.push_back(
-        {record.offset, 0, fmt::format("a Message of channel {}, which nothing defines", message.channel_id)});
+  } else if (!output_.write(message) && undefined_.insert(message.channel_id).second) {
+    result_.damages.push_back({record.offset, 0,
+                               fmt::format("a Message of channel {}, which nothing defines; from here on its messages "
+                                           "are left out",
+                                           message.channel_id)});
   }
 }
 

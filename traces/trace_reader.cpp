@@ -22,6 +22,7 @@ namespace {
 using mcap::Malformed;
 using trace_format::Stream;
 
+constexpr std::size_t kMostWarnings = 1000;
 constexpr std::string_view kRecover = "`vestige recover` may still find some of it";
 
 }  // namespace
@@ -101,8 +102,11 @@ class TraceReader::Implementation {
 };
 
 void TraceReader::Implementation::warn(const mcap::Damage& damage) {
+  if (warnings_.size() > kMostWarnings) return;
   std::string text = describe(damage, source_.name());
-  if (std::find(warnings_.begin(), warnings_.end(), text) == warnings_.end()) warnings_.push_back(std::move(text));
+  if (std::find(warnings_.begin(), warnings_.end(), text) != warnings_.end()) return;
+  if (warnings_.size() == kMostWarnings) text = fmt::format("{}: there is more; see `vestige doctor`", source_.name());
+  warnings_.push_back(std::move(text));
 }
 
 void TraceReader::Implementation::require_trace() {

@@ -281,6 +281,20 @@ TEST(Recover, GivesAChannelNoSchemaThatComesAfterItsMessages) {
   EXPECT_THAT(reader.damages(), ::testing::IsEmpty());
 }
 
+TEST_P(RecoverCompressed, SaysWhatIsLostWithARecordThatIsMadeAnew) {
+  const auto with_hole = [&](std::uint64_t begin, std::uint64_t end, std::uint64_t size) {
+    std::vector<std::byte> bytes(trace_.bytes.begin(), trace_.bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(begin), bytes.begin() + static_cast<std::ptrdiff_t>(end),
+              std::byte{0});
+    const auto outcome = recover(bytes);
+    return outcome ? outcome->recovery.bytes_lost : 0;
+  };
+  const std::uint64_t index = trace_.chunks[0].end();  // a MessageIndex
+  const std::uint64_t chunks = trace_.chunks[2].end() - trace_.chunks[1].offset;
+  EXPECT_GE(with_hole(index + mcap::kRecordHeadBytes + 3, trace_.chunks[2].end(), trace_.data_end), chunks);
+  EXPECT_GE(with_hole(0, trace_.head_end, trace_.bytes.size()), trace_.head_end);
+}
+
 // A fuzzer's finding: what expands to much that is no record kept it busy for half a minute.
 TEST(Recover, FindsMessagesBehindMuchThatIsNone) {
   constexpr std::size_t kMuch = std::size_t{8} << 20;

@@ -200,6 +200,22 @@ TEST(TraceCheck, NamesAMessageOfAnUnknownChannelWithItsPlaceInTheChunk) {
   EXPECT_EQ(result.frames, 1U);
 }
 
+TEST(TraceCheck, GoesOnBehindARecordWhoseFieldsDoNotFit) {
+  mcap::ByteBuffer records = {static_cast<std::byte>(mcap::Opcode::kMessage), std::byte{3}};
+  records.resize(mcap::kRecordHeadBytes + 3);
+  append_record(records, mcap::Channel{.id = 1, .topic = "/a", .message_encoding = "json", .metadata = {}});
+  append_record(records, mcap::Message{.channel_id = 1, .sequence = 0, .log_time = 0, .publish_time = 0, .data = {}});
+  mcap::ByteBuffer bytes;
+  mcap::append_magic(bytes);
+  append_record(bytes, mcap::Header{});
+  append_record(
+      bytes,
+      mcap::Chunk{.uncompressed_size = records.size(), .uncompressed_crc = 0, .compression = "", .records = records});
+  const TraceCheck result = check(bytes);
+  EXPECT_THAT(text_of(result), HasSubstr("it is skipped"));
+  EXPECT_EQ(result.container.messages, 1U);
+}
+
 TEST(TraceCheck, NamesFramesThatContradictAvatarAndEachOther) {
   const auto only = [](const std::function<void(Forged&)>& forge) {
     Forged trace;

@@ -264,6 +264,7 @@ void Check::take_chunk(const RecordPlace& place, Bytes content) {
 
 void Check::take_records_of_chunk(const RecordPlace& place, Bytes records, ChunkIndex& facts) {
   std::optional<std::pair<std::uint64_t, std::uint64_t>> times;
+  bool all_fit = true;
   Cursor cursor(records);
   while (cursor.remaining() > 0) {
     CheckedRecord record{.content = {},
@@ -274,26 +275,32 @@ void Check::take_records_of_chunk(const RecordPlace& place, Bytes records, Chunk
       const InnerRecord inner = next_record(cursor);
       record.opcode = inner.opcode;
       record.content = inner.content;
-      if (inner.opcode == Opcode::kMessage) {
-        const Message message = decode_message(inner.content);
-        message_indexes_.take_message(message, *record.offset_in_chunk);
-        if (!times) times.emplace(message.log_time, message.log_time);
-        times->first = std::min(times->first, message.log_time);
-        times->second = std::max(times->second, message.log_time);
-      }
-      if (inner.opcode == Opcode::kSchema || inner.opcode == Opcode::kChannel || inner.opcode == Opcode::kMessage) {
-        take_content(record);
-      } else if (least_content_bytes(inner.opcode)) {
-        report(record, "stands inside a Chunk, where only schemas, channels and messages may", "it is skipped");
-      }
     } catch (const Malformed& malformed) {
       report(record, malformed.what(), "whatever follows it in its chunk is not read");
       data_.whole = false;
       message_indexes_.begin_unknown();
       return;
     }
+    try {
+      if (record.opcode == Opcode::kMessage) {
+        const Message message = decode_message(record.content);
+        message_indexes_.take_message(message, *record.offset_in_chunk);
+        if (!times) times.emplace(message.log_time, message.log_time);
+        times->first = std::min(times->first, message.log_time);
+        times->second = std::max(times->second, message.log_time);
+      }
+      if (belongs_in_chunks(record.opcode)) {
+        take_content(record);
+      } else if (least_content_bytes(record.opcode)) {
+        report(record, "stands inside a Chunk, where only schemas, channels and messages may", "it is skipped");
+      }
+    } catch (const Malformed& malformed) {
+      report(record, malformed.what(), "it is skipped");
+      data_.whole = all_fit = false;
+      message_indexes_.begin_unknown();
+    }
   }
-  if (!times) return;
+  if (!times || !all_fit) return;
   if (facts.message_start_time == times->first && facts.message_end_time == times->second) return;
   report(place,
          fmt::format("says that its messages are of {} to {} ns, but they are of {} to {} ns", facts.message_start_time,

@@ -52,8 +52,7 @@ bool StreamReader::next_in_chunk(StreamRecord& record) {
   while (chunk_.remaining() > 0) {
     try {
       const InnerRecord inner = next_record(chunk_);
-      if (inner.opcode != Opcode::kSchema && inner.opcode != Opcode::kChannel && inner.opcode != Opcode::kMessage)
-        continue;
+      if (!belongs_in_chunks(inner.opcode)) continue;
       if (!fits_its_fields(inner)) {
         note_misfit(inner);
         continue;

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <array>
 
-#include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
+#include "traces/mcap/stream_reader.hpp"
 
 namespace vestige::mcap {
 
@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kTailBytes = kRecordHeadBytes + kFooterContentBytes + kMagicBytes;
 constexpr std::size_t kFooterCrcBytes = 4;
+constexpr std::uint64_t kMostUnverifiedBytes = std::uint64_t{64} << 20;
 
 Footer read_tail(const ByteSource& source) {
   if (source.size() < kMagicBytes + kTailBytes) throw Malformed("it has no footer");
@@ -68,10 +69,13 @@ Summary read(const ByteSource& source) {
   if (begin < kMagicBytes || begin > footer_offset) throw Malformed("its footer points outside the file");
   summary.data_section_end = begin;
 
+  // A footer may lie: nothing large is taken into memory before a CRC vouches for it.
+  if (summary.footer.summary_crc != 0 && crc32_of(source, begin, crc_end) != summary.footer.summary_crc)
+    throw Malformed("its summary's CRC is wrong");
+  if (summary.footer.summary_crc == 0 && crc_end - begin > kMostUnverifiedBytes)
+    throw Malformed("its summary is too large to be read without a CRC");
   RawBuffer buffer;
   source.read_at(begin, buffer.reset(static_cast<std::size_t>(crc_end - begin)));
-  if (summary.footer.summary_crc != 0 && crc32(buffer.bytes()) != summary.footer.summary_crc)
-    throw Malformed("its summary's CRC is wrong");
   Cursor records(buffer.bytes().first(static_cast<std::size_t>(footer_offset - begin)));
   while (records.remaining() > 0) take(summary, next_record(records));
 
