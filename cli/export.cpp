@@ -6,11 +6,14 @@
 #include <optional>
 
 #include "cli/help/validators.hpp"
+#include "cli/output_bytes.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
 #include "traces/frame_file.hpp"
 #include "traces/frame_thinning.hpp"
+#include "traces/number_text.hpp"
+#include "traces/output_file.hpp"
 
 namespace vestige::cli {
 
@@ -55,7 +58,7 @@ std::string format_of(const ExportOptions& options) {
 
 struct Attachment {
   std::string path;
-  std::span<const std::byte> bytes;
+  std::span<const std::byte> bytes;  ///< empty: the trace has none
 };
 
 /// The frames' files beside the avatar and its map, so that `import` finds all of it.
@@ -65,15 +68,21 @@ class CsvFolder {
     const auto inside = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
     poses = inside("poses.csv");
     colliders = inside("colliders.csv");
-    attachments.push_back({inside("avatar.glb"), trace.avatar_glb()});
-    if (!trace.actuator_map_png().empty())
-      attachments.push_back({inside("actuator_map.png"), trace.actuator_map_png()});
-    if (!trace.actuator_map_json().empty())
-      attachments.push_back({inside("actuator_map.json"), trace.actuator_map_json()});
+    attachments = {{inside("avatar.glb"), trace.avatar_glb()},
+                   {inside("actuator_map.png"), trace.actuator_map_png()},
+                   {inside("actuator_map.json"), trace.actuator_map_json()}};
   }
-  std::vector<std::string> paths() const {
+  std::vector<std::string> written() const {
     std::vector<std::string> all = {poses, colliders};
-    for (const Attachment& attachment : attachments) all.push_back(attachment.path);
+    for (const Attachment& attachment : attachments)
+      if (!attachment.bytes.empty()) all.push_back(attachment.path);
+    return all;
+  }
+  /// What an earlier export may have left, which `import` would take.
+  std::vector<std::string> removed() const {
+    std::vector<std::string> all;
+    for (const Attachment& attachment : attachments)
+      if (attachment.bytes.empty()) all.push_back(attachment.path);
     return all;
   }
 
@@ -97,10 +106,15 @@ void check_flags(const ExportOptions& options, const std::string& format) {
 }
 
 void write_attachments(const std::vector<Attachment>& attachments, const CommonOptions& options) {
-  for (const Attachment& attachment : attachments) {
-    OutputFile file(attachment.path, options.overwrite());
-    file.write(attachment.bytes);
-    file.commit();
+  for (const Attachment& attachment : attachments)
+    if (!attachment.bytes.empty()) write_bytes(attachment.path, attachment.bytes, options);
+}
+
+void remove_files(const std::vector<std::string>& paths) {
+  for (const std::string& path : paths) {
+    std::error_code failure;
+    std::filesystem::remove(path, failure);
+    if (failure) throw system_error(path, "could not remove it", failure.value());
   }
 }
 
@@ -125,8 +139,9 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   std::vector<std::string> outputs = {options.output};
   if (is_folder) {
     folder.emplace(options.output, reader);
-    outputs = folder->paths();
-    std::vector<std::string> all = outputs;
+    outputs = folder->written();
+    std::vector<std::string> all = folder->removed();
+    all.insert(all.end(), outputs.begin(), outputs.end());
     all.push_back(options.common.json);
     make_output_folder(options.output);
     check_outputs(all, {options.file}, options.common);
@@ -175,6 +190,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   }
   if (folder) write_attachments(folder->attachments, options.common);
   for (const auto& file : files) file->commit();
+  if (folder) remove_files(folder->removed());
   for (const std::string& loss : losses) warn(fmt::format("{}: {}", options.output, loss), verbosity);
   invocation.exit_code = report_damage(reader, options.file, verbosity);
   if (!losses.empty()) invocation.exit_code = kDataLost;
@@ -189,9 +205,10 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
               {"losses", losses},
               {"complete", reader.complete()}},
              options.common);
-  print_summary(fmt::format("{}: {} frame{} of {} colliders and {} nodes\n", options.output, written,
-                            written == 1 ? "" : "s", reader.collider_ids().size(), reader.node_names().size()),
-                {options.output, options.common.json}, options.common);
+  print_summary(
+      fmt::format("{}: {} of {} and {}\n", options.output, counted(written, "frame"),
+                  counted(reader.collider_ids().size(), "collider"), counted(reader.node_names().size(), "node")),
+      {options.output, options.common.json}, options.common);
 }
 
 }  // namespace

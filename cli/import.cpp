@@ -16,9 +16,10 @@
 #include "traces/colliders.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
+#include "traces/number_text.hpp"
 #include "traces/pose_csv.hpp"
-#include "traces/staged_trace.hpp"
 #include "traces/trace_hdf5.hpp"
+#include "traces/trace_writer.hpp"
 
 namespace vestige::cli {
 
@@ -195,10 +196,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
     session["rate_hz"] = fmt::format("{}", options.rate_hz.value_or(1 / motion->frame_time_s));
   } else if (!from_hdf5) {
     const auto reader = std::make_shared<PoseCsvReader>(options.poses, scene.avatar);
-    if (!reader->resting().empty())
-      warn(fmt::format("{}: these nodes of the avatar keep their rest: {}", options.poses,
-                       fmt::join(reader->resting(), ", ")),
-           verbosity);
+    warn_of_names(options.poses, "these nodes of the avatar keep their rest", reader->resting(), verbosity);
     frames.next_pose = [reader](TraceFrame& frame) { return reader->next(frame); };
     frames.share = [reader] { return reader->share(); };
     session["animation"] = options.poses;
@@ -207,6 +205,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
 
   TraceWriterOptions writing;
   writing.overwrite = options.common.overwrite();
+  writing.unfinished = Unfinished::kRemoved;
   if (options.compression == "lz4") writing.compression = Compression::kLz4;
   if (options.compression == "none") writing.compression = Compression::kNone;
   catch_interrupts();
@@ -215,11 +214,11 @@ void run_import(ImportOptions options, Invocation& invocation) {
   bool more = frames.next_pose(frame);
   if (more) frames.add_colliders(frame);
   bool any_collider = false;
-  StagedTrace trace(options.output, session, scene.avatar, scene.attachments(), writing);
+  TraceWriter trace(options.output, session, scene.avatar, scene.attachments(), writing);
   {
     Progress progress("Importing", verbosity);
     while (more) {
-      trace.writer().write(frame);
+      trace.write(frame);
       any_collider = any_collider || !frame.colliders.empty();
       if (!progress.update(frames.share())) throw Error(options.output, "importing was stopped", "");
       more = frames.next_pose(frame);
@@ -227,7 +226,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
     }
   }
   frames.finish();
-  trace.commit();
+  trace.finish();
   if (!options.colliders.empty() && options.from.empty() && !any_collider)
     warn(fmt::format("--colliders {}: no frame has a collider; are its times those of the motion, 0 to {} s?",
                      options.colliders, seconds(frame)),
@@ -235,14 +234,13 @@ void run_import(ImportOptions options, Invocation& invocation) {
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;
-  json["frames"] = trace.writer().frame_count();
-  json["bytes"] = trace.writer().bytes_written();
+  json["frames"] = trace.frame_count();
+  json["bytes"] = trace.bytes_written();
   if (motion) json["motion"] = to_json(*motion);
   json["avatar"] = to_json(scene.avatar);
   write_json(options.common.json, json, options.common);
-  std::string text = fmt::format("{}: {} frame{} of {} s, {:.1f} MB\n", options.output, trace.writer().frame_count(),
-                                 trace.writer().frame_count() == 1 ? "" : "s", seconds(frame),
-                                 static_cast<double>(trace.writer().bytes_written()) / 1e6);
+  std::string text = fmt::format("{}: {} of {} s, {:.1f} MB\n", options.output, counted(trace.frame_count(), "frame"),
+                                 seconds(frame), static_cast<double>(trace.bytes_written()) / 1e6);
   if (motion) text += describe(*motion);
   print_summary(text, {options.output, options.common.json}, options.common);
 }

@@ -71,7 +71,7 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
 
 void run_inspect(const InspectOptions& options, Invocation& invocation) {
   check_outputs({options.common.json}, {options.trace}, options.common);
-  const McapSummary summary = summarise_mcap(options.trace, SummaryDepth::kEverything);
+  const McapSummary summary = summarise_mcap(options.trace);
   for (const std::string& warning : summary.warnings) warn(warning, options.common.verbosity());
   write_json(options.common.json, to_json(summary), options.common);
   print_summary(describe(summary, options.trace, options.common.verbose), {options.common.json}, options.common);

@@ -9,18 +9,23 @@ namespace vestige::cli {
 namespace {
 
 void say_what_matched(const RetargetReport& report, const std::string& path, Verbosity verbosity) {
-  if (!report.unmatched_joints.empty())
-    warn(fmt::format("{}: nothing follows these joints: {}", path, fmt::join(report.unmatched_joints, ", ")),
-         verbosity);
-  if (!report.unmatched_nodes.empty())
-    warn(fmt::format("{}: these joints of the avatar keep their rest: {}", path,
-                     fmt::join(report.unmatched_nodes, ", ")),
-         verbosity);
+  warn_of_names(path, "nothing follows these joints", report.unmatched_joints, verbosity);
+  warn_of_names(path, "these joints of the avatar keep their rest", report.unmatched_nodes, verbosity);
   if (verbosity != Verbosity::kVerbose) return;
-  for (const JointMatch& match : report.matched) warn(fmt::format("{} leads {}", match.joint, match.node), verbosity);
+  for (const JointMatch& match : report.matched)
+    warn_of_names(path, fmt::format("{} leads", shown_word(match.joint)), {match.node}, verbosity);
 }
 
 }  // namespace
+
+void warn_of_names(const std::string& path, std::string_view what, const std::vector<std::string>& names,
+                   Verbosity verbosity) {
+  if (names.empty()) return;
+  std::vector<std::string> shown;
+  shown.reserve(names.size());
+  for (const std::string& name : names) shown.push_back(shown_word(name));
+  warn(fmt::format("{}: {}: {}", path, what, fmt::join(shown, ", ")), verbosity);
+}
 
 void add_unit_option(CLI::App& verb, std::string& unit) {
   verb.add_option("--unit", unit,

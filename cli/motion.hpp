@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "cli/terminal.hpp"
 #include "traces/avatar.hpp"
@@ -15,6 +17,10 @@ namespace vestige::cli {
 inline bool is_motion_file(const std::string& animation) {
   return animation.ends_with(".bvh") || animation.ends_with(".BVH");
 }
+
+/// A warning about joints or nodes of the file at `path`; nothing where there are none.
+void warn_of_names(const std::string& path, std::string_view what, const std::vector<std::string>& names,
+                   Verbosity verbosity);
 
 /// The flag --unit, of a motion.
 void add_unit_option(CLI::App& verb, std::string& unit);

@@ -18,6 +18,7 @@
 #include "detector/path_choice.hpp"
 #include "detector/pressure.hpp"
 #include "traces/error.hpp"
+#include "traces/number_text.hpp"
 #include "transport/sender.hpp"
 
 namespace vestige::cli {
@@ -153,8 +154,8 @@ std::string summary(const Streamed& streamed, const OpenSink& sink) {
   const PlaybackResult& playback = streamed.playback;
   const SenderStatistics& sender = streamed.sender;
   std::string text =
-      fmt::format("{} frames in {:.2f} s, {} contacts, {} deadlines missed{}\n", playback.frames, playback.duration_s,
-                  playback.contacts, playback.missed_deadlines,
+      fmt::format("{} in {:.2f} s, {}, {} missed{}\n", counted(playback.frames, "frame"), playback.duration_s,
+                  counted(playback.contacts, "contact"), counted(playback.missed_deadlines, "deadline"),
                   playback.fell_behind() ? fmt::format(", up to {:.1f} s late", playback.most_late_s) : "");
   text += fmt::format("sent {} frames, {} of them changes; {} changes superseded by newer ones", sender.sent,
                       sender.changes, sender.superseded);

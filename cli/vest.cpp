@@ -9,6 +9,7 @@
 #include "cli/sink_choice.hpp"
 #include "cli/verbs.hpp"
 #include "traces/error.hpp"
+#include "traces/number_text.hpp"
 #include "transport/sender.hpp"
 
 namespace vestige::cli {

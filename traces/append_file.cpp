@@ -23,7 +23,8 @@ bool is_no_regular_file(const std::filesystem::path& path) {
 
 }  // namespace
 
-AppendFile::AppendFile(std::filesystem::path path, Overwrite overwrite) : path_(std::move(path)) {
+AppendFile::AppendFile(std::filesystem::path path, Overwrite overwrite, Unfinished unfinished)
+    : path_(std::move(path)), overwrite_(overwrite), unfinished_(unfinished) {
   if (path_ == "-") {
     descriptor_ = STDOUT_FILENO;
     return;
@@ -34,10 +35,11 @@ AppendFile::AppendFile(std::filesystem::path path, Overwrite overwrite) : path_(
     descriptor_ = open_device_for_writing(path_);
     return;
   }
-  descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  const bool appears_at_once = unfinished == Unfinished::kKept;
+  if (appears_at_once) descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (descriptor_ >= 0) {
     current_path_ = path_;
-  } else if (errno == EEXIST && overwrite == Overwrite::kAllow) {
+  } else if (!appears_at_once || (errno == EEXIST && overwrite == Overwrite::kAllow)) {
     std::string name = (path_.parent_path() / fmt::format(".{}.XXXXXX", path_.filename().string())).string();
     descriptor_ = ::mkostemp(name.data(), O_CLOEXEC);
     if (descriptor_ < 0) throw system_error(path_, "could not create", errno);
@@ -72,6 +74,7 @@ void AppendFile::sync() {
 }
 
 void AppendFile::keep() {
+  if (unfinished_ == Unfinished::kRemoved) return;
   if (!worth_keeping_) take_name();
   worth_keeping_ = true;
 }
@@ -79,7 +82,7 @@ void AppendFile::keep() {
 void AppendFile::take_name() {
   if (!is_file() || current_path_ == path_) return;
   sync();
-  if (::rename(current_path_.c_str(), path_.c_str()) != 0) fail("could not give it its name", errno);
+  give_name(current_path_, path_, overwrite_);
   current_path_ = path_;
 }
 

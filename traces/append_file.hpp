@@ -10,8 +10,11 @@
 
 namespace vestige {
 
+/// What becomes of a file whose program died, or could not write on.
+enum class Unfinished : std::uint8_t { kKept, kRemoved };
+
 /// A file that grows under its own name, for recordings that must survive the death of their program; `OutputFile` is
-/// for everything that should be complete or absent.
+/// for everything that should be complete or absent, as this is with `Unfinished::kRemoved`.
 ///
 /// A new file appears at once under its name; an existing one that may be overwritten is replaced only by `keep` or
 /// `close`, by what is then safely on disk. Destroyed before either, it leaves nothing behind, and what was there
@@ -19,7 +22,7 @@ namespace vestige {
 class AppendFile {
  public:
   /// Throws `Error`: it exists (and `Overwrite::kRefuse`), no such folder, permission.
-  AppendFile(std::filesystem::path path, Overwrite overwrite);
+  AppendFile(std::filesystem::path path, Overwrite overwrite, Unfinished unfinished = Unfinished::kKept);
   ~AppendFile();
   AppendFile(const AppendFile&) = delete;
   AppendFile& operator=(const AppendFile&) = delete;
@@ -27,7 +30,8 @@ class AppendFile {
   /// Appends. When that fails, the bytes of this call are taken away again; a file worth keeping is renamed to
   /// NAME.partial, any other removed, and the `Error` thrown says which, and why.
   void write(std::span<const std::byte> bytes);
-  /// From now on there is something worth keeping in it, under its name. Throws `Error`.
+  /// From now on there is something worth keeping in it, under its name; not so with `Unfinished::kRemoved`. Throws
+  /// `Error`.
   void keep();
   /// Brings what was written to disk. Throws `Error`.
   void sync();
@@ -42,6 +46,8 @@ class AppendFile {
 
   std::filesystem::path path_;
   std::filesystem::path current_path_;  ///< where the bytes are; empty when that is no regular file
+  Overwrite overwrite_;
+  Unfinished unfinished_;
   int descriptor_ = -1;
   std::uint64_t bytes_ = 0;
   bool worth_keeping_ = false;

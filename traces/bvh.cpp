@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 
@@ -30,12 +31,6 @@ constexpr std::string_view kChannelNames[] = {"Xposition", "Yposition", "Zpositi
 bool same_word(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
   return std::ranges::equal(a, b, {}, lower, lower);
-}
-
-/// For messages: foreign words are cut.
-std::string shown(std::string_view word) {
-  constexpr std::size_t kMost = 40;
-  return word.size() <= kMost ? std::string(word) : std::string(word.substr(0, kMost)) + "...";
 }
 
 /// Goes through a text word by word, and knows the line.
@@ -81,17 +76,20 @@ class Words {
     if (word.starts_with('+')) word.remove_prefix(1);
     Number value = 0;
     const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
-    // A number too small for its type is as good as 0.
-    if (failure == std::errc::result_out_of_range && word.find("e-") != std::string_view::npos) return 0;
-    if (failure != std::errc() || end != word.data() + word.size())
+    if (failure == std::errc::invalid_argument || end != word.data() + word.size())
       fail(fmt::format("{} is {}, which is no number", what, quoted(word)));
-    if constexpr (std::is_floating_point_v<Number>)
-      if (!(std::abs(value) <= Number{kFarthest})) fail(fmt::format("{} is {}, out of range", what, shown(word)));
+    bool fits = failure == std::errc();
+    if constexpr (std::is_floating_point_v<Number>) {
+      // A number too small for its type is as good as 0; from_chars does not tell it from one that is too large.
+      if (!fits && std::abs(std::strtod(std::string(word).c_str(), nullptr)) < 1) return 0;
+      fits = fits && std::abs(value) <= Number{kFarthest};
+    }
+    if (!fits) fail(fmt::format("{} is {}, out of range", what, shown_word(word)));
     return value;
   }
 
   static std::string quoted(std::string_view word) {
-    return word.empty() ? "the end" : fmt::format("'{}'", shown(word));
+    return word.empty() ? "the end" : fmt::format("'{}'", shown_word(word));
   }
 
   [[noreturn]] void fail(std::string_view cause, std::string_view remedy = "export the motion as BVH again") const {
@@ -142,7 +140,7 @@ class Parser {
         words_.fail(open.empty() ? "the file ends before MOTION" : "the file ends before a brace is closed",
                     "the file was cut short: copy or export it again");
       } else {
-        words_.fail(fmt::format("'{}' has no place here", shown(word)));
+        words_.fail(fmt::format("'{}' has no place here", shown_word(word)));
       }
     }
     if (motion_.joints.empty()) words_.fail("there is no joint before MOTION");
@@ -177,9 +175,9 @@ class Parser {
   }
 
   void parse_channels(BvhJoint& joint) {
-    if (!joint.channels.empty()) words_.fail(fmt::format("joint '{}' has CHANNELS twice", shown(joint.name)));
+    if (!joint.channels.empty()) words_.fail(fmt::format("joint '{}' has CHANNELS twice", shown_word(joint.name)));
     if (joint.first_channel != motion_.channel_count)
-      words_.fail(fmt::format("the CHANNELS of '{}' stand behind its children", shown(joint.name)));
+      words_.fail(fmt::format("the CHANNELS of '{}' stand behind its children", shown_word(joint.name)));
     const auto count = words_.number<unsigned>(words_.next(), "the number of CHANNELS");
     if (count > std::size(kChannelNames)) words_.fail(fmt::format("a joint has {} channels, more than 6", count));
     for (unsigned i = 0; i < count; ++i) {
@@ -188,14 +186,14 @@ class Parser {
       const auto* const name =
           std::ranges::find_if(kChannelNames, [&](std::string_view known) { return same_word(known, word); });
       if (name == std::end(kChannelNames))
-        words_.fail(fmt::format("there is no channel '{}'", shown(word)), "channels are Xposition … Zrotation");
+        words_.fail(fmt::format("there is no channel '{}'", shown_word(word)), "channels are Xposition … Zrotation");
       const auto channel = static_cast<BvhChannel>(name - std::begin(kChannelNames));
       if (std::ranges::find(joint.channels, channel) != joint.channels.end())
-        words_.fail(fmt::format("joint '{}' has {} twice", shown(joint.name), *name));
+        words_.fail(fmt::format("joint '{}' has {} twice", shown_word(joint.name), *name));
       joint.channels.push_back(channel);
     }
     if (const std::string_view more = words_.next_in_line(); !more.empty())
-      words_.fail(fmt::format("{} channels were announced, and '{}' follows", count, shown(more)));
+      words_.fail(fmt::format("{} channels were announced, and '{}' follows", count, shown_word(more)));
     motion_.channel_count += count;
   }
 
@@ -228,7 +226,7 @@ class Parser {
     motion_.values.reserve(motion_.frame_count * motion_.channel_count);
     for (std::size_t frame = 0; frame < motion_.frame_count; ++frame) parse_frame(frame);
     if (const std::string_view more = words_.next(); !more.empty())
-      words_.fail(fmt::format("'{}' follows the last of {} frames", shown(more), motion_.frame_count),
+      words_.fail(fmt::format("'{}' follows the last of {} frames", shown_word(more), motion_.frame_count),
                   "the number of frames is wrong");
   }
 
@@ -287,6 +285,14 @@ std::vector<BvhPlace> bvh_rest(const BvhMotion& motion) {
   for (const BvhJoint& joint : motion.joints)
     places.push_back(below(places, joint.parent, {joint.offset, glm::dquat(1, 0, 0, 0)}));
   return places;
+}
+
+std::string shown_word(std::string_view word) {
+  constexpr std::size_t kMost = 40;
+  if (word.size() <= kMost) return std::string(word);
+  std::size_t end = kMost;
+  while (end > 0 && (static_cast<unsigned char>(word[end]) & 0xC0U) == 0x80) --end;  // inside a letter of UTF-8
+  return std::string(word.substr(0, end)) + "...";
 }
 
 BvhMotion parse_bvh(std::string_view text, const std::string& name) {

@@ -45,6 +45,9 @@ void bvh_places(const BvhMotion& motion, std::size_t frame, std::vector<BvhPlace
 /// Of all joints at rest, roots at their offset.
 std::vector<BvhPlace> bvh_rest(const BvhMotion& motion);
 
+/// A word of such a file as messages show it: 40 bytes at most.
+std::string shown_word(std::string_view word);
+
 /// Throws `Error` naming file and line for whatever is not a BVH: an unknown word, a missing brace or MOTION, joints
 /// nested deeper than 256, channels that do not exist or stand twice, a frame with another number of numbers than there
 /// are channels, more or fewer frames than the file says, numbers that are none or not finite, a frame time that is not

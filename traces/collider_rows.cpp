@@ -13,7 +13,9 @@ namespace vestige {
 
 namespace {
 
-constexpr std::string_view kRemedy = "each row is time_s,id,x,y,z: seconds, a whole number, metres";
+constexpr std::string_view kTimesRemedy = "each row is time_s,id,x,y,z: seconds, a whole number, metres";
+constexpr std::string_view kFramesRemedy =
+    "each row is frame,time_s,id,x,y,z,teleported: a whole number, seconds, a whole number, metres, 0 or 1";
 constexpr std::string_view kAloneRemedy = "export poses and colliders of the same trace, or leave out the column frame";
 
 constexpr double kFarthest_m = 1e9;  // an astronomical unit is a mistake
@@ -28,9 +30,11 @@ class ColliderCsv final : public FrameFile {
   void write(const TraceFrame& frame) override {
     time_.clear();
     append_seconds(time_, frame.time_ns);
+    teleported_.assign(frame.teleported.begin(), frame.teleported.end());
+    std::ranges::sort(teleported_);
     for (const ColliderSample& collider : frame.colliders) {
       row_.clear();
-      const bool teleported = std::ranges::find(frame.teleported, collider.id) != frame.teleported.end();
+      const bool teleported = std::ranges::binary_search(teleported_, collider.id);
       fmt::format_to(std::back_inserter(row_), "{},{},{},{},{},{},{}\n", frame.index, time_, collider.id,
                      collider.position_m.x, collider.position_m.y, collider.position_m.z, teleported ? 1 : 0);
       file_.write(row_);
@@ -43,6 +47,7 @@ class ColliderCsv final : public FrameFile {
   OutputFile file_;
   std::string time_;
   std::string row_;
+  std::vector<std::uint32_t> teleported_;
 };
 
 }  // namespace
@@ -51,12 +56,14 @@ std::unique_ptr<FrameFile> make_collider_csv(const std::filesystem::path& path, 
   return std::make_unique<ColliderCsv>(path, overwrite);
 }
 
-ColliderRows::ColliderRows(const std::filesystem::path& path) : reader_(path), lines_(reader_, kRemedy) {
+ColliderRows::ColliderRows(const std::filesystem::path& path) : reader_(path), lines_(reader_, kTimesRemedy) {
   const std::string header = fmt::format("{}", fmt::join(lines_.take_header(), ","));
-  if (header == kColliderFramesHeader)
+  if (header == kColliderFramesHeader) {
     columns_ = ColliderColumns::kFrames;
-  else if (header != kColliderTimesHeader)
+    lines_.set_remedy(kFramesRemedy);
+  } else if (header != kColliderTimesHeader) {
     throw lines_.error(fmt::format("the header is not '{}'", kColliderTimesHeader));
+  }
 }
 
 bool ColliderRows::next(ColliderRow& row) {
@@ -96,13 +103,14 @@ void ColliderFrames::advance() {
 void ColliderFrames::fill(TraceFrame& frame) {
   frame.colliders.clear();
   frame.teleported.clear();
+  ids_.clear();
   if (ahead_ && ahead_->frame < frame.index)
     throw rows_.error(fmt::format("frame {} has no pose", ahead_->frame), kAloneRemedy);
   for (; ahead_ && ahead_->frame == frame.index; advance()) {
     if (nanoseconds_of(ahead_->time_s) != frame.time_ns)
       throw rows_.error(fmt::format("frame {} is at {} s, its pose at another time", frame.index, ahead_->time_s),
                         kAloneRemedy);
-    if (std::ranges::find(frame.colliders, ahead_->sample.id, &ColliderSample::id) != frame.colliders.end())
+    if (!ids_.insert(ahead_->sample.id).second)
       throw rows_.error(fmt::format("collider {} has two positions in frame {}", ahead_->sample.id, frame.index),
                         "remove one of them");
     frame.colliders.push_back(ahead_->sample);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <unordered_set>
 
 #include "traces/csv.hpp"
 #include "traces/trace.hpp"
@@ -63,6 +64,7 @@ class ColliderFrames {
 
   ColliderRows rows_;
   std::optional<ColliderRow> ahead_;
+  std::unordered_set<std::uint32_t> ids_;  ///< of the frame so far
 };
 
 }  // namespace vestige

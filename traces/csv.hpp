@@ -31,6 +31,9 @@ class CsvLines {
   /// Whether the first line of `text` is `header`.
   static bool has_header(std::string_view text, std::string_view header);
 
+  /// What ends every error from here on, where the header tells more.
+  void set_remedy(std::string_view remedy) { remedy_ = remedy; }
+
   /// Goes to the next row; false at the end of the file.
   bool next();
 

@@ -34,7 +34,7 @@ class FrameFile {
 /// A line of JSON a frame; FORMAT.md, "Frames as text". "-" is standard output.
 std::unique_ptr<FrameFile> make_frame_ndjson(const std::filesystem::path& path, Overwrite overwrite);
 
-/// A row a frame: `frame,time_s,origin_x,origin_y,origin_z`, then ten columns for each node, as `pose_csv_columns`
+/// A row a frame: `frame,time_s,origin_x,origin_y,origin_z`, then ten columns for each node, as `pose_csv_nodes`
 /// names them. "-" is standard output.
 std::unique_ptr<FrameFile> make_pose_csv(const std::filesystem::path& path, Overwrite overwrite,
                                          const std::vector<std::string>& node_names);

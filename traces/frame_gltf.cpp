@@ -17,6 +17,7 @@
 #include "traces/frame_file.hpp"
 #include "traces/glb_container.hpp"
 #include "traces/gltf_meshopt.hpp"
+#include "traces/number_text.hpp"
 
 namespace vestige {
 
@@ -73,7 +74,13 @@ class Builder {
     const gltf::Report report("avatar.glb");
     gltf::Report quiet = report;
     const gltf::GlbChunks chunks = gltf::split_glb(glb, quiet);
-    json = Json::parse(chunks.json);
+    try {
+      json = Json::parse(chunks.json);
+    } catch (const Json::exception&) {
+      // What reads avatars leaves out what it does not need; here all of it is copied.
+      throw Error("the trace's avatar.glb", "has JSON that cannot be copied, such as a number beyond double",
+                  "mend the avatar and record again, or export to another format");
+    }
     if (chunks.bin.empty() && json.contains("buffers")) {
       // Its data is in data: URIs; the buffer of a GLB must be the first.
       for (Json& view : json["bufferViews"]) {
@@ -153,6 +160,7 @@ class FrameGltf final : public FrameFile {
         ids_(std::move(ids)),
         columns_(path, widths(avatar.nodes.size(), ids_.size())),
         varies_(2 + 3 * avatar.nodes.size() + 2 * ids_.size()) {
+    static_cast<void>(Builder(glb_));  // what it cannot copy, it says before the work
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     last_position_.resize(ids_.size(), glm::vec3(0));
   }
@@ -200,6 +208,10 @@ class FrameGltf final : public FrameFile {
   std::uint64_t non_finite_ = 0;
 };
 
+bool is_finite(const glm::vec3& vector) {
+  return std::isfinite(vector.x) && std::isfinite(vector.y) && std::isfinite(vector.z);
+}
+
 /// What glTF forbids is mended: a rotation has length 1, and numbers are finite.
 void FrameGltf::append_node(std::size_t index, NodeLocal node) {
   const auto& q = node.rotation;
@@ -228,17 +240,22 @@ void FrameGltf::write(const TraceFrame& frame) {
     ++frames_left_out_;
     return;
   }
-  if (first_row_.empty()) base_m_ = frame.pose.origin_m;
+  if (first_row_.empty() && is_finite(glm::vec3(frame.pose.origin_m))) base_m_ = frame.pose.origin_m;
   row_.assign(1, time_s);
   const auto append = [&](const glm::vec3& vector) { row_.insert(row_.end(), {vector.x, vector.y, vector.z}); };
-  append(glm::vec3(frame.pose.origin_m - base_m_));
+  glm::vec3 origin(frame.pose.origin_m - base_m_);
+  if (!is_finite(origin)) {
+    ++non_finite_;
+    origin = last_row_.empty() ? glm::vec3(0) : glm::vec3(last_row_[1], last_row_[2], last_row_[3]);
+  }
+  append(origin);
   for (std::size_t i = 0; i < frame.pose.nodes.size(); ++i) append_node(i, frame.pose.nodes[i]);
   std::vector<bool> present(ids_.size());
   for (const ColliderSample& collider : frame.colliders) {
     const auto place = place_of_.find(collider.id);
     if (place == place_of_.end()) continue;
     const glm::vec3 position(collider.position_m - base_m_);
-    if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z)) {
+    if (!is_finite(position)) {
       ++non_finite_;
       continue;
     }
@@ -415,12 +432,12 @@ std::vector<std::string> FrameGltf::losses() const {
   std::vector<std::string> losses;
   if (frames_left_out_ > 0)
     losses.push_back(
-        fmt::format("{} frames are at the time of the one before once it is rounded to fp32, and were left "
-                    "out (--rate, or 'vestige trim')",
-                    frames_left_out_));
+        fmt::format("left out {} at the time of the one before, once it is rounded to fp32 (--rate, or 'vestige trim')",
+                    counted(frames_left_out_, "frame")));
   if (non_finite_ > 0)
-    losses.push_back(
-        fmt::format("{} transforms and positions were not finite, and are as in the frame before", non_finite_));
+    losses.push_back(fmt::format(
+        "not finite in fp32: {}; nodes and the origin are left as in the frame before, colliders are absent",
+        counted(non_finite_, "value")));
   return losses;
 }
 

@@ -101,6 +101,12 @@ class GrowingDataset {
     waiting_.clear();
   }
 
+  void close() {
+    flush();
+    // What HDF5 still holds of it goes to disk now, which may be full.
+    hdf5_check(dataset_.reset(), path_, fmt::format("write {}", description_.name));
+  }
+
  private:
   Dimensions dimensions(hsize_t rows) const {
     Dimensions all = {rows};
@@ -169,8 +175,7 @@ class FrameHdf5 final : public FrameFile {
 
   void commit() override {
     if (frames_ == 0) throw Error(path_.string(), "there is no frame to export", "");
-    for (GrowingDataset& dataset : datasets_) dataset.flush();
-    datasets_.clear();
+    for (GrowingDataset& dataset : datasets_) dataset.close();
     hdf5_check(h5_file_.reset(), path_, "finish the file");
     scratch_.copy_to(file_);
     file_.commit();
@@ -203,12 +208,11 @@ class FrameHdf5 final : public FrameFile {
     const Hdf5Library& h5 = hdf5();
     const hsize_t size = count;
     const Hdf5Handle space(h5.create_simple_space(1, &size, nullptr), h5.close_space, path_, "make a space");
-    const Hdf5Handle dataset(
-        h5.create_dataset(h5_file_.id(), name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-        h5.close_dataset, path_, fmt::format("make {}", name));
-    if (count > 0)
-      hdf5_check(h5.write(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path_,
-                 fmt::format("write {}", name));
+    Hdf5Handle dataset(h5.create_dataset(h5_file_.id(), name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                       h5.close_dataset, path_, fmt::format("make {}", name));
+    const std::string doing = fmt::format("write {}", name);
+    if (count > 0) hdf5_check(h5.write(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path_, doing);
+    hdf5_check(dataset.reset(), path_, doing);
   }
 
   void write_bytes(const char* name, std::span<const std::byte> bytes) {

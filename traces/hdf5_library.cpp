@@ -27,6 +27,7 @@ Hdf5Library load() {
   try {
     const SharedLibrary library = open_library();
     library.find("H5open", all.open);
+    library.find("H5free_memory", all.free_memory);
     library.find("H5Eset_auto2", all.set_error_printing);
     library.find("H5Fcreate", all.create_file);
     library.find("H5Fopen", all.open_file);
@@ -55,12 +56,22 @@ Hdf5Library load() {
     library.find("H5Lexists", all.link_exists);
     library.find("H5Acreate2", all.create_attribute);
     library.find("H5Awrite", all.write_attribute);
+    library.find("H5Aexists_by_name", all.attribute_exists);
+    library.find("H5Aopen_by_name", all.open_attribute);
+    library.find("H5Aget_type", all.attribute_type);
+    library.find("H5Aread", all.read_attribute);
     library.find("H5Aclose", all.close_attribute);
     library.find("H5Tcopy", all.copy_type);
     library.find("H5Tget_class", all.class_of);
+    library.find("H5Tget_size", all.size_of);
+    library.find("H5Tis_variable_str", all.is_variable_text);
     library.find("H5Tset_size", all.set_size);
     library.find("H5Tset_cset", all.set_character_set);
     library.find("H5Tclose", all.close_type);
+    // Its own handler at exit would crash on a file that could not be flushed; whoever opens something here closes it.
+    decltype(&::H5dont_atexit) leave_exit_alone = nullptr;
+    library.find("H5dont_atexit", leave_exit_alone);
+    static_cast<void>(leave_exit_alone());
     if (all.open() < 0) throw Error("libhdf5", "cannot be started", "");
     // Failures are said by us, not printed by it.
     all.set_error_printing(H5E_DEFAULT, nullptr, nullptr);

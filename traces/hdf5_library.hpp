@@ -15,6 +15,7 @@ namespace vestige {
 /// HDF5's functions, typed by its own header, and the types of numbers that files hold.
 struct Hdf5Library {
   decltype(&::H5open) open;
+  decltype(&::H5free_memory) free_memory;
   decltype(&::H5Eset_auto2) set_error_printing;
   decltype(&::H5Fcreate) create_file;
   decltype(&::H5Fopen) open_file;
@@ -43,9 +44,15 @@ struct Hdf5Library {
   decltype(&::H5Lexists) link_exists;
   decltype(&::H5Acreate2) create_attribute;
   decltype(&::H5Awrite) write_attribute;
+  decltype(&::H5Aexists_by_name) attribute_exists;
+  decltype(&::H5Aopen_by_name) open_attribute;
+  decltype(&::H5Aget_type) attribute_type;
+  decltype(&::H5Aread) read_attribute;
   decltype(&::H5Aclose) close_attribute;
   decltype(&::H5Tcopy) copy_type;
   decltype(&::H5Tget_class) class_of;
+  decltype(&::H5Tget_size) size_of;
+  decltype(&::H5Tis_variable_str) is_variable_text;
   decltype(&::H5Tset_size) set_size;
   decltype(&::H5Tset_cset) set_character_set;
   decltype(&::H5Tclose) close_type;
@@ -64,7 +71,8 @@ struct Hdf5Library {
 inline constexpr unsigned kHdf5ReadOnly = 0;  ///< H5F_ACC_RDONLY
 inline constexpr unsigned kHdf5Truncate = 2;  ///< H5F_ACC_TRUNC
 
-/// Opened the first time, never closed. Throws `Error` where libhdf5 is not installed.
+/// Opened the first time, never closed; at exit it closes nothing that is still open. Throws `Error` where libhdf5 is
+/// not installed.
 const Hdf5Library& hdf5();
 
 /// Something that HDF5 counts references of. Negative identifiers are failures.

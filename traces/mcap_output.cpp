@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 #include <version.hpp>
 
@@ -32,10 +31,7 @@ void McapOutput::write_definitions() {
 void McapOutput::add(mcap::Schema schema) {
   if (schema.id == 0) return;
   // A channel that was written without its schema stays without: what was written of it would change its meaning.
-  const bool comes_too_late = std::ranges::any_of(channels_written_, [&](std::uint16_t channel_id) {
-    return definitions_.channels.at(channel_id).schema_id == schema.id;
-  });
-  if (comes_too_late) return;
+  if (schemas_lacking_.contains(schema.id)) return;
   const auto [known, is_new] = definitions_.schemas.try_emplace(schema.id, std::move(schema));
   if (is_new) streams_.add(known->second);
 }
@@ -49,7 +45,10 @@ void McapOutput::add(mcap::Channel channel) {
 
 void McapOutput::write_schema(std::uint16_t id) {
   const auto schema = definitions_.schemas.find(id);
-  if (schema != definitions_.schemas.end() && schemas_written_.insert(id).second) writer_.write(schema->second);
+  if (schema == definitions_.schemas.end())
+    schemas_lacking_.insert(id);
+  else if (schemas_written_.insert(id).second)
+    writer_.write(schema->second);
 }
 
 bool McapOutput::define(std::uint16_t channel_id) {

@@ -51,6 +51,7 @@ class McapOutput {
   StreamTable streams_;
   std::set<std::uint16_t> schemas_written_;
   std::set<std::uint16_t> channels_written_;
+  std::set<std::uint16_t> schemas_lacking_;  ///< ids of schemas without which a channel was written
   bool chunk_ended_ = false;
 };
 

@@ -128,16 +128,23 @@ Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
   return common;
 }
 
-/// A message that outlives its reader's next step.
-struct Held {
-  mcap::Message message;
-  std::vector<std::byte> data;
-};
+/// Tells whether two files have the same messages, of which a moment may have more than fit into memory.
+class Fingerprint {
+ public:
+  void add(const mcap::Message& message) {
+    record_.clear();
+    mcap::append_record(record_, message);
+    sha_.update(record_);
+    ++messages_;
+  }
+  std::uint64_t messages() const { return messages_; }
+  bool operator==(const Fingerprint& other) const { return sha_.hex() == other.sha_.hex(); }
 
-bool same(const Held& a, const Held& b) {
-  return a.message.channel_id == b.message.channel_id && a.message.publish_time == b.message.publish_time &&
-         a.data == b.data;
-}
+ private:
+  Sha256 sha_;
+  std::uint64_t messages_ = 0;
+  mcap::ByteBuffer record_;
+};
 
 /// One of the files, read message by message; what else is in it goes to `take_other`.
 class Part {
@@ -160,6 +167,7 @@ class Part {
   }
 
   const std::optional<mcap::Message>& head() const { return head_; }
+  bool is_at(const Moment& moment) const { return head_ && moment_of(*head_) == moment; }
   const ByteSource& source() const { return source_; }
   double share() const { return share_; }
   std::vector<mcap::Damage> damages() const { return reader_.damages(); }
@@ -185,10 +193,11 @@ class Merger {
  private:
   void advance(Part& part);
   void take_other(const mcap::StreamRecord& record);
-  void take_group(Part& part, const Moment& moment, std::vector<Held>& group);
-  bool is_ours(const Held& held) const;
-  bool same_frame(const std::vector<Held>& a, const std::vector<Held>& b) const;
-  void write(const std::vector<Held>& group, const Part& part);
+  const Part& take_moment(const Moment& moment);
+  template <typename Take>
+  void take_group(Part& part, const Moment& moment, Take take);
+  bool is_ours(const mcap::Message& message) const;
+  void write(const mcap::Message& message, const Part& part);
   void require_next_frame(std::uint32_t sequence, const Part& part);
   double share() const;
 
@@ -201,31 +210,14 @@ class Merger {
 
 Merged Merger::run(const std::function<bool(double)>& progress) {
   for (const auto& part : parts_) advance(*part);
-  std::vector<Held> group;
-  std::vector<Held> twin;
   for (;;) {
-    const Part* from = nullptr;
     std::optional<Moment> next;
     for (const auto& part : parts_)
       if (part->head() && (!next || moment_of(*part->head()) < *next)) next = moment_of(*part->head());
     if (!next) break;
-    for (const auto& part : parts_) {
-      if (!part->head() || moment_of(*part->head()) != *next) continue;
-      take_group(*part, *next, from == nullptr ? group : twin);
-      if (from == nullptr) {
-        from = part.get();
-      } else if (same_frame(group, twin)) {
-        result_.duplicates +=
-            static_cast<std::uint64_t>(std::ranges::count_if(twin, [this](const Held& held) { return is_ours(held); }));
-      } else {
-        throw Error(part->source().name(),
-                    fmt::format("its frame {} (at {} ns) is not that of {}", next->sequence, next->time_ns,
-                                from->source().name()),
-                    kOneRecording);
-      }
-    }
-    write(group, *from);
-    if (!progress(share())) throw Error(from->source().name(), "merging was stopped; nothing was written", "");
+    const Part& from = take_moment(*next);
+    output_.end_full_chunk();
+    if (!progress(share())) throw Error(from.source().name(), "merging was stopped; nothing was written", "");
   }
   output_.write_definitions();
   output_.finish();
@@ -261,31 +253,47 @@ void Merger::take_other(const mcap::StreamRecord& record) {
   }
 }
 
-/// All messages of one moment, which stand together in a file.
-void Merger::take_group(Part& part, const Moment& moment, std::vector<Held>& group) {
-  group.clear();
-  while (part.head() && moment_of(*part.head()) == moment) {
-    Held& held = group.emplace_back();
-    held.message = *part.head();
-    held.data.assign(held.message.data.begin(), held.message.data.end());
+/// Writes what the first file has of it, which is returned; what the others have must be the same. Messages of others
+/// may differ: each file's first frame has its own /viz.
+const Part& Merger::take_moment(const Moment& moment) {
+  const bool is_shared = std::ranges::count_if(parts_, [&](const auto& part) { return part->is_at(moment); }) > 1;
+  const Part* from = nullptr;
+  Fingerprint frame;
+  for (const auto& part : parts_) {
+    if (!part->is_at(moment)) continue;
+    if (from == nullptr) {
+      from = part.get();
+      take_group(*part, moment, [&](const mcap::Message& message) {
+        write(message, *from);
+        if (is_shared && is_ours(message)) frame.add(message);
+      });
+      continue;
+    }
+    Fingerprint twin;
+    take_group(*part, moment, [&](const mcap::Message& message) {
+      if (is_ours(message)) twin.add(message);
+    });
+    if (!(twin == frame))
+      throw Error(part->source().name(),
+                  fmt::format("its frame {} (at {} ns) is not that of {}", moment.sequence, moment.time_ns,
+                              from->source().name()),
+                  kOneRecording);
+    result_.duplicates += twin.messages();
+  }
+  return *from;
+}
+
+/// All messages of one moment, which stand together in a file, one by one.
+template <typename Take>
+void Merger::take_group(Part& part, const Moment& moment, Take take) {
+  while (part.is_at(moment)) {
+    take(*part.head());
     advance(part);
   }
 }
 
-bool Merger::is_ours(const Held& held) const {
-  return output_.streams().stream_of(held.message.channel_id) != Stream::kForeign;
-}
-
-/// What others made of it may differ: each file's first frame has its own /viz.
-bool Merger::same_frame(const std::vector<Held>& a, const std::vector<Held>& b) const {
-  const auto ours = [this](const std::vector<Held>& group) {
-    std::vector<const Held*> list;
-    list.reserve(group.size());
-    for (const Held& held : group)
-      if (is_ours(held)) list.push_back(&held);
-    return list;
-  };
-  return std::ranges::equal(ours(a), ours(b), [](const Held* one, const Held* other) { return same(*one, *other); });
+bool Merger::is_ours(const mcap::Message& message) const {
+  return output_.streams().stream_of(message.channel_id) != Stream::kForeign;
 }
 
 void Merger::require_next_frame(std::uint32_t sequence, const Part& part) {
@@ -297,17 +305,11 @@ void Merger::require_next_frame(std::uint32_t sequence, const Part& part) {
   ++result_.frames;
 }
 
-void Merger::write(const std::vector<Held>& group, const Part& part) {
-  for (const Held& held : group) {
-    if (output_.streams().stream_of(held.message.channel_id) == Stream::kPose)
-      require_next_frame(held.message.sequence, part);
-    mcap::Message message = held.message;
-    message.data = held.data;
-    if (!output_.write(message))
-      throw Error(part.source().name(), fmt::format("nothing defines channel {} of its messages", message.channel_id),
-                  "recover it first");
-  }
-  output_.end_full_chunk();
+void Merger::write(const mcap::Message& message, const Part& part) {
+  if (output_.streams().stream_of(message.channel_id) == Stream::kPose) require_next_frame(message.sequence, part);
+  if (!output_.write(message))
+    throw Error(part.source().name(), fmt::format("nothing defines channel {} of its messages", message.channel_id),
+                "recover it first");
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ struct Merged {
 
 /// Puts traces together that are parts of one recording, such as `trim` makes: their frames in order of time, each
 /// once, with the messages of others (/viz) that the first file has of it; every attachment and metadata once;
-/// compressed as the first is. Keeps one chunk of each file in memory.
+/// compressed as the first is. Keeps one chunk, or the largest record, of each file in memory, however many messages a
+/// moment has.
 ///
 /// Throws `Error`, naming file and reason: no trace of ours; another avatar or actuator map; other definitions of a
 /// channel; a frame that two files have and that differs; frames whose numbers do not follow their times; reading

@@ -20,15 +20,20 @@ void StreamTable::add(mcap::Schema schema) {
   const std::uint16_t id = schema.id;
   const auto known = schemas_.find(id);
   if (known != schemas_.end() && trace_format::is_ours(known->second)) return;
+  const bool is_ours = trace_format::is_ours(schema);
   schemas_.insert_or_assign(id, std::move(schema));
-  for (const auto& [channel_id, channel] : channels_) {
-    if (channel.schema_id == id) update(channel);
-  }
+  // A file may define 65535 of both: each channel is looked at once, when a schema of ours comes after it.
+  if (!is_ours) return;
+  for (auto use = channels_of_schema_.lower_bound({id, 0}); use != channels_of_schema_.end() && use->first == id; ++use)
+    update(channels_.at(use->second));
 }
 
 void StreamTable::add(mcap::Channel channel) {
   const std::uint16_t id = channel.id;
   if (streams_[id] != Stream::kForeign) return;
+  if (const auto known = channels_.find(id); known != channels_.end())
+    channels_of_schema_.erase({known->second.schema_id, id});
+  channels_of_schema_.emplace(channel.schema_id, id);
   update(channels_.insert_or_assign(id, std::move(channel)).first->second);
 }
 

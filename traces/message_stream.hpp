@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "traces/mcap/byte_source.hpp"
@@ -29,6 +31,7 @@ class StreamTable {
 
   std::map<std::uint16_t, mcap::Schema> schemas_;
   std::map<std::uint16_t, mcap::Channel> channels_;
+  std::set<std::pair<std::uint16_t, std::uint16_t>> channels_of_schema_;  ///< schema's id, channel's id
   std::vector<trace_format::Stream> streams_ = std::vector(1 << 16, trace_format::Stream::kForeign);  ///< by channel id
 };
 

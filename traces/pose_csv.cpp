@@ -81,15 +81,29 @@ class PoseCsv final : public FrameFile {
 }  // namespace
 
 std::vector<std::string> pose_csv_nodes(const std::vector<std::string>& node_names) {
+  std::vector<std::string> nodes = node_names;
   std::map<std::string, int> count;
-  for (const std::string& name : node_names) ++count[name];
-  std::vector<std::string> nodes;
-  for (std::size_t i = 0; i < node_names.size(); ++i) {
-    const bool is_plain = !node_names[i].empty() && count[node_names[i]] == 1;
-    nodes.push_back(is_plain ? node_names[i] : fmt::format("{}#{}", node_names[i], i));
-    // A line end would end the row; a file that has one in a name has that name alone.
-    std::ranges::replace(nodes.back(), '\n', ' ');
-    std::ranges::replace(nodes.back(), '\r', ' ');
+  for (std::string& node : nodes) {
+    // A line end would end the row.
+    std::ranges::replace(node, '\n', ' ');
+    std::ranges::replace(node, '\r', ' ');
+    ++count[node];
+  }
+  std::map<std::string, std::size_t> plain;
+  std::vector<std::size_t> numbered;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].empty() || count[nodes[i]] > 1)
+      numbered.push_back(i);
+    else
+      plain.emplace(nodes[i], i);
+  for (std::size_t k = 0; k < numbered.size(); ++k) {
+    std::string& node = nodes[numbered[k]];
+    node += fmt::format("#{}", numbered[k]);
+    // A node may have this for its plain name: then it gets its own number, which no other has.
+    if (const auto same = plain.find(node); same != plain.end()) {
+      numbered.push_back(same->second);
+      plain.erase(same);
+    }
   }
   return nodes;
 }

@@ -11,8 +11,8 @@
 
 namespace vestige {
 
-/// What a node is called in the columns of a pose CSV: its name; behind it `#INDEX` where the name is empty or another
-/// node has it too.
+/// What a node is called in the columns of a pose CSV, each otherwise than all others: its name, line ends as spaces;
+/// behind it `#INDEX` where the name is empty or another node is called so too.
 std::vector<std::string> pose_csv_nodes(const std::vector<std::string>& node_names);
 
 /// The ten columns of a node: NODE.tx, .ty, .tz, .rx, .ry, .rz, .rw, .sx, .sy, .sz.

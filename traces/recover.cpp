@@ -195,7 +195,8 @@ std::uint64_t Recoverer::bytes_of_rebuilt(const mcap::Damage& damage) {
 }
 
 void Recoverer::take(const RecordPlace& place) {
-  if (data_ended_ && place.opcode != Opcode::kChunk) return;
+  // Behind the data section stands what is made anew; messages there are against MCAP's rules, but readers take them.
+  if (data_ended_ && place.opcode != Opcode::kChunk && place.opcode != Opcode::kMessage) return;
   if (place.content_bytes > mcap::kMaxChunkBytes && place.opcode != Opcode::kAttachment) {
     result_.bytes_lost += place.end() - place.offset;
     return;

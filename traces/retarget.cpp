@@ -22,6 +22,12 @@ namespace {
 using Index = std::size_t;
 using Roles = std::vector<std::optional<BodyRole>>;
 
+// As many as a glTF's animation may have: half an hour of 60 joints at 120 Hz. But a file may give one number a frame
+// for all of its joints: beyond some minutes, no more than eight are stored for each number it has.
+constexpr std::size_t kMostNumbers = std::size_t{1} << 26;
+constexpr std::size_t kAlwaysAllowed = std::size_t{1} << 22;
+constexpr std::size_t kMostGrowth = 8;
+
 constexpr BodyRole kHips = {BodyPart::kHips, BodySide::kNone, 0};
 
 std::optional<Index> find_role(const Roles& roles, const BodyRole& role) {
@@ -239,6 +245,7 @@ class Retargeter {
 
  private:
   void refuse_other_bodies() const;
+  void refuse_too_many_numbers() const;
   void align();
   glm::dquat flatter(Index foot, const glm::dquat& with_leg) const;
   /// The avatar's joint with this role, where one of the motion leads it.
@@ -271,7 +278,7 @@ void Retargeter::refuse_other_bodies() const {
   if (followed(kHips) && (arm || leg)) return;
   std::vector<std::string> names;
   for (const NamedJoint& joint : source_.joints)
-    if (names.size() < 8) names.push_back(joint.name);
+    if (names.size() < 8) names.push_back(shown_word(joint.name));
   throw Error(name_,
               fmt::format("its joints ({}{}) match neither the hips nor a limb of the avatar", fmt::join(names, ", "),
                           source_.joints.size() > names.size() ? ", …" : ""),
@@ -365,7 +372,22 @@ double Retargeter::reference_height() const {
   return reference;
 }
 
+/// Counts what `animate` stores: a time with each rotation, and with the hips' place.
+void Retargeter::refuse_too_many_numbers() const {
+  const auto followers =
+      static_cast<Index>(std::ranges::count_if(follows_, [](const auto& joint) { return joint.has_value(); }));
+  const std::size_t numbers = motion_.frame_count * (followers * 5 + 4);
+  const std::size_t most = std::min(kMostNumbers, kAlwaysAllowed + kMostGrowth * motion_.values.size());
+  if (numbers > most)
+    throw Error(name_,
+                fmt::format("its {} frames would become {} numbers for the {} joints of the avatar that follow, more "
+                            "than {}",
+                            motion_.frame_count, numbers, followers, most),
+                "cut the motion into parts, or export it with fewer frames a second");
+}
+
 Animation Retargeter::animate(double metres_per_unit) const {
+  refuse_too_many_numbers();
   Animation animation;
   std::vector<float> times_s;
   for (std::size_t frame = 0; frame < motion_.frame_count; ++frame) {
@@ -381,6 +403,7 @@ Animation Retargeter::animate(double metres_per_unit) const {
     channel.node = avatar_.node_order[node];
     channel.property = property;
     channel.times_s = times_s;
+    channel.values.reserve(motion_.frame_count * (property == AnimatedProperty::kRotation ? 4 : 3));
     animation.channels.push_back(std::move(channel));
     return animation.channels.size() - 1;
   };

@@ -35,8 +35,8 @@ struct RetargetReport {
 /// and vertically from where the hips stand at rest.
 ///
 /// Joints are matched by their role in a body (body_roles.hpp), spines from both ends, then the rest by name. Throws
-/// `Error` naming the motion where the hips, or both an arm and a leg, match nothing; nodes with a `fixed_matrix` do
-/// not count.
+/// `Error` naming the motion where the hips, or both an arm and a leg, match nothing (nodes with a `fixed_matrix` do
+/// not count), and where the animation would hold more than 2^26 numbers, or many more than the motion has.
 Animation retarget(const BvhMotion& motion, const Avatar& avatar, std::optional<double> metres_per_unit,
                    const std::string& name, RetargetReport& report);
 

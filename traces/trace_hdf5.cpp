@@ -4,15 +4,19 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "traces/error.hpp"
 #include "traces/hdf5_library.hpp"
+#include "traces/sha256.hpp"
+#include "traces/trace_format.hpp"
 
 namespace vestige {
 
 namespace {
 
+constexpr const char* kSession = "session";
 constexpr const char* kRemedy = "name a file that 'vestige export' wrote, or that has its tables (FORMAT.md)";
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 constexpr hsize_t kMostColumns = 1000000;
@@ -80,10 +84,10 @@ class Table {
 class TraceHdf5::Implementation {
  public:
   explicit Implementation(const std::filesystem::path& path) : path_(path), file_(open(path)) {
-    avatar_glb = read_bytes("avatar.glb");
+    avatar_glb = read_attachment("avatar.glb");
     if (avatar_glb.empty()) throw Error(path.string(), "holds no avatar.glb", kRemedy);
-    actuator_map_png = read_bytes("actuator_map.png");
-    actuator_map_json = read_bytes("actuator_map.json");
+    actuator_map_png = read_attachment("actuator_map.png");
+    actuator_map_json = read_attachment("actuator_map.json");
     const hsize_t frames = time_.dimensions()[0];
     if (frames == 0) throw Error(path.string(), "holds no frame", kRemedy);
     time_.expect({frames});
@@ -133,7 +137,6 @@ class TraceHdf5::Implementation {
   }
 
   double share() const { return static_cast<double>(row_) / static_cast<double>(frames_); }
-  std::size_t node_count() const { return static_cast<std::size_t>(nodes_); }
 
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> actuator_map_png;
@@ -148,14 +151,47 @@ class TraceHdf5::Implementation {
     return file;
   }
 
-  std::vector<std::byte> read_bytes(const char* name) const {
+  /// Empty where there is none.
+  std::vector<std::byte> read_attachment(const char* name) const {
     std::vector<std::byte> bytes;
     if (hdf5().link_exists(file_.id(), name, H5P_DEFAULT) <= 0) return bytes;
     const Table table(file_.id(), path_, name);
     table.expect({0});
     if (table.dimensions()[0] > std::filesystem::file_size(path_)) table.fail("is larger than the file");
     table.read(0, table.dimensions()[0], hdf5().uint8, bytes);
+    const std::string key = fmt::format("{}{}", trace_format::kSha256Prefix, name);
+    const auto recorded = read_session(key);
+    if (recorded && !bytes.empty() && *recorded != sha256_hex(bytes))
+      throw Error(path_.string(),
+                  fmt::format("its {} is not the one that was recorded: its SHA-256 is another than the group session "
+                              "says",
+                              name),
+                  fmt::format("export the trace again, or, if you changed it, remove the attribute '{}'", key));
     return bytes;
+  }
+
+  /// What an attribute of the group `session` says, if it is there and is a text.
+  std::optional<std::string> read_session(const std::string& key) const {
+    const Hdf5Library& h5 = hdf5();
+    if (h5.attribute_exists(file_.id(), kSession, key.c_str(), H5P_DEFAULT) <= 0) return {};
+    const Hdf5Handle attribute(h5.open_attribute(file_.id(), kSession, key.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+                               h5.close_attribute);
+    const Hdf5Handle type(h5.attribute_type(attribute.id()), h5.close_type);
+    if (h5.class_of(type.id()) != H5T_STRING) return {};
+    std::string text;
+    bool is_read = false;
+    if (h5.is_variable_text(type.id()) > 0) {
+      char* found = nullptr;
+      is_read = h5.read_attribute(attribute.id(), type.id(), static_cast<void*>(&found)) >= 0;
+      if (found != nullptr) text = found;
+      h5.free_memory(found);
+    } else {
+      text.resize(h5.size_of(type.id()));
+      is_read = h5.read_attribute(attribute.id(), type.id(), text.data()) >= 0;
+      text.resize(std::min(text.find('\0'), text.size()));  // which fills what the text leaves
+    }
+    if (!is_read) throw Error(path_.string(), fmt::format("its attribute '{}' cannot be read", key), kRemedy);
+    return text;
   }
 
   static glm::dvec3 vector(const std::vector<double>& numbers, std::size_t place) {
@@ -244,9 +280,6 @@ const std::vector<std::byte>& TraceHdf5::actuator_map_png() const {
 }
 const std::vector<std::byte>& TraceHdf5::actuator_map_json() const {
   return implementation_->actuator_map_json;
-}
-std::size_t TraceHdf5::node_count() const {
-  return implementation_->node_count();
 }
 bool TraceHdf5::next(TraceFrame& frame) {
   return implementation_->next(frame);

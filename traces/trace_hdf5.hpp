@@ -11,7 +11,8 @@ namespace vestige {
 
 /// Reads what `make_frame_hdf5` wrote, or what others wrote in the same layout (FORMAT.md), a block of frames at a
 /// time. Numbers of other types are converted. Every function throws `Error` naming the file: no HDF5, a table that is
-/// missing or of another shape, frames or times that run back, a library that is not installed.
+/// missing or of another shape, an attachment with another SHA-256 than the session says, frames or times that run
+/// back, a library that is not installed.
 class TraceHdf5 {
  public:
   explicit TraceHdf5(const std::filesystem::path& path);
@@ -22,8 +23,6 @@ class TraceHdf5 {
   const std::vector<std::byte>& avatar_glb() const;
   const std::vector<std::byte>& actuator_map_png() const;   ///< empty: none
   const std::vector<std::byte>& actuator_map_json() const;  ///< empty: none
-  /// Nodes of each pose.
-  std::size_t node_count() const;
 
   bool next(TraceFrame& frame);
   double share() const;

@@ -17,7 +17,6 @@ struct McapSummary {
     std::string topic;
     std::string encoding;  ///< of the messages
     std::string schema;    ///< its name, empty: none
-    std::string schema_encoding;
     std::uint64_t messages = 0;
     double rate_hz = 0;  ///< (messages - 1) / duration; 0 where that says nothing
   };
@@ -45,15 +44,11 @@ struct McapSummary {
   double duration_s = 0;
   std::uint64_t dropped = 0;  ///< messages that a recorder of ours noted as lost
   std::map<std::string, std::uint64_t> dropped_by_topic;
-  bool complete = false;              ///< it has a footer, and nothing that was looked at is damaged
-  std::vector<std::string> warnings;  ///< what is wrong, one sentence each, with byte offset
+  bool complete = false;              ///< it has a footer, and nothing is damaged
+  std::vector<std::string> warnings;  ///< what is wrong, one sentence each, with byte offset; after 1000 how many more
 };
 
-/// kIndex reads the summary at the file's end, attachments and events; where there is none it reads everything by
-/// itself. kEverything verifies every CRC.
-enum class SummaryDepth { kIndex, kEverything };
-
-/// Throws `Error`: no such file, no MCAP file. "-" is standard input.
-McapSummary summarise_mcap(const std::filesystem::path& path, SummaryDepth depth = SummaryDepth::kIndex);
+/// Reads all of the file and verifies every CRC. Throws `Error`: no such file, no MCAP file. "-" is standard input.
+McapSummary summarise_mcap(const std::filesystem::path& path);
 
 }  // namespace vestige

@@ -110,7 +110,7 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
                                             const TraceAttachments& attachments, const TraceWriterOptions& options)
     : path_(path),
       options_(options),
-      file_(path, options.overwrite),
+      file_(path, options.overwrite, options.unfinished),
       writer_([this](mcap::Bytes bytes) { file_.write(bytes); },
               {.profile = std::string(trace_format::kProfile), .library = fmt::format("vestige {}", kVersion)},
               writer_options(options)),

@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "traces/append_file.hpp"
 #include "traces/avatar.hpp"
 #include "traces/mcap/compression.hpp"
 #include "traces/output_file.hpp"
@@ -27,6 +28,7 @@ enum class Viz : std::uint8_t { kNone, kScene };
 
 struct TraceWriterOptions {
   Overwrite overwrite = Overwrite::kRefuse;
+  Unfinished unfinished = Unfinished::kKept;  ///< removed: for what can be made again
   Compression compression = Compression::kZstd;
   std::size_t chunk_bytes = std::size_t{1} << 20;  ///< uncompressed size at which a chunk is closed
   double chunk_s = 0.1;                            ///< age, by the wall clock, at which a chunk is closed
@@ -47,7 +49,8 @@ struct TraceAttachments {
 ///
 /// With `Overwrite::kAllow` an existing file is replaced only when the new one's beginning is safely on disk. When a
 /// write fails midway, what was written is kept as NAME.partial, which `TraceReader` reads, and the `Error` says so;
-/// when no frame had been written yet, nothing is left. "-" is standard output.
+/// when no frame had been written yet, nothing is left. With `Unfinished::kRemoved` nothing is left in any case, and
+/// the file has its name once `finish` has returned. "-" is standard output.
 ///
 /// Every function throws `Error` naming the file; after that, only the destructor may be called.
 class TraceWriter {
@@ -56,7 +59,7 @@ class TraceWriter {
   TraceWriter(const std::filesystem::path& path, Session session, const Avatar& avatar,
               const TraceAttachments& attachments, const TraceWriterOptions& options);
   /// Without `finish`: writes what is pending and leaves a trace without footer, which is still readable. A trace
-  /// without any frame is removed.
+  /// without any frame is removed, and any one with `Unfinished::kRemoved`.
   ~TraceWriter();
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;

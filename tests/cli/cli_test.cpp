@@ -4,6 +4,7 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -267,6 +268,16 @@ TEST_F(CommandLine, InterruptedRecordingLeavesAValidTrace) {
 TEST_F(CommandLine, AClosedPipeEndsItWithoutACrash) {
   EXPECT_NE(run("{ vestige avatar; echo $? >code; } 2>&1 | true; sleep 0.2; exit $(cat code)").exit_code, 134);
   EXPECT_EQ(run("vestige avatar nowhere.glb 2>&-").exit_code, 1);
+}
+
+TEST_F(CommandLine, WhatItSaysStaysOutOfItsFilesWhereStandardStreamsAreClosed) {
+  run("vestige record --duration 0.1 -o a.mcap >&-");
+  run("vestige record --duration 0.1 -o b.mcap >&- 2>&-");
+  run("{ echo '{}'; echo '{\"unknown\": 1}'; echo '{}'; } | vestige record --live - -o c.mcap 2>&-");
+  run("vestige record --duration 0.1 -o d.mcap <&- >&- 2>&-");
+  for (const char* file : {"a.mcap", "b.mcap", "c.mcap", "d.mcap"})
+    EXPECT_THAT(run(fmt::format("vestige doctor {}", file)).standard_output, HasSubstr("no problem")) << file;
+  EXPECT_NE(run("vestige record --duration 0.1 -o - >&-").exit_code, 0);
 }
 
 TEST_F(CommandLine, NeverOverwritesWithoutForce) {

@@ -1,17 +1,23 @@
 // Traces that leave for other programs and come back, as a user moves them.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
+#include <set>
 
 #include "tests/support/command_line.hpp"
 #include "tests/support/npm.hpp"
+#include "traces/pose_csv.hpp"
 
 namespace vestige {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A walk of two frames on a skeleton of Mixamo's names, in centimetres.
 constexpr const char* kWalk = R"(HIERARCHY
@@ -99,6 +105,21 @@ class Exchange : public test::CommandLineTest {
   }
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+  void expect_no_hidden_file() const {
+    EXPECT_EQ(run("ls -A | grep -c '^[.]'").standard_output, "0\n") << run("ls -A").standard_output;
+  }
+  /// Records what comes in these lines, as they are, without a map.
+  void record_lines(const std::string& lines, const std::string& name) const {
+    write("lines.ndjson", lines);
+    ASSERT_EQ(run("vestige record --live - --map none --force -o " + name + " < lines.ndjson").exit_code, 0);
+  }
+  /// The JSON chunk of a GLB.
+  nlohmann::json json_of_glb(const std::string& name) const {
+    const std::string glb = read_text_file(folder_ / name);
+    std::uint32_t length = 0;
+    std::memcpy(&length, glb.data() + 12, sizeof length);
+    return nlohmann::json::parse(glb.substr(20, length));
+  }
 };
 
 TEST_F(Exchange, CsvAndBackIsTheSameTraceToTheBit) {
@@ -108,6 +129,38 @@ TEST_F(Exchange, CsvAndBackIsTheSameTraceToTheBit) {
   EXPECT_EQ(hash_of("back.mcap"), hash_of("a.mcap"));
   const auto inspected = json_of("vestige inspect back.mcap --json -");
   EXPECT_EQ(inspected["attachments"].size(), json_of("vestige inspect a.mcap --json -")["attachments"].size());
+}
+
+TEST_F(Exchange, CsvLeavesNoMapOfTheExportBefore) {
+  ASSERT_EQ(run("vestige record --map none --duration 0.05 -o no_map.mcap && vestige export a.mcap -o there").exit_code,
+            0);
+  ASSERT_TRUE(exists("there/actuator_map.png"));
+  expect_failure("vestige export no_map.mcap -o there", 1, {"exists already"});
+  EXPECT_TRUE(exists("there/actuator_map.json"));
+  const auto report = json_of("vestige export no_map.mcap -o there --force --json -");
+  EXPECT_THAT(report["outputs"], ElementsAre("there/poses.csv", "there/colliders.csv", "there/avatar.glb"));
+  EXPECT_FALSE(exists("there/actuator_map.png"));
+  EXPECT_FALSE(exists("there/actuator_map.json"));
+  ASSERT_EQ(run("vestige import there -o back.mcap").exit_code, 0);
+  EXPECT_EQ(json_of("vestige inspect back.mcap --json -")["attachments"].size(), 1U);
+}
+
+TEST_F(Exchange, CsvColumnsHaveNamesOfTheirOwnWhateverTheNodesAreCalled) {
+  EXPECT_THAT(pose_csv_nodes({"hips", "", "dup", "a\nb", "dup"}), ElementsAre("hips", "#1", "dup#2", "a b", "dup#4"));
+  EXPECT_THAT(pose_csv_nodes({"dup", "dup", "dup#1", "dup#1#2", "#5", ""}),
+              ElementsAre("dup#0", "dup#1", "dup#1#2", "dup#1#2#3", "#5#4", "#5"));
+  EXPECT_THAT(pose_csv_nodes({"e\nf", "e f", "e\rf#0"}), ElementsAre("e f#0", "e f#1", "e f#0#2"));
+  const std::vector<std::string> nodes = pose_csv_nodes({"a#1", "a", "a", "a#2", "a#1#0", "a#1#0#4", "a#2#3", ""});
+  EXPECT_EQ(std::set<std::string>(nodes.begin(), nodes.end()).size(), nodes.size());
+}
+
+TEST_F(Exchange, MistakesInCollidersAdviseTheColumnsThatTheTableHas) {
+  write("frames.csv", "frame,time_s,id,x,y,z,teleported\n0,0,1,0,0,x,0\n");
+  expect_failure("vestige record --colliders frames.csv -o b.mcap", 1,
+                 {"frames.csv, line 2", "each row is frame,time_s,id,x,y,z,teleported"}, "b.mcap");
+  write("times.csv", "time_s,id,x,y,z\n0,1,0,0,x\n");
+  expect_failure("vestige record --colliders times.csv -o b.mcap", 1,
+                 {"times.csv, line 2", "each row is time_s,id,x,y,z:"}, "b.mcap");
 }
 
 TEST_F(Exchange, CsvOfOneTableGoesToAFileOrStandardOutput) {
@@ -159,6 +212,85 @@ TEST_F(Exchange, Hdf5ThatIsBrokenIsRefused) {
   expect_failure("vestige import cut.h5 -o b.mcap", 1, {"cut.h5"}, "b.mcap");
   write("text.h5", "nothing");
   expect_failure("vestige import text.h5 -o b.mcap", 1, {"text.h5"}, "b.mcap");
+}
+
+TEST_F(Exchange, Hdf5WhoseAvatarIsNotTheRecordedOneIsRefused) {
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5").exit_code, 0);
+  std::string file = read_text_file(folder_ / "a.h5");
+  const std::size_t place = file.find("\"generator\":\"");
+  ASSERT_NE(place, std::string::npos);
+  file.replace(place + 13, 1, "X");
+  write("changed.h5", file);
+  expect_failure("vestige import changed.h5 -o b.mcap", 1,
+                 {"changed.h5", "avatar.glb", "SHA-256", "remove the attribute"}, "b.mcap");
+  // Another program's file need not say what it was.
+  const std::size_t key = file.find("sha256:avatar.glb");
+  ASSERT_NE(key, std::string::npos);
+  file.replace(key, 6, "SHA256");
+  write("changed.h5", file);
+  EXPECT_EQ(run("vestige import changed.h5 -o b.mcap").exit_code, 0);
+}
+
+/// Every size at which something else of it cannot be written: attachments, tables, what HDF5 writes when it closes.
+TEST_F(Exchange, Hdf5OntoAFullDiskIsAnErrorAndLeavesNothing) {
+  for (const int blocks : {1, 16, 200, 600, 700, 750, 800, 840})
+    expect_failure("ulimit -f " + std::to_string(blocks) + "; vestige export a.mcap -o full.h5", 1, {"full.h5"},
+                   "full.h5");
+  expect_no_hidden_file();
+}
+
+TEST_F(Exchange, ImportOntoAFullDiskLeavesNothing) {
+  ASSERT_EQ(run("vestige record --colliders swarm --count 100 --rate 200 --duration 3 -o long.mcap && "
+                "vestige export long.mcap -o long.h5")
+                .exit_code,
+            0);
+  write("precious.mcap", "precious");
+  for (const char* output : {"full.mcap", "precious.mcap"}) {
+    // The first chunks can be written.
+    const auto outcome =
+        run(std::string("ulimit -f 4000; vestige import long.h5 --force --compression none -o ") + output);
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.standard_error, HasSubstr(std::string(" ") + output + ": could not write"));
+    EXPECT_THAT(outcome.standard_error, Not(HasSubstr("kept")));
+  }
+  EXPECT_FALSE(exists("full.mcap"));
+  EXPECT_EQ(read_text_file(folder_ / "precious.mcap"), "precious");
+  EXPECT_EQ(run("ls -A | grep -c partial").standard_output, "0\n");
+  expect_no_hidden_file();
+}
+
+TEST_F(Exchange, GltfIsValidWhereverTheOriginIs) {
+  const auto line = [](const char* time_s, const char* origin) {
+    return fmt::format(R"({{"time_s":{},"pose":{{"origin":{},"joints":{{}}}}}})", time_s, origin) + "\n";
+  };
+  const std::string good = line("0", "[1,2,3]");
+  for (const char* origin : {R"(["nan",2,3])", R"([1,"-inf",3])", "[1,2,1e300]"}) {
+    const std::string bad = line("0.1", origin);
+    for (const std::string& lines : {good + bad + line("0.2", "[1,2,4]"), line("0", origin) + line("0.1", "[1,2,3]")}) {
+      record_lines(lines, "far.mcap");
+      const auto outcome = run("vestige export far.mcap -o far.glb --force");
+      EXPECT_EQ(outcome.exit_code, 3) << lines;
+      EXPECT_THAT(outcome.standard_error, HasSubstr("not finite in fp32: 1 value;")) << lines;
+      // Which reads its animation, and refuses what is not finite.
+      EXPECT_EQ(run("vestige avatar far.glb").exit_code, 0) << lines;
+      const auto json = json_of_glb("far.glb");
+      const bool starts_well = lines.starts_with(good);
+      EXPECT_EQ(json["scenes"][0]["extras"]["origin_m"],
+                nlohmann::json(starts_well ? std::vector{1.0, 2.0, 3.0} : std::vector{0.0, 0.0, 0.0}))
+          << lines;
+    }
+  }
+}
+
+TEST_F(Exchange, OneIsNotCalledMany) {
+  // Both times are the same in fp32.
+  record_lines("{\"time_s\":100000,\"colliders\":[{\"id\":1,\"position\":[0,0,0]}]}\n{\"time_s\":100000.000001}\n",
+               "two.mcap");
+  const auto outcome = run("vestige export two.mcap -o two.glb");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("left out 1 frame at the time of the one before"));
+  ASSERT_EQ(run("vestige export two.mcap -o two --rate 1").standard_output.find("two: 1 frame of 1 collider and "), 0U);
+  EXPECT_THAT(run("vestige import two -o one.mcap").standard_output, HasSubstr("one.mcap: 1 frame of "));
 }
 
 TEST_F(Exchange, GltfHoldsTheMotionAndTheCollidersAndIsValid) {
@@ -222,6 +354,19 @@ TEST_F(Exchange, MotionCaptureMovesTheBuiltInAvatar) {
   expect_failure("vestige record --animation walk --unit cm -o b.mcap", 2, {"--unit", ".bvh"}, "b.mcap");
 }
 
+TEST_F(Exchange, JointsOfAnyNameAreNamedBriefly) {
+  std::string walk = kWalk;
+  walk.replace(walk.find("mixamorig:Spine"), 15, "\x1b[31mtail" + std::string(100'000, 'x'));
+  write("long.bvh", walk);
+  const auto outcome = run("vestige import --motion long.bvh -v -o long.mcap");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("nothing follows these joints: \\x1b[31mtailx"));
+  EXPECT_LT(outcome.standard_error.size(), 10'000U);
+  write("dog.bvh", "HIERARCHY\nROOT " + std::string(100'000, 'x') +
+                       "\n{\nOFFSET 0 0 0\nCHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 1\n0\n");
+  EXPECT_LT(run("vestige import --motion dog.bvh -o b.mcap").standard_error.size(), 1000U);
+}
+
 TEST_F(Exchange, WhatIsWrongWithAFileIsSaidByLineAndNothingIsWritten) {
   std::string walk = kWalk;
   write("cut.bvh", walk.substr(0, walk.size() - 3));
@@ -249,7 +394,7 @@ TEST_F(Exchange, WhatIsWrongWithAFileIsSaidByLineAndNothingIsWritten) {
                  {"colliders.csv, line", "has no pose"}, "b.mcap");
   write("node.csv", "time_s,tail.tx\n0,1\n");
   expect_failure("vestige import --poses node.csv -o b.mcap", 1, {"node.csv, line 1", "tail.tx"}, "b.mcap");
-  EXPECT_EQ(run("ls -A | grep -c '^[.]'").standard_output, "0\n") << "no temporary file stays";
+  expect_no_hidden_file();
 }
 
 /// 30 000 frames are about 120 MB; every way out and back gets by with 96 MiB of data.

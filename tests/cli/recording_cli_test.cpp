@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "tests/support/background_process.hpp"
@@ -210,17 +212,21 @@ TEST_F(Recording, OfTheVmcProtocolIsWhatWasSent) {
                                    folder_ / "error");
   const test::UdpSender sender(port);
   const std::vector<std::byte> garbage(5, std::byte{'/'});
-  bool garbage_sent = false;
+  std::optional<float> sent_with_garbage;
   for (int i = 0; i < 3000; ++i) {
     const auto x = static_cast<float>(i);
     sender.send(test::bundle({test::bone("Hips", {1, 0, 0, 0}, {0, 0.95, 0}), test::bone("Tail", {1, 0, 0, 0}),
                               test::bone("LeftUpperArm", glm::angleAxis(0.5, glm::dvec3(0, 0, 1))),
                               test::collider(5, x, 2, 3)}));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    const std::size_t so_far = frames_so_far("vr.mcap").size();
-    if (so_far > 0 && !garbage_sent) sender.send(garbage);
-    garbage_sent = so_far > 0;
-    if (so_far >= 20) break;
+    const auto so_far = frames_so_far("vr.mcap");
+    if (!so_far.empty() && !sent_with_garbage) {
+      sender.send(garbage);
+      sent_with_garbage = x;
+    }
+    if (so_far.size() < 20) continue;
+    const auto& colliders = so_far.back().colliders;
+    if (!colliders.empty() && colliders[0].position_m.x > std::max(*sent_with_garbage, 5.0F)) break;
   }
   recorder.signal(SIGINT);
   EXPECT_EQ(recorder.wait(), 3);
@@ -271,7 +277,7 @@ TEST_F(Recording, OfARingOutlivesASnapshotThatFails) {
                                    folder_ / "error");
   const test::UdpSender sender(port);
   int listened = 0;
-  for (int i = 0; i < 3000 && listened < 100; ++i) {
+  for (int i = 0; i < 3000 && listened < 400; ++i) {
     sender.send(test::collider(5, 1, 2, 3));
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     // Before it listens, the signal would end it.

@@ -1,11 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
-#include <iostream>
 #include <limits>
 #include <string_view>
 
+#include "tests/fuzz/require.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/error.hpp"
 #include "traces/glb_container.hpp"
@@ -14,14 +13,10 @@
 // Whatever bytes a glTF file holds, loading it ends in an error that says something, or in an avatar that keeps what
 // avatar.hpp promises and can be posed.
 
+using vestige::fuzz::require;
+
 namespace vestige {
 namespace {
-
-void require(bool condition, const char* promise) {
-  if (condition) return;
-  std::cerr << "broken promise: " << promise << '\n';
-  std::abort();
-}
 
 void check(const Avatar& avatar) {
   const std::size_t vertices = avatar.position_bind.size();
@@ -73,7 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::vector<std::byte> glb = vestige::pack_avatar_glb(vestige::joined(input), "/nonexistent/fuzz.gltf");
     vestige::check(vestige::parse_avatar_glb(glb, "fuzz"));
   } catch (const vestige::Error& error) {
-    vestige::require(std::strlen(error.what()) > 0, "errors say something");
+    require(std::strlen(error.what()) > 0, "errors say something");
   }
   return 0;
 }

@@ -1,24 +1,19 @@
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <iostream>
 #include <string_view>
 
+#include "tests/fuzz/require.hpp"
 #include "traces/error.hpp"
 #include "traces/retarget.hpp"
 
 // Whatever a BVH file holds, reading it and putting it on an avatar ends in an error that says something, or in an
 // animation that can be played and is finite.
 
+using vestige::fuzz::require;
+
 namespace vestige {
 namespace {
-
-void require(bool condition, const char* promise) {
-  if (condition) return;
-  std::cerr << "broken promise: " << promise << '\n';
-  std::abort();
-}
 
 /// The skeleton of a person; motion looks at nothing else of an avatar.
 Avatar skeleton() {
@@ -66,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   try {
     vestige::check({reinterpret_cast<const char*>(data), size});
   } catch (const vestige::Error& error) {
-    vestige::require(std::strlen(error.what()) > 0, "errors say something");
+    require(std::strlen(error.what()) > 0, "errors say something");
   }
   return 0;
 }

@@ -1,7 +1,6 @@
 #include <algorithm>
-#include <cstdlib>
-#include <iostream>
 
+#include "tests/fuzz/require.hpp"
 #include "transport/cobs.hpp"
 #include "transport/vest_frame.hpp"
 #include "transport/xbee_api.hpp"
@@ -9,14 +8,10 @@
 // Whatever comes over the line, through an XBee or not, reading it ends; and it is read the same in whatever pieces.
 // The first byte of the input chooses the way and the length of the pieces.
 
+using vestige::fuzz::require;
+
 namespace vestige {
 namespace {
-
-void require(bool condition, const char* promise) {
-  if (condition) return;
-  std::cerr << "broken promise: " << promise << '\n';
-  std::abort();
-}
 
 enum class Way : std::uint8_t { kSerial, kXbee, kXbeeEscaped };
 

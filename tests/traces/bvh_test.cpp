@@ -69,6 +69,22 @@ TEST(Bvh, WhatProgramsWriteDifferentlyIsRead) {
   EXPECT_EQ(parse_bvh(windows, "walk.bvh").values, parse_bvh(kOneJoint, "walk.bvh").values);
 }
 
+TEST(Bvh, NumbersTooSmallForTheirTypeAreZeroHoweverTheyAreWritten) {
+  const std::string zeros(400, '0');
+  for (const std::string& tiny : {std::string("1e-60"), std::string("1E-60"), std::string("-1E-400"),
+                                  "0." + zeros + "1", "+0." + zeros + "1e30", "." + zeros + "1"})
+    EXPECT_EQ(parse_bvh(changed("10 90", "10 " + tiny), "walk.bvh").values[1], 0) << tiny;
+  for (const std::string& huge : {std::string("1e60"), std::string("1E400"), "1" + zeros, "1" + zeros + "e-10"})
+    EXPECT_THAT(refusal(changed("10 90", "10 " + huge)), HasSubstr("out of range")) << huge;
+  EXPECT_THAT(refusal(changed("10 90", "10 1E-60x")), HasSubstr("no number"));
+}
+
+TEST(Bvh, WordsAreShownInFortyBytesOfWholeLetters) {
+  EXPECT_EQ(shown_word(std::string(40, 'a')), std::string(40, 'a'));
+  EXPECT_EQ(shown_word(std::string(41, 'a')), std::string(40, 'a') + "...");
+  EXPECT_EQ(shown_word(std::string(39, 'a') + "\u00fc"), std::string(39, 'a') + "...");
+}
+
 TEST(Bvh, MistakesAreNamedByTheirLine) {
   const std::tuple<std::string, const char*, const char*> cases[] = {
       {"", "line 1", "HIERARCHY"},

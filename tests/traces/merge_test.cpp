@@ -4,12 +4,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <malloc.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/error.hpp"
+#include "traces/mcap_output.hpp"
 #include "traces/rewrite.hpp"
 
 namespace vestige {
@@ -123,6 +126,52 @@ TEST(Merge, TakesWhatViewersDrawFromTheFirstFile) {
   EXPECT_EQ(result.merged.duplicates, 2U * 4);
   EXPECT_EQ(result.merged.messages, 2U * 12 + 2) << "/viz of the first frame only";
   EXPECT_TRUE(result.merged.other_sessions.empty());
+}
+
+/// The same with `count` messages of another's at its beginning, each in a chunk of its own.
+Bytes with_others(const Bytes& whole, std::size_t count, std::size_t bytes) {
+  constexpr std::uint16_t kOther = 99;
+  const mcap::MemorySource source(whole);
+  Bytes written;
+  McapOutput output(test::into(written), "vestige", mcap::Compression::kZstd, gather_definitions(source));
+  output.add(mcap::Channel{.id = kOther, .schema_id = 0, .topic = "/other", .message_encoding = "", .metadata = {}});
+  output.write_definitions();
+  const std::vector<std::byte> zeros(bytes);
+  for (std::size_t i = 0; i < count; ++i) {
+    output.write(mcap::Message{.channel_id = kOther, .data = zeros});
+    output.end_chunk();
+  }
+  mcap::StreamReader reader(source);
+  mcap::StreamRecord record;
+  while (reader.next(record)) {
+    if (record.opcode == mcap::Opcode::kMetadata) output.write(mcap::decode_metadata(record.content));
+    if (record.opcode == mcap::Opcode::kAttachment) output.write(mcap::decode_attachment(record.content));
+    if (record.opcode == mcap::Opcode::kMessage) output.write(mcap::decode_message(record.content));
+  }
+  output.finish();
+  return written;
+}
+
+TEST(Merge, KeepsNoMoreThanAChunkOfAMomentInMemory) {
+  constexpr std::size_t kCount = 128;
+  constexpr std::size_t kBytes = std::size_t{1} << 20;
+  const test::TemporaryFolder folder;
+  const Bytes whole = recording(folder, kFrames, test::kNodes, "{}");
+  std::vector<std::unique_ptr<mcap::ByteSource>> sources;
+  const Bytes large = with_others(whole, kCount, kBytes);
+  for (const Bytes* bytes : {&large, &whole}) sources.push_back(std::make_unique<mcap::MemorySource>(*bytes));
+  const auto allocated = [] {
+    const auto info = ::mallinfo2();
+    return info.uordblks + info.hblkhd;
+  };
+  const std::size_t before = allocated();
+  std::size_t most = before;
+  const Merged merged = merge_traces(
+      sources, [&](mcap::Bytes /*bytes*/) { most = std::max(most, allocated()); }, test::go_on);
+  EXPECT_EQ(merged.frames, kFrames);
+  EXPECT_EQ(merged.duplicates, 2 * kFrames + 1);
+  EXPECT_EQ(merged.messages, kCount + 2 * kFrames + 1);
+  EXPECT_LT(most - before, kCount * kBytes / 2);
 }
 
 TEST(Merge, NamesWhatTheSessionsOfOtherRecordingsDifferIn) {

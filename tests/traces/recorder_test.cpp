@@ -237,11 +237,9 @@ TEST_F(RecorderTest, DropsAreCountedByTopic) {
   recorder.write(test::frame(3, kNodes, kColliders));
   recorder.note({.count = 1, .text = "input"});
   recorder.finish();
-  for (const SummaryDepth depth : {SummaryDepth::kIndex, SummaryDepth::kEverything}) {
-    const McapSummary summary = summarise_mcap(folder_ / "man.mcap", depth);
-    EXPECT_EQ(summary.dropped, 6U);
-    EXPECT_EQ(summary.dropped_by_topic, (std::map<std::string, std::uint64_t>{{"/pose", 2}, {"input", 4}}));
-  }
+  const McapSummary summary = summarise_mcap(folder_ / "man.mcap");
+  EXPECT_EQ(summary.dropped, 6U);
+  EXPECT_EQ(summary.dropped_by_topic, (std::map<std::string, std::uint64_t>{{"/pose", 2}, {"input", 4}}));
 }
 
 TEST_F(RecorderTest, AChunkIsWrittenWhenItIsOldThoughNoFrameComes) {

@@ -96,6 +96,36 @@ TEST(Retarget, OtherSkeletonsAreRefusedByName) {
   EXPECT_THROW(retarget(dog, mannequin(), {}, "dog.bvh", report), Error);
 }
 
+TEST(Retarget, AMotionWithFewNumbersDoesNotBecomeVeryMany) {
+  constexpr std::size_t kFrames = 60000;
+  BvhMotion motion = person(test::bvh_frame("0 95 0"), 1);
+  const auto repeat = [&](std::size_t frames) {
+    motion.frame_count = frames;
+    motion.values.assign(frames * motion.channel_count, 0.0F);
+  };
+  const auto refusal = [&]() -> std::string {
+    RetargetReport report;
+    try {
+      retarget(motion, mannequin(), {}, "person.bvh", report);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "retargeted";
+  };
+  repeat(kFrames);
+  EXPECT_EQ(refusal(), "retargeted") << "each joint has its own numbers";
+  for (BvhJoint& joint : motion.joints) joint.channels.clear();
+  motion.joints[0].channels = {BvhChannel::kYPosition};
+  motion.channel_count = 1;
+  repeat(kFrames);
+  EXPECT_EQ(
+      refusal(),
+      "person.bvh: its 60000 frames would become 5340000 numbers for the 17 joints of the avatar that follow, more "
+      "than 4674304\n  cut the motion into parts, or export it with fewer frames a second");
+  repeat(kFrames / 2);
+  EXPECT_EQ(refusal(), "retargeted");
+}
+
 /// All real motions on all real avatars that have a person's joints: upright, in one piece, feet near the floor.
 TEST(Retarget, RealMotionsStandUprightOnRealAvatars) {
   VESTIGE_REQUIRE_DATA(test::data("avatars/motion"));

@@ -93,7 +93,7 @@ TEST_P(TraceDamageCompressed, AFlippedByteCostsAtMostTheChunkThatItIsIn) {
       bool complete = true;
       const auto frames = intact_frames(file.path(), complete);
       try {
-        const McapSummary summary = summarise_mcap(file.path(), SummaryDepth::kEverything);
+        const McapSummary summary = summarise_mcap(file.path());
         EXPECT_FALSE(summary.complete) << at;
       } catch (const Error&) {
         EXPECT_LT(at, mcap::kMagicBytes);
