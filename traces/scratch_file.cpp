@@ -16,7 +16,7 @@ namespace vestige {
 
 std::filesystem::path temporary_folder() {
   std::error_code failure;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
+  std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
   if (failure)
     throw Error("the folder for temporary files", failure.message(), "let TMPDIR name a folder that can be written");
   return folder;
