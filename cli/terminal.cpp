@@ -44,6 +44,15 @@ void on_interrupt(int signal_number) {
   std::raise(signal_number);  // comes as soon as this returns
 }
 
+/// Where a standard stream was closed, the first file that is opened would take its place, and messages would end up in
+/// it. What takes it here refuses to be read or written, as one that is closed does.
+void fill_closed_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
+    [[maybe_unused]] const int taken = ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
+
 }  // namespace
 
 void warn(std::string_view text, Verbosity verbosity) {
@@ -76,19 +85,6 @@ bool Progress::update(double share) {
   }
   return !interrupted();
 }
-
-namespace {
-
-/// Where a standard stream was closed, the first file that is opened would take its place, and messages would end up in
-/// it. What takes it here refuses to be read or written, as one that is closed does.
-void fill_closed_streams() {
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    if (::fcntl(stream, F_GETFD) >= 0 || errno != EBADF) continue;
-    [[maybe_unused]] const int taken = ::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY);
-  }
-}
-
-}  // namespace
 
 int run_program(int (*run)(int argc, char** argv), int argc, char** argv) {
   fill_closed_streams();

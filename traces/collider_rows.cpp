@@ -8,6 +8,7 @@
 
 #include "traces/frame_file.hpp"
 #include "traces/number_text.hpp"
+#include "traces/trace_format.hpp"
 
 namespace vestige {
 
@@ -17,8 +18,6 @@ constexpr std::string_view kTimesRemedy = "each row is time_s,id,x,y,z: seconds,
 constexpr std::string_view kFramesRemedy =
     "each row is frame,time_s,id,x,y,z,teleported: a whole number, seconds, a whole number, metres, 0 or 1";
 constexpr std::string_view kAloneRemedy = "export poses and colliders of the same trace, or leave out the column frame";
-
-constexpr double kFarthest_m = 1e9;  // an astronomical unit is a mistake
 
 class ColliderCsv final : public FrameFile {
  public:
@@ -82,7 +81,7 @@ bool ColliderRows::next(ColliderRow& row) {
   if (!std::isfinite(row.time_s) || !std::isfinite(position.x) || !std::isfinite(position.y) ||
       !std::isfinite(position.z))
     throw lines_.error("a number is not finite");
-  if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) > kFarthest_m)
+  if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) > trace_format::kFarthest_m)
     throw lines_.error("a position is farther away than 1e9 m");
   if (rows_ > 0 && row.time_s < last_time_s_)
     throw lines_.error(fmt::format("time runs backwards, from {} s to {} s", last_time_s_, row.time_s),

@@ -19,14 +19,13 @@ constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20;
 constexpr auto kLatest_ns = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
 // What no CRC vouches for is not believed beyond these.
-constexpr double kFarthest_m = 1e9;
 constexpr float kLargestScale = 1e6F;
 constexpr float kRotationTolerance = 0.1F;
 constexpr std::uint64_t kShortestFrame_ns = 1000;
 constexpr std::size_t kLookedBack = 64;  ///< frames that may be wrong one after the other without ending a sequence
 
 bool is_near(const glm::dvec3& position_m) {
-  return glm::all(glm::lessThanEqual(glm::abs(position_m), glm::dvec3(kFarthest_m)));  // no NaN is
+  return glm::all(glm::lessThanEqual(glm::abs(position_m), glm::dvec3(trace_format::kFarthest_m)));  // no NaN is
 }
 
 bool is_plausible_node(const NodeLocal& node) {

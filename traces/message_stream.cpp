@@ -88,9 +88,7 @@ bool MessageStream::next_in_chunk(TraceMessage& message) {
   while (chunk_.remaining() > 0) {
     try {
       const mcap::InnerRecord record = mcap::next_record(chunk_);
-      const bool is_known =
-          record.opcode == Opcode::kSchema || record.opcode == Opcode::kChannel || record.opcode == Opcode::kMessage;
-      if (!is_known) continue;
+      if (!mcap::belongs_in_chunks(record.opcode)) continue;
       if (!mcap::fits_its_fields(record)) {
         // Once for a chunk, which may hold millions.
         if (!std::exchange(misfit_told_, true))

@@ -33,6 +33,8 @@ inline constexpr std::string_view kMapTextName = "actuator_map.json";
 inline constexpr std::string_view kEncoding = "flatbuffer";  ///< of schemas and of messages
 inline constexpr std::string_view kNodesKey = "nodes";       ///< of /pose's metadata: a JSON array of node names
 
+inline constexpr double kFarthest_m = 1e9;  ///< where a position is beyond it, it is taken for a mistake
+
 inline constexpr std::string_view kTeleportKind = "teleport";
 inline constexpr std::string_view kDroppedKind = "dropped";
 inline constexpr std::string_view kMarkerKind = "marker";

@@ -10,6 +10,7 @@
 
 #include "traces/error.hpp"
 #include "traces/mcap/decode.hpp"
+#include "traces/trace_format.hpp"
 
 namespace vestige {
 
@@ -21,7 +22,6 @@ constexpr std::size_t kMostBadMessagesTold = 10;
 constexpr std::size_t kMostUnknownBones = 64;
 constexpr std::size_t kMostColliders = 1'000'000;  // as many as a scenario may have
 constexpr std::size_t kMostMarkers = 1000;
-constexpr double kFarthest_m = 1e9;
 constexpr double kShortestQuaternion = 1e-6;
 
 double number(const OscMessage& message, std::size_t at) {
@@ -35,8 +35,8 @@ double number(const OscMessage& message, std::size_t at) {
     throw Malformed(fmt::format("{}: argument {} is no float", message.address, at + 1));
   }
   if (!std::isfinite(value)) throw Malformed(fmt::format("{}: argument {} is not finite", message.address, at + 1));
-  if (std::abs(value) > kFarthest_m)
-    throw Malformed(fmt::format("{}: argument {} is beyond {:g}", message.address, at + 1, kFarthest_m));
+  if (std::abs(value) > trace_format::kFarthest_m)
+    throw Malformed(fmt::format("{}: argument {} is beyond {:g}", message.address, at + 1, trace_format::kFarthest_m));
   return value;
 }
 

@@ -87,11 +87,6 @@ class StreamCommand : public test::CommandLineTest {
                "for i in $(seq 200); do [ -e vest ] && break; sleep 0.05; done\n" +
                command + "\ncode=$?; kill -INT $board; wait $board; exit $code");
   }
-
-  nlohmann::json read_json(const std::string& name) const {
-    std::ifstream stream(folder_ / name);
-    return nlohmann::json::parse(stream, nullptr, false);
-  }
 };
 
 TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
@@ -122,7 +117,7 @@ TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
     for (std::size_t i = 0; i < measured.size(); ++i) EXPECT_NEAR(measured[i], commanded[i], 1) << motor << " " << i;
   }
 
-  const nlohmann::json json = read_json("stream.json");
+  const nlohmann::json json = json_in("stream.json");
   EXPECT_EQ(json["frames"], 1500);
   EXPECT_EQ(json["acknowledged"], json["sent"]);
   EXPECT_EQ(json["changes"], sent.size());
@@ -172,7 +167,7 @@ TEST_F(StreamCommand, AVestThatIsUnpluggedWhileItIsDrivenIsFoundAgain) {
           "sleep 3; kill -INT $stream; wait $stream; code=$?; kill -INT $second; wait $second; exit $code");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.standard_error, HasSubstr("the link is back"));
-  EXPECT_EQ(read_json("stream.json")["links_lost"], 1);
+  EXPECT_EQ(json_in("stream.json")["links_lost"], 1);
   const std::vector<Row> after = read_timeline(folder_ / "after.csv");
   ASSERT_FALSE(after.empty());
   EXPECT_TRUE(std::ranges::any_of(after, [](const Row& row) { return row.level != Levels(6); }));
@@ -186,7 +181,7 @@ TEST_F(StreamCommand, AnInterruptedStreamSwitchesTheVestOff) {
         run_with_board("vestige stream trace.mcap --port vest --ttl 2000 --loop --hold 1e6 --json " + signal +
                        ".json & stream=$!\nsleep 3; kill -" + signal + " $stream; wait $stream");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
-    EXPECT_TRUE(read_json(signal + ".json")["off_acknowledged"]);
+    EXPECT_TRUE(json_in(signal + ".json")["off_acknowledged"]);
     const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
     ASSERT_FALSE(pins.empty());
     EXPECT_THAT(pins.back().level, Each(0));
@@ -202,7 +197,7 @@ TEST_F(StreamCommand, AStreamThatIsInterruptedBeforeItsEndSaysSo) {
       "$stream");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.standard_error, HasSubstr("stopped"));
-  const nlohmann::json json = read_json("stream.json");
+  const nlohmann::json json = json_in("stream.json");
   EXPECT_LT(json["frames"], 500);
   EXPECT_TRUE(json["off_acknowledged"]);
   EXPECT_THAT(read_timeline(folder_ / "pins.csv").back().level, Each(0));
@@ -241,7 +236,7 @@ TEST_F(StreamCommand, AMapThatIsEditedWhileItIsFeltIsReadAgainAndABadOneIsNot) {
           "20 new.png; mv new.png map.png\nsleep 3\necho nonsense >map.png\nsleep 3\n"
           "kill -INT $stream; wait $stream");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
-  EXPECT_EQ(read_json("stream.json")["maps_reloaded"], 1);
+  EXPECT_EQ(json_in("stream.json")["maps_reloaded"], 1);
   EXPECT_THAT(outcome.standard_error, HasSubstr("map.png"));
   EXPECT_THAT(outcome.standard_error, HasSubstr("The map before it stays in use"));
   const std::vector<Row> log = read_log(folder_ / "log.csv");
@@ -261,8 +256,8 @@ TEST_F(StreamCommand, FramesGoToStandardOutputAsTheyWouldGoDownTheWire) {
   EXPECT_EQ(bytes[13], '\0');
   EXPECT_EQ(bytes.back(), '\0');
   EXPECT_EQ(bytes[bytes.size() - 7], 'X');
-  EXPECT_EQ(std::ranges::count(bytes, '\0'), read_json("stream.json")["sent"]);
-  EXPECT_EQ(bytes.size(), read_json("stream.json")["link"]["bytes"]);
+  EXPECT_EQ(std::ranges::count(bytes, '\0'), json_in("stream.json")["sent"]);
+  EXPECT_EQ(bytes.size(), json_in("stream.json")["link"]["bytes"]);
 }
 
 TEST_F(StreamCommand, ParametersGoByOscToWhoeverListens) {
@@ -281,7 +276,7 @@ TEST_F(StreamCommand, ParametersGoByOscToWhoeverListens) {
   // Both ends of a motor's strength, as OSC's big-endian floats.
   EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\x3f\x80\0\0", 8)));
   EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\0\0\0\0", 8)));
-  EXPECT_GT(read_json("stream.json")["sent"], 0);
+  EXPECT_GT(json_in("stream.json")["sent"], 0);
   EXPECT_THAT(outcome.standard_error, Not(HasSubstr("nobody listens")));
   // That listener has gone.
   const test::Outcome alone = run("vestige stream trace.mcap --port OSC://127.0.0.1:$(cat port)");
@@ -314,7 +309,7 @@ TEST_F(StreamCommand, AnXbeeInApiModeGetsItsFrames) {
     at += length + 4;
   }
   EXPECT_GT(frames, 2U);
-  EXPECT_EQ(frames, read_json("stream.json")["sent"]);
+  EXPECT_EQ(frames, json_in("stream.json")["sent"]);
 }
 
 TEST_F(StreamCommand, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame) {
@@ -326,8 +321,8 @@ TEST_F(StreamCommand, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame) {
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.standard_error, HasSubstr("no board answers"));
   EXPECT_THAT(outcome.standard_error, HasSubstr("were not acknowledged"));
-  EXPECT_EQ(read_json("stream.json")["acknowledged"], 0);
-  EXPECT_FALSE(read_json("stream.json")["off_acknowledged"]);
+  EXPECT_EQ(json_in("stream.json")["acknowledged"], 0);
+  EXPECT_FALSE(json_in("stream.json")["off_acknowledged"]);
 }
 
 TEST_F(StreamCommand, ADetectorThatCannotKeepUpIsSaid) {
@@ -336,7 +331,7 @@ TEST_F(StreamCommand, ADetectorThatCannotKeepUpIsSaid) {
       run("vestige stream trace.mcap --port file:frames --detector exact --rate 10 --json stream.json");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.standard_error, HasSubstr("'exact' does not keep up with the trace"));
-  EXPECT_GT(read_json("stream.json")["most_late_s"].get<double>(), 1);
+  EXPECT_GT(json_in("stream.json")["most_late_s"].get<double>(), 1);
 }
 
 TEST_F(StreamCommand, AMapThatBecomesAPipeIsRefusedAndTheStreamEnds) {
@@ -384,9 +379,9 @@ TEST_F(StreamCommand, VestCheckRunsEachMotorInTurn) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_output, HasSubstr("actuator 6 of 6"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("the vest hears everything"));
-  EXPECT_TRUE(read_json("check.json")["good"]);
-  EXPECT_TRUE(read_json("check.json")["off_sent"]);
-  EXPECT_TRUE(read_json("check.json")["off_acknowledged"]);
+  EXPECT_TRUE(json_in("check.json")["good"]);
+  EXPECT_TRUE(json_in("check.json")["off_sent"]);
+  EXPECT_TRUE(json_in("check.json")["off_acknowledged"]);
   const std::vector<Row> pins = read_timeline(folder_ / "pins.csv");
   for (std::size_t motor = 0; motor < 6; ++motor) {
     const Levels steps = steps_of(motor, pins);
@@ -412,7 +407,7 @@ TEST_F(StreamCommand, VestCheckOfAVestThatIsUnpluggedFails) {
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_THAT(outcome.standard_output, HasSubstr("the link was lost"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("DOES NOT HEAR"));
-  const nlohmann::json json = read_json("check.json");
+  const nlohmann::json json = json_in("check.json");
   EXPECT_FALSE(json["good"]);
   EXPECT_GE(json["links_lost"], 1);
   EXPECT_FALSE(json["off_sent"]);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/support/test_data.hpp"
+#include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/writer.hpp"
 #include "traces/sha256.hpp"
@@ -42,6 +43,18 @@ inline std::string content_sha256(std::span<const std::byte> bytes) {
 /// A sink that keeps everything.
 inline mcap::Writer::Sink into(std::vector<std::byte>& bytes) {
   return [&bytes](mcap::Bytes more) { bytes.insert(bytes.end(), more.begin(), more.end()); };
+}
+
+/// A file of one chunk that was not compressed, and nothing behind it. A CRC of 0 vouches for nothing.
+inline mcap::ByteBuffer file_of_chunk(mcap::Bytes records, std::uint32_t uncompressed_crc) {
+  mcap::ByteBuffer bytes;
+  mcap::append_magic(bytes);
+  append_record(bytes, mcap::Header{});
+  append_record(bytes, mcap::Chunk{.uncompressed_size = records.size(),
+                                   .uncompressed_crc = uncompressed_crc,
+                                   .compression = "",
+                                   .records = records});
+  return bytes;
 }
 
 inline bool go_on(double /*share*/) {

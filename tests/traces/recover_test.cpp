@@ -310,12 +310,7 @@ TEST(Recover, FindsMessagesBehindMuchThatIsNone) {
     append_message(1);  // not believed, for what follows it
     records.insert(records.end(), kMuch, garbage);
     append_message(2);
-    mcap::ByteBuffer bytes;
-    mcap::append_magic(bytes);
-    append_record(bytes, mcap::Header{});
-    append_record(
-        bytes,
-        mcap::Chunk{.uncompressed_size = records.size(), .uncompressed_crc = 1, .compression = "", .records = records});
+    const mcap::ByteBuffer bytes = test::file_of_chunk(records, 1);
     const auto outcome = recover(bytes);
     ASSERT_TRUE(outcome);
     EXPECT_EQ(outcome->recovery.messages, 2U);

@@ -205,12 +205,7 @@ TEST(TraceCheck, GoesOnBehindARecordWhoseFieldsDoNotFit) {
   records.resize(mcap::kRecordHeadBytes + 3);
   append_record(records, mcap::Channel{.id = 1, .topic = "/a", .message_encoding = "json", .metadata = {}});
   append_record(records, mcap::Message{.channel_id = 1, .sequence = 0, .log_time = 0, .publish_time = 0, .data = {}});
-  mcap::ByteBuffer bytes;
-  mcap::append_magic(bytes);
-  append_record(bytes, mcap::Header{});
-  append_record(
-      bytes,
-      mcap::Chunk{.uncompressed_size = records.size(), .uncompressed_crc = 0, .compression = "", .records = records});
+  const mcap::ByteBuffer bytes = test::file_of_chunk(records, 0);
   const TraceCheck result = check(bytes);
   EXPECT_THAT(text_of(result), HasSubstr("it is skipped"));
   EXPECT_EQ(result.container.messages, 1U);

@@ -35,6 +35,7 @@ int nameless_file() {
 
 int spool(InputDescriptor& input) {
   Descriptor copy(nameless_file());
+  const std::filesystem::path folder = temporary_folder();
   std::vector<std::byte> block(kSpoolBlockBytes);
   bool first = true;
   while (const std::size_t count = input.read(block)) {
@@ -42,7 +43,7 @@ int spool(InputDescriptor& input) {
     if (std::exchange(first, false) && input.is_device() &&
         (count < kMagicBytes || !is_magic(std::span(block).first(kMagicBytes))))
       throw Error(input.name(), "is a device, and what comes from it is no MCAP file", "name a file, or a pipe");
-    write_all(copy.value(), std::span(block).first(count), temporary_folder());
+    write_all(copy.value(), std::span(block).first(count), folder);
   }
   return copy.release();
 }

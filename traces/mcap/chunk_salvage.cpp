@@ -84,8 +84,8 @@ std::size_t SalvagedRecords::next_opcode(std::size_t position) {
   if (position == records_.size() || belongs_in_chunks(opcode_at(position))) return position;
   std::size_t nearest = records_.size();
   for (std::size_t i = 0; i < kInner.size(); ++i) {
-    if (!next_[i] || *next_[i] < position) next_[i] = find(records_, kInner[i], position);
-    nearest = std::min(nearest, *next_[i]);
+    if (next_[i] <= position) next_[i] = find(records_, kInner[i], position);
+    nearest = std::min(nearest, next_[i]);
   }
   return nearest;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
@@ -43,7 +42,7 @@ class SalvagedRecords {
 
   Bytes records_;
   std::size_t position_ = 0;
-  std::array<std::optional<std::size_t>, 3> next_;  ///< by opcode, where it stands next
+  std::array<std::size_t, 3> next_ = {};  ///< by opcode, where it stands next, if that is not behind
 };
 
 }  // namespace vestige::mcap
