@@ -7,10 +7,12 @@
 #include <optional>
 #include <set>
 
+#include "cli/range_choice.hpp"
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/definitions.hpp"
 #include "traces/error.hpp"
+#include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/message_text.hpp"
 
@@ -24,34 +26,39 @@ struct CatOptions {
   CommonOptions common;
   std::string file;
   std::vector<std::string> topics;
+  RangeChoice range;
+  std::string order = "file";
 };
 
 /// Prints messages as they come, of the topics asked for.
 class Printer {
  public:
-  Printer(const CatOptions& options, Definitions definitions)
-      : options_(options), definitions_(std::move(definitions)) {
+  Printer(const CatOptions& options, const mcap::TimeRange& range, Definitions definitions)
+      : options_(options), range_(range), definitions_(std::move(definitions)) {
     for (const auto& [id, schema] : definitions_.schemas) streams_.add(schema);
     for (const auto& [id, channel] : definitions_.channels) streams_.add(channel);
   }
 
   /// False when nobody reads any more.
   bool take(const mcap::StreamRecord& record);
+  bool take(const mcap::Message& message, std::uint64_t offset);
   /// Throws `Error` where a topic asked for is in no channel.
   void require_topics() const;
 
   std::uint64_t messages() const { return messages_; }
-  const std::vector<mcap::Damage>& damages() const { return damages_; }
+  const mcap::DamageList& damages() const { return damages_; }
 
  private:
-  bool print(const mcap::StreamRecord& record);
+  bool print(const mcap::Message& message);
 
   const CatOptions& options_;
+  mcap::TimeRange range_;
   Definitions definitions_;
   StreamTable streams_;
   MessageText text_;
   std::uint64_t messages_ = 0;
-  std::vector<mcap::Damage> damages_;
+  mcap::DamageList damages_;
+  std::string last_damage_;
 };
 
 bool Printer::take(const mcap::StreamRecord& record) {
@@ -64,19 +71,26 @@ bool Printer::take(const mcap::StreamRecord& record) {
       streams_.add(channel);
       definitions_.channels.try_emplace(channel.id, channel);
     } else if (record.opcode == Opcode::kMessage) {
-      return print(record);
+      return take(mcap::decode_message(record.content), record.offset);
     }
-  } catch (const mcap::Malformed& malformed) {
-    // Once for what is alike.
-    const std::string what = fmt::format("a Message: {}", malformed.what());
-    if (record.opcode == Opcode::kMessage && (damages_.empty() || damages_.back().what != what))
-      damages_.push_back({record.offset, 0, what});
+  } catch (const mcap::Malformed&) {
+    return true;  // the reader notes records whose fields do not fit
   }
   return true;
 }
 
-bool Printer::print(const mcap::StreamRecord& record) {
-  const mcap::Message message = mcap::decode_message(record.content);
+bool Printer::take(const mcap::Message& message, std::uint64_t offset) {
+  try {
+    return !range_.contains(message.log_time) || print(message);
+  } catch (const mcap::Malformed& malformed) {
+    // Once for what is alike.
+    const std::string what = fmt::format("a Message: {}", malformed.what());
+    if (std::exchange(last_damage_, what) != what) damages_.add({offset, 0, what});
+    return true;
+  }
+}
+
+bool Printer::print(const mcap::Message& message) {
   const auto channel = definitions_.channels.find(message.channel_id);
   if (channel == definitions_.channels.end())
     throw mcap::Malformed(fmt::format("nothing defines its channel {}", message.channel_id));
@@ -100,24 +114,46 @@ void Printer::require_topics() const {
                   fmt::format("it has: {}", fmt::join(known, ", ")));
 }
 
+/// What could not be read; nothing when nobody reads any more.
+std::optional<mcap::DamageList> print_in_file_order(const mcap::ByteSource& source, Printer& printer) {
+  mcap::StreamReader reader(source);
+  mcap::StreamRecord record;
+  while (!interrupted() && reader.next(record))
+    if (!printer.take(record)) return {};
+  return reader.damages();
+}
+
+std::optional<mcap::DamageList> print_in_order_of_time(const mcap::ByteSource& source, Printer& printer,
+                                                       const mcap::TimeRange& range) {
+  mcap::IndexedReader reader(source, range, [&](const mcap::InnerRecord& record) {
+    printer.take({.opcode = record.opcode, .content = record.content, .offset = 0, .in_chunk = true});
+  });
+  if (!mcap::leads_to_everything(source, reader.summary()))
+    throw Error(source.name(), "its index does not lead to everything that is in it",
+                "leave out '--order time', or make it anew with `vestige recompress`");
+  mcap::Message message;
+  while (!interrupted() && reader.next(message))
+    if (!printer.take(message, reader.chunk_offset())) return {};
+  return reader.damages();
+}
+
 void run_cat(const CatOptions& options, Invocation& invocation) {
+  const mcap::TimeRange range = range_of(options.range);
   check_outputs({"-", options.common.json}, {options.file}, options.common);
   const mcap::FileSource source(options.file);
-  mcap::StreamReader reader(source);
-  Printer printer(options, gather_definitions(source));
+  Printer printer(options, range, gather_definitions(source));
   catch_interrupts();
-  mcap::StreamRecord record;
-  bool wanted = true;
-  while (wanted && !interrupted() && reader.next(record)) wanted = printer.take(record);
-  if (!wanted) return;
+  auto damages =
+      options.order == "time" ? print_in_order_of_time(source, printer, range) : print_in_file_order(source, printer);
+  if (!damages) return;
   if (interrupted()) throw Error(options.file, "printing it was stopped", "");
   printer.require_topics();
-  std::vector<mcap::Damage> damages = reader.damages();
-  damages.insert(damages.end(), printer.damages().begin(), printer.damages().end());
-  warn_of_damage(options.file, damages, options.common.verbosity());
+  damages->add(printer.damages());
+  warn_of_damage(options.file, *damages, options.common.verbosity());
   write_json(options.common.json,
-             {{"file", options.file}, {"messages", printer.messages()}, {"complete", damages.empty()}}, options.common);
-  if (!damages.empty()) invocation.exit_code = kDataLost;
+             {{"file", options.file}, {"messages", printer.messages()}, {"complete", damages->empty()}},
+             options.common);
+  if (!damages->empty()) invocation.exit_code = kDataLost;
 }
 
 }  // namespace
@@ -126,12 +162,18 @@ void add_cat(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<CatOptions>();
   CLI::App* verb = add_verb(program, "cat", "Print a trace's messages, or any MCAP file's, one line of JSON each",
                             "  vestige cat man.mcap --topic /colliders\n"
-                            "  vestige cat man.mcap > man.ndjson\n");
+                            "  vestige cat man.mcap --from 0.5 --to 0.6 > moment.ndjson\n");
   verb->add_option("FILE", options->file, "The trace, or any MCAP file, or '-' for standard input")->required();
   verb->add_option("--topic", options->topics, "Print only messages of this topic; may stand there several times")
       ->type_name("TOPIC")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_range_options(*verb, options->range, "Print");
+  verb->add_option("--order", options->order,
+                   "As they stand in the file, or by time: that needs the file's index, and reads no chunk outside "
+                   "--from and --to")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"file", "time"}));
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_cat(*options, invocation); });
 }

@@ -17,13 +17,6 @@ struct DoctorOptions {
   std::vector<std::string> files;
 };
 
-std::vector<mcap::Problem> by_offset(const mcap::ProblemList& problems) {
-  std::vector<mcap::Problem> sorted = problems.kept();
-  std::stable_sort(sorted.begin(), sorted.end(),
-                   [](const mcap::Problem& a, const mcap::Problem& b) { return a.offset < b.offset; });
-  return sorted;
-}
-
 int exit_code_of(const TraceCheck& check) {
   if (check.problems.count() == 0) return kDone;
   return check.readable() ? kDataLost : kFailed;
@@ -37,7 +30,7 @@ int worse(int a, int b) {
 
 nlohmann::ordered_json to_json(const TraceCheck& check, const std::string& file) {
   nlohmann::ordered_json problems = nlohmann::ordered_json::array();
-  for (const mcap::Problem& problem : by_offset(check.problems)) {
+  for (const mcap::Problem& problem : check.problems.kept()) {
     nlohmann::ordered_json shown = {{"offset", problem.offset}, {"bytes", problem.bytes}};
     if (problem.offset_in_chunk) shown["offset_in_chunk"] = *problem.offset_in_chunk;
     shown["problem"] = problem.what;
@@ -63,7 +56,7 @@ nlohmann::ordered_json to_json(const TraceCheck& check, const std::string& file)
 
 std::string describe(const TraceCheck& check, const std::string& file) {
   std::string text;
-  for (const mcap::Problem& problem : by_offset(check.problems)) {
+  for (const mcap::Problem& problem : check.problems.kept()) {
     text += fmt::format("{}: at byte {}", file, problem.offset);
     if (problem.offset_in_chunk) text += fmt::format(", {} bytes into its chunk", *problem.offset_in_chunk);
     text += fmt::format(": {}\n  {}\n", problem.what, problem.consequence);

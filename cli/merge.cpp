@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <memory>
 
 #include "cli/rewriting.hpp"
@@ -37,9 +36,7 @@ void run_merge(const MergeOptions& options, Invocation& invocation) {
         [&](double share) { return progress.update(share); });
   }
   written.commit();
-  std::map<std::string, std::vector<mcap::Damage>> damages;
-  for (const Merged::Damage& damage : merged.damages) damages[damage.file].push_back(damage.damage);
-  for (const auto& [file, list] : damages) warn_of_damage(file, list, verbosity);
+  for (const auto& [file, damages] : merged.damages) warn_of_damage(file, damages, verbosity);
   for (const Merged::OtherSession& other : merged.other_sessions)
     warn(fmt::format("{}: seems to be of another recording than {}: their sessions differ in {}\n  Merge only parts of "
                      "one recording.",

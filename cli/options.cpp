@@ -95,12 +95,15 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
     throw UsageError("-", "two results cannot share standard output", "give all but one a file name");
   std::set<std::filesystem::path> seen;
   for (const std::string& path : outputs) {
-    if (path.empty() || is_standard_output(path)) continue;
+    if (path.empty()) continue;
     for (const std::string& input : inputs) {
       std::error_code missing;
-      if (std::filesystem::equivalent(path, input, missing))
-        throw UsageError(path, "this result would replace a file that is read", "choose another name");
+      // A terminal may well be both read and written.
+      if (is_standard_output(path) && !std::filesystem::is_regular_file(input, missing)) continue;
+      if (std::filesystem::equivalent(is_standard_output(path) ? "/dev/stdout" : path, input, missing))
+        throw UsageError(path, "this result would change a file that is read", "choose another name");
     }
+    if (is_standard_output(path)) continue;
     refuse_overwrite(path, options.overwrite());
     if (!seen.insert(std::filesystem::absolute(where_it_leads(path)).lexically_normal()).second)
       throw UsageError(path, "two results cannot share one file", "give each a name of its own");

@@ -140,9 +140,12 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   recorder.finish();
   const std::chrono::duration<double> recording = std::chrono::steady_clock::now() - start;
   const bool cut_short = interrupted() && !options.live.is_live();
-  if (cut_short || recorder.is_full())
-    warn(fmt::format("stopped {}after {} frames; the trace is complete up to there",
-                     recorder.is_full() ? "by --max-size " : "", recorder.frame_count()),
+  if (cut_short && limits.ring_s)
+    warn(fmt::format("stopped; the trace has the last {} before that", counted(recorder.frame_count(), "frame")),
+         verbosity);
+  else if (cut_short || recorder.is_full())
+    warn(fmt::format("stopped {}after {}; the trace is complete up to there",
+                     recorder.is_full() ? "by --max-size " : "", counted(recorder.frame_count(), "frame")),
          verbosity);
   // What came in live and found no room cannot be made again.
   if (lost.lost_something() || (options.live.is_live() && recorder.is_full())) invocation.exit_code = kDataLost;

@@ -2,16 +2,19 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "traces/mcap/byte_source.hpp"
 #include "traces/nanoseconds.hpp"
 #include "traces/trace_index.hpp"
 
 namespace vestige::cli {
 
-void warn_of_damage(const std::string& file, const std::vector<mcap::Damage>& damages, Verbosity verbosity) {
+void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Verbosity verbosity) {
   constexpr std::size_t kMostTold = 20;
-  for (std::size_t i = 0; i < damages.size() && i < kMostTold; ++i) warn(describe(damages[i], file), verbosity);
-  if (damages.size() > kMostTold) warn(fmt::format("{}: and {} more", file, damages.size() - kMostTold), verbosity);
+  const std::size_t told = std::min(damages.kept().size(), kMostTold);
+  for (std::size_t i = 0; i < told; ++i) warn(describe(damages.kept()[i], file), verbosity);
+  if (damages.count() > told) warn(fmt::format("{}: and {} more", file, damages.count() - told), verbosity);
   if (!damages.empty()) warn(fmt::format("{}: 'vestige recover' may keep more of it", file), verbosity);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "cli/options.hpp"
 #include "traces/mcap/record_walker.hpp"
@@ -10,7 +9,7 @@
 namespace vestige::cli {
 
 /// Says, as warnings, what of `file` could not be read and is not in what was made of it.
-void warn_of_damage(const std::string& file, const std::vector<mcap::Damage>& damages, Verbosity verbosity);
+void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Verbosity verbosity);
 
 /// Writes `file` anew as `output`, complete or not at all, and says so; `doing` is the progress bar's label.
 void run_rewrite(const std::string& file, const std::string& output, const RewriteOptions& how,

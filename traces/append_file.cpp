@@ -90,10 +90,7 @@ void AppendFile::close() {
   sync();
   take_name();
   const int descriptor = std::exchange(descriptor_, -1);
-  if (descriptor != STDOUT_FILENO && ::close(descriptor) != 0) {
-    descriptor_ = -1;
-    throw system_error(path_, "could not write", errno);
-  }
+  if (descriptor != STDOUT_FILENO && ::close(descriptor) != 0) throw system_error(path_, "could not write", errno);
 }
 
 /// Renames to the first free NAME.partial, NAME.partial-2, …; where nothing is free the file keeps its name.

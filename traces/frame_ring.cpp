@@ -90,6 +90,13 @@ void FrameRing::Contents::for_each(const TakeNote& take_note, const TakeFrame& t
   MessageDecoder decoder;
   mcap::RawBuffer expanded;
   TraceFrame frame;
+  std::vector<RecordingNote> notes;  ///< before the frame that comes next
+  bool begun = first_ns_ == 0;       ///< nothing left the ring, or a frame has been given
+  const auto give_notes = [&] {
+    for (const RecordingNote& note : notes)
+      // What was lost before the ring's first frame is not missing from it.
+      if (begun || note.kind == RecordingNote::Kind::kMarker) take_note(note);
+  };
   for (const auto& block : blocks_) {
     mcap::decompress(mcap::name_of(kCompression), block->bytes, block->expanded_bytes, expanded);
     mcap::Cursor cursor(expanded.bytes());
@@ -100,11 +107,11 @@ void FrameRing::Contents::for_each(const TakeNote& take_note, const TakeFrame& t
         const TraceEvent event = decoder.event(message.data);
         if (event.kind == trace_format::kTeleportKind) {
           frame.teleported.push_back(event.collider);
-        } else if (time_ns >= first_ns_) {
+        } else {
           const bool dropped = event.kind == trace_format::kDroppedKind;
-          take_note({.kind = dropped ? RecordingNote::Kind::kDropped : RecordingNote::Kind::kMarker,
-                     .count = event.count,
-                     .text = std::string(event.text)});
+          notes.push_back({.kind = dropped ? RecordingNote::Kind::kDropped : RecordingNote::Kind::kMarker,
+                           .count = event.count,
+                           .text = std::string(event.text)});
         }
       } else if (message.channel_id == id_of(Stream::kPose)) {
         decoder.pose(message.data, frame.pose);
@@ -112,11 +119,17 @@ void FrameRing::Contents::for_each(const TakeNote& take_note, const TakeFrame& t
         decoder.colliders(message.data, frame.colliders);
         frame.index = message.publish_time;
         frame.time_ns = time_ns;
-        if (time_ns >= first_ns_ && !take_frame(frame)) return;
+        if (time_ns >= first_ns_) {
+          give_notes();
+          if (!take_frame(frame)) return;
+          begun = true;
+        }
+        notes.clear();
         frame.teleported.clear();
       }
     }
   }
+  give_notes();
 }
 
 }  // namespace vestige

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <vector>
+#include <set>
 
 #include "traces/trace.hpp"
 
@@ -19,13 +19,13 @@ class FrameThinning {
   bool keep(TraceFrame& frame) {
     is_gap_ = is_gap_ || (last_index_ && frame.index != *last_index_ + 1);
     last_index_ = frame.index;
-    teleported_.insert(teleported_.end(), frame.teleported.begin(), frame.teleported.end());
+    teleported_.insert(frame.teleported.begin(), frame.teleported.end());
     // Times are rounded to nanoseconds: a frame just before its tick is meant to be on it.
     constexpr double kTolerance = 1e-3;
     const double tick = std::floor(static_cast<double>(frame.time_ns) * rate_hz_ / 1e9 + kTolerance);
     if (last_tick_ && tick <= *last_tick_) return false;
     last_tick_ = tick;
-    frame.teleported.swap(teleported_);
+    frame.teleported.assign(teleported_.begin(), teleported_.end());
     teleported_.clear();
     if (is_gap_) ++next_index_;
     is_gap_ = false;
@@ -37,7 +37,7 @@ class FrameThinning {
   double rate_hz_;
   std::optional<std::uint64_t> last_index_;
   std::optional<double> last_tick_;
-  std::vector<std::uint32_t> teleported_;
+  std::set<std::uint32_t> teleported_;
   bool is_gap_ = false;
   std::uint64_t next_index_ = 0;
 };

@@ -39,6 +39,7 @@ Hdf5Library load() {
     library.find("H5Sselect_hyperslab", all.select_hyperslab);
     library.find("H5Sget_simple_extent_ndims", all.rank);
     library.find("H5Sget_simple_extent_dims", all.dimensions);
+    library.find("H5Sget_simple_extent_npoints", all.element_count);
     library.find("H5Sclose", all.close_space);
     library.find("H5Pcreate", all.create_properties);
     library.find("H5Pset_chunk", all.set_chunk);
@@ -59,6 +60,7 @@ Hdf5Library load() {
     library.find("H5Aexists_by_name", all.attribute_exists);
     library.find("H5Aopen_by_name", all.open_attribute);
     library.find("H5Aget_type", all.attribute_type);
+    library.find("H5Aget_space", all.attribute_space);
     library.find("H5Aread", all.read_attribute);
     library.find("H5Aclose", all.close_attribute);
     library.find("H5Tcopy", all.copy_type);

@@ -27,6 +27,7 @@ struct Hdf5Library {
   decltype(&::H5Sselect_hyperslab) select_hyperslab;
   decltype(&::H5Sget_simple_extent_ndims) rank;
   decltype(&::H5Sget_simple_extent_dims) dimensions;
+  decltype(&::H5Sget_simple_extent_npoints) element_count;
   decltype(&::H5Sclose) close_space;
   decltype(&::H5Pcreate) create_properties;
   decltype(&::H5Pset_chunk) set_chunk;
@@ -47,6 +48,7 @@ struct Hdf5Library {
   decltype(&::H5Aexists_by_name) attribute_exists;
   decltype(&::H5Aopen_by_name) open_attribute;
   decltype(&::H5Aget_type) attribute_type;
+  decltype(&::H5Aget_space) attribute_space;
   decltype(&::H5Aread) read_attribute;
   decltype(&::H5Aclose) close_attribute;
   decltype(&::H5Tcopy) copy_type;

@@ -173,12 +173,11 @@ class StateRecording {
     frame.index = index_;
     frame.time_ns = time_of(index_);
     state_.show(frame);
-    for (RecordingNote& marker : state_.take_markers()) markers_.push_back(std::move(marker));
     const Noted before = noted_;
     std::vector<std::uint32_t> teleported = frame.teleported;
     ++index_;
     if (out_.put(std::move(frame), notes(), WhenBehind::kDrop)) {
-      markers_.clear();
+      state_.forget_markers();
       ++made_;
       return;
     }
@@ -190,7 +189,7 @@ class StateRecording {
 
   /// What has been lost since it was noted before, and markers.
   std::vector<RecordingNote> notes() {
-    std::vector<RecordingNote> notes = markers_;
+    std::vector<RecordingNote> notes = state_.markers();
     const Noted now = {.late = late_, .input = state_.malformed() + datagrams_.overflowed()};
     note_frames(notes, now.late - noted_.late);
     note(notes, kInput, now.input - noted_.input);
@@ -210,7 +209,6 @@ class StateRecording {
   Clock::time_point start_;
   bool begun_ = false;
   std::uint64_t index_ = 0;
-  std::vector<RecordingNote> markers_;
   std::uint64_t made_ = 0;
   std::uint64_t late_ = 0;
   Noted noted_;

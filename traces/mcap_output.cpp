@@ -5,12 +5,15 @@
 #include <utility>
 #include <version.hpp>
 
+#include "traces/error.hpp"
+
 namespace vestige {
 
 namespace {
 
 constexpr std::size_t kLargestChunkBytes = std::size_t{16} << 20;
 constexpr std::size_t kFullChunkBytes = std::size_t{1} << 20;
+constexpr std::size_t kMostSchemaBytes = std::size_t{256} << 20;  ///< they are kept, to be written again in the summary
 
 }  // namespace
 
@@ -19,7 +22,7 @@ McapOutput::McapOutput(mcap::Writer::Sink sink, const std::string& profile, mcap
     : writer_(std::move(sink), {.profile = profile, .library = fmt::format("vestige {}", kVersion)},
               {.compression = compression, .definitions = mcap::DefinitionPlace::kBeforeChunks}),
       definitions_(std::move(definitions)) {
-  for (const auto& [id, schema] : definitions_.schemas) streams_.add(schema);
+  for (const auto& [id, schema] : definitions_.schemas) learn(schema);
   for (const auto& [id, channel] : definitions_.channels) streams_.add(channel);
 }
 
@@ -33,7 +36,7 @@ void McapOutput::add(mcap::Schema schema) {
   // A channel that was written without its schema stays without: what was written of it would change its meaning.
   if (schemas_lacking_.contains(schema.id)) return;
   const auto [known, is_new] = definitions_.schemas.try_emplace(schema.id, std::move(schema));
-  if (is_new) streams_.add(known->second);
+  if (is_new) learn(known->second);
 }
 
 void McapOutput::add(mcap::Channel channel) {
@@ -41,6 +44,13 @@ void McapOutput::add(mcap::Channel channel) {
   if (!is_new) return;
   streams_.add(known->second);
   define(known->first);
+}
+
+void McapOutput::learn(const mcap::Schema& schema) {
+  schema_bytes_ += schema.data.size();
+  if (schema_bytes_ > kMostSchemaBytes)
+    throw Error("schemas", fmt::format("take more than {} bytes", kMostSchemaBytes), "no file of any use has so many");
+  streams_.add(schema);
 }
 
 void McapOutput::write_schema(std::uint16_t id) {

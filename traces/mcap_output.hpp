@@ -22,7 +22,8 @@ class McapOutput {
 
   /// All that are known so far.
   void write_definitions();
-  /// A definition found on the way. Where there is one already, it stays.
+  /// A definition found on the way. Where there is one already, it stays. Throws `Error` when all schemas together take
+  /// more than 256 MiB.
   void add(mcap::Schema schema);
   void add(mcap::Channel channel);
 
@@ -43,12 +44,14 @@ class McapOutput {
   std::uint64_t bytes_written() const { return writer_.bytes_written(); }
 
  private:
+  void learn(const mcap::Schema& schema);
   bool define(std::uint16_t channel_id);
   void write_schema(std::uint16_t id);
 
   mcap::Writer writer_;
   Definitions definitions_;
   StreamTable streams_;
+  std::size_t schema_bytes_ = 0;
   std::set<std::uint16_t> schemas_written_;
   std::set<std::uint16_t> channels_written_;
   std::set<std::uint16_t> schemas_lacking_;  ///< ids of schemas without which a channel was written

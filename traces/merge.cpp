@@ -67,7 +67,7 @@ void require_same(const Map& known, const Map& added, std::string_view kind, con
                   const ByteSource& other) {
   for (const auto& [id, record] : added) {
     const auto found = known.find(id);
-    if (found == known.end() || mcap::same_record(found->second, record)) continue;
+    if (found == known.end() || found->second == record) continue;
     throw Error(other.name(), fmt::format("its {} {} is not what it is in {}", kind, id, first.name()), kOneRecording);
   }
 }
@@ -170,7 +170,7 @@ class Part {
   bool is_at(const Moment& moment) const { return head_ && moment_of(*head_) == moment; }
   const ByteSource& source() const { return source_; }
   double share() const { return share_; }
-  std::vector<mcap::Damage> damages() const { return reader_.damages(); }
+  mcap::DamageList damages() const { return reader_.damages(); }
 
  private:
   const ByteSource& source_;
@@ -223,8 +223,8 @@ Merged Merger::run(const std::function<bool(double)>& progress) {
   output_.finish();
   result_.messages = output_.statistics().message_count;
   for (const auto& part : parts_)
-    for (mcap::Damage& damage : part->damages())
-      result_.damages.push_back({.file = part->source().name(), .damage = std::move(damage)});
+    if (mcap::DamageList damages = part->damages(); !damages.empty())
+      result_.damages.push_back({.file = part->source().name(), .list = std::move(damages)});
   return std::move(result_);
 }
 

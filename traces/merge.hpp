@@ -14,9 +14,9 @@
 namespace vestige {
 
 struct Merged {
-  struct Damage {
+  struct Damages {
     std::string file;
-    mcap::Damage damage;
+    mcap::DamageList list;  ///< what of it could not be read
   };
   /// A file whose metadata `session` is not that of the first, as if it were of another recording.
   struct OtherSession {
@@ -27,7 +27,7 @@ struct Merged {
   std::uint64_t frames = 0;          ///< written
   std::uint64_t duplicates = 0;      ///< of our messages, those that stood in several files, the same to the bit
   std::uint64_t missing_frames = 0;  ///< numbers between the first and the last frame that no file has
-  std::vector<Damage> damages;       ///< what could not be read
+  std::vector<Damages> damages;      ///< of the files that have any
   std::vector<OtherSession> other_sessions;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "traces/mcap/chunk_expander.hpp"
@@ -21,6 +22,7 @@ void StreamTable::add(mcap::Schema schema) {
   const auto known = schemas_.find(id);
   if (known != schemas_.end() && trace_format::is_ours(known->second)) return;
   const bool is_ours = trace_format::is_ours(schema);
+  schema.data = {};  // of which a file may have any amount
   schemas_.insert_or_assign(id, std::move(schema));
   // A file may define 65535 of both: each channel is looked at once, when a schema of ours comes after it.
   if (!is_ours) return;
@@ -39,49 +41,66 @@ void StreamTable::add(mcap::Channel channel) {
 
 void StreamTable::update(const mcap::Channel& channel) {
   const auto schema = schemas_.find(channel.schema_id);
-  streams_[channel.id] = trace_format::recognise(channel, schema == schemas_.end() ? nullptr : &schema->second);
+  const Stream stream = trace_format::recognise(channel, schema == schemas_.end() ? nullptr : &schema->second);
+  streams_[channel.id] = stream;
+  if (stream == Stream::kForeign) return;
+  const auto [first, is_new] = channel_of_.try_emplace(stream, channel.id);
+  first->second = std::min(first->second, channel.id);
 }
 
 const mcap::Channel* StreamTable::find(Stream stream) const {
-  for (const auto& [id, channel] : channels_) {
-    if (streams_[id] == stream) return &channel;
-  }
-  return nullptr;
+  const auto found = channel_of_.find(stream);
+  return found == channel_of_.end() ? nullptr : &channels_.at(found->second);
 }
 
-MessageStream::MessageStream(const mcap::ByteSource& source, const std::vector<mcap::RecordPlace>& places,
+MessageStream::MessageStream(const mcap::ByteSource& source, const std::vector<MessagePlace>& places,
                              StreamTable& table, Report report)
     : source_(source), places_(places), table_(table), report_(std::move(report)) {}
 
 void MessageStream::rewind() {
   next_place_ = 0;
   chunk_ = mcap::Cursor({});
+  run_ = {};
 }
 
 bool MessageStream::next(TraceMessage& message) {
   for (;;) {
-    if (next_in_chunk(message)) return true;
+    if (next_in_chunk(message) || next_in_run(message)) return true;
     if (next_place_ == places_.size()) return false;
-    const mcap::RecordPlace& place = places_[next_place_++];
-    try {
-      if (place.opcode == Opcode::kChunk) {
-        open(place);
-      } else if (take(place.offset,
-                      mcap::read_record_at(source_, place.offset, Opcode::kMessage, place.end(), content_), message)) {
-        return true;
-      }
-    } catch (const Malformed& malformed) {
-      report_({place.offset, place.end() - place.offset,
-               fmt::format("a {}: {}", mcap::name_of(place.opcode), malformed.what())});
+    const MessagePlace& place = places_[next_place_++];
+    if (place.in_chunk) {
+      open_chunk(place);
+    } else {
+      run_ = place;
     }
   }
 }
 
-void MessageStream::open(const mcap::RecordPlace& place) {
-  const mcap::Bytes content = mcap::read_record_at(source_, place.offset, Opcode::kChunk, place.end(), content_);
-  chunk_ = mcap::Cursor(mcap::expand_chunk(mcap::decode_chunk(content), expanded_));
-  chunk_offset_ = place.offset;
-  misfit_told_ = false;
+void MessageStream::open_chunk(const MessagePlace& place) {
+  try {
+    // Not by the length in the file: that may be broken, and mended in `place`.
+    const std::uint64_t content = place.begin + mcap::kRecordHeadBytes;
+    source_.read_at(content, content_.reset(static_cast<std::size_t>(place.end - content)));
+    chunk_ = mcap::Cursor(mcap::expand_chunk(mcap::decode_chunk(content_.bytes()), expanded_));
+    chunk_offset_ = place.begin;
+    misfit_told_ = false;
+  } catch (const Malformed& malformed) {
+    report_({place.begin, place.end - place.begin, fmt::format("a Chunk: {}", malformed.what())});
+  }
+}
+
+bool MessageStream::next_in_run(TraceMessage& message) {
+  while (run_.begin < run_.end) {
+    const std::uint64_t offset = std::exchange(run_.begin, run_.end);
+    try {
+      const mcap::Bytes content = mcap::read_record_at(source_, offset, Opcode::kMessage, run_.end, content_);
+      run_.begin = offset + mcap::kRecordHeadBytes + content.size();
+      if (take(offset, content, message)) return true;
+    } catch (const Malformed& malformed) {
+      report_({offset, run_.begin - offset, fmt::format("a Message: {}", malformed.what())});
+    }
+  }
+  return false;
 }
 
 bool MessageStream::next_in_chunk(TraceMessage& message) {

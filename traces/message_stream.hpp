@@ -32,6 +32,7 @@ class StreamTable {
   std::map<std::uint16_t, mcap::Schema> schemas_;
   std::map<std::uint16_t, mcap::Channel> channels_;
   std::set<std::pair<std::uint16_t, std::uint16_t>> channels_of_schema_;  ///< schema's id, channel's id
+  std::map<trace_format::Stream, std::uint16_t> channel_of_;  ///< the lowest id, where several are recognised
   std::vector<trace_format::Stream> streams_ = std::vector(1 << 16, trace_format::Stream::kForeign);  ///< by channel id
 };
 
@@ -42,13 +43,20 @@ struct TraceMessage {
   mcap::Message message;
 };
 
-/// Delivers the messages of our streams in file order, from places that hold them: chunks, and messages outside chunks.
+/// Where messages stand in a file: a chunk, or a run of them outside chunks, of which a file may have millions.
+struct MessagePlace {
+  bool in_chunk = false;
+  std::uint64_t begin = 0;  ///< of the chunk's or the first message's record
+  std::uint64_t end = 0;
+};
+
+/// Delivers the messages of our streams in file order, from the places that hold them.
 class MessageStream {
  public:
   using Report = std::function<void(const mcap::Damage&)>;
 
   /// All must stay. `report` is told of what cannot be read, which is skipped.
-  MessageStream(const mcap::ByteSource& source, const std::vector<mcap::RecordPlace>& places, StreamTable& table,
+  MessageStream(const mcap::ByteSource& source, const std::vector<MessagePlace>& places, StreamTable& table,
                 Report report);
 
   /// False at the end. The message's data is valid until the next call.
@@ -57,17 +65,19 @@ class MessageStream {
 
  private:
   bool next_in_chunk(TraceMessage& message);
-  void open(const mcap::RecordPlace& place);
+  bool next_in_run(TraceMessage& message);
+  void open_chunk(const MessagePlace& place);
   bool take(std::uint64_t offset, mcap::Bytes content, TraceMessage& message);
 
   const mcap::ByteSource& source_;
-  const std::vector<mcap::RecordPlace>& places_;
+  const std::vector<MessagePlace>& places_;
   StreamTable& table_;
   Report report_;
   std::size_t next_place_ = 0;
   std::uint64_t chunk_offset_ = 0;
   bool misfit_told_ = false;  ///< of this chunk
   mcap::Cursor chunk_ = mcap::Cursor({});
+  MessagePlace run_;  ///< what is left of it
   mcap::RawBuffer content_;
   mcap::RawBuffer expanded_;
 };

@@ -10,6 +10,12 @@ namespace {
 /// How often the open chunk's age is looked at while no frame comes.
 constexpr std::chrono::milliseconds kPause(10);
 
+std::size_t bytes_of(const std::vector<RecordingNote>& notes) {
+  std::size_t bytes = 0;
+  for (const RecordingNote& note : notes) bytes += sizeof note + note.text.size();
+  return bytes;
+}
+
 std::size_t bytes_of(const TraceFrame& frame) {
   return sizeof frame + frame.pose.nodes.size() * sizeof frame.pose.nodes[0] +
          frame.colliders.size() * sizeof frame.colliders[0] + frame.teleported.size() * sizeof frame.teleported[0];
@@ -35,7 +41,7 @@ void RecordingThread::rethrow() {
 }
 
 bool RecordingThread::put(TraceFrame frame, std::vector<RecordingNote> notes, WhenBehind when_behind) {
-  const std::size_t bytes = bytes_of(frame);
+  const std::size_t bytes = bytes_of(frame) + bytes_of(notes);
   {
     std::unique_lock lock(mutex_);
     const auto has_room = [&] { return items_.empty() || waiting_bytes_ + bytes <= most_bytes_ || failed_; };

@@ -91,7 +91,6 @@ class Recoverer {
   Recovery result_;
   mcap::RawBuffer content_;
   mcap::RawBuffer expanded_;
-  std::size_t damages_taken_ = 0;
   std::uint64_t messages_found_ = 0;
   std::uint64_t unknown_messages_ = 0;
   std::uint32_t crc_ = mcap::crc32(std::as_bytes(std::span(mcap::kMagic)));
@@ -127,8 +126,7 @@ void Recoverer::learn_node_count() {
 }
 
 void Recoverer::take_damages() {
-  const std::vector<mcap::Damage>& damages = walker_.damages();
-  for (; damages_taken_ < damages.size(); ++damages_taken_) take_damage(damages[damages_taken_]);
+  for (const mcap::Damage& damage : walker_.damages()) take_damage(damage);
 }
 
 /// Tries what stands where the framing is broken, up to the next record that can be believed.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -20,7 +21,7 @@ using mcap::Opcode;
 
 class Rewriter {
  public:
-  Rewriter(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, const TimeRange& range,
+  Rewriter(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, const mcap::TimeRange& range,
            mcap::Compression compression, Definitions definitions)
       : source_(source),
         range_(range),
@@ -36,7 +37,7 @@ class Rewriter {
   void require_messages() const;
 
   const mcap::ByteSource& source_;
-  TimeRange range_;
+  mcap::TimeRange range_;
   mcap::StreamReader reader_;
   McapOutput output_;
   Rewritten result_;
@@ -65,7 +66,7 @@ Rewritten Rewriter::run(const std::function<bool(double)>& progress) {
   result_.start_ns = statistics.message_start_time;
   result_.end_ns = statistics.message_end_time;
   result_.bytes = output_.bytes_written();
-  for (mcap::Damage& damage : reader_.damages()) result_.damages.push_back(std::move(damage));
+  result_.damages.add(reader_.damages());
   return std::move(result_);
 }
 
@@ -104,10 +105,10 @@ void Rewriter::take_message(const mcap::StreamRecord& record) {
   if (!range_.contains(message.log_time)) {
     ++result_.left_out;
   } else if (!output_.write(message) && undefined_.insert(message.channel_id).second) {
-    result_.damages.push_back({record.offset, 0,
-                               fmt::format("a Message of channel {}, which nothing defines; from here on its messages "
-                                           "are left out",
-                                           message.channel_id)});
+    result_.damages.add({record.offset, 0,
+                         fmt::format("a Message of channel {}, which nothing defines; from here on its messages are "
+                                     "left out",
+                                     message.channel_id)});
   }
 }
 

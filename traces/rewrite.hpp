@@ -2,35 +2,27 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
-#include <vector>
 
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/record_walker.hpp"
+#include "traces/mcap/time_range.hpp"
 #include "traces/mcap/writer.hpp"
 
 namespace vestige {
 
-/// Times at which messages are kept: from <= log_time < to.
-struct TimeRange {
-  std::uint64_t from_ns = 0;
-  std::uint64_t to_ns = std::numeric_limits<std::uint64_t>::max();
-  bool contains(std::uint64_t time_ns) const { return from_ns <= time_ns && time_ns < to_ns; }
-};
-
 struct RewriteOptions {
   std::optional<mcap::Compression> compression = {};  ///< nothing: as its first chunk is
-  TimeRange range = {};
+  mcap::TimeRange range = {};
 };
 
 struct Rewritten {
-  std::uint64_t messages = 0;         ///< written
-  std::uint64_t bytes = 0;            ///< written
-  std::uint64_t left_out = 0;         ///< messages outside the range
-  std::uint64_t start_ns = 0;         ///< of the first message kept
-  std::uint64_t end_ns = 0;           ///< of the last
-  std::vector<mcap::Damage> damages;  ///< what of the source could not be read, and is not in the new file
+  std::uint64_t messages = 0;  ///< written
+  std::uint64_t bytes = 0;     ///< written
+  std::uint64_t left_out = 0;  ///< messages outside the range
+  std::uint64_t start_ns = 0;  ///< of the first message kept
+  std::uint64_t end_ns = 0;    ///< of the last
+  mcap::DamageList damages;    ///< what of the source could not be read, and is not in the new file
 };
 
 /// Writes a file anew through `sink`: the same channels, attachments, metadata and chunks, other compression or only

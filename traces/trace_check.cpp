@@ -28,35 +28,45 @@ using mcap::Malformed;
 using mcap::Opcode;
 using trace_format::Stream;
 
-constexpr std::string_view kRefused = "reading frames stops here: `vestige recover` leaves out what does not fit";
+constexpr std::string_view kRefused =
+    "`vestige replay` refuses the file; `vestige recover` leaves out what does not fit";
 
-/// Checks frames against each other, message by message.
+/// Checks frames against each other, message by message, as `TraceReader` puts them together.
 class FrameCheck {
  public:
   FrameCheck(TraceCheck& result, std::optional<std::size_t> node_count) : result_(result), node_count_(node_count) {}
 
   void set_node_count(std::size_t count) { node_count_ = count; }
+  void expect_colliders() { colliders_channel_ = true; }
   void take(const CheckedRecord& record, Stream stream);
   void finish() { end_frame(); }
 
  private:
-  void begin_frame(const CheckedRecord& record, std::uint32_t sequence);
+  /// Messages in a row that have one number.
+  struct Frame {
+    CheckedRecord first;  ///< without its content
+    std::uint32_t number = 0;
+    bool has_pose = false;
+    bool has_colliders = false;
+    bool is_broken = false;  ///< one of its messages was no good, which was said
+  };
+
   void end_frame();
   void take_pose(const CheckedRecord& record, const mcap::Message& message);
   void take_colliders(const CheckedRecord& record, const mcap::Message& message);
   void take_event(const CheckedRecord& record, const mcap::Message& message);
   void report(const CheckedRecord& record, std::string what, std::string_view consequence);
+  void refuse(const CheckedRecord& record, std::string what);
 
   TraceCheck& result_;
   std::optional<std::size_t> node_count_;
   MessageDecoder decoder_;
   std::vector<ColliderSample> colliders_;
-  std::optional<std::uint32_t> frame_;  ///< whose messages are being read
-  CheckedRecord first_;                 ///< of that frame; without its content
-  bool has_pose_ = false;
-  bool has_colliders_ = false;
-  bool broken_ = false;  ///< one of its messages was no good, which was said
+  std::optional<Frame> frame_;              ///< whose messages are being read
+  std::optional<std::uint32_t> delivered_;  ///< number of the last frame that readers get
   std::optional<std::uint64_t> last_time_ns_;
+  bool refused_ = false;            ///< readers stop here
+  bool colliders_channel_ = false;  ///< there is one
 };
 
 void FrameCheck::report(const CheckedRecord& record, std::string what, std::string_view consequence) {
@@ -67,69 +77,70 @@ void FrameCheck::report(const CheckedRecord& record, std::string what, std::stri
                         .consequence = std::string(consequence)});
 }
 
-void FrameCheck::begin_frame(const CheckedRecord& record, std::uint32_t sequence) {
-  const std::optional<std::uint32_t> before = frame_;
-  end_frame();
-  frame_ = sequence;
-  first_ = record;
-  first_.content = {};
-  if (!before) return;
-  if (sequence < *before) {
-    report(record, fmt::format("frame {} comes after frame {}", sequence, *before), kRefused);
-  } else if (sequence > *before + 1) {
-    const bool one = sequence == *before + 2;
-    report(record,
-           one ? fmt::format("frame {} is missing", *before + 1)
-               : fmt::format("frames {} to {} are missing", *before + 1, sequence - 1),
-           fmt::format("nothing leads to frame {}, so that it has no contacts", sequence));
-  }
+void FrameCheck::refuse(const CheckedRecord& record, std::string what) {
+  refused_ = frame_->is_broken = true;
+  report(record, std::move(what), kRefused);
 }
 
 void FrameCheck::end_frame() {
-  if (frame_ && has_colliders_ && !has_pose_ && !broken_)
-    report(first_, fmt::format("frame {} has no pose", *frame_), "it is left out");
-  if (has_pose_ && !broken_) ++result_.frames;
-  has_pose_ = has_colliders_ = broken_ = false;
+  if (!frame_) return;
+  const Frame frame = *std::exchange(frame_, {});
+  if (!frame.has_pose) {
+    if (frame.has_colliders && !frame.is_broken)
+      report(frame.first, fmt::format("frame {} has no pose", frame.number), "it is left out");
+    return;
+  }
+  if (!frame.has_colliders && !frame.is_broken && colliders_channel_)
+    report(frame.first, fmt::format("frame {} has no message of /colliders", frame.number),
+           "no collider is there, and nothing leads to the next frame's");
+  const std::uint64_t expected = delivered_ ? std::uint64_t{*delivered_} + 1 : frame.number;
+  if (frame.number > expected)
+    report(frame.first,
+           frame.number == expected + 1 ? fmt::format("frame {} is missing", expected)
+                                        : fmt::format("frames {} to {} are missing", expected, frame.number - 1),
+           fmt::format("nothing leads to frame {}, so that it has no contacts", frame.number));
+  delivered_ = frame.number;
+  if (!refused_) ++result_.frames;
 }
 
 void FrameCheck::take(const CheckedRecord& record, Stream stream) {
   const mcap::Message message = mcap::decode_message(record.content);
+  if (!frame_ || frame_->number != message.sequence) {
+    end_frame();
+    frame_ = {.first = record, .number = message.sequence};
+    frame_->first.content = {};
+  }
+  const bool is_first_part = !frame_->has_pose && !frame_->has_colliders;
+  if (stream != Stream::kEvents && is_first_part && delivered_ && message.sequence <= *delivered_)
+    refuse(record, fmt::format("frame {} comes after frame {}", message.sequence, *delivered_));
   try {
-    if (stream == Stream::kEvents) {
-      take_event(record, message);
-      return;
-    }
-    if (!frame_ || *frame_ != message.sequence) begin_frame(record, message.sequence);
+    if (stream == Stream::kEvents) take_event(record, message);
     if (stream == Stream::kPose) take_pose(record, message);
     if (stream == Stream::kColliders) take_colliders(record, message);
   } catch (const Malformed& malformed) {
-    broken_ = stream != Stream::kEvents;
+    frame_->is_broken = true;
     report(record, fmt::format("a message of frame {}: {}", message.sequence, malformed.what()), "it is left out");
   }
 }
 
 void FrameCheck::take_pose(const CheckedRecord& record, const mcap::Message& message) {
-  if (std::exchange(has_pose_, true)) report(record, fmt::format("frame {} has two poses", *frame_), kRefused);
+  if (frame_->has_pose) refuse(record, fmt::format("frame {} has two poses", frame_->number));
   const std::size_t nodes = decoder_.pose_node_count(message.data);
-  if (node_count_ && nodes != *node_count_) {
-    broken_ = true;
-    report(record, fmt::format("frame {}: its pose has {} nodes, the avatar {}", *frame_, nodes, *node_count_),
-           kRefused);
-  }
+  if (node_count_ && nodes != *node_count_)
+    refuse(record, fmt::format("frame {}: its pose has {} nodes, the avatar {}", frame_->number, nodes, *node_count_));
   if (message.log_time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
-    report(record, fmt::format("frame {}: its time is out of range", *frame_), kRefused);
+    refuse(record, fmt::format("frame {}: its time is out of range", frame_->number));
   if (last_time_ns_ && message.log_time < *last_time_ns_)
-    report(record,
-           fmt::format("frame {}: its time, {} ns, is before the frame before, {} ns", *frame_, message.log_time,
-                       *last_time_ns_),
-           kRefused);
+    refuse(record, fmt::format("frame {}: its time, {} ns, is before the frame before, {} ns", frame_->number,
+                               message.log_time, *last_time_ns_));
   last_time_ns_ = message.log_time;
+  frame_->has_pose = true;
 }
 
 void FrameCheck::take_colliders(const CheckedRecord& record, const mcap::Message& message) {
-  if (std::exchange(has_colliders_, true))
-    report(record, fmt::format("frame {} has its colliders twice", *frame_), kRefused);
+  if (frame_->has_colliders) refuse(record, fmt::format("frame {} has its colliders twice", frame_->number));
   decoder_.colliders(message.data, colliders_);
+  frame_->has_colliders = true;
 }
 
 void FrameCheck::take_event(const CheckedRecord& record, const mcap::Message& message) {
@@ -137,8 +148,8 @@ void FrameCheck::take_event(const CheckedRecord& record, const mcap::Message& me
   if (event.kind != trace_format::kDroppedKind) return;
   result_.dropped += event.count;
   report(record,
-         fmt::format("{} messages of {} were dropped while recording, about frame {}", event.count, event.text,
-                     message.sequence),
+         fmt::format("{} messages of {} were dropped while recording, about frame {}", event.count,
+                     dropped_topic(event), message.sequence),
          "they were never in the file");
 }
 
@@ -222,6 +233,7 @@ void Checker::take(const mcap::Channel& channel) {
   const Stream stream = streams_.stream_of(channel.id);
   if (stream == Stream::kForeign) return;
   result_.is_trace = true;
+  if (stream == Stream::kColliders) frames_.expect_colliders();
   if (stream != Stream::kPose || node_count_) return;
   if (const auto names = parse_node_names(channel)) {
     node_count_ = names->size();
@@ -274,7 +286,9 @@ TraceCheck check_trace(const mcap::ByteSource& source, const std::function<bool(
   Checker checker(source);
   checker.result().container = mcap::check_container(
       source, checker.result().problems, [&](const CheckedRecord& record) { checker.take(record); }, progress);
-  return checker.finish();
+  TraceCheck result = checker.finish();
+  result.problems.sort_by_offset();
+  return result;
 }
 
 }  // namespace vestige

@@ -13,7 +13,7 @@ namespace vestige {
 struct TraceCheck {
   bool is_trace = false;  ///< by its profile or its channels; another MCAP file is checked as a container only
   mcap::ContainerFacts container;
-  std::uint64_t frames = 0;   ///< that have a pose that fits the avatar
+  std::uint64_t frames = 0;   ///< that readers deliver: up to where one of them is refused
   std::uint64_t dropped = 0;  ///< messages that the recorder noted as lost
   mcap::ProblemList problems;
 

@@ -178,6 +178,10 @@ class TraceHdf5::Implementation {
                                h5.close_attribute);
     const Hdf5Handle type(h5.attribute_type(attribute.id()), h5.close_type);
     if (h5.class_of(type.id()) != H5T_STRING) return {};
+    const Hdf5Handle space(h5.attribute_space(attribute.id()), h5.close_space);
+    constexpr std::size_t kMostBytes = 1 << 20;
+    if (h5.element_count(space.id()) != 1 || h5.size_of(type.id()) > kMostBytes)
+      throw Error(path_.string(), fmt::format("its attribute '{}' is not one text", key), kRemedy);
     std::string text;
     bool is_read = false;
     if (h5.is_variable_text(type.id()) > 0) {

@@ -42,14 +42,10 @@ void take_attachment(mcap::Bytes content, TraceIndex& index) {
 }
 
 /// Whether the summary leads to everything, so that nothing is missed by not scanning.
-bool covers_everything(const mcap::Summary& summary) {
+bool covers_everything(const mcap::ByteSource& source, const mcap::Summary& summary) {
   if (!summary.header || !summary.statistics) return false;
-  const mcap::Statistics& statistics = *summary.statistics;
-  return statistics.chunk_count == summary.chunk_indexes.size() &&
-         (statistics.chunk_count > 0 || statistics.message_count == 0) &&
-         statistics.attachment_count == summary.attachment_indexes.size() &&
-         statistics.metadata_count == summary.metadata_indexes.size() &&
-         statistics.channel_count == summary.channels.size();
+  return summary.statistics->schema_count == summary.schemas.size() &&
+         summary.statistics->channel_count == summary.channels.size() && mcap::leads_to_everything(source, summary);
 }
 
 TraceIndex from_summary(const mcap::ByteSource& source, const mcap::Summary& summary) {
@@ -64,7 +60,7 @@ TraceIndex from_summary(const mcap::ByteSource& source, const mcap::Summary& sum
     try {
       take(mcap::read_record_at(source, offset, opcode, limit, buffer));
     } catch (const Malformed& malformed) {
-      index.damages.push_back({offset, length, fmt::format("a {}: {}", mcap::name_of(opcode), malformed.what())});
+      index.damages.add({offset, length, fmt::format("a {}: {}", mcap::name_of(opcode), malformed.what())});
     }
   };
   for (const mcap::MetadataIndex& entry : summary.metadata_indexes)
@@ -74,10 +70,8 @@ TraceIndex from_summary(const mcap::ByteSource& source, const mcap::Summary& sum
     guarded(entry.offset, entry.length, Opcode::kAttachment,
             [&](mcap::Bytes content) { take_attachment(content, index); });
   for (const mcap::ChunkIndex& chunk : summary.chunk_indexes) {
-    if (chunk.chunk_length < mcap::kRecordHeadBytes) continue;
-    index.places.push_back({.opcode = Opcode::kChunk,
-                            .offset = chunk.chunk_start_offset,
-                            .content_bytes = chunk.chunk_length - mcap::kRecordHeadBytes});
+    index.places.push_back(
+        {.in_chunk = true, .begin = chunk.chunk_start_offset, .end = chunk.chunk_start_offset + chunk.chunk_length});
   }
   return index;
 }
@@ -86,8 +80,14 @@ void take_record(const mcap::RecordPlace& place, const mcap::RecordWalker& walke
                  TraceIndex& index) {
   switch (place.opcode) {
     case Opcode::kChunk:
+      index.places.push_back({.in_chunk = true, .begin = place.offset, .end = place.end()});
+      break;
     case Opcode::kMessage:
-      index.places.push_back(place);
+      if (!index.places.empty() && !index.places.back().in_chunk && index.places.back().end == place.offset) {
+        index.places.back().end = place.end();
+      } else {
+        index.places.push_back({.begin = place.offset, .end = place.end()});
+      }
       break;
     case Opcode::kHeader:
       take_header(mcap::decode_header(walker.content(place, buffer)), index);
@@ -114,16 +114,20 @@ TraceIndex by_scanning(const mcap::ByteSource& source) {
   mcap::RecordWalker walker(source);
   mcap::RecordPlace place;
   mcap::RawBuffer buffer;
+  const auto note_framing = [&] {
+    for (const mcap::Damage& damage : walker.damages()) index.damages.add(damage);
+  };
   while (walker.next(place)) {
+    note_framing();
     try {
       take_record(place, walker, buffer, index);
     } catch (const Malformed& malformed) {
-      index.damages.push_back({place.offset, place.end() - place.offset,
-                               fmt::format("a {}: {}", mcap::name_of(place.opcode), malformed.what())});
+      index.damages.add({place.offset, place.end() - place.offset,
+                         fmt::format("a {}: {}", mcap::name_of(place.opcode), malformed.what())});
     }
   }
   index.has_footer = walker.footer_seen();
-  index.damages.insert(index.damages.end(), walker.damages().begin(), walker.damages().end());
+  note_framing();
   return index;
 }
 
@@ -136,15 +140,15 @@ void check(TraceIndex& index) {
   note(trace_format::kMapImageName, index.actuator_map_png);
   note(trace_format::kMapTextName, index.actuator_map_json);
   for (const SessionProblem& problem : check_session(index.session, sha256))
-    index.damages.push_back({index.session_offset, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
+    index.damages.add({index.session_offset, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
 }
 
 TraceIndex read_index(const mcap::ByteSource& source) {
   const mcap::SummaryResult result = mcap::read_summary(source);
-  if (result.summary && covers_everything(*result.summary)) return from_summary(source, *result.summary);
+  if (result.summary && covers_everything(source, *result.summary)) return from_summary(source, *result.summary);
   TraceIndex index = by_scanning(source);
   if (index.has_footer && !result.summary)
-    index.damages.push_back({source.size(), 0, fmt::format("the file's end: {}", result.problem)});
+    index.damages.add({source.size(), 0, fmt::format("the file's end: {}", result.problem)});
   return index;
 }
 

@@ -22,9 +22,9 @@ struct TraceIndex {
   std::vector<std::byte> actuator_map_png;
   std::vector<std::byte> actuator_map_json;
   StreamTable streams;
-  std::vector<mcap::RecordPlace> places;  ///< chunks, and messages outside chunks, in file order
+  std::vector<MessagePlace> places;  ///< in file order
   bool has_footer = false;
-  std::vector<mcap::Damage> damages;
+  mcap::DamageList damages;
 };
 
 /// By the summary where there is a complete one, else by scanning the file. Throws `Error`: no MCAP file, reading

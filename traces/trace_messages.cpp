@@ -32,6 +32,11 @@ std::optional<std::uint32_t> find_duplicate(std::vector<std::uint32_t>& ids) {
 
 }  // namespace
 
+std::string dropped_topic(const TraceEvent& event) {
+  constexpr std::size_t kMostBytes = 200;
+  return std::string(event.text.substr(0, kMostBytes));
+}
+
 struct MessageEncoder::Builder {
   flatbuffers::FlatBufferBuilder buffer;
 };

@@ -20,6 +20,9 @@ struct TraceEvent {
   std::string_view text;
 };
 
+/// The topic that an event of kind `dropped` names. Files of others may name anything there: 200 bytes of it at most.
+std::string dropped_topic(const TraceEvent& event);
+
 /// Makes the messages of a trace. What each call returns is valid until the next.
 class MessageEncoder {
  public:

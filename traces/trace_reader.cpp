@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "traces/error.hpp"
@@ -23,6 +24,7 @@ using mcap::Malformed;
 using trace_format::Stream;
 
 constexpr std::size_t kMostWarnings = 1000;
+constexpr std::size_t kMostColliders = 1'000'000;  ///< in a trace; and teleports in a frame
 constexpr std::string_view kRecover = "`vestige recover` may still find some of it";
 
 }  // namespace
@@ -32,7 +34,7 @@ class TraceReader::Implementation {
   explicit Implementation(const std::filesystem::path& path)
       : source_(path), index_(index_trace(source_)), frames_(*this, PoseDecoding::kFull) {
     if (index_.recovered) recovered_ = describe_recovered(*index_.recovered);
-    for (const mcap::Damage& damage : index_.damages) warn(damage);
+    for (const mcap::Damage& damage : index_.damages.kept()) warn(damage);
     require_trace();
   }
 
@@ -139,6 +141,7 @@ void TraceReader::Implementation::require_trace() {
 const TraceReader::Implementation::Census& TraceReader::Implementation::census() {
   if (census_) return *census_;
   Census census;
+  std::set<std::uint32_t> ids;
   Frames frames(*this, PoseDecoding::kNodeCount);
   TraceFrame frame;
   std::vector<std::uint32_t> previous;
@@ -149,12 +152,12 @@ const TraceReader::Implementation::Census& TraceReader::Implementation::census()
     for (const ColliderSample& collider : frame.colliders) current.push_back(collider.id);
     if (current == previous) continue;
     previous = current;
-    // Mostly the same ids again: kept sorted and unique as they come.
-    for (const std::uint32_t id : current) {
-      const auto place = std::lower_bound(census.collider_ids.begin(), census.collider_ids.end(), id);
-      if (place == census.collider_ids.end() || *place != id) census.collider_ids.insert(place, id);
-    }
+    ids.insert(current.begin(), current.end());
+    if (ids.size() > kMostColliders)
+      throw Error(source_.name(), fmt::format("has more than {} colliders", kMostColliders),
+                  "number them anew: an id may be used again once it is gone");
   }
+  census.collider_ids.assign(ids.begin(), ids.end());
   census.dropped = frames.dropped();
   return census_.emplace(std::move(census));
 }
@@ -181,15 +184,19 @@ bool TraceReader::Implementation::Frames::next(TraceFrame& frame) {
     frame.colliders.clear();
     frame.teleported.clear();
     pose_taken_ = colliders_taken_ = false;
+    bool is_whole = true;
     do {
       try {
         take(frame);
       } catch (const Malformed& malformed) {
+        is_whole = false;
         owner_.warn({message_.offset, 0, fmt::format("a message of frame {}: {}", sequence, malformed.what())});
       }
       held_ = false;
     } while (peek() && message_.message.sequence == sequence);
     if (pose_taken_) {
+      if (!colliders_taken_ && is_whole && owner_.index_.streams.find(Stream::kColliders) != nullptr)
+        owner_.warn({offset, 0, fmt::format("frame {} has no message of /colliders: no collider is there", sequence)});
       last_sequence_ = sequence;
       last_time_ns_ = frame.time_ns;
       return true;
@@ -231,7 +238,10 @@ void TraceReader::Implementation::Frames::take_pose(TraceFrame& frame) {
 
 void TraceReader::Implementation::Frames::take_event(TraceFrame& frame) {
   const TraceEvent event = decoder_.event(message_.message.data);
-  if (event.kind == trace_format::kTeleportKind) frame.teleported.push_back(event.collider);
+  if (event.kind == trace_format::kTeleportKind) {
+    if (frame.teleported.size() == kMostColliders) refuse(fmt::format("has more than {} teleports", kMostColliders));
+    frame.teleported.push_back(event.collider);
+  }
   if (event.kind == trace_format::kDroppedKind) dropped_ += event.count;
 }
 

@@ -19,7 +19,7 @@ namespace vestige {
 ///
 /// Every function throws `Error` naming the file and offset: no MCAP file, no trace of ours, no avatar or a damaged
 /// one, a frame that contradicts the rest (frames out of order, time running back, another number of nodes than the
-/// avatar has, a collider twice).
+/// avatar has, a collider twice), more than a million colliders.
 class TraceReader {
  public:
   /// "-" is standard input, kept in a temporary file without a name.

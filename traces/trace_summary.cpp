@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "traces/mcap/byte_source.hpp"
-#include "traces/mcap/problem.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/message_stream.hpp"
 #include "traces/nanoseconds.hpp"
@@ -39,8 +38,8 @@ class Gatherer {
     summary_.library = header.library;
   }
   void take(mcap::Schema schema) {
-    streams_.add(schema);
-    schemas_.insert_or_assign(schema.id, std::move(schema));
+    schema_names_.insert_or_assign(schema.id, schema.name);
+    streams_.add(std::move(schema));
   }
   void take(mcap::Channel channel) {
     streams_.add(channel);
@@ -65,11 +64,8 @@ class Gatherer {
     summary_.compressed_bytes += compressed;
     summary_.uncompressed_bytes += uncompressed;
   }
-  void warn(const mcap::Damage& damage) {
-    ++warning_count_;
-    if (summary_.warnings.size() < mcap::ProblemList::kMostKept)
-      summary_.warnings.push_back(describe(damage, source_.name()));
-  }
+  void warn(mcap::Damage damage) { damages_.add(std::move(damage)); }
+  void warn(const mcap::DamageList& damages) { damages_.add(damages); }
 
   McapSummary finish(bool has_footer);
 
@@ -78,12 +74,12 @@ class Gatherer {
   McapSummary summary_;
   StreamTable streams_;
   MessageDecoder decoder_;
-  std::map<std::uint16_t, mcap::Schema> schemas_;
+  std::map<std::uint16_t, std::string> schema_names_;
   std::map<std::uint16_t, mcap::Channel> channels_;
   std::map<std::uint16_t, std::uint64_t> messages_;
   std::set<std::string> compressions_;
   std::uint64_t session_offset_ = 0;
-  std::uint64_t warning_count_ = 0;
+  mcap::DamageList damages_;
   bool header_taken_ = false;
   bool timed_ = false;
 };
@@ -97,7 +93,11 @@ void Gatherer::take(const mcap::Message& message) {
   const TraceEvent event = decoder_.event(message.data);
   if (event.kind != trace_format::kDroppedKind) return;
   summary_.dropped += event.count;
-  summary_.dropped_by_topic[std::string(event.text)] += event.count;
+  // Recorders of ours name three topics; a file of others may name a new one in each message.
+  std::string topic = dropped_topic(event);
+  auto& dropped = summary_.dropped_by_topic;
+  if (dropped.size() >= mcap::DamageList::kMostKept && !dropped.contains(topic)) topic = "(other topics)";
+  dropped[topic] += event.count;
 }
 
 McapSummary Gatherer::finish(bool has_footer) {
@@ -108,8 +108,8 @@ McapSummary Gatherer::finish(bool has_footer) {
     McapSummary::Channel shown;
     shown.topic = channel.topic;
     shown.encoding = channel.message_encoding;
-    if (const auto schema = schemas_.find(channel.schema_id); schema != schemas_.end())
-      shown.schema = schema->second.name;
+    if (const auto schema = schema_names_.find(channel.schema_id); schema != schema_names_.end())
+      shown.schema = schema->second;
     if (const auto count = messages_.find(id); count != messages_.end()) shown.messages = count->second;
     if (shown.messages > 1 && summary_.duration_s > 0)
       shown.rate_hz = static_cast<double>(shown.messages - 1) / summary_.duration_s;
@@ -123,8 +123,10 @@ McapSummary Gatherer::finish(bool has_footer) {
       warn({session_offset_, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
   }
   summary_.compression.assign(compressions_.begin(), compressions_.end());
-  summary_.complete = has_footer && warning_count_ == 0;
-  if (const std::uint64_t more = warning_count_ - summary_.warnings.size(); more > 0)
+  summary_.complete = has_footer && damages_.empty();
+  damages_.sort_by_offset();
+  for (const mcap::Damage& damage : damages_.kept()) summary_.warnings.push_back(describe(damage, source_.name()));
+  if (const std::uint64_t more = damages_.count() - damages_.kept().size(); more > 0)
     summary_.warnings.push_back(fmt::format("{}: and {} more", source_.name(), more));
   return std::move(summary_);
 }
@@ -175,7 +177,7 @@ McapSummary summarise_mcap(const std::filesystem::path& path) {
         gatherer.warn({record.offset, 0, fmt::format("a Message: {}", malformed.what())});
     }
   }
-  for (const mcap::Damage& damage : reader.damages()) gatherer.warn(damage);
+  gatherer.warn(reader.damages());
   return gatherer.finish(reader.footer_seen());
 }
 

@@ -42,9 +42,9 @@ struct McapSummary {
   std::uint64_t start_ns = 0;      ///< first log_time
   std::uint64_t end_ns = 0;        ///< last log_time
   double duration_s = 0;
-  std::uint64_t dropped = 0;  ///< messages that a recorder of ours noted as lost
-  std::map<std::string, std::uint64_t> dropped_by_topic;
-  bool complete = false;              ///< it has a footer, and nothing is damaged
+  std::uint64_t dropped = 0;                              ///< messages that a recorder of ours noted as lost
+  std::map<std::string, std::uint64_t> dropped_by_topic;  ///< after 1000 the rest together, as "(other topics)"
+  bool complete = false;                                  ///< it has a footer, and nothing is damaged
   std::vector<std::string> warnings;  ///< what is wrong, one sentence each, with byte offset; after 1000 how many more
 };
 

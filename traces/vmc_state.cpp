@@ -105,6 +105,8 @@ bool VmcState::take(std::span<const std::byte> datagram) {
   try {
     const std::vector<OscMessage> messages = decode_osc_packet(datagram);
     // All must be right before one of them counts.
+    std::size_t colliders = colliders_.size();
+    std::size_t markers = markers_.size();
     for (const OscMessage& message : messages) {
       if (message.address == "/VMC/Ext/Bone/Pos" || message.address == "/VMC/Ext/Root/Pos") {
         text(message);
@@ -112,10 +114,13 @@ bool VmcState::take(std::span<const std::byte> datagram) {
       } else if (message.address == "/vestige/collider") {
         id(message);
         for (std::size_t i = 1; i <= 3; ++i) number(message, i);
+        if (!colliders_.contains(id(message)) && ++colliders > kMostColliders)
+          throw Malformed("there are a million colliders already");
       } else if (message.address == "/vestige/collider/remove" || message.address == "/vestige/teleport") {
         id(message);
       } else if (message.address == "/vestige/marker") {
         text(message);
+        if (++markers > kMostMarkers) throw Malformed("there are a thousand markers since the last frame already");
       }
     }
     bool changed = false;
@@ -149,8 +154,6 @@ bool VmcState::apply(const OscMessage& message) {
     return true;
   }
   if (message.address == "/vestige/collider") {
-    if (colliders_.size() >= kMostColliders && !colliders_.contains(id(message)))
-      throw Malformed("there are a million colliders already");
     colliders_[id(message)] = {number(message, 1), number(message, 2), number(message, 3)};
     return true;
   }
@@ -161,7 +164,7 @@ bool VmcState::apply(const OscMessage& message) {
       teleported_.push_back(id(message));
     return true;
   }
-  if (message.address == "/vestige/marker" && markers_.size() < kMostMarkers)
+  if (message.address == "/vestige/marker")
     markers_.push_back({.kind = RecordingNote::Kind::kMarker, .text = text(message)});
   return false;
 }
@@ -191,10 +194,6 @@ void VmcState::show(TraceFrame& frame) {
   frame.colliders.clear();
   for (const auto& [collider, position_m] : colliders_) frame.colliders.push_back({collider, position_m});
   frame.teleported = std::exchange(teleported_, {});
-}
-
-std::vector<RecordingNote> VmcState::take_markers() {
-  return std::exchange(markers_, {});
 }
 
 }  // namespace vestige

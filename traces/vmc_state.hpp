@@ -22,8 +22,9 @@ namespace vestige {
 /// the colliders are. Datagrams change the state; a frame shows it as it is.
 ///
 ///     /VMC/Ext/Root/Pos  ,sfffffff(fff fff)  name, position, rotation x y z w; scale and offset of 2.1 are left out
-///     /VMC/Ext/Bone/Pos  ,sfffffff           Unity's HumanBodyBones, position, rotation x y z w, relative to the
-///     parent /vestige/collider  ,ifff or ,iddd      id, x, y, z: there it is, in metres, in glTF's axes
+///     /VMC/Ext/Bone/Pos  ,sfffffff           Unity's HumanBodyBones, position, rotation x y z w, in its parent
+///
+///     /vestige/collider  ,ifff or ,iddd      id, x, y, z: there it is, in metres, in glTF's axes
 ///     /vestige/collider/remove  ,i           it is gone
 ///     /vestige/teleport  ,i                  its way since the last frame is no motion
 ///     /vestige/marker    ,s                  something to find again
@@ -43,8 +44,9 @@ class VmcState {
   void show(TraceFrame& frame);
   /// Marks that could not be given on, for the next frame.
   void mark_teleported(std::vector<std::uint32_t> ids) { teleported_ = std::move(ids); }
-  /// The markers since the last call.
-  std::vector<RecordingNote> take_markers();
+  /// What was marked since `forget_markers`; 1000 at most, further ones are malformed.
+  const std::vector<RecordingNote>& markers() const { return markers_; }
+  void forget_markers() { markers_.clear(); }
 
   std::uint64_t malformed() const { return malformed_; }
   const std::vector<std::string>& problems() const { return problems_; }  ///< why the first few were

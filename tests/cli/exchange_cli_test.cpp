@@ -10,7 +10,9 @@
 
 #include "tests/support/command_line.hpp"
 #include "tests/support/npm.hpp"
+#include "traces/hdf5_library.hpp"
 #include "traces/pose_csv.hpp"
+#include "traces/shared_library.hpp"
 
 namespace vestige {
 namespace {
@@ -229,6 +231,35 @@ TEST_F(Exchange, Hdf5WhoseAvatarIsNotTheRecordedOneIsRefused) {
   file.replace(key, 6, "SHA256");
   write("changed.h5", file);
   EXPECT_EQ(run("vestige import changed.h5 -o b.mcap").exit_code, 0);
+}
+
+TEST_F(Exchange, Hdf5WhoseSessionHasListsInPlaceOfTextsIsRefused) {
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5").exit_code, 0);
+  std::string file = read_text_file(folder_ / "a.h5");
+  const std::string key = "sha256:avatar.glb";
+  file.replace(file.find(key), 6, "SHA256");
+  for (const bool variable : {false, true}) {
+    write("list.h5", file);
+    const Hdf5Library& h5 = hdf5();
+    decltype(&::H5Acreate_by_name) create_attribute = nullptr;
+    const SharedLibrary library("libhdf5_serial.so.103");
+    library.find("H5Acreate_by_name", create_attribute);
+    {
+      const hsize_t count = 1000;
+      const Hdf5Handle opened(h5.open_file((folder_ / "list.h5").c_str(), 1, 0), h5.close_file);
+      const Hdf5Handle space(h5.create_simple_space(1, &count, nullptr), h5.close_space);
+      const Hdf5Handle type(h5.copy_type(h5.text), h5.close_type);
+      ASSERT_GE(h5.set_size(type.id(), variable ? ~std::size_t{0} : 64), 0);
+      const Hdf5Handle attribute(create_attribute(opened.id(), "session", key.c_str(), type.id(), space.id(), 0, 0, 0),
+                                 h5.close_attribute);
+      ASSERT_GE(attribute.id(), 0);
+      std::vector<const char*> texts(count, "x");
+      const std::string flat(64 * count, 'x');
+      const void* data = variable ? static_cast<const void*>(texts.data()) : flat.data();
+      ASSERT_GE(h5.write_attribute(attribute.id(), type.id(), data), 0);
+    }
+    expect_failure("vestige import list.h5 -o b.mcap", 1, {"list.h5", key, "is not one text"}, "b.mcap");
+  }
 }
 
 /// Every size at which something else of it cannot be written: attachments, tables, what HDF5 writes when it closes.

@@ -122,5 +122,23 @@ TEST_F(Files, CatPrintsALineOfJsonForEachMessageOfATopic) {
   expect_failure("vestige cat a.mcap --topic /posse", 1, {"it has: /colliders, /pose"});
 }
 
+TEST_F(Files, CatPrintsATimeInEitherOrder) {
+  const std::string range = "vestige cat a.mcap --topic /pose --from 0.5 --to 0.53";
+  const std::string lines = run(range).standard_output;
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 3);
+  EXPECT_EQ(nlohmann::json::parse(lines.substr(0, lines.find('\n')))["sequence"], 50);
+  EXPECT_EQ(run(range + " --order time").standard_output, lines);
+  EXPECT_EQ(run("vestige cat a.mcap --order time").standard_output, run("vestige cat a.mcap").standard_output);
+  expect_failure("vestige cat a.mcap --from 2 --to 1", 2, {"--to", "not after --from"});
+  ASSERT_EQ(run("head -c -3000 a.mcap > cut.mcap").exit_code, 0);
+  expect_failure("vestige cat cut.mcap --order time", 1, {"cut.mcap: cannot be read by its index"});
+}
+
+TEST_F(Files, CatDoesNotReadWhatItWrites) {
+  const auto size = std::filesystem::file_size(folder_ / "a.mcap");
+  expect_failure("vestige cat a.mcap >> a.mcap", 2, {"would change a file that is read"});
+  EXPECT_EQ(std::filesystem::file_size(folder_ / "a.mcap"), size);
+}
+
 }  // namespace
 }  // namespace vestige

@@ -425,6 +425,19 @@ TEST_F(Vmc, AMalformedDatagramChangesNothingAndIsCounted) {
   EXPECT_EQ(state.malformed(), wrong.size());
 }
 
+TEST_F(Vmc, MarkersWithoutEndAreCountedAsInputThatWasLost) {
+  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  OscBuilder text(lo_message_new());
+  lo_message_add_string(text.get(), "here");
+  const auto marker = bytes_of("/vestige/marker", text);
+  for (int i = 0; i < 1003; ++i) state.take(marker);
+  EXPECT_EQ(state.markers().size(), 1000U);
+  EXPECT_EQ(state.malformed(), 3U);
+  state.forget_markers();
+  state.take(marker);
+  EXPECT_EQ(state.markers().size(), 1U);
+}
+
 TEST_F(Vmc, AnAvatarWithoutABodyIsRefused) {
   EXPECT_THROW(VmcState(test::skeleton(3), Humanoid(), glm::dvec3(0)), Error);
 }

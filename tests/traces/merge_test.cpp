@@ -200,7 +200,8 @@ TEST(Merge, NotesAMessageThatDoesNotFitItsFieldsAndReadsOn) {
   const Merge result = merge({part(trace.bytes, 0, 8), trace.bytes, rest});
   EXPECT_EQ(result.merged.frames, kFrames - 1);
   ASSERT_EQ(result.merged.damages.size(), 1U);
-  EXPECT_THAT(result.merged.damages[0].damage.what, HasSubstr("do not fit"));
+  ASSERT_EQ(result.merged.damages[0].list.count(), 1U);
+  EXPECT_THAT(result.merged.damages[0].list.kept()[0].what, HasSubstr("do not fit"));
 }
 
 TEST(Merge, RefusesFilesOfOthers) {

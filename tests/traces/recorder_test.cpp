@@ -13,7 +13,10 @@
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
+#include "traces/mcap/stream_reader.hpp"
+#include "traces/message_stream.hpp"
 #include "traces/recording_thread.hpp"
+#include "traces/trace_messages.hpp"
 #include "traces/trace_summary.hpp"
 
 namespace vestige {
@@ -43,6 +46,24 @@ class RecorderTest : public ::testing::Test {
       if (!recorder.write(test::frame(i, kNodes, kColliders))) break;
     recorder.finish();
     return recorder.files();
+  }
+
+  static std::vector<std::string> markers(const std::filesystem::path& path) {
+    const mcap::FileSource source(path);
+    mcap::StreamReader reader(source);
+    StreamTable streams;
+    MessageDecoder decoder;
+    std::vector<std::string> texts;
+    for (mcap::StreamRecord record; reader.next(record);) {
+      if (record.opcode == mcap::Opcode::kSchema) streams.add(mcap::decode_schema(record.content));
+      if (record.opcode == mcap::Opcode::kChannel) streams.add(mcap::decode_channel(record.content));
+      if (record.opcode != mcap::Opcode::kMessage) continue;
+      const mcap::Message message = mcap::decode_message(record.content);
+      if (streams.stream_of(message.channel_id) != trace_format::Stream::kEvents) continue;
+      const TraceEvent event = decoder.event(message.data);
+      if (event.kind == trace_format::kMarkerKind) texts.emplace_back(event.text);
+    }
+    return texts;
   }
 
   /// Reads what must be a whole trace of frames as they were written.
@@ -187,9 +208,11 @@ TEST_F(RecorderTest, ARingKeepsTeleportsAndNotesWithTheirFrames) {
     TraceFrame frame = test::frame(i, kNodes, kColliders);
     frame.teleported = {static_cast<std::uint32_t>(i)};
     recorder.note({.kind = RecordingNote::Kind::kDropped, .count = i, .text = "/pose"});
+    recorder.note({.kind = RecordingNote::Kind::kMarker, .text = fmt::format("marker {}", i)});
     recorder.write(frame);
   }
   recorder.finish();
+  EXPECT_THAT(markers(folder_ / "man.mcap"), ElementsAre("marker 7", "marker 8", "marker 9"));
   TraceReader reader(folder_ / "man.mcap");
   const auto frames = test::read_frames(reader);
   ASSERT_EQ(frames.size(), 3U);

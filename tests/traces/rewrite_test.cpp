@@ -89,7 +89,7 @@ TEST(Recompress, DoesNotMakeDamageLookSound) {
   std::vector<std::byte> written;
   const Rewritten result = rewrite_mcap(source, test::into(written), {}, test::go_on);
   EXPECT_EQ(result.messages, 2 * (kFrames - test::kFramesInAChunk));
-  EXPECT_EQ(result.damages.size(), 3U) << "attachment, chunk, data section";
+  EXPECT_EQ(result.damages.count(), 3U) << "attachment, chunk, data section";
   const std::string text(reinterpret_cast<const char*>(written.data()), written.size());
   EXPECT_THAT(text, ::testing::Not(HasSubstr("avatar.glb\n")));
   const mcap::MemorySource again(written);
@@ -104,10 +104,10 @@ TEST(Recompress, SaysThatAMessageDoesNotFitItsFieldsAndKeepsTheOthers) {
   std::vector<std::byte> written;
   const Rewritten result = rewrite_mcap(source, test::into(written), {}, test::go_on);
   EXPECT_EQ(result.messages, 2 * kFrames - 1);
-  ASSERT_EQ(result.damages.size(), 1U);
-  EXPECT_EQ(result.damages[0].offset, trace.chunks[0].offset);
-  EXPECT_EQ(result.damages[0].bytes, mcap::kRecordHeadBytes + 3);
-  EXPECT_THAT(result.damages[0].what, HasSubstr("do not fit"));
+  ASSERT_EQ(result.damages.count(), 1U);
+  EXPECT_EQ(result.damages.kept()[0].offset, trace.chunks[0].offset);
+  EXPECT_EQ(result.damages.kept()[0].bytes, mcap::kRecordHeadBytes + 3);
+  EXPECT_THAT(result.damages.kept()[0].what, HasSubstr("do not fit"));
 }
 
 TEST(Trim, KeepsWhatIsAtTheFirstTimeAndLeavesOutWhatIsAtTheLast) {

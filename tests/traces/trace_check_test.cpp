@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "tests/support/memory_growth.hpp"
+#include "tests/traces/forged_trace.hpp"
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/error.hpp"
@@ -16,6 +17,7 @@
 #include "traces/mcap/summary.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_messages.hpp"
+#include "traces/trace_reader.hpp"
 
 namespace vestige {
 namespace {
@@ -146,51 +148,11 @@ TEST(TraceCheck, SaysThatNothingCanBeReadInWhatIsNoMcapFile) {
   EXPECT_FALSE(result.container.begins_as_mcap);
 }
 
-/// A trace written record by record, so that it may say what no recorder of ours would.
-class Forged {
- public:
-  Forged() : writer_(test::into(bytes_), {.profile = "vestige", .library = "forged"}, {}) {
-    const std::vector<std::byte> glb = test::skeleton_glb(test::kNodes);
-    writer_.write(mcap::Metadata{.name = "session", .metadata = {{"format_version", "1"}}});
-    writer_.write(mcap::Attachment{.name = "avatar.glb", .media_type = "", .data = glb});
-    for (const Stream stream : {Stream::kPose, Stream::kColliders, Stream::kEvents}) {
-      mcap::Channel channel = trace_format::channel_of(stream);
-      if (stream == Stream::kPose) channel.metadata["nodes"] = R"(["a","b","c"])";
-      writer_.write(trace_format::schema_of(stream));
-      writer_.write(channel);
-    }
-  }
-
-  void pose(std::uint32_t sequence, std::uint64_t time_ns, std::size_t nodes = test::kNodes) {
-    message(1, sequence, time_ns, encoder_.pose(static_cast<std::int64_t>(time_ns), test::frame(0, nodes, 0).pose));
-  }
-  void colliders(std::uint32_t sequence, std::uint64_t time_ns, const std::vector<ColliderSample>& colliders) {
-    message(2, sequence, time_ns, encoder_.colliders(static_cast<std::int64_t>(time_ns), colliders));
-  }
-  void dropped(std::uint32_t sequence, std::uint64_t count) {
-    message(3, sequence, sequence, encoder_.event({.kind = "dropped", .count = count, .text = "/pose"}));
-  }
-  void message(std::uint16_t channel, std::uint32_t sequence, std::uint64_t time_ns, mcap::Bytes data) {
-    writer_.write(mcap::Message{
-        .channel_id = channel, .sequence = sequence, .log_time = time_ns, .publish_time = time_ns, .data = data});
-  }
-  void end_chunk() { writer_.close_chunk(); }
-  TraceCheck check() {
-    writer_.finish();
-    return vestige::check(bytes_);
-  }
-
- private:
-  std::vector<std::byte> bytes_;
-  mcap::Writer writer_;
-  MessageEncoder encoder_;
-};
-
 TEST(TraceCheck, NamesAMessageOfAnUnknownChannelWithItsPlaceInTheChunk) {
-  Forged trace;
-  trace.pose(0, 0);
+  test::ForgedTrace trace;
+  trace.frame(0, 0);
   trace.message(9, 0, 0, {});
-  const TraceCheck result = trace.check();
+  const TraceCheck result = check(trace.finished());
   ASSERT_EQ(result.problems.count(), 1U) << text_of(result);
   const Problem& problem = result.problems.kept().front();
   EXPECT_THAT(problem.what, HasSubstr("channel 9 is not defined"));
@@ -212,35 +174,150 @@ TEST(TraceCheck, GoesOnBehindARecordWhoseFieldsDoNotFit) {
 }
 
 TEST(TraceCheck, NamesFramesThatContradictAvatarAndEachOther) {
-  const auto only = [](const std::function<void(Forged&)>& forge) {
-    Forged trace;
-    trace.pose(0, 0);
-    trace.pose(1, 10);
+  const auto only = [](const std::function<void(test::ForgedTrace&)>& forge) {
+    test::ForgedTrace trace;
+    trace.frame(0, 0);
+    trace.frame(1, 10);
     forge(trace);
-    const TraceCheck result = trace.check();
+    const TraceCheck result = check(trace.finished());
     EXPECT_EQ(result.problems.count(), 1U) << text_of(result);
     EXPECT_TRUE(result.readable());
     return result.problems.count() == 0 ? std::string() : result.problems.kept().front().what;
   };
-  EXPECT_THAT(only([](Forged& trace) { trace.pose(2, 20, 4); }), HasSubstr("its pose has 4 nodes, the avatar 3"));
-  EXPECT_THAT(only([](Forged& trace) { trace.pose(2, 9); }), HasSubstr("its time, 9 ns, is before the frame before"));
-  EXPECT_THAT(only([](Forged& trace) { trace.pose(0, 20); }), HasSubstr("frame 0 comes after frame 1"));
-  EXPECT_THAT(only([](Forged& trace) { trace.pose(1, 10); }), HasSubstr("frame 1 has two poses"));
-  EXPECT_THAT(only([](Forged& trace) { trace.pose(5, 20); }), HasSubstr("frames 2 to 4 are missing"));
-  EXPECT_THAT(only([](Forged& trace) { trace.colliders(2, 20, {}); }), HasSubstr("frame 2 has no pose"));
-  EXPECT_THAT(only([](Forged& trace) {
-                trace.colliders(1, 10, {{.id = 7}, {.id = 8}, {.id = 7}});
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.pose(2, 20, 4); }),
+              HasSubstr("its pose has 4 nodes, the avatar 3"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.frame(2, 9); }),
+              HasSubstr("its time, 9 ns, is before the frame before"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.frame(0, 20); }), HasSubstr("frame 0 comes after frame 1"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.pose(1, 10); }), HasSubstr("frame 1 has two poses"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.frame(5, 20); }), HasSubstr("frames 2 to 4 are missing"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.colliders(2, 20, {}); }), HasSubstr("frame 2 has no pose"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) {
+                trace.pose(2, 20);
+                trace.colliders(2, 20, {{.id = 7}, {.id = 8}, {.id = 7}});
               }),
               HasSubstr("collider 7 is in it twice"));
-  EXPECT_THAT(only([](Forged& trace) { trace.message(1, 2, 20, {}); }), HasSubstr("no valid FlatBuffer"));
-  EXPECT_THAT(only([](Forged& trace) { trace.dropped(1, 12); }), HasSubstr("12 messages of /pose were dropped"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.message(1, 2, 20, {}); }), HasSubstr("no valid FlatBuffer"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.dropped(1, 12); }),
+              HasSubstr("12 messages of /pose were dropped"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.pose(2, 20); }),
+              HasSubstr("frame 2 has no message of /colliders"));
+}
+
+/// What `doctor` and a reader say of the same file.
+void expect_agreement(const std::vector<std::byte>& bytes, std::uint64_t problems) {
+  const TraceCheck result = check(bytes);
+  EXPECT_EQ(result.problems.count(), problems) << text_of(result);
+  test::MemoryFile file;
+  file.assign(bytes);
+  TraceReader reader(file.path());
+  std::uint64_t frames = 0;
+  bool refused = false;
+  try {
+    for (TraceFrame frame; reader.next(frame);) ++frames;
+  } catch (const Error&) {
+    refused = true;
+  }
+  EXPECT_EQ(result.frames, frames) << text_of(result);
+  EXPECT_EQ(text_of(result).find("refuses the file") != std::string::npos, refused) << text_of(result);
+  EXPECT_EQ(reader.complete() && !refused, problems == 0) << text_of(result);
+}
+
+TEST(TraceCheck, AgreesWithReadersAboutWhatAFrameIs) {
+  const auto agree = [](std::uint64_t problems, const std::function<void(test::ForgedTrace&)>& forge) {
+    test::ForgedTrace trace;
+    trace.frame(0, 0);
+    forge(trace);
+    expect_agreement(trace.finished(), problems);
+  };
+  {
+    SCOPED_TRACE("an event of another frame between a frame's parts");
+    agree(2, [](test::ForgedTrace& trace) {
+      trace.pose(1, 1);
+      trace.message(3, 2, 2, MessageEncoder().event({.kind = "marker", .text = "here"}));
+      trace.colliders(1, 1, {});
+    });
+  }
+  {
+    SCOPED_TRACE("an event that does not decode behind a pose that does not");
+    agree(2, [](test::ForgedTrace& trace) {
+      trace.message(1, 1, 1, {});
+      trace.message(3, 1, 1, {});
+    });
+  }
+  {
+    SCOPED_TRACE("a pose that does not decode before one that does");
+    agree(1, [](test::ForgedTrace& trace) {
+      trace.message(1, 1, 1, {});
+      trace.frame(1, 1);
+    });
+  }
+  {
+    SCOPED_TRACE("a frame without a pose between others");
+    agree(1, [](test::ForgedTrace& trace) {
+      trace.colliders(5, 5, {});
+      trace.frame(1, 6);
+    });
+  }
+  {
+    SCOPED_TRACE("colliders that do not decode");
+    agree(1, [](test::ForgedTrace& trace) {
+      trace.pose(1, 1);
+      trace.message(2, 1, 1, {});
+    });
+  }
+}
+
+TEST(TraceCheck, SaysOfBytesBehindTheEndThatNothingIsMissing) {
+  test::ForgedTrace trace;
+  trace.frame(0, 0);
+  std::vector<std::byte> bytes = trace.finished();
+  bytes.resize(bytes.size() + 5);
+  const TraceCheck result = check(bytes);
+  ASSERT_EQ(result.problems.count(), 1U) << text_of(result);
+  EXPECT_THAT(text_of(result), HasSubstr("bytes after the file's end, which were not read; readers may refuse"));
+}
+
+TEST(TraceCheck, TimeDoesNotGrowWithRepeatedDefinitionsAndOffsets) {
+  mcap::ByteBuffer bytes;
+  mcap::append_magic(bytes);
+  append_record(bytes, mcap::Header{});
+  append_record(bytes, mcap::Schema{.id = 1, .name = "a", .encoding = "", .data = std::vector<std::byte>(16 << 20)});
+  for (int i = 0; i < 100'000; ++i) append_record(bytes, mcap::Schema{.id = 1, .name = "", .encoding = "", .data = {}});
+  append_record(bytes, mcap::DataEnd{});
+  for (int i = 0; i < 100'000; ++i) {
+    append_record(bytes, mcap::SummaryOffset{.group_start = 1, .group_length = 1});
+    append_record(bytes, mcap::Statistics{});
+  }
+  append_record(bytes, mcap::Footer{});
+  mcap::append_magic(bytes);
+  // Minutes, if each were compared with all others.
+  EXPECT_GT(check(bytes).problems.count(), 200'000U);
+}
+
+TEST(TraceCheck, CountsTheFramesUpToWhereReadersStop) {
+  test::ForgedTrace trace;
+  for (const std::uint32_t sequence : {0U, 1U, 1U, 2U, 3U}) trace.frame(sequence, sequence);
+  const TraceCheck result = check(trace.finished());
+  EXPECT_THAT(text_of(result), HasSubstr("`vestige replay` refuses the file"));
+  EXPECT_EQ(result.frames, 1U) << "frame 1 is there twice";
+}
+
+TEST(TraceCheck, NamesOfTopicsThatWereDroppedMayBeAnything) {
+  test::ForgedTrace trace;
+  trace.frame(0, 0);
+  const std::string name(1 << 20, 'x');
+  for (std::uint32_t i = 0; i < 100; ++i) trace.dropped(0, 1, name);
+  const TraceCheck result = check(trace.finished());
+  EXPECT_EQ(result.dropped, 100U);
+  EXPECT_LT(result.problems.kept().front().what.size(), 1000U);
 }
 
 TEST(TraceCheck, CountsProblemsWithoutEndAndKeepsTheFirst) {
-  Forged trace;
-  trace.pose(0, 0);
+  test::ForgedTrace trace;
+  trace.frame(0, 0);
   for (std::uint32_t i = 0; i < 3000; ++i) trace.message(9, i, i, {});
-  const TraceCheck result = trace.check();
+  const TraceCheck result = check(trace.finished());
   EXPECT_EQ(result.problems.count(), 3000U);
   EXPECT_EQ(result.problems.kept().size(), mcap::ProblemList::kMostKept);
 }

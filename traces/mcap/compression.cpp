@@ -97,6 +97,8 @@ std::size_t expand_lz4_beginning(std::span<const std::byte> bytes, std::span<std
   return written;
 }
 
+constexpr std::size_t kMostNameBytes = 200;  ///< that a message quotes of a name in a file
+
 }  // namespace
 
 std::string_view name_of(Compression compression) {
@@ -159,7 +161,8 @@ void decompress(std::string_view compression, std::span<const std::byte> bytes, 
   } else if (compression == name_of(Compression::kLz4)) {
     expand_lz4(bytes, target);
   } else {
-    throw Malformed(fmt::format("its compression '{}' is none of \"\", lz4 and zstd", compression));
+    throw Malformed(
+        fmt::format("its compression '{}' is none of \"\", lz4 and zstd", compression.substr(0, kMostNameBytes)));
   }
 }
 

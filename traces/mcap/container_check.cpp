@@ -42,6 +42,7 @@ class Check {
   enum class Section { kData, kSummary };
 
   void note_framing();
+  bool is_behind_footer(const Damage& damage) const;
   std::string consequence_of(const Damage& damage) const;
   void take(const RecordPlace& place, Bytes content);
   void take_data(const RecordPlace& place, Bytes content);
@@ -70,7 +71,6 @@ class Check {
   RawBuffer expanded_;
   Section section_ = Section::kData;
   std::uint64_t data_end_ = kMagicBytes;  ///< of the last record that surely belongs to the data section
-  std::size_t damages_noted_ = 0;
   std::uint32_t data_crc_ = crc32(std::as_bytes(std::span(kMagic)));
   std::uint64_t crc_end_ = kMagicBytes;  ///< up to where data_crc_ reaches
   bool crc_whole_ = true;                ///< nothing was skipped
@@ -89,12 +89,16 @@ void Check::report(const RecordPlace& place, std::string what, std::string conse
          std::move(what), std::move(consequence));
 }
 
+bool Check::is_behind_footer(const Damage& damage) const {
+  return walker_.footer_seen() && damage.offset >= walker_.position();
+}
+
 std::string Check::consequence_of(const Damage& damage) const {
   if (damage.offset < kMagicBytes)
     return "no reader opens the file; `vestige recover` writes one that they open, if it is a trace";
   if (damage.effect == DamageEffect::kAnotherFile)
     return fmt::format("no reader sees it: `tail -c +{} FILE > SECOND.mcap` makes a file of it", damage.offset + 1);
-  if (facts_.has_footer) return "readers may refuse the file";
+  if (is_behind_footer(damage)) return "readers may refuse the file";
   if (damage.effect == DamageEffect::kMended)
     return "it is read all the same, but other readers lose what follows; `vestige recover` mends it";
   if (damage.bytes == 0)
@@ -109,16 +113,14 @@ std::string Check::consequence_of(const Damage& damage) const {
 }
 
 void Check::note_framing() {
-  const std::vector<Damage>& damages = walker_.damages();
-  for (; damages_noted_ < damages.size(); ++damages_noted_) {
-    const Damage& damage = damages[damages_noted_];
+  for (const Damage& damage : walker_.damages()) {
     problems_.add(
         {.offset = damage.offset, .bytes = damage.bytes, .what = damage.what, .consequence = consequence_of(damage)});
     if (damage.offset < kMagicBytes) {
       facts_.begins_as_mcap = false;
       if (damage.bytes == kMagicBytes) continue;
     }
-    if (!facts_.has_footer && damage.bytes > 0 && damage.effect == DamageEffect::kLost) {
+    if (!is_behind_footer(damage) && damage.bytes > 0 && damage.effect == DamageEffect::kLost) {
       data_.whole = crc_whole_ = false;
       message_indexes_.begin_unknown();
     }
@@ -326,8 +328,8 @@ void Check::take_definition(const CheckedRecord& record, const Schema& schema) {
     report(record, "its id is 0, which stands for none", "it is skipped");
     return;
   }
-  const auto [known, is_new] = data_.schemas.try_emplace(schema.id, schema);
-  if (!is_new && !same_record(schema, known->second))
+  const auto [known, is_new] = data_.schemas.try_emplace(schema.id, without_data(schema));
+  if (!is_new && known->second != without_data(schema))
     report(record, fmt::format("schema {} is not what it was before", schema.id),
            "which of the two its messages have is unknown");
   data_.counted.schema_count = static_cast<std::uint16_t>(data_.schemas.size());
@@ -340,7 +342,7 @@ void Check::take_definition(const CheckedRecord& record, const Channel& channel)
            fmt::format("channel {} has schema {}, which is not defined before it", channel.id, channel.schema_id),
            "nothing says what its messages are");
   const auto [known, is_new] = data_.channels.try_emplace(channel.id, channel);
-  if (!is_new && !same_record(channel, known->second))
+  if (!is_new && known->second != channel)
     report(record, fmt::format("channel {} is not what it was before", channel.id),
            "which of the two its messages belong to is unknown");
   data_.counted.channel_count = static_cast<std::uint32_t>(data_.channels.size());

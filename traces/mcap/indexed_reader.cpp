@@ -3,108 +3,125 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include "traces/error.hpp"
 #include "traces/mcap/chunk_expander.hpp"
-#include "traces/mcap/decode.hpp"
 
 namespace vestige::mcap {
 
 namespace {
 
-/// Chunks that overlap in time are read in turns; recorders rarely interleave more.
-constexpr std::size_t kOpenChunks = 4;
+constexpr std::uint64_t kMostOpenBytes = std::uint64_t{1} << 30;
 
 }  // namespace
 
-IndexedReader::IndexedReader(const ByteSource& source) : source_(source) {
+bool IndexedReader::Entry::operator>(const Entry& other) const {
+  return std::tie(log_time, chunk, offset) > std::tie(other.log_time, other.chunk, other.offset);
+}
+
+IndexedReader::IndexedReader(const ByteSource& source, const TimeRange& range, TakeDefinition take_definition)
+    : source_(source), range_(range), take_definition_(std::move(take_definition)) {
   SummaryResult result = read_summary(source);
   if (!result.summary)
     throw Error(source.name(), fmt::format("cannot be read by its index: {}", result.problem), "recover it first");
   summary_ = std::move(*result.summary);
-  damaged_.resize(summary_.chunk_indexes.size());
-  for (std::uint32_t chunk = 0; chunk < summary_.chunk_indexes.size(); ++chunk) {
-    const std::size_t before = entries_.size();
-    try {
-      index_chunk(chunk);
-    } catch (const Malformed& malformed) {
-      entries_.resize(before);
-      note(chunk, malformed.what());
-    }
-  }
-  std::stable_sort(entries_.begin(), entries_.end(), [](const Entry& a, const Entry& b) {
-    if (a.log_time != b.log_time) return a.log_time < b.log_time;
-    return a.chunk != b.chunk ? a.chunk < b.chunk : a.offset < b.offset;
+  const std::vector<ChunkIndex>& chunks = summary_.chunk_indexes;
+  for (std::uint32_t chunk = 0; chunk < chunks.size(); ++chunk)
+    if (range.overlaps(chunks[chunk].message_start_time, chunks[chunk].message_end_time)) by_start_.push_back(chunk);
+  std::stable_sort(by_start_.begin(), by_start_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return chunks[a].message_start_time < chunks[b].message_start_time;
   });
 }
 
-void IndexedReader::index_chunk(std::uint32_t chunk) {
+void IndexedReader::note(std::uint32_t chunk, std::string_view what) {
   const ChunkIndex& index = summary_.chunk_indexes[chunk];
-  if (index.message_index_offsets.empty()) {
-    index_by_expanding(chunk);
+  damages_.add({index.chunk_start_offset, index.chunk_length, fmt::format("a Chunk: {}", what)});
+}
+
+/// All whose messages may come before the earliest that is known.
+void IndexedReader::open_due_chunks() {
+  for (; next_chunk_ < by_start_.size(); ++next_chunk_) {
+    const std::uint32_t chunk = by_start_[next_chunk_];
+    if (!entries_.empty() && summary_.chunk_indexes[chunk].message_start_time > entries_.top().log_time) return;
+    open(chunk);
+    if (open_bytes_ + entries_.size() * sizeof(Entry) > kMostOpenBytes)
+      throw Error(source_.name(), "the times of its chunks overlap: more than 1 GiB would have to be sorted at once",
+                  "read it in the order of the file");
+  }
+}
+
+void IndexedReader::open(std::uint32_t chunk) {
+  const ChunkIndex& index = summary_.chunk_indexes[chunk];
+  OpenChunk& opened = open_chunks_[chunk];
+  try {
+    const Bytes content = read_record_at(source_, index.chunk_start_offset, Opcode::kChunk,
+                                         index.chunk_start_offset + index.chunk_length, content_);
+    const Bytes records = expand_chunk(decode_chunk(content), opened.expanded);
+    // What was not compressed is still in `content_`, which the next chunk takes.
+    if (records.data() != opened.expanded.bytes().data())
+      std::copy(records.begin(), records.end(), opened.expanded.reset(records.size()).begin());
+    opened.records = opened.expanded.bytes();
+    open_bytes_ += opened.records.size();
+    take_records(chunk, opened);
+  } catch (const Malformed& malformed) {
+    note(chunk, malformed.what());
+  }
+  if (opened.has_misfits) note(chunk, "the fields of some of its records do not fit into them");
+  if (opened.contradicts_index) note(chunk, "it has messages outside the time that its index says");
+  if (opened.messages_left > 0) return;
+  open_bytes_ -= opened.records.size();
+  open_chunks_.erase(chunk);
+}
+
+void IndexedReader::take_records(std::uint32_t chunk, OpenChunk& opened) {
+  Cursor cursor(opened.records);
+  while (cursor.remaining() > 0) {
+    const std::uint64_t offset = opened.records.size() - cursor.remaining();
+    const InnerRecord record = next_record(cursor);
+    if (!belongs_in_chunks(record.opcode)) continue;
+    if (fits_its_fields(record)) {
+      take(record, offset, chunk, opened);
+    } else {
+      opened.has_misfits = true;
+    }
+  }
+}
+
+void IndexedReader::take(const InnerRecord& record, std::uint64_t offset, std::uint32_t chunk, OpenChunk& opened) {
+  if (record.opcode != Opcode::kMessage) {
+    if (take_definition_) take_definition_(record);
     return;
   }
-  RawBuffer buffer;
-  for (const auto& [channel, offset] : index.message_index_offsets) {
-    const Bytes content = read_record_at(source_, offset, Opcode::kMessageIndex, summary_.data_section_end, buffer);
-    for (const MessageIndexEntry& entry : decode_message_index(content).entries)
-      entries_.push_back({.log_time = entry.log_time, .offset = entry.offset, .chunk = chunk});
-  }
-}
-
-void IndexedReader::index_by_expanding(std::uint32_t chunk) {
-  const Bytes records = records_of(chunk);
-  Cursor cursor(records);
-  while (cursor.remaining() > 0) {
-    const std::uint64_t offset = records.size() - cursor.remaining();
-    const InnerRecord record = next_record(cursor);
-    if (record.opcode != Opcode::kMessage) continue;
-    entries_.push_back({.log_time = decode_message(record.content).log_time, .offset = offset, .chunk = chunk});
-  }
-}
-
-Bytes IndexedReader::records_of(std::uint32_t chunk) {
-  const auto found = std::find_if(open_chunks_.begin(), open_chunks_.end(),
-                                  [&](const OpenChunk& open) { return open.chunk == chunk; });
-  if (found != open_chunks_.end()) {
-    open_chunks_.splice(open_chunks_.begin(), open_chunks_, found);
-    return open_chunks_.front().records;
-  }
   const ChunkIndex& index = summary_.chunk_indexes[chunk];
-  RawBuffer content;
-  RawBuffer expanded;
-  const Bytes records = expand_chunk(decode_chunk(read_record_at(source_, index.chunk_start_offset, Opcode::kChunk,
-                                                                 summary_.data_section_end, content)),
-                                     expanded);
-  if (open_chunks_.size() == kOpenChunks) open_chunks_.pop_back();
-  open_chunks_.push_front({.chunk = chunk, .records = {records.begin(), records.end()}});
-  return open_chunks_.front().records;
+  const std::uint64_t log_time = decode_message(record.content).log_time;
+  if (log_time < index.message_start_time || log_time > index.message_end_time) opened.contradicts_index = true;
+  if (!range_.contains(log_time)) return;
+  entries_.push({.log_time = log_time, .offset = offset, .chunk = chunk});
+  ++opened.messages_left;
 }
 
-void IndexedReader::note(std::uint32_t chunk, std::string_view what) {
-  if (damaged_[chunk]) return;
-  damaged_[chunk] = true;
-  const ChunkIndex& index = summary_.chunk_indexes[chunk];
-  damages_.push_back({index.chunk_start_offset, index.chunk_length, fmt::format("a Chunk: {}", what)});
+/// The one whose message was delivered last, if it was the last of them.
+void IndexedReader::close_finished_chunk() {
+  const auto found = open_chunks_.find(current_);
+  if (found == open_chunks_.end() || found->second.messages_left > 0) return;
+  open_bytes_ -= found->second.records.size();
+  open_chunks_.erase(found);
 }
 
 bool IndexedReader::next(Message& message) {
-  while (next_entry_ < entries_.size()) {
-    const Entry entry = entries_[next_entry_++];
-    if (damaged_[entry.chunk]) continue;
-    try {
-      const Bytes records = records_of(entry.chunk);
-      if (entry.offset > records.size()) throw Malformed("a message index points outside it");
-      Cursor cursor(records.subspan(static_cast<std::size_t>(entry.offset)));
-      const InnerRecord record = next_record(cursor);
-      if (record.opcode != Opcode::kMessage) throw Malformed("a message index points to no message");
-      message = decode_message(record.content);
-      return true;
-    } catch (const Malformed& malformed) {
-      note(entry.chunk, malformed.what());
-    }
-  }
-  return false;
+  close_finished_chunk();
+  open_due_chunks();
+  if (entries_.empty()) return false;
+  const Entry entry = entries_.top();
+  entries_.pop();
+  current_ = entry.chunk;
+  OpenChunk& opened = open_chunks_.at(current_);
+  --opened.messages_left;
+  Cursor cursor(opened.records.subspan(static_cast<std::size_t>(entry.offset)));
+  message = decode_message(next_record(cursor).content);
+  return true;
 }
 
 }  // namespace vestige::mcap

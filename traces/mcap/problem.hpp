@@ -1,11 +1,10 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
-#include <vector>
+
+#include "traces/mcap/findings.hpp"
 
 namespace vestige::mcap {
 
@@ -18,21 +17,6 @@ struct Problem {
   std::string consequence;                            ///< "none of its messages is read"
 };
 
-/// Counts every problem and keeps the first of them, so that a file made of problems costs no memory.
-class ProblemList {
- public:
-  static constexpr std::size_t kMostKept = 1000;
-
-  void add(Problem problem) {
-    ++count_;
-    if (kept_.size() < kMostKept) kept_.push_back(std::move(problem));
-  }
-  std::uint64_t count() const { return count_; }
-  const std::vector<Problem>& kept() const { return kept_; }
-
- private:
-  std::uint64_t count_ = 0;
-  std::vector<Problem> kept_;
-};
+using ProblemList = Findings<Problem>;
 
 }  // namespace vestige::mcap

@@ -71,6 +71,7 @@ struct Schema {
   std::string name;
   std::string encoding;
   std::vector<std::byte> data;
+  bool operator==(const Schema&) const = default;
 };
 
 struct Channel {
@@ -79,6 +80,7 @@ struct Channel {
   std::string topic;
   std::string message_encoding;
   StringMap metadata;
+  bool operator==(const Channel&) const = default;
 };
 
 struct Message {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "traces/error.hpp"
 #include "traces/mcap/decode.hpp"
@@ -223,6 +224,7 @@ void RecordWalker::note_bytes_behind(std::uint64_t end) {
 }
 
 bool RecordWalker::next(RecordPlace& place) {
+  if (std::exchange(begun_, true)) damages_.clear();
   while (!ended_) {
     if (position_ == source_.size()) {
       damages_.push_back({position_, 0, "the file ends without a footer"});

@@ -5,6 +5,7 @@
 
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/compression.hpp"
+#include "traces/mcap/findings.hpp"
 #include "traces/mcap/record.hpp"
 
 namespace vestige::mcap {
@@ -19,6 +20,8 @@ struct Damage {
   std::string what;  ///< "a Chunk: its CRC is wrong"
   DamageEffect effect = DamageEffect::kLost;
 };
+
+using DamageList = Findings<Damage>;
 
 /// Where a record stands in its file.
 struct RecordPlace {
@@ -54,6 +57,7 @@ class RecordWalker {
   bool footer_seen() const { return footer_seen_; }
   /// Where the next record is expected.
   std::uint64_t position() const { return position_; }
+  /// What the last call of `next` found wrong on its way; the first call adds what is wrong with the file's beginning.
   const std::vector<Damage>& damages() const { return damages_; }
 
  private:
@@ -79,6 +83,7 @@ class RecordWalker {
   bool chunk_seen_ = false;
   bool footer_seen_ = false;
   bool ended_ = false;
+  bool begun_ = false;  ///< `next` has been called
   std::vector<Damage> damages_;
 };
 

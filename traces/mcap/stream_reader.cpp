@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "traces/mcap/chunk_expander.hpp"
 #include "traces/mcap/crc32.hpp"
@@ -26,18 +27,19 @@ std::uint32_t crc32_of(const ByteSource& source, std::uint64_t begin, std::uint6
 StreamReader::StreamReader(const ByteSource& source, ChunkHandling handling)
     : source_(source), handling_(handling), walker_(source), data_crc_(crc32(std::as_bytes(std::span(kMagic)))) {}
 
-std::vector<Damage> StreamReader::damages() const {
-  std::vector<Damage> all = walker_.damages();
-  all.insert(all.end(), damages_.begin(), damages_.end());
-  std::stable_sort(all.begin(), all.end(), [](const Damage& a, const Damage& b) { return a.offset < b.offset; });
-  return all;
+DamageList StreamReader::damages() const {
+  DamageList sorted = damages_;
+  sorted.sort_by_offset();
+  return sorted;
 }
 
 bool StreamReader::next(StreamRecord& record) {
   RecordPlace place;
   for (;;) {
     if (next_in_chunk(record)) return true;
-    if (!walker_.next(place)) return false;
+    const bool found = walker_.next(place);
+    for (const Damage& damage : walker_.damages()) damages_.add(damage);
+    if (!found) return false;
     const Bytes content = walker_.content(place, content_);
     check(place, content);
     if (place.opcode == Opcode::kChunk) {
@@ -54,26 +56,25 @@ bool StreamReader::next_in_chunk(StreamRecord& record) {
       const InnerRecord inner = next_record(chunk_);
       if (!belongs_in_chunks(inner.opcode)) continue;
       if (!fits_its_fields(inner)) {
-        note_misfit(inner);
+        misfit_bytes_ += kRecordHeadBytes + inner.content.size();
         continue;
       }
       record = {.opcode = inner.opcode, .content = inner.content, .offset = chunk_place_.offset, .in_chunk = true};
       return true;
     } catch (const Malformed& malformed) {
-      damages_.push_back({chunk_place_.offset, chunk_.remaining(),
-                          fmt::format("the rest of a Chunk's records: {}", malformed.what())});
+      damages_.add({chunk_place_.offset, chunk_.remaining(),
+                    fmt::format("the rest of a Chunk's records: {}", malformed.what())});
       chunk_ = Cursor({});
     }
   }
+  note_misfits();
   return false;
 }
 
 /// One note for all of a chunk's: there may be millions.
-void StreamReader::note_misfit(const InnerRecord& inner) {
-  constexpr std::string_view kWhat = "records in a Chunk: their fields do not fit into them";
-  if (damages_.empty() || damages_.back().offset != chunk_place_.offset)
-    damages_.push_back({chunk_place_.offset, 0, std::string(kWhat)});
-  damages_.back().bytes += kRecordHeadBytes + inner.content.size();
+void StreamReader::note_misfits() {
+  if (const std::uint64_t bytes = std::exchange(misfit_bytes_, 0); bytes > 0)
+    damages_.add({chunk_place_.offset, bytes, "records in a Chunk: their fields do not fit into them"});
 }
 
 bool StreamReader::open_chunk(const RecordPlace& place, Bytes content) {
@@ -82,7 +83,7 @@ bool StreamReader::open_chunk(const RecordPlace& place, Bytes content) {
     chunk_place_ = place;
     return true;
   } catch (const Malformed& malformed) {
-    damages_.push_back({place.offset, place.end() - place.offset, fmt::format("a Chunk: {}", malformed.what())});
+    damages_.add({place.offset, place.end() - place.offset, fmt::format("a Chunk: {}", malformed.what())});
     return false;
   }
 }
@@ -107,7 +108,7 @@ void StreamReader::check(const RecordPlace& place, Bytes content) {
           throw Malformed("its fields do not fit into it");
     }
   } catch (const Malformed& malformed) {
-    damages_.push_back(
+    damages_.add(
         {place.offset, place.end() - place.offset, fmt::format("a {}: {}", name_of(place.opcode), malformed.what())});
   }
   if (place.offset == data_end_) {
@@ -127,7 +128,7 @@ void StreamReader::check_data_section(const RecordPlace& place, Bytes content) {
 }
 
 void StreamReader::check_summary(const RecordPlace& place, Bytes content) {
-  if (!data_end_seen_) damages_.push_back({place.offset, 0, "no DataEnd comes before the Footer"});
+  if (!data_end_seen_) damages_.add({place.offset, 0, "no DataEnd comes before the Footer"});
   const Footer footer = decode_footer(content);
   if (footer.summary_start > place.offset || footer.summary_offset_start > place.offset)
     throw Malformed("the summary is said to begin after it");

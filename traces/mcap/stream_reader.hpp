@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
@@ -35,12 +33,12 @@ class StreamReader {
   bool next(StreamRecord& record);
 
   bool footer_seen() const { return walker_.footer_seen(); }
-  /// Everything wrong up to here, by offset.
-  std::vector<Damage> damages() const;
+  /// What is wrong up to here: the first that was found, by offset.
+  DamageList damages() const;
 
  private:
   bool next_in_chunk(StreamRecord& record);
-  void note_misfit(const InnerRecord& inner);
+  void note_misfits();
   bool open_chunk(const RecordPlace& place, Bytes content);
   void check(const RecordPlace& place, Bytes content);
   void check_data_section(const RecordPlace& place, Bytes content);
@@ -56,7 +54,8 @@ class StreamReader {
   std::uint32_t data_crc_ = 0;
   std::uint64_t data_end_ = kMagicBytes;  ///< up to where data_crc_ reaches
   bool data_end_seen_ = false;
-  std::vector<Damage> damages_;
+  std::uint64_t misfit_bytes_ = 0;  ///< of this chunk's records whose fields do not fit
+  DamageList damages_;
 };
 
 /// CRC of a piece of a file, read in blocks.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
@@ -16,6 +17,15 @@ namespace {
 constexpr std::size_t kTailBytes = kRecordHeadBytes + kFooterContentBytes + kMagicBytes;
 constexpr std::size_t kFooterCrcBytes = 4;
 constexpr std::uint64_t kMostUnverifiedBytes = std::uint64_t{64} << 20;
+
+/// Offset and length of the record that an index entry leads to.
+std::pair<std::uint64_t, std::uint64_t> place_of(const ChunkIndex& index) {
+  return {index.chunk_start_offset, index.chunk_length};
+}
+template <typename Index>
+std::pair<std::uint64_t, std::uint64_t> place_of(const Index& index) {
+  return {index.offset, index.length};
+}
 
 Footer read_tail(const ByteSource& source) {
   if (source.size() < kMagicBytes + kTailBytes) throw Malformed("it has no footer");
@@ -50,6 +60,9 @@ void take(Summary& summary, const InnerRecord& record) {
     case Opcode::kMetadataIndex:
       summary.metadata_indexes.push_back(decode_metadata_index(record.content));
       break;
+    case Opcode::kChunk:
+    case Opcode::kMessage:
+      throw Malformed(fmt::format("its footer says that the summary begins before a {}", name_of(record.opcode)));
     default:
       break;
   }
@@ -87,9 +100,10 @@ Summary read(const ByteSource& source) {
     require_within(attachment.offset, attachment.length, summary);
   for (const MetadataIndex& metadata : summary.metadata_indexes)
     require_within(metadata.offset, metadata.length, summary);
-  std::stable_sort(
-      summary.chunk_indexes.begin(), summary.chunk_indexes.end(),
-      [](const ChunkIndex& a, const ChunkIndex& b) { return a.chunk_start_offset < b.chunk_start_offset; });
+  const auto by_place = [](const auto& a, const auto& b) { return place_of(a) < place_of(b); };
+  std::stable_sort(summary.chunk_indexes.begin(), summary.chunk_indexes.end(), by_place);
+  std::stable_sort(summary.attachment_indexes.begin(), summary.attachment_indexes.end(), by_place);
+  std::stable_sort(summary.metadata_indexes.begin(), summary.metadata_indexes.end(), by_place);
   return summary;
 }
 
@@ -113,6 +127,36 @@ SummaryResult read_summary(const ByteSource& source) {
   }
 }
 
+bool leads_to_everything(const ByteSource& source, const Summary& summary) {
+  auto chunk = summary.chunk_indexes.begin();
+  auto attachment = summary.attachment_indexes.begin();
+  auto metadata = summary.metadata_indexes.begin();
+  // Whether the record is the next one of its index.
+  const auto take = [](auto& index, auto end, std::uint64_t offset, std::uint64_t length) {
+    const bool is_next = index != end && place_of(*index) == std::pair(offset, length);
+    if (is_next) ++index;
+    return is_next;
+  };
+  ReadWindow window(source);
+  for (std::uint64_t offset = kMagicBytes; offset < summary.data_section_end;) {
+    const std::uint64_t rest = summary.data_section_end - offset;
+    if (rest < kRecordHeadBytes) return false;
+    Cursor head(window.at(offset, kRecordHeadBytes));
+    const auto opcode = static_cast<Opcode>(head.number<std::uint8_t>());
+    const auto content_bytes = head.number<std::uint64_t>();
+    if (content_bytes > std::min(rest - kRecordHeadBytes, kMaxRecordBytes)) return false;
+    const std::uint64_t length = kRecordHeadBytes + content_bytes;
+    if (opcode == Opcode::kMessage) return false;
+    if (opcode == Opcode::kChunk && !take(chunk, summary.chunk_indexes.end(), offset, length)) return false;
+    if (opcode == Opcode::kAttachment && !take(attachment, summary.attachment_indexes.end(), offset, length))
+      return false;
+    if (opcode == Opcode::kMetadata && !take(metadata, summary.metadata_indexes.end(), offset, length)) return false;
+    offset += length;
+  }
+  return chunk == summary.chunk_indexes.end() && attachment == summary.attachment_indexes.end() &&
+         metadata == summary.metadata_indexes.end();
+}
+
 Bytes read_record_at(const ByteSource& source, std::uint64_t offset, Opcode expected, std::uint64_t limit,
                      RawBuffer& buffer) {
   std::array<std::byte, kRecordHeadBytes> head = {};
@@ -123,7 +167,7 @@ Bytes read_record_at(const ByteSource& source, std::uint64_t offset, Opcode expe
   const auto opcode = static_cast<Opcode>(cursor.number<std::uint8_t>());
   const auto length = cursor.number<std::uint64_t>();
   if (opcode != expected) throw Malformed(fmt::format("there is a {} in its place", name_of(opcode)));
-  if (length > limit - offset - kRecordHeadBytes) throw Malformed("its length is broken");
+  if (length > std::min(limit - offset - kRecordHeadBytes, kMaxRecordBytes)) throw Malformed("its length is broken");
   source.read_at(offset + kRecordHeadBytes, buffer.reset(static_cast<std::size_t>(length)));
   return buffer.bytes();
 }

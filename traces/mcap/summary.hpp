@@ -18,7 +18,7 @@ struct Summary {
   std::vector<Schema> schemas;
   std::vector<Channel> channels;
   std::optional<Statistics> statistics;
-  std::vector<ChunkIndex> chunk_indexes;  ///< by offset; each lies within the data section
+  std::vector<ChunkIndex> chunk_indexes;  ///< by offset, as the next two; each lies within the data section
   std::vector<AttachmentIndex> attachment_indexes;
   std::vector<MetadataIndex> metadata_indexes;
 };
@@ -32,6 +32,10 @@ struct SummaryResult {
 /// Reads a file's footer and summary section. A file without summary section but with a footer has an empty summary.
 /// Throws `Error` when it is no MCAP file at all.
 SummaryResult read_summary(const ByteSource& source);
+
+/// Whether the summary's indexes lead to every chunk, attachment and metadata of the data section, each once, and no
+/// message stands outside chunks. Looks at the head of every record there that is not in a chunk.
+bool leads_to_everything(const ByteSource& source, const Summary& summary);
 
 /// Reads the whole record at `offset`, whose content is returned in `buffer`. Throws `Malformed` when there is another
 /// kind of record, or it reaches beyond `limit` (an offset in the file).

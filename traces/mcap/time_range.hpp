@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace vestige::mcap {
+
+/// Times of messages: from_ns <= log_time < to_ns.
+struct TimeRange {
+  std::uint64_t from_ns = 0;
+  std::optional<std::uint64_t> to_ns = {};  ///< nothing: to the end, which may be the largest number there is
+
+  bool contains(std::uint64_t time_ns) const { return overlaps(time_ns, time_ns); }
+  bool overlaps(std::uint64_t first_ns, std::uint64_t last_ns) const {
+    return from_ns <= last_ns && (!to_ns || first_ns < *to_ns);
+  }
+};
+
+}  // namespace vestige::mcap
