@@ -9,6 +9,7 @@
 #include <fstream>
 #include <thread>
 
+#include "traces/utf8.hpp"
 #include "version.hpp"
 
 namespace vestige {
@@ -46,13 +47,22 @@ Machine this_machine() {
 nlohmann::ordered_json provenance(std::span<const std::string> argv) {
   nlohmann::ordered_json json;
   json["schema_version"] = 1;
-  json["argv"] = argv;
+  json["argv"] = nlohmann::ordered_json::array();
+  for (const std::string& argument : argv) json["argv"].push_back(valid_utf8(argument));
   json["version"] = kVersion;
   json["commit"] = kCommit;
   json["dirty"] = kDirty;
   json["time"] = utc_now();
   json["machine"] = to_json(this_machine());
   return json;
+}
+
+std::map<std::string, std::string> provenance_texts(std::span<const std::string> argv) {
+  std::map<std::string, std::string> texts;
+  const nlohmann::ordered_json json = provenance(argv);
+  for (const auto& [key, value] : json.items())
+    texts[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  return texts;
 }
 
 nlohmann::ordered_json to_json(const Machine& machine) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -22,6 +23,9 @@ Machine this_machine();
 /// What every result file says of where it comes from: schema_version, argv, commit, dirty, version, machine, time
 /// (UTC).
 nlohmann::ordered_json provenance(std::span<const std::string> argv);
+
+/// The same as texts, for a trace's session.
+std::map<std::string, std::string> provenance_texts(std::span<const std::string> argv);
 
 nlohmann::ordered_json to_json(const Machine& machine);
 nlohmann::ordered_json to_json(const GlInfo& gl);      ///< renderer, version, …; null for a detector without GL

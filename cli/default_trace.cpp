@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "analysis/provenance.hpp"
 #include "cli/scene.hpp"
 #include "cli/terminal.hpp"
 #include "traces/colliders.hpp"
@@ -16,7 +17,7 @@ void record_default_trace(const std::string& path, std::uint32_t colliders, cons
   const auto swarm = find_scenario("swarm")->make(scene.avatar, animation, {colliders, options.seed});
   TraceWriterOptions writing;
   writing.overwrite = options.overwrite();
-  TraceWriter writer(path, {{"argv", nlohmann::json(invocation.argv).dump()}}, scene.avatar, scene.attachments(),
+  TraceWriter writer(path, {{"argv", provenance_texts(invocation.argv).at("argv")}}, scene.avatar, scene.attachments(),
                      writing);
   const auto write = [&](const TraceFrame& frame) {
     writer.write(frame);

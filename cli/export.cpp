@@ -238,7 +238,7 @@ void add_export(CLI::App& program, Invocation& invocation) {
   verb->add_option("--rate", options->rate_hz,
                    "At most so many frames a second, numbered anew [default: all frames; 'plot paraview' has its own]")
       ->type_name("HZ")
-      ->check(help::kPositive);
+      ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] {
     try {

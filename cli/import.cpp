@@ -160,6 +160,14 @@ void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional
   frames.share = [count, next] { return static_cast<double>(*next) / static_cast<double>(count); };
 }
 
+/// Throws where a file names nodes, and not those of its avatar in their order.
+void require_names(const std::string& file, const std::vector<std::string>& names, const Avatar& avatar) {
+  const auto is_same = [](const std::string& name, const Node& node) { return name == node.name.c_str(); };
+  if (names.empty() || std::ranges::equal(names, avatar.nodes, is_same)) return;
+  throw Error(file, "its table pose/node_names does not name its avatar's nodes",
+              "poses must have the nodes of avatar.glb, in their order");
+}
+
 void run_import(ImportOptions options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   if (!options.from.empty()) refuse_parts(options);
@@ -178,16 +186,14 @@ void run_import(ImportOptions options, Invocation& invocation) {
     const auto file = std::make_shared<TraceHdf5>(options.from);
     scene = make_scene(file->avatar_glb(), {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
                        {options.from + ", avatar.glb", options.from + ", actuator_map.png"}, verbosity);
+    require_names(options.from, file->node_names(), scene.avatar);
     frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
     frames.share = [file] { return file->share(); };
   } else {
     scene = load_scene(options.avatar, options.map, verbosity);
   }
   std::optional<LoadedMotion> motion;
-  Session session;
-  const nlohmann::ordered_json origin = provenance(invocation.argv);
-  for (const auto& [key, value] : origin.items())
-    session[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  Session session = provenance_texts(invocation.argv);
   session["colliders"] = options.colliders;
   if (!options.motion.empty()) {
     motion = add_motion(scene.avatar, options.motion, options.unit, verbosity);

@@ -71,7 +71,8 @@ void add_limits_options(CLI::App& verb, LimitsChoice& choice) {
                   "memory that it takes")
       ->type_name("SIZE");
   verb.add_option("--split", choice.split,
-                  "Write parts NAME-0001.mcap and so on, each a whole trace: 60s, 10min or 500MiB; 'vestige merge' "
+                  "Write parts NAME-0001.mcap and so on, each a whole trace: 60s, 10min or 500MiB, 0.01 s at least; "
+                  "'vestige merge' "
                   "joins them. With --force, all parts of an earlier recording go")
       ->type_name("SECONDS|SIZE");
   verb.add_flag("--sync", choice.sync, "Bring each chunk to disk at once, so that a power cut takes 100 ms at most");

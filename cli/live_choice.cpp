@@ -53,6 +53,8 @@ void check_live_choice(const CLI::App& verb, const LiveChoice& choice) {
                        fmt::format("leave out {} or --live", flag));
   if (choice.is_lines() && verb.count("--rate") != 0)
     throw UsageError("--rate", "each line on standard input is a frame", "leave it out");
+  if (choice.is_lines() && verb.count("--origin") != 0)
+    throw UsageError("--origin", "each line says where avatar and colliders stand", "leave it out");
 }
 
 LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, double rate_hz,
@@ -60,13 +62,14 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
   const LiveSettings settings = {.rate_hz = rate_hz, .duration_s = duration_s, .asked = asked};
   LiveCounts counts;
   if (choice.is_lines()) {
-    LiveNdjson lines(scene.avatar, origin_m);
+    LiveNdjson lines(scene.avatar);
     RecordingThread thread(recorder);
     counts = record_lines(STDIN_FILENO, lines, thread, settings);
     thread.stop();
     warn_of(lines.problems(), "standard input", verbosity);
   } else {
     const Humanoid humanoid = find_humanoid(scene.avatar, scene.avatar_glb);
+    warn_of(humanoid.problems, "--avatar", verbosity);
     VmcState state(scene.avatar, humanoid, origin_m);
     UdpReceiver datagrams(parse_host_port(choice.source, kScheme, "--live"), choice.source);
     RecordingThread thread(recorder);

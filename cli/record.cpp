@@ -57,10 +57,7 @@ RecordingSettings settings_of(const RecordOptions& options) {
 }
 
 Session session_of(const RecordOptions& options, const Animation* animation, const Invocation& invocation) {
-  Session session;
-  const nlohmann::ordered_json origin = provenance(invocation.argv);
-  for (const auto& [key, value] : origin.items())
-    session[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  Session session = provenance_texts(invocation.argv);
   if (options.live.is_live()) {
     session["live"] = options.live.source;
     if (!options.live.is_lines()) session["rate_hz"] = fmt::format("{}", options.recording.rate_hz);
@@ -99,6 +96,19 @@ std::string name_of(const std::vector<std::filesystem::path>& files) {
   return fmt::format("{} to {}", files.front().string(), files.back().string());
 }
 
+/// Parts are named as they begin, which would be over the result.
+void refuse_part_name(const RecordOptions& options, const RecordingLimits& limits) {
+  const std::filesystem::path trace(options.output);
+  const std::filesystem::path json(options.common.json);
+  if ((!limits.splits() && !limits.ring_s) || json.empty() || !is_part_path(trace, json)) return;
+  std::error_code none;
+  const auto folder_of = [&](const std::filesystem::path& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, none).parent_path(), none);
+  };
+  if (folder_of(trace) == folder_of(json))
+    throw UsageError(options.common.json, "parts of the recording are called like this", "choose another name");
+}
+
 void run_record(const RecordOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const RecordingSettings settings = settings_of(options);
@@ -106,6 +116,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   check_outputs({limits.splits() ? part_path(options.output, 1).string() : options.output, options.common.json},
                 {options.scene.avatar, options.scene.map, options.scene.colliders, options.scene.animation},
                 options.common);
+  refuse_part_name(options, limits);
   if (options.output == "-") refuse_terminal("-o -");
 
   Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);

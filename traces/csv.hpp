@@ -1,9 +1,12 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "traces/error.hpp"
@@ -46,7 +49,10 @@ class CsvLines {
     std::string_view field;
     if (!take_text(field)) return false;
     const auto [end, failure] = std::from_chars(field.data(), field.data() + field.size(), value);
-    return failure == std::errc() && end == field.data() + field.size();
+    if (end != field.data() + field.size()) return false;
+    if constexpr (std::is_floating_point_v<Number>)
+      if (failure == std::errc::result_out_of_range) return round_to_zero(field, value);
+    return failure == std::errc();
   }
 
   /// Nothing is left of the row.
@@ -60,6 +66,14 @@ class CsvLines {
 
  private:
   bool next_line();
+
+  /// A number that is out of range since it is so small; false for one that is too large.
+  template <typename Number>
+  static bool round_to_zero(std::string_view field, Number& value) {
+    const double number = std::strtod(std::string(field).c_str(), nullptr);
+    value = static_cast<Number>(number);
+    return std::abs(number) < 1;
+  }
 
   std::string_view text_;
   LineReader* reader_ = nullptr;  ///< in place of `text_`

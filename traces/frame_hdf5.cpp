@@ -65,6 +65,7 @@ class GrowingDataset {
                  "choose chunks");
       hdf5_check(h5.set_shuffle(how.id()), path, "choose a filter");
       hdf5_check(h5.set_deflate(how.id(), 4), path, "choose compression");
+      hdf5_check(h5.set_fletcher32(how.id()), path, "choose checksums");
     }
     dataset_ = Hdf5Handle(
         h5.create_dataset(file, description_.name, description_.type, space.id(), H5P_DEFAULT, how.id(), H5P_DEFAULT),
@@ -130,8 +131,11 @@ class FrameHdf5 final : public FrameFile {
       : file_(path, overwrite), path_(path), scratch_(path, ScratchName::kKept), ids_(trace.collider_ids()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     const Hdf5Library& h5 = hdf5();
-    h5_file_ = Hdf5Handle(h5.create_file(scratch_.path().c_str(), kHdf5Truncate, H5P_DEFAULT, H5P_DEFAULT),
-                          h5.close_file, path, "make a file");
+    // From HDF5 1.10 on there are checksums of what describes the tables, too.
+    const Hdf5Handle how(h5.create_properties(h5.file_access), h5.close_properties, path, "make properties");
+    hdf5_check(h5.set_versions(how.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), path, "choose a version");
+    h5_file_ = Hdf5Handle(h5.create_file(scratch_.path().c_str(), kHdf5Truncate, H5P_DEFAULT, how.id()), h5.close_file,
+                          path, "make a file");
     write_head(trace);
     add({"time_ns", h5.int64, 8, {}, "ns"});
     add({"frame", h5.uint64, 8, {}, ""});
@@ -201,14 +205,22 @@ class FrameHdf5 final : public FrameFile {
     write_bytes("actuator_map.png", trace.actuator_map_png());
     write_bytes("actuator_map.json", trace.actuator_map_json());
     write_node_names(trace.node_names());
-    write_whole("colliders/id", h5.uint32, ids_.size(), ids_.data());
+    write_whole("colliders/id", h5.uint32, ids_.size(), ids_.data(), Checksum::kYes);
   }
 
-  void write_whole(const char* name, hid_t type, std::size_t count, const void* data) {
+  enum class Checksum { kNo, kYes };  ///< attachments have their SHA-256
+
+  void write_whole(const char* name, hid_t type, std::size_t count, const void* data,
+                   Checksum checksum = Checksum::kNo) {
     const Hdf5Library& h5 = hdf5();
     const hsize_t size = count;
+    const Hdf5Handle how(h5.create_properties(h5.dataset_creation), h5.close_properties, path_, "make properties");
+    if (checksum == Checksum::kYes && count > 0) {
+      hdf5_check(h5.set_chunk(how.id(), 1, &size), path_, "choose chunks");
+      hdf5_check(h5.set_fletcher32(how.id()), path_, "choose checksums");
+    }
     const Hdf5Handle space(h5.create_simple_space(1, &size, nullptr), h5.close_space, path_, "make a space");
-    Hdf5Handle dataset(h5.create_dataset(h5_file_.id(), name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+    Hdf5Handle dataset(h5.create_dataset(h5_file_.id(), name, type, space.id(), H5P_DEFAULT, how.id(), H5P_DEFAULT),
                        h5.close_dataset, path_, fmt::format("make {}", name));
     const std::string doing = fmt::format("write {}", name);
     if (count > 0) hdf5_check(h5.write(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path_, doing);
@@ -219,15 +231,18 @@ class FrameHdf5 final : public FrameFile {
     if (!bytes.empty()) write_whole(name, hdf5().uint8, bytes.size(), bytes.data());
   }
 
+  /// Texts of one length: those of any length lie apart, without a checksum.
   void write_node_names(const std::vector<std::string>& names) {
     const Hdf5Library& h5 = hdf5();
+    std::size_t longest = 1;
+    for (const std::string& name : names) longest = std::max(longest, name.size());
+    std::string texts(names.size() * longest, '\0');
+    for (std::size_t i = 0; i < names.size(); ++i) texts.replace(i * longest, names[i].size(), names[i]);
     const Hdf5Handle type(h5.copy_type(h5.text), h5.close_type, path_, "make a type");
-    hdf5_check(h5.set_size(type.id(), H5T_VARIABLE), path_, "make a type");
+    hdf5_check(h5.set_size(type.id(), longest), path_, "make a type");
+    hdf5_check(h5.set_padding(type.id(), H5T_STR_NULLPAD), path_, "make a type");
     hdf5_check(h5.set_character_set(type.id(), H5T_CSET_UTF8), path_, "make a type");
-    std::vector<const char*> texts;
-    texts.reserve(names.size());
-    for (const std::string& name : names) texts.push_back(name.c_str());
-    write_whole("pose/node_names", type.id(), texts.size(), texts.data());
+    write_whole("pose/node_names", type.id(), names.size(), texts.data(), Checksum::kYes);
   }
 
   OutputFile file_;

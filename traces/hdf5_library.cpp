@@ -45,6 +45,8 @@ Hdf5Library load() {
     library.find("H5Pset_chunk", all.set_chunk);
     library.find("H5Pset_shuffle", all.set_shuffle);
     library.find("H5Pset_deflate", all.set_deflate);
+    library.find("H5Pset_fletcher32", all.set_fletcher32);
+    library.find("H5Pset_libver_bounds", all.set_versions);
     library.find("H5Pclose", all.close_properties);
     library.find("H5Dcreate2", all.create_dataset);
     library.find("H5Dopen2", all.open_dataset);
@@ -66,8 +68,10 @@ Hdf5Library load() {
     library.find("H5Tcopy", all.copy_type);
     library.find("H5Tget_class", all.class_of);
     library.find("H5Tget_size", all.size_of);
+    library.find("H5Tget_sign", all.sign_of);
     library.find("H5Tis_variable_str", all.is_variable_text);
     library.find("H5Tset_size", all.set_size);
+    library.find("H5Tset_strpad", all.set_padding);
     library.find("H5Tset_cset", all.set_character_set);
     library.find("H5Tclose", all.close_type);
     // Its own handler at exit would crash on a file that could not be flushed; whoever opens something here closes it.
@@ -90,6 +94,7 @@ Hdf5Library load() {
     all.uint8 = value("H5T_STD_U8LE_g");
     all.text = value("H5T_C_S1_g");
     all.dataset_creation = value("H5P_CLS_DATASET_CREATE_ID_g");
+    all.file_access = value("H5P_CLS_FILE_ACCESS_ID_g");
   } catch (const Error& error) {
     throw Error("HDF5", fmt::format("cannot be opened: {}", error.what()), "install the package libhdf5-103-1");
   }

@@ -33,6 +33,8 @@ struct Hdf5Library {
   decltype(&::H5Pset_chunk) set_chunk;
   decltype(&::H5Pset_shuffle) set_shuffle;
   decltype(&::H5Pset_deflate) set_deflate;
+  decltype(&::H5Pset_fletcher32) set_fletcher32;
+  decltype(&::H5Pset_libver_bounds) set_versions;
   decltype(&::H5Pclose) close_properties;
   decltype(&::H5Dcreate2) create_dataset;
   decltype(&::H5Dopen2) open_dataset;
@@ -54,8 +56,10 @@ struct Hdf5Library {
   decltype(&::H5Tcopy) copy_type;
   decltype(&::H5Tget_class) class_of;
   decltype(&::H5Tget_size) size_of;
+  decltype(&::H5Tget_sign) sign_of;
   decltype(&::H5Tis_variable_str) is_variable_text;
   decltype(&::H5Tset_size) set_size;
+  decltype(&::H5Tset_strpad) set_padding;
   decltype(&::H5Tset_cset) set_character_set;
   decltype(&::H5Tclose) close_type;
   // Values, since the library's own macros name variables that are found at run time.
@@ -67,6 +71,7 @@ struct Hdf5Library {
   hid_t uint8;
   hid_t text;
   hid_t dataset_creation;
+  hid_t file_access;
 };
 
 // The header's names of these would call the library as if it were linked.

@@ -1,9 +1,11 @@
 #include "traces/humanoid.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <utility>
 
 #include "traces/body_roles.hpp"
@@ -49,39 +51,68 @@ std::string unity_name(std::string name) {
   return name;
 }
 
-std::optional<std::size_t> node_index(const json& bone, std::size_t nodes) {
-  if (!bone.is_object()) return {};
-  const auto node = bone.find("node");
-  if (node == bone.end() || !node->is_number_unsigned() || node->get<std::size_t>() >= nodes) return {};
-  return node->get<std::size_t>();
-}
-
 const json* member(const json* object, const char* name) {
   if (object == nullptr || !object->is_object()) return nullptr;
   const auto found = object->find(name);
   return found == object->end() ? nullptr : &*found;
 }
 
-Humanoid by_vrm(const json& root, std::size_t nodes) {
+void note(Humanoid& humanoid, std::string problem) {
+  constexpr std::size_t kMostTold = 10;
+  if (humanoid.problems.size() < kMostTold) humanoid.problems.push_back(std::move(problem));
+}
+
+/// `field` is where the extension says so.
+void take_bone(Humanoid& humanoid, std::string name, const json& bone, const Avatar& avatar, const std::string& field) {
+  const json* node = member(&bone, "node");
+  if (node == nullptr || !node->is_number_unsigned() || node->get<std::size_t>() >= avatar.nodes.size()) {
+    note(humanoid, fmt::format("{}.node is no node of the file: the bone {} is left out", field, name));
+    return;
+  }
+  const auto index = node->get<std::size_t>();
+  const auto same = std::ranges::find_if(humanoid.node_of, [&](const auto& known) { return known.second == index; });
+  if (same != humanoid.node_of.end()) {
+    note(humanoid,
+         fmt::format("{}.node is {}, which is the bone {} already: {} is left out", field, index, same->first, name));
+    return;
+  }
+  humanoid.node_of.emplace(std::move(name), index);
+}
+
+Humanoid by_vrm(const json& root, const Avatar& avatar) {
   Humanoid humanoid;
   humanoid.source = Humanoid::Source::kVrm;
   const json* extensions = member(&root, "extensions");
-  const json* bones = member(member(member(extensions, "VRMC_vrm"), "humanoid"), "humanBones");
-  if (bones != nullptr && bones->is_object()) {
+  if (const json* extension = member(extensions, "VRMC_vrm")) {
+    const std::string field = "extensions.VRMC_vrm.humanoid.humanBones";
+    const json* bones = member(member(extension, "humanoid"), "humanBones");
+    if (bones == nullptr || !bones->is_object()) {
+      note(humanoid, field + " is no object: bones are known by their names");
+      return humanoid;
+    }
     for (const auto& [name, bone] : bones->items())
-      if (const auto node = node_index(bone, nodes)) humanoid.node_of.emplace(unity_name(name), *node);
+      take_bone(humanoid, unity_name(name), bone, avatar, fmt::format("{}.{}", field, name));
     return humanoid;
   }
-  bones = member(member(member(extensions, "VRM"), "humanoid"), "humanBones");
-  if (bones == nullptr || !bones->is_array()) return humanoid;
+  const json* extension = member(extensions, "VRM");
+  if (extension == nullptr) return humanoid;
+  const std::string field = "extensions.VRM.humanoid.humanBones";
+  const json* bones = member(member(extension, "humanoid"), "humanBones");
+  if (bones == nullptr || !bones->is_array()) {
+    note(humanoid, field + " is no array: bones are known by their names");
+    return humanoid;
+  }
   humanoid.facing = Humanoid::Facing::kMinusZ;
-  for (const json& bone : *bones) {
+  for (std::size_t i = 0; i < bones->size(); ++i) {
+    const json& bone = (*bones)[i];
     const json* name = member(&bone, "bone");
-    const auto node = node_index(bone, nodes);
-    if (name == nullptr || !name->is_string() || !node) continue;
+    if (name == nullptr || !name->is_string()) {
+      note(humanoid, fmt::format("{}[{}].bone is no text", field, i));
+      continue;
+    }
     std::string unity = name->get<std::string>();
     if (!unity.empty()) unity[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(unity[0])));
-    humanoid.node_of.emplace(std::move(unity), *node);
+    take_bone(humanoid, std::move(unity), bone, avatar, fmt::format("{}[{}]", field, i));
   }
   return humanoid;
 }
@@ -91,9 +122,10 @@ Humanoid by_vrm(const json& root, std::size_t nodes) {
 Humanoid find_humanoid(const Avatar& avatar, std::span<const std::byte> glb) {
   gltf::Report report("avatar.glb");
   const json root = json::parse(gltf::split_glb(glb, report).json, nullptr, false);
-  Humanoid humanoid = by_vrm(root, avatar.nodes.size());
+  Humanoid humanoid = by_vrm(root, avatar);
   if (!humanoid.node_of.empty()) return humanoid;
-  humanoid = {};
+  humanoid.source = Humanoid::Source::kNames;
+  humanoid.facing = Humanoid::Facing::kPlusZ;
   const auto roles = body_roles(avatar);
   for (std::size_t i = 0; i < roles.size(); ++i) {
     std::string bone = roles[i] ? bone_name(*roles[i]) : "";

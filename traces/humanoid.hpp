@@ -5,6 +5,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "traces/avatar.hpp"
 
@@ -20,6 +21,8 @@ struct Humanoid {
   std::map<std::string, std::size_t, std::less<>> node_of;
   Source source = Source::kNames;
   Facing facing = Facing::kPlusZ;
+  /// What of the extension makes no sense and is left out, each with its field; the first 10.
+  std::vector<std::string> problems;
 };
 
 /// By the extensions VRM or VRMC_vrm of its file `glb` where there is one, else by the nodes' names (body_roles.hpp).

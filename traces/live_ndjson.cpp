@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 /// Numbers are read as floats at once: by way of double, some would be rounded twice.
 using FloatJson = nlohmann::basic_json<std::map, std::vector, std::string, bool, std::int64_t, std::uint64_t, float>;
 
-constexpr std::size_t kMostLineBytes = std::size_t{16} << 20;
+constexpr std::size_t kMostLineBytes = std::size_t{64} << 20;
 constexpr std::size_t kMostBadLinesTold = 10;
 constexpr std::size_t kDeepestJson = 128;  ///< nesting
 constexpr double kMost_s = 9e9;            ///< nanoseconds in 63 bits
@@ -56,7 +56,11 @@ std::size_t depth_of(std::string_view text) {
 template <typename Number, typename AnyJson>
 Number number_of(const AnyJson& json, std::string_view name) {
   constexpr Number kInfinity = std::numeric_limits<Number>::infinity();
-  if (json.is_number()) return json.template get<Number>();
+  if (json.is_number()) {
+    const auto number = json.template get<Number>();
+    if (!std::isfinite(number)) throw Malformed(fmt::format("'{}' has a number that no float can hold", name));
+    return number;
+  }
   if (json.is_string()) {
     const auto& text = json.template get_ref<const std::string&>();
     if (text == "nan") return std::numeric_limits<Number>::quiet_NaN();
@@ -104,7 +108,7 @@ FloatJson pose_in_floats(std::string_view line, const Json& pose) {
 void read_nodes(const FloatJson& nodes, Pose& pose) {
   require_array(nodes, pose.nodes.size(), "nodes");
   for (std::size_t i = 0; i < pose.nodes.size(); ++i) {
-    require_array(nodes[i], 10, "nodes' element");
+    require_array(nodes[i], 10, fmt::format("nodes[{}]", i));
     pose.nodes[i] = {.translation = vector_of(nodes[i], 0, "nodes"),
                      .rotation = rotation_of(nodes[i], 3, "nodes"),
                      .scale = vector_of(nodes[i], 7, "nodes")};
@@ -162,14 +166,8 @@ std::int64_t time_of(const Json& json, std::int64_t last_ns) {
 
 }  // namespace
 
-LiveNdjson::LiveNdjson(const Avatar& avatar, const glm::dvec3& origin_m)
-    : node_of_(nodes_by_name(avatar)),
-      rest_([&] {
-        Pose rest = rest_pose(avatar);
-        rest.origin_m = origin_m;
-        return rest;
-      }()),
-      pose_(rest_) {}
+LiveNdjson::LiveNdjson(const Avatar& avatar)
+    : node_of_(nodes_by_name(avatar)), rest_(rest_pose(avatar)), pose_(rest_) {}
 
 void LiveNdjson::leave_out(std::string_view cause) {
   ++malformed_;
@@ -202,7 +200,7 @@ void LiveNdjson::push(std::string_view bytes, std::int64_t now_ns, const TakeFra
     }
     ++lines_;
     if (too_long_) {
-      leave_out("is longer than 16 MiB");
+      leave_out("is longer than 64 MiB");
     } else if (line_.empty()) {
       take_line(piece, now_ns, take);
     } else {
@@ -240,7 +238,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     if (const auto pose = json.find("pose"); pose != json.end()) {
       if (!pose->is_object()) throw Malformed("'pose' is no object");
       note_unknown(*pose, {"origin", "nodes", "joints"});
-      frame.pose.origin_m = pose->contains("origin") ? position_of((*pose)["origin"], "origin") : rest_.origin_m;
+      frame.pose.origin_m = pose->contains("origin") ? position_of((*pose)["origin"], "origin") : glm::dvec3(0);
       const FloatJson floats = pose_in_floats(line, *pose);
       if (const auto nodes = floats.find("nodes"); nodes != floats.end()) {
         read_nodes(*nodes, frame.pose);

@@ -21,8 +21,7 @@ class LiveNdjson {
  public:
   using TakeFrame = std::function<void(TraceFrame)>;
 
-  /// A line that gives no origin stands at `origin_m`.
-  LiveNdjson(const Avatar& avatar, const glm::dvec3& origin_m);
+  explicit LiveNdjson(const Avatar& avatar);
 
   /// Bytes in whatever pieces. `now_ns`, since the start, is the time of lines that give none.
   void push(std::string_view bytes, std::int64_t now_ns, const TakeFrame& take);

@@ -149,6 +149,7 @@ void PoseCsvReader::read_header() {
 
 void PoseCsvReader::take(const Target& target, TraceFrame& frame) {
   const auto number = [&](auto& value) {
+    if (lines_.at_end()) throw lines_.error(fmt::format("has less than the header's {} fields", targets_.size()));
     if (!lines_.take(value) || !std::isfinite(value))
       throw lines_.error(
           fmt::format("{} is no finite number", columns_[static_cast<std::size_t>(&target - targets_.data())]));

@@ -62,22 +62,21 @@ std::filesystem::path part_path(const std::filesystem::path& path, std::uint64_t
   return part;
 }
 
-std::vector<std::filesystem::path> existing_parts(const std::filesystem::path& path) {
+bool is_part_path(const std::filesystem::path& path, const std::filesystem::path& candidate) {
   const std::string stem = path.stem().string() + "-";
-  const std::string extension = path.extension().string();
+  const std::string part = candidate.stem().string();
+  if (!part.starts_with(stem) || candidate.extension() != path.extension()) return false;
+  const std::string_view number = std::string_view(part).substr(stem.size());
+  return number.size() >= 4 &&
+         std::all_of(number.begin(), number.end(), [](char letter) { return letter >= '0' && letter <= '9'; });
+}
+
+std::vector<std::filesystem::path> existing_parts(const std::filesystem::path& path) {
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   std::vector<std::filesystem::path> parts;
   std::error_code none;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(stem) || entry.path().extension() != extension) continue;
-    const std::string_view number =
-        std::string_view(name).substr(stem.size(), name.size() - stem.size() - extension.size());
-    const bool is_number = number.size() >= 4 && std::all_of(number.begin(), number.end(), [](char letter) {
-                             return letter >= '0' && letter <= '9';
-                           });
-    if (is_number) parts.push_back(path.parent_path() / name);
-  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+    if (is_part_path(path, entry.path())) parts.push_back(path.parent_path() / entry.path().filename());
   std::sort(parts.begin(), parts.end());
   return parts;
 }

@@ -75,6 +75,9 @@ class Recorder {
 /// man.mcap: man-0001.mcap for 1.
 std::filesystem::path part_path(const std::filesystem::path& path, std::uint64_t number);
 
+/// Whether `candidate` is called as a part of `path` is.
+bool is_part_path(const std::filesystem::path& path, const std::filesystem::path& candidate);
+
 /// Parts of an earlier recording under this name, which would be taken for parts of the next one.
 std::vector<std::filesystem::path> existing_parts(const std::filesystem::path& path);
 

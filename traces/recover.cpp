@@ -132,7 +132,8 @@ void Recoverer::take_damages() {
 /// Tries what stands where the framing is broken, up to the next record that can be believed.
 void Recoverer::take_damage(const mcap::Damage& damage) {
   const bool behind_footer = walker_.footer_seen() && damage.offset >= walker_.position();
-  if (behind_footer && damage.bytes > mcap::kMagicBytes) {
+  const bool only_magic_is_broken = damage.effect == mcap::DamageEffect::kLost && damage.bytes <= mcap::kMagicBytes;
+  if (behind_footer && !only_magic_is_broken) {
     result_.bytes_lost += damage.bytes;
     if (damage.effect == mcap::DamageEffect::kAnotherFile) result_.another_file_at = damage.offset;
     return;
@@ -355,7 +356,7 @@ void Recoverer::finish() {
   count_messages();
   const bool found_something =
       result_.messages + result_.attachments + result_.damaged_attachments.size() + result_.metadata > 0;
-  if (!found_something && (result_.lost_something() || !output_.definitions().header))
+  if (!found_something && (!output_.definitions().header || !walker_.footer_seen() || result_.lost_something()))
     throw Error(source_.name(), "nothing in it can be recovered", "is it the file you meant?");
   output_.write_definitions();
   if (result_.lost_something())

@@ -119,6 +119,10 @@ void Rewriter::take_attachment(const mcap::StreamRecord& record) {
 }
 
 void Rewriter::require_messages() const {
+  const mcap::Statistics& written = output_.statistics();
+  const bool is_empty = written.message_count + written.attachment_count + written.metadata_count == 0;
+  if (is_empty && result_.left_out == 0 && !reader_.damages().empty())
+    throw Error(source_.name(), "nothing in it can be read", "is it the file you meant?");
   if (result_.left_out == 0 || output_.statistics().message_count > 0) return;
   throw Error(source_.name(),
               fmt::format("none of its messages is in the time asked for; they are of {} to {} s",

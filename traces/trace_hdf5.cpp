@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <limits>
 #include <optional>
 #include <string>
 
+#include "traces/child_process.hpp"
 #include "traces/error.hpp"
-#include "traces/hdf5_library.hpp"
+#include "traces/hdf5_table.hpp"
 #include "traces/sha256.hpp"
 #include "traces/trace_format.hpp"
 
@@ -17,79 +19,25 @@ namespace vestige {
 namespace {
 
 constexpr const char* kSession = "session";
-constexpr const char* kRemedy = "name a file that 'vestige export' wrote, or that has its tables (FORMAT.md)";
+constexpr const char* kNodeNames = "pose/node_names";
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 constexpr hsize_t kMostColumns = 1000000;
-
-/// One table of the file.
-class Table {
- public:
-  Table(hid_t file, const std::filesystem::path& path, const char* name) : path_(path), name_(name) {
-    const Hdf5Library& h5 = hdf5();
-    dataset_ = Hdf5Handle(h5.open_dataset(file, name, H5P_DEFAULT), h5.close_dataset);
-    if (dataset_.id() < 0) fail("is not there");
-    const Hdf5Handle space(h5.space_of(dataset_.id()), h5.close_space);
-    const int rank = h5.rank(space.id());
-    if (rank < 1 || rank > 3) fail("is no table");
-    dimensions_.resize(static_cast<std::size_t>(rank));
-    if (h5.dimensions(space.id(), dimensions_.data(), nullptr) < 0) fail("is no table");
-    const Hdf5Handle type(h5.type_of(dataset_.id()), h5.close_type);
-    const H5T_class_t kind = h5.class_of(type.id());
-    if (kind != H5T_INTEGER && kind != H5T_FLOAT) fail("does not hold numbers");
-  }
-
-  const std::vector<hsize_t>& dimensions() const { return dimensions_; }
-
-  [[noreturn]] void fail(std::string_view cause) const {
-    throw Error(path_.string(), fmt::format("its table {} {}", name_, cause), kRemedy);
-  }
-
-  /// Throws unless it has this shape; 0 stands for any size.
-  void expect(const std::vector<hsize_t>& shape) const {
-    bool same = shape.size() == dimensions_.size();
-    for (std::size_t i = 0; same && i < shape.size(); ++i)
-      same = shape[i] == dimensions_[i] || (i == 0 && shape[0] == 0);
-    if (!same) fail(fmt::format("has the shape ({}), not ({})", fmt::join(dimensions_, ", "), fmt::join(shape, ", ")));
-  }
-
-  /// Rows `first` … `first + rows`, converted to `type`.
-  template <typename Number>
-  void read(hsize_t first, hsize_t rows, hid_t type, std::vector<Number>& out) const {
-    const Hdf5Library& h5 = hdf5();
-    std::vector<hsize_t> count = dimensions_;
-    count[0] = rows;
-    std::size_t numbers = 1;
-    for (const hsize_t size : count) numbers *= static_cast<std::size_t>(size);
-    out.resize(numbers);
-    if (numbers == 0) return;
-    std::vector<hsize_t> start(count.size(), 0);
-    start[0] = first;
-    const Hdf5Handle place(h5.space_of(dataset_.id()), h5.close_space);
-    const Hdf5Handle memory(h5.create_simple_space(static_cast<int>(count.size()), count.data(), nullptr),
-                            h5.close_space);
-    if (h5.select_hyperslab(place.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
-        h5.read(dataset_.id(), type, memory.id(), place.id(), H5P_DEFAULT, out.data()) < 0)
-      fail(fmt::format("cannot be read from row {} on: the file is damaged", first));
-  }
-
- private:
-  std::filesystem::path path_;
-  const char* name_;
-  Hdf5Handle dataset_;
-  std::vector<hsize_t> dimensions_;
-};
+constexpr std::size_t kMostTextBytes = 1 << 20;
+constexpr const char* kFormat = "vestige trace";
 
 }  // namespace
 
 class TraceHdf5::Implementation {
  public:
   explicit Implementation(const std::filesystem::path& path) : path_(path), file_(open(path)) {
+    require_format();
+    node_names = read_node_names();
     avatar_glb = read_attachment("avatar.glb");
-    if (avatar_glb.empty()) throw Error(path.string(), "holds no avatar.glb", kRemedy);
+    if (avatar_glb.empty()) throw Error(path.string(), "holds no avatar.glb", kHdf5Remedy);
     actuator_map_png = read_attachment("actuator_map.png");
     actuator_map_json = read_attachment("actuator_map.json");
     const hsize_t frames = time_.dimensions()[0];
-    if (frames == 0) throw Error(path.string(), "holds no frame", kRemedy);
+    if (frames == 0) throw Error(path.string(), "holds no frame", kHdf5Remedy);
     time_.expect({frames});
     index_.expect({frames});
     origin_.expect({frames, 3});
@@ -98,11 +46,11 @@ class TraceHdf5::Implementation {
     translation_.expect({frames, nodes_, 3});
     rotation_.expect({frames, nodes_, 4});
     scale_.expect({frames, nodes_, 3});
-    const Table ids(file_.id(), path, "colliders/id");
+    const Hdf5Table ids(file_.id(), path, "colliders/id");
     const hsize_t colliders = ids.dimensions()[0];
     if (nodes_ > kMostColumns || colliders > kMostColumns) ids.fail("is one of more than a million columns");
     ids.expect({colliders});
-    ids.read(0, colliders, hdf5().uint32, ids_);
+    ids.read(0, colliders, ids_);
     if (colliders > 0) {
       position_.expect({frames, colliders, 3});
       present_.expect({frames, colliders});
@@ -138,6 +86,7 @@ class TraceHdf5::Implementation {
 
   double share() const { return static_cast<double>(row_) / static_cast<double>(frames_); }
 
+  std::vector<std::string> node_names;
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> actuator_map_png;
   std::vector<std::byte> actuator_map_json;
@@ -147,20 +96,70 @@ class TraceHdf5::Implementation {
     std::error_code failed;
     if (!std::filesystem::exists(path, failed)) throw Error(path.string(), "there is no such file", "check the name");
     Hdf5Handle file(hdf5().open_file(path.c_str(), kHdf5ReadOnly, H5P_DEFAULT), hdf5().close_file);
-    if (file.id() < 0) throw Error(path.string(), "is no HDF5 file, or one that is damaged", kRemedy);
+    if (file.id() < 0) throw Error(path.string(), "is no HDF5 file, or one that is damaged", kHdf5Remedy);
     return file;
+  }
+
+  /// What nothing says is ours is taken as it is.
+  void require_format() const {
+    const std::string format = read_text("/", "format").value_or(kFormat);
+    if (format != kFormat) throw Error(path_.string(), fmt::format("its format is '{}'", format), kHdf5Remedy);
+    for (const char* object : {"/", kSession}) {
+      const std::string version(trace_format::kVersion);
+      const std::string said = read_text(object, std::string(trace_format::kVersionKey)).value_or(version);
+      if (said != version)
+        throw Error(path_.string(), fmt::format("its format version is '{}', not {}", said, version),
+                    "a later vestige wrote it: use that one");
+    }
+  }
+
+  /// Empty where there are none.
+  std::vector<std::string> read_node_names() const {
+    std::vector<std::string> names;
+    const Hdf5Library& h5 = hdf5();
+    if (h5.link_exists(file_.id(), kNodeNames, H5P_DEFAULT) <= 0) return names;
+    const auto fail = [&](std::string_view cause) {
+      throw Error(path_.string(), fmt::format("its table {} {}", kNodeNames, cause), kHdf5Remedy);
+    };
+    const Hdf5Handle dataset(h5.open_dataset(file_.id(), kNodeNames, H5P_DEFAULT), h5.close_dataset);
+    const Hdf5Handle type(h5.type_of(dataset.id()), h5.close_type);
+    const Hdf5Handle space(h5.space_of(dataset.id()), h5.close_space);
+    if (dataset.id() < 0 || h5.class_of(type.id()) != H5T_STRING) fail("does not hold texts");
+    const hssize_t count = h5.element_count(space.id());
+    if (count < 0 || static_cast<hsize_t>(count) > kMostColumns) fail("has more than a million texts");
+    names.resize(static_cast<std::size_t>(count));
+    if (h5.is_variable_text(type.id()) > 0) {
+      std::vector<char*> texts(names.size(), nullptr);
+      if (h5.read(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()) < 0) fail("cannot be read");
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        if (texts[i] != nullptr) names[i] = texts[i];
+        h5.free_memory(texts[i]);
+      }
+      return names;
+    }
+    const std::size_t size = h5.size_of(type.id());
+    if (size > kMostTextBytes) fail("has too long texts");
+    std::string texts(names.size() * size, '\0');
+    if (h5.read(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()) < 0) fail("cannot be read");
+    for (std::size_t i = 0; i < names.size(); ++i) names[i] = without_padding(texts.substr(i * size, size));
+    return names;
+  }
+
+  static std::string without_padding(std::string text) {
+    text.resize(std::min(text.find('\0'), text.size()));
+    return text;
   }
 
   /// Empty where there is none.
   std::vector<std::byte> read_attachment(const char* name) const {
     std::vector<std::byte> bytes;
     if (hdf5().link_exists(file_.id(), name, H5P_DEFAULT) <= 0) return bytes;
-    const Table table(file_.id(), path_, name);
+    const Hdf5Table table(file_.id(), path_, name);
     table.expect({0});
     if (table.dimensions()[0] > std::filesystem::file_size(path_)) table.fail("is larger than the file");
-    table.read(0, table.dimensions()[0], hdf5().uint8, bytes);
+    table.read(0, table.dimensions()[0], bytes);
     const std::string key = fmt::format("{}{}", trace_format::kSha256Prefix, name);
-    const auto recorded = read_session(key);
+    const auto recorded = read_text(kSession, key);
     if (recorded && !bytes.empty() && *recorded != sha256_hex(bytes))
       throw Error(path_.string(),
                   fmt::format("its {} is not the one that was recorded: its SHA-256 is another than the group session "
@@ -170,18 +169,17 @@ class TraceHdf5::Implementation {
     return bytes;
   }
 
-  /// What an attribute of the group `session` says, if it is there and is a text.
-  std::optional<std::string> read_session(const std::string& key) const {
+  /// What an attribute of a group says, if both are there and it is a text.
+  std::optional<std::string> read_text(const char* group, const std::string& key) const {
     const Hdf5Library& h5 = hdf5();
-    if (h5.attribute_exists(file_.id(), kSession, key.c_str(), H5P_DEFAULT) <= 0) return {};
-    const Hdf5Handle attribute(h5.open_attribute(file_.id(), kSession, key.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+    if (h5.attribute_exists(file_.id(), group, key.c_str(), H5P_DEFAULT) <= 0) return {};
+    const Hdf5Handle attribute(h5.open_attribute(file_.id(), group, key.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                                h5.close_attribute);
     const Hdf5Handle type(h5.attribute_type(attribute.id()), h5.close_type);
     if (h5.class_of(type.id()) != H5T_STRING) return {};
     const Hdf5Handle space(h5.attribute_space(attribute.id()), h5.close_space);
-    constexpr std::size_t kMostBytes = 1 << 20;
-    if (h5.element_count(space.id()) != 1 || h5.size_of(type.id()) > kMostBytes)
-      throw Error(path_.string(), fmt::format("its attribute '{}' is not one text", key), kRemedy);
+    if (h5.element_count(space.id()) != 1 || h5.size_of(type.id()) > kMostTextBytes)
+      throw Error(path_.string(), fmt::format("its attribute '{}' is not one text", key), kHdf5Remedy);
     std::string text;
     bool is_read = false;
     if (h5.is_variable_text(type.id()) > 0) {
@@ -192,9 +190,9 @@ class TraceHdf5::Implementation {
     } else {
       text.resize(h5.size_of(type.id()));
       is_read = h5.read_attribute(attribute.id(), type.id(), text.data()) >= 0;
-      text.resize(std::min(text.find('\0'), text.size()));  // which fills what the text leaves
+      text = without_padding(std::move(text));
     }
-    if (!is_read) throw Error(path_.string(), fmt::format("its attribute '{}' cannot be read", key), kRemedy);
+    if (!is_read) throw Error(path_.string(), fmt::format("its attribute '{}' cannot be read", key), kHdf5Remedy);
     return text;
   }
 
@@ -203,18 +201,17 @@ class TraceHdf5::Implementation {
   }
 
   void read_block() {
-    const Hdf5Library& h5 = hdf5();
     const hsize_t rows = std::min<hsize_t>(block_rows_, frames_ - row_);
-    index_.read(row_, rows, h5.uint64, block_.index);
-    time_.read(row_, rows, h5.int64, block_.time_ns);
-    origin_.read(row_, rows, h5.float64, block_.origin);
-    translation_.read(row_, rows, h5.float32, block_.translation);
-    rotation_.read(row_, rows, h5.float32, block_.rotation);
-    scale_.read(row_, rows, h5.float32, block_.scale);
+    index_.read(row_, rows, block_.index);
+    time_.read(row_, rows, block_.time_ns);
+    origin_.read(row_, rows, block_.origin);
+    translation_.read(row_, rows, block_.translation);
+    rotation_.read(row_, rows, block_.rotation);
+    scale_.read(row_, rows, block_.scale);
     if (ids_.empty()) return;
-    position_.read(row_, rows, h5.float64, block_.position);
-    present_.read(row_, rows, h5.uint8, block_.present);
-    teleported_.read(row_, rows, h5.uint8, block_.teleported);
+    position_.read(row_, rows, block_.position);
+    present_.read(row_, rows, block_.present);
+    teleported_.read(row_, rows, block_.teleported);
   }
 
   void fill_pose(std::size_t place, Pose& pose) const {
@@ -235,6 +232,8 @@ class TraceHdf5::Implementation {
     frame.teleported.clear();
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const std::size_t k = place * ids_.size() + i;
+      if (block_.present[k] > 1) present_.fail(fmt::format("says {} in row {}", block_.present[k], row_));
+      if (block_.teleported[k] > 1) teleported_.fail(fmt::format("says {} in row {}", block_.teleported[k], row_));
       if (block_.present[k] != 0) frame.colliders.push_back({ids_[i], vector(block_.position, k)});
       if (block_.teleported[k] != 0) frame.teleported.push_back(ids_[i]);
     }
@@ -254,15 +253,15 @@ class TraceHdf5::Implementation {
 
   std::filesystem::path path_;
   Hdf5Handle file_;
-  Table time_{file_.id(), path_, "time_ns"};
-  Table index_{file_.id(), path_, "frame"};
-  Table origin_{file_.id(), path_, "pose/origin"};
-  Table translation_{file_.id(), path_, "pose/translation"};
-  Table rotation_{file_.id(), path_, "pose/rotation"};
-  Table scale_{file_.id(), path_, "pose/scale"};
-  Table position_{file_.id(), path_, "colliders/position"};
-  Table present_{file_.id(), path_, "colliders/present"};
-  Table teleported_{file_.id(), path_, "colliders/teleported"};
+  Hdf5Table time_{file_.id(), path_, "time_ns"};
+  Hdf5Table index_{file_.id(), path_, "frame"};
+  Hdf5Table origin_{file_.id(), path_, "pose/origin"};
+  Hdf5Table translation_{file_.id(), path_, "pose/translation"};
+  Hdf5Table rotation_{file_.id(), path_, "pose/rotation"};
+  Hdf5Table scale_{file_.id(), path_, "pose/scale"};
+  Hdf5Table position_{file_.id(), path_, "colliders/position"};
+  Hdf5Table present_{file_.id(), path_, "colliders/present"};
+  Hdf5Table teleported_{file_.id(), path_, "colliders/teleported"};
   hsize_t nodes_ = 0;
   hsize_t frames_ = 0;
   std::vector<std::uint32_t> ids_;
@@ -273,7 +272,27 @@ class TraceHdf5::Implementation {
   std::int64_t last_time_ns_ = 0;
 };
 
-TraceHdf5::TraceHdf5(const std::filesystem::path& path) : implementation_(std::make_unique<Implementation>(path)) {}
+TraceHdf5::TraceHdf5(const std::filesystem::path& path) {
+  static_cast<void>(hdf5());
+  // The library believes what a damaged file says of itself, and may not survive it.
+  std::error_code unknown;
+  const std::uint64_t bytes = std::filesystem::file_size(path, unknown);
+  constexpr std::uint64_t kSlowestBytesPerSecond = 1'000'000;
+  const std::uint64_t most_s = 5 + (unknown ? 0 : bytes / kSlowestBytesPerSecond);
+  const auto read_all = [&] {
+    Implementation trial(path);
+    for (TraceFrame frame; trial.next(frame);) continue;
+  };
+  const int signal = signal_that_ends(read_all, most_s);
+  const bool interrupted = signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
+  if (interrupted) throw Error(path.string(), "reading it was stopped", "");
+  if (signal != 0)
+    throw Error(path.string(),
+                fmt::format("is damaged: HDF5's own library {} on it (signal {})",
+                            signal == SIGXCPU ? "never comes to an end" : "crashes", signal),
+                "export it again, or take an undamaged copy");
+  implementation_ = std::make_unique<Implementation>(path);
+}
 TraceHdf5::~TraceHdf5() = default;
 
 const std::vector<std::byte>& TraceHdf5::avatar_glb() const {
@@ -284,6 +303,9 @@ const std::vector<std::byte>& TraceHdf5::actuator_map_png() const {
 }
 const std::vector<std::byte>& TraceHdf5::actuator_map_json() const {
   return implementation_->actuator_map_json;
+}
+const std::vector<std::string>& TraceHdf5::node_names() const {
+  return implementation_->node_names;
 }
 bool TraceHdf5::next(TraceFrame& frame) {
   return implementation_->next(frame);

@@ -147,7 +147,7 @@ TraceIndex read_index(const mcap::ByteSource& source) {
   const mcap::SummaryResult result = mcap::read_summary(source);
   if (result.summary && covers_everything(source, *result.summary)) return from_summary(source, *result.summary);
   TraceIndex index = by_scanning(source);
-  if (index.has_footer && !result.summary)
+  if (index.has_footer && !result.summary && index.damages.empty())  // else that is why
     index.damages.add({source.size(), 0, fmt::format("the file's end: {}", result.problem)});
   return index;
 }

@@ -1,5 +1,7 @@
 #include "traces/utf8.hpp"
 
+#include <algorithm>
+
 namespace vestige {
 
 std::size_t utf8_length(std::string_view text) {
@@ -13,6 +15,17 @@ std::size_t utf8_length(std::string_view text) {
   const bool is_surrogate = first == 0xED && byte(1) >= 0xA0;
   const bool is_beyond = first == 0xF4 && byte(1) >= 0x90;
   return is_overlong || is_surrogate || is_beyond ? 0 : length;
+}
+
+std::string valid_utf8(std::string_view text) {
+  std::string valid;
+  valid.reserve(text.size());
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    valid += length == 0 ? std::string_view("\uFFFD") : text.substr(0, length);
+    text.remove_prefix(std::max<std::size_t>(1, length));
+  }
+  return valid;
 }
 
 }  // namespace vestige

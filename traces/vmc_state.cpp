@@ -154,7 +154,7 @@ bool VmcState::apply(const OscMessage& message) {
     return true;
   }
   if (message.address == "/vestige/collider") {
-    colliders_[id(message)] = {number(message, 1), number(message, 2), number(message, 3)};
+    colliders_[id(message)] = pose_.origin_m + glm::dvec3(number(message, 1), number(message, 2), number(message, 3));
     return true;
   }
   if (message.address == "/vestige/collider/remove") return colliders_.erase(id(message)) > 0;

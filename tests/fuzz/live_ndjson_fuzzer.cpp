@@ -31,7 +31,7 @@ struct Reading {
 
 Reading read(std::string_view text, std::size_t piece) {
   static const vestige::Avatar avatar = two_nodes();
-  vestige::LiveNdjson lines(avatar, glm::dvec3(0));
+  vestige::LiveNdjson lines(avatar);
   Reading reading;
   const auto take = [&](const vestige::TraceFrame& frame) {
     require(reading.indexes.empty() || frame.index > reading.indexes.back(), "numbers of frames grow");

@@ -220,7 +220,7 @@ void RecordWalker::note_bytes_behind(std::uint64_t end) {
     damages_.push_back(
         {end, rest, "the file's end; a second MCAP file begins here, which was not read", DamageEffect::kAnotherFile});
   else
-    damages_.push_back({end, rest, "bytes after the file's end, which were not read"});
+    damages_.push_back({end, rest, "bytes after the file's end, which were not read", DamageEffect::kBehindEnd});
 }
 
 bool RecordWalker::next(RecordPlace& place) {

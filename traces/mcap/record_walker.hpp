@@ -10,8 +10,8 @@
 
 namespace vestige::mcap {
 
-/// kAnotherFile: nothing is wrong with these bytes, but they are not read.
-enum class DamageEffect { kLost, kMended, kAnotherFile };
+/// kBehindEnd, kAnotherFile: what stands behind the file's end is not read; the latter begins as an MCAP file does.
+enum class DamageEffect { kLost, kMended, kBehindEnd, kAnotherFile };
 
 /// A place in a file where something is wrong, and how much of the file it takes with it.
 struct Damage {

@@ -1,0 +1,50 @@
+#include "traces/child_process.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <exception>
+
+#include "traces/output_file.hpp"
+
+namespace vestige {
+
+namespace {
+
+[[noreturn]] void run_child(const std::function<void()>& work, std::uint64_t most_s) {
+  const rlimit no_core = {0, 0};
+  static_cast<void>(::setrlimit(RLIMIT_CORE, &no_core));
+  const rlimit time = {most_s, RLIM_INFINITY};
+  static_cast<void>(::setrlimit(RLIMIT_CPU, &time));
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU})
+    static_cast<void>(std::signal(signal, SIG_DFL));
+  // What a failing library prints is not for whoever runs the program: it is told what came of it.
+  if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) {
+    static_cast<void>(::dup2(nowhere, STDOUT_FILENO));
+    static_cast<void>(::dup2(nowhere, STDERR_FILENO));
+  }
+  try {
+    work();
+  } catch (const std::exception&) {
+    ::_exit(0);
+  }
+  ::_exit(0);
+}
+
+}  // namespace
+
+int signal_that_ends(const std::function<void()>& work, std::uint64_t most_s) {
+  const pid_t child = ::fork();
+  if (child < 0) throw system_error("fork", "could not make a process", errno);
+  if (child == 0) run_child(work, most_s);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) throw system_error("waitpid", "could not wait for a process", errno);
+  return WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+}
+
+}  // namespace vestige

@@ -1,0 +1,73 @@
+#include "traces/hdf5_table.hpp"
+
+#include <fmt/format.h>
+
+#include "traces/error.hpp"
+
+namespace vestige {
+
+Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name) : path_(path), name_(name) {
+  const Hdf5Library& h5 = hdf5();
+  dataset_ = Hdf5Handle(h5.open_dataset(file, name, H5P_DEFAULT), h5.close_dataset);
+  if (dataset_.id() < 0) fail("is not there");
+  const Hdf5Handle space(h5.space_of(dataset_.id()), h5.close_space);
+  const int rank = h5.rank(space.id());
+  if (rank < 1 || rank > 3) fail("is no table");
+  dimensions_.resize(static_cast<std::size_t>(rank));
+  if (h5.dimensions(space.id(), dimensions_.data(), nullptr) < 0) fail("is no table");
+  const Hdf5Handle type(h5.type_of(dataset_.id()), h5.close_type);
+  type_.kind = h5.class_of(type.id());
+  if (type_.kind != H5T_INTEGER && type_.kind != H5T_FLOAT) fail("does not hold numbers");
+  type_.bytes = h5.size_of(type.id());
+  type_.is_signed = type_.kind == H5T_FLOAT || h5.sign_of(type.id()) == H5T_SGN_2;
+}
+
+void Hdf5Table::fail(std::string_view cause) const {
+  throw Error(path_.string(), fmt::format("its table {} {}", name_, cause), kHdf5Remedy);
+}
+
+void Hdf5Table::expect(const std::vector<hsize_t>& shape) const {
+  bool same = shape.size() == dimensions_.size();
+  for (std::size_t i = 0; same && i < shape.size(); ++i) same = shape[i] == dimensions_[i] || (i == 0 && shape[0] == 0);
+  if (!same) fail(fmt::format("has the shape ({}), not ({})", fmt::join(dimensions_, ", "), fmt::join(shape, ", ")));
+}
+
+bool Hdf5Table::Type::fits_into(const Type& other) const {
+  if (kind != other.kind || (is_signed && !other.is_signed)) return false;
+  return is_signed == other.is_signed ? bytes <= other.bytes : bytes < other.bytes;
+}
+
+std::size_t Hdf5Table::numbers_in(hsize_t rows) const {
+  std::size_t numbers = static_cast<std::size_t>(rows);
+  for (std::size_t i = 1; i < dimensions_.size(); ++i) numbers *= static_cast<std::size_t>(dimensions_[i]);
+  return numbers;
+}
+
+void Hdf5Table::read(const Type& type, hsize_t first, hsize_t rows, void* out) const {
+  const Hdf5Library& h5 = hdf5();
+  // Of what does not fit HDF5 would make something that does, without a word.
+  if (!type_.fits_into(type))
+    fail(fmt::format("holds numbers that may not fit {} of {} bits",
+                     type.kind == H5T_FLOAT ? "floats"
+                     : type.is_signed       ? "whole numbers"
+                                            : "unsigned whole numbers",
+                     8 * type.bytes));
+  const hid_t as = type.kind == H5T_FLOAT ? (type.bytes == 4 ? h5.float32 : h5.float64)
+                   : type.is_signed       ? h5.int64
+                   : type.bytes == 8      ? h5.uint64
+                   : type.bytes == 4      ? h5.uint32
+                                          : h5.uint8;
+  std::vector<hsize_t> count = dimensions_;
+  count[0] = rows;
+  std::vector<hsize_t> start(count.size(), 0);
+  start[0] = first;
+  const Hdf5Handle place(h5.space_of(dataset_.id()), h5.close_space);
+  const Hdf5Handle memory(h5.create_simple_space(static_cast<int>(count.size()), count.data(), nullptr),
+                          h5.close_space);
+  if (h5.select_hyperslab(place.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
+      h5.read(dataset_.id(), as, memory.id(), place.id(), H5P_DEFAULT, out) < 0)
+    fail(fmt::format(
+        "cannot be read from row {} on: the file is damaged, or compressed by a filter that is not installed", first));
+}
+
+}  // namespace vestige

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "traces/hdf5_library.hpp"
+
+namespace vestige {
+
+/// What whoever is told of a file that is not as it should be may do.
+inline constexpr const char* kHdf5Remedy =
+    "name a file that 'vestige export' wrote, or that has its tables (FORMAT.md)";
+
+/// A table of numbers in an HDF5 file of anyone's. Every function throws `Error` naming file and table.
+class Hdf5Table {
+ public:
+  /// Throws where it is not there, has no rank from 1 to 3, or holds no numbers.
+  Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name);
+
+  const std::vector<hsize_t>& dimensions() const { return dimensions_; }
+
+  [[noreturn]] void fail(std::string_view cause) const;
+
+  /// Throws unless it has this shape; 0 stands for any size.
+  void expect(const std::vector<hsize_t>& shape) const;
+
+  /// Rows `first` … `first + rows`. Throws where a number of the table's type may not fit a `Number`.
+  template <typename Number>
+  void read(hsize_t first, hsize_t rows, std::vector<Number>& out) const {
+    out.resize(numbers_in(rows));
+    if (!out.empty())
+      read({.kind = std::is_floating_point_v<Number> ? H5T_FLOAT : H5T_INTEGER,
+            .bytes = sizeof(Number),
+            .is_signed = std::is_signed_v<Number>},
+           first, rows, out.data());
+  }
+
+ private:
+  /// A kind of number.
+  struct Type {
+    H5T_class_t kind = H5T_NO_CLASS;
+    std::size_t bytes = 0;
+    bool is_signed = false;
+    bool fits_into(const Type& other) const;
+  };
+
+  std::size_t numbers_in(hsize_t rows) const;
+  void read(const Type& type, hsize_t first, hsize_t rows, void* out) const;
+
+  std::filesystem::path path_;
+  const char* name_;
+  Hdf5Handle dataset_;
+  Type type_;
+  std::vector<hsize_t> dimensions_;
+};
+
+}  // namespace vestige
