@@ -151,6 +151,10 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   recorder.finish();
   const std::chrono::duration<double> recording = std::chrono::steady_clock::now() - start;
   const bool cut_short = interrupted() && !options.live.is_live();
+  if (recorder.is_ring_cut_by_size())
+    warn(fmt::format("--max-size {} holds less than {} s: only the last {} are there", options.limits.max_size,
+                     *limits.ring_s, counted(recorder.frame_count(), "frame")),
+         verbosity);
   if (cut_short && limits.ring_s)
     warn(fmt::format("stopped; the trace has the last {} before that", counted(recorder.frame_count(), "frame")),
          verbosity);

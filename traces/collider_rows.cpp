@@ -61,7 +61,7 @@ ColliderRows::ColliderRows(const std::filesystem::path& path) : reader_(path), l
     columns_ = ColliderColumns::kFrames;
     lines_.set_remedy(kFramesRemedy);
   } else if (header != kColliderTimesHeader) {
-    throw lines_.error(fmt::format("the header is not '{}'", kColliderTimesHeader));
+    throw lines_.error(fmt::format("the header is neither '{}' nor '{}'", kColliderTimesHeader, kColliderFramesHeader));
   }
 }
 
@@ -88,6 +88,8 @@ bool ColliderRows::next(ColliderRow& row) {
                        "sort the rows by time");
   if (has_frames && rows_ > 0 && row.frame < last_frame_)
     throw lines_.error(fmt::format("frame {} comes after frame {}", row.frame, last_frame_), "sort the rows");
+  if (has_frames && rows_ > 0 && row.frame == last_frame_ && row.time_s != last_time_s_)
+    throw lines_.error(fmt::format("frame {} is at {} s and at {} s", row.frame, last_time_s_, row.time_s));
   row.teleported = teleported == 1;
   last_time_s_ = row.time_s;
   last_frame_ = row.frame;

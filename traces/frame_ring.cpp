@@ -74,6 +74,7 @@ void FrameRing::forget_old() {
   const std::int64_t first_ns = first_kept_ns();
   auto& blocks = contents_.blocks_;
   while (blocks.size() > 1 && (blocks.front()->last_ns < first_ns || bytes() > limits_.bytes)) {
+    is_cut_by_size_ = is_cut_by_size_ || blocks.front()->last_ns >= first_ns;
     bytes_ -= blocks.front()->bytes.size();
     blocks.pop_front();
   }

@@ -63,6 +63,8 @@ class FrameRing {
   Contents contents();
   /// What it takes: at most a block, of 1 MiB or one frame, more than the limit.
   std::uint64_t bytes() const { return bytes_ + open_.size(); }
+  /// Whether frames had to go for want of room that `Limits::seconds` would have kept.
+  bool is_cut_by_size() const { return is_cut_by_size_; }
 
  private:
   void close_block();
@@ -75,6 +77,7 @@ class FrameRing {
   Contents contents_;
   std::uint64_t bytes_ = 0;  ///< of closed blocks
   std::int64_t last_ns_ = 0;
+  bool is_cut_by_size_ = false;
 };
 
 }  // namespace vestige

@@ -94,6 +94,7 @@ class Recorder::Implementation {
   void snapshot();
   void finish();
   bool is_full() const { return full_; }
+  bool is_ring_cut_by_size() const { return ring_ && ring_->is_cut_by_size(); }
   std::uint64_t frame_count() const { return finished_frames_ + (writer_ ? writer_->frame_count() : 0); }
   std::uint64_t bytes_written() const { return finished_bytes_ + (writer_ ? writer_->bytes_written() : 0); }
   const std::vector<std::filesystem::path>& files() const { return files_; }
@@ -319,6 +320,9 @@ void Recorder::finish() {
 }
 bool Recorder::is_full() const {
   return implementation_->is_full();
+}
+bool Recorder::is_ring_cut_by_size() const {
+  return implementation_->is_ring_cut_by_size();
 }
 std::uint64_t Recorder::frame_count() const {
   return implementation_->frame_count();

@@ -60,6 +60,8 @@ class Recorder {
 
   /// Whether `write` has refused a frame.
   bool is_full() const;
+  /// Whether a ring holds less than its seconds, since it may not become larger.
+  bool is_ring_cut_by_size() const;
   std::uint64_t frame_count() const;    ///< in the files; with a ring, known after `finish`
   std::uint64_t bytes_written() const;  ///< in the files; with a ring, known after `finish`
   /// The files that there are, in order.

@@ -1,5 +1,6 @@
 // What happens to trace files, as a user sees it: doctor, recover, recompress, trim, merge, cat.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,6 +54,26 @@ TEST_F(Files, DoctorSaysWhenNothingCanBeRead) {
   EXPECT_EQ(run("vestige doctor missing.mcap").exit_code, 1);
   expect_failure("echo nothing > text; vestige recover text -o out.mcap", 1, {"nothing in it can be recovered"},
                  "out.mcap");
+}
+
+TEST_F(Files, RecoverCountsWhatStandsBehindTheEnd) {
+  ASSERT_EQ(run("cp a.mcap longer.mcap && echo garbage >> longer.mcap").exit_code, 0);
+  const test::Outcome recover = run("vestige recover longer.mcap -o mended.mcap --json recovery.json");
+  EXPECT_EQ(recover.exit_code, 3) << recover.standard_error;
+  EXPECT_EQ(json_in("recovery.json")["bytes_lost"], 8);
+  const test::Outcome inspect = run("vestige inspect longer.mcap --json -");
+  EXPECT_EQ(inspect.exit_code, 3);
+  EXPECT_EQ(nlohmann::json::parse(inspect.standard_output)["warnings"].size(), 1U);
+}
+
+TEST_F(Files, NothingIsMadeOfAFileThatHoldsNothing) {
+  ASSERT_EQ(run("head -c 45 a.mcap > header.mcap; head -c 8 a.mcap > magic.mcap").exit_code, 0);
+  for (const char* file : {"header.mcap", "magic.mcap"}) {
+    EXPECT_EQ(run(std::string("vestige doctor ") + file).exit_code, 1);
+    for (const char* verb : {"recover", "recompress"})
+      expect_failure(fmt::format("vestige {} {} -o b.mcap", verb, file), 1, {file, "nothing in it can be re"},
+                     "b.mcap");
+  }
 }
 
 TEST_F(Files, DoctorGoesOnBehindAFileThatCannotBeOpened) {

@@ -121,6 +121,20 @@ TEST_F(Recording, OfLinesThatFindNoRoomSaysSo) {
   EXPECT_EQ(json_of("vestige inspect small.mcap --json -")["complete"], true);
 }
 
+TEST_F(Recording, IntoAFileWhoseNameIsNoTextIsAsGoodAsAny) {
+  const std::string command = "vestige record --duration 0.01 -o \"$(printf '\\377.mcap')\" --json named.json";
+  EXPECT_EQ(run(command).exit_code, 0);
+  EXPECT_EQ(json_in("named.json")["frames"], 10);
+  EXPECT_EQ(run("vestige export *.mcap -o tables && vestige import tables -o \"$(printf '\\376.mcap')\"").exit_code, 0);
+}
+
+TEST_F(Recording, OfALineWithANumberBeyondFloatsLeavesItOut) {
+  const test::Outcome outcome = run(
+      "printf '{\"pose\":{\"joints\":{\"pelvis\":{\"t\":[1e39,0,0]}}}}\\n{}\\n' | vestige record --live - -o a.mcap");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("line 1: 't' has a number that no float can hold"));
+}
+
 TEST_F(Recording, OfARingIsItsLastSeconds) {
   ASSERT_EQ(run("vestige record --ring 0.25 --rate 100 --duration 3 -o last.mcap").exit_code, 0);
   const auto frames = frames_of("last.mcap");
@@ -129,8 +143,18 @@ TEST_F(Recording, OfARingIsItsLastSeconds) {
   EXPECT_EQ(frames.back().index, 299U);
 }
 
+TEST_F(Recording, OfARingThatHasNoRoomForItsSecondsSaysSo) {
+  const test::Outcome outcome = run("vestige record --ring 1000 --max-size 3MiB --duration 4 -o cut.mcap");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("--max-size 3MiB holds less than 1000 s: only the last "));
+  EXPECT_EQ(frames_of("cut.mcap").back().index, 3999U);
+  EXPECT_EQ(run("vestige record --ring 1000 --duration 0.1 -o whole.mcap").standard_error, "");
+}
+
 TEST_F(Recording, RefusesFlagsThatContradictEachOther) {
   for (const auto& [flags, named] : std::vector<std::pair<std::string, std::string>>{
+           {"--ring 5 --json a-0001.mcap", "a-0001.mcap"},
+           {"--split 5 --json ./a-0017.mcap", "a-0017.mcap"},
            {"--ring 5 --split 5", "--split"},
            {"--ring 5 --sync", "--sync"},
            {"--split 1MB --max-size 1MB", "--max-size"},
@@ -145,6 +169,7 @@ TEST_F(Recording, RefusesFlagsThatContradictEachOther) {
            {"--live - --rate 60", "--rate"},
            {"--live - --colliders rain", "--colliders"},
            {"--live - --count 5", "--count"},
+           {"--live - --origin 1,0,0", "--origin"},
            {"--live vmc://127.0.0.1:39539 --animation walk", "--animation"}})
     expect_failure("vestige record -o a.mcap " + flags, 2, {named}, "a.mcap");
   expect_failure("vestige record --split 5 -o -", 2, {"--split"});
