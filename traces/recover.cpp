@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 #include <utility>
 
 #include "traces/definitions.hpp"
@@ -379,15 +380,16 @@ Recovery recover_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& 
 }
 
 std::string describe_recovered(const mcap::StringMap& metadata) {
-  constexpr std::array kCounts = {std::pair{"bytes_lost", "bytes lost"}, std::pair{"chunks_lost", "chunks lost"},
-                                  std::pair{"messages_lost", "messages lost"},
-                                  std::pair{"messages_left_out", "messages left out"},
-                                  std::pair{"messages_unverified", "messages that no CRC vouches for"}};
+  constexpr std::array kCounts = {std::tuple{"bytes_lost", "byte", "lost"}, std::tuple{"chunks_lost", "chunk", "lost"},
+                                  std::tuple{"messages_lost", "message", "lost"},
+                                  std::tuple{"messages_left_out", "message", "left out"},
+                                  std::tuple{"messages_unverified", "message", "that no CRC vouches for"}};
   std::string counts;
-  for (const auto& [key, meaning] : kCounts) {
+  for (const auto& [key, thing, fate] : kCounts) {
     const auto found = metadata.find(key);
     if (found == metadata.end() || found->second == "0") continue;
-    counts += fmt::format("{}{} {}", counts.empty() ? ": " : ", ", found->second, meaning);
+    const std::string number = found->second == "unknown" ? "an unknown number of" : found->second;
+    counts += fmt::format("{}{} {}{} {}", counts.empty() ? ": " : ", ", number, thing, number == "1" ? "" : "s", fate);
   }
   return "was recovered from a damaged file" + counts;
 }

@@ -32,6 +32,18 @@ std::vector<std::uint64_t> numbers_of(std::span<const std::byte> bytes, bool com
   return numbers;
 }
 
+/// Ends a file with a summary of one's own.
+void append_summary(mcap::ByteBuffer& bytes, const mcap::Summary& summary) {
+  for (const mcap::Schema& schema : summary.schemas) append_record(bytes, schema);
+  for (const mcap::Channel& channel : summary.channels) append_record(bytes, channel);
+  append_record(bytes, *summary.statistics);
+  for (const mcap::ChunkIndex& index : summary.chunk_indexes) append_record(bytes, index);
+  for (const mcap::AttachmentIndex& index : summary.attachment_indexes) append_record(bytes, index);
+  for (const mcap::MetadataIndex& index : summary.metadata_indexes) append_record(bytes, index);
+  append_record(bytes, summary.footer);
+  mcap::append_magic(bytes);
+}
+
 TEST(MessagePlaces, AFileWithoutChunksIsRead) {
   test::ForgedTrace trace({.chunking = mcap::Chunking::kNone});
   for (std::uint32_t i = 0; i < 3; ++i) trace.frame(i, i);
@@ -65,16 +77,9 @@ TEST(MessagePlaces, MessagesBehindTheLastChunkAreReadThoughNoIndexHasThem) {
   mcap::ByteBuffer bytes(sound.begin(), sound.begin() + static_cast<std::ptrdiff_t>(second.chunk_start_offset));
   bytes.insert(bytes.end(), chunk.records.begin(), chunk.records.end());
   append_record(bytes, mcap::DataEnd{});
-  mcap::Footer footer{.summary_start = bytes.size()};
-  for (const mcap::Schema& schema : summary.schemas) append_record(bytes, schema);
-  for (const mcap::Channel& channel : summary.channels) append_record(bytes, channel);
   --summary.statistics->chunk_count;
-  append_record(bytes, *summary.statistics);
-  for (const mcap::ChunkIndex& index : summary.chunk_indexes) append_record(bytes, index);
-  for (const mcap::AttachmentIndex& index : summary.attachment_indexes) append_record(bytes, index);
-  for (const mcap::MetadataIndex& index : summary.metadata_indexes) append_record(bytes, index);
-  append_record(bytes, footer);
-  mcap::append_magic(bytes);
+  summary.footer = {.summary_start = bytes.size()};
+  append_summary(bytes, summary);
 
   const mcap::MemorySource mixed(bytes);
   ASSERT_TRUE(mcap::read_summary(mixed).summary) << mcap::read_summary(mixed).problem;
@@ -120,14 +125,7 @@ TEST(MessagePlaces, ChunksThatTheSummaryHidesAreRead) {
     mcap::Summary summary = whole;
     change(summary);
     mcap::ByteBuffer bytes(sound.begin(), sound.begin() + static_cast<std::ptrdiff_t>(whole.data_section_end));
-    for (const mcap::Schema& schema : summary.schemas) append_record(bytes, schema);
-    for (const mcap::Channel& channel : summary.channels) append_record(bytes, channel);
-    append_record(bytes, *summary.statistics);
-    for (const mcap::ChunkIndex& index : summary.chunk_indexes) append_record(bytes, index);
-    for (const mcap::AttachmentIndex& index : summary.attachment_indexes) append_record(bytes, index);
-    for (const mcap::MetadataIndex& index : summary.metadata_indexes) append_record(bytes, index);
-    append_record(bytes, summary.footer);
-    mcap::append_magic(bytes);
+    append_summary(bytes, summary);
     return bytes;
   };
   const auto without_crc = [](mcap::Summary& summary) { summary.footer.summary_crc = 0; };
