@@ -50,6 +50,20 @@ TEST(MessagePlaces, AFileWithoutChunksIsRead) {
   EXPECT_THAT(numbers_of(trace.finished()), ElementsAre(0, 1, 2));
 }
 
+TEST(MessagePlaces, AFileWithoutChunksIsReadAgainFromTheBeginning) {
+  test::ForgedTrace trace({.chunking = mcap::Chunking::kNone});
+  for (std::uint32_t i = 0; i < 3; ++i) trace.frame(i, i);
+  test::MemoryFile file;
+  file.assign(trace.finished());
+  TraceReader reader(file.path());
+  TraceFrame frame;
+  ASSERT_TRUE(reader.next(frame) && reader.next(frame));
+  reader.rewind();
+  ASSERT_TRUE(reader.next(frame));
+  EXPECT_EQ(frame.index, 0U);
+  EXPECT_TRUE(reader.complete()) << ::testing::PrintToString(reader.warnings());
+}
+
 TEST(MessagePlaces, MillionsOutsideChunksTakeNoMemoryEach) {
   test::ForgedTrace trace({.chunking = mcap::Chunking::kNone});
   for (std::uint32_t i = 0; i < 1000; ++i) trace.frame(i, i);
@@ -230,6 +244,16 @@ TEST_F(IndexedMessages, OfATimeAreFoundWithoutReadingTheOtherChunks) {
   const mcap::Summary summary = *mcap::read_summary(source).summary;
   for (std::size_t i = 0; i < summary.chunk_indexes.size(); ++i)
     EXPECT_EQ(source.offsets.contains(summary.chunk_indexes[i].chunk_start_offset), i == 2 || i == 3) << i;
+}
+
+TEST_F(IndexedMessages, AreReadNoSoonerThanTheirTurnComes) {
+  const WatchedSource source(bytes_);
+  mcap::IndexedReader reader(source);
+  mcap::Message message;
+  ASSERT_TRUE(reader.next(message));
+  const std::vector<mcap::ChunkIndex>& chunks = reader.summary().chunk_indexes;
+  for (std::size_t i = 0; i < chunks.size(); ++i)
+    EXPECT_EQ(source.offsets.contains(chunks[i].chunk_start_offset), i == 0) << i;
 }
 
 TEST_F(IndexedMessages, OfATimeInWhichNothingIsAreNone) {

@@ -272,6 +272,21 @@ TEST(TraceDamage, ABombIsRefusedAtTheSizeItClaims) {
   }
 }
 
+TEST(TraceDamage, EachBrokenPlaceIsSaidOnce) {
+  const test::TemporaryFolder folder;
+  SmallTrace trace = small_trace(folder, Compression::kZstd);
+  // The kinds of two chunks, between which others are whole.
+  for (const std::size_t chunk : {0U, 2U}) trace.bytes[trace.chunks[chunk].offset] = std::byte{0};
+  const mcap::MemorySource source(trace.bytes);
+  mcap::StreamReader reader(source);
+  mcap::StreamRecord record;
+  while (reader.next(record)) continue;
+  std::vector<std::uint64_t> offsets;
+  const mcap::DamageList damages = reader.damages();
+  for (const mcap::Damage& damage : damages.kept()) offsets.push_back(damage.offset);
+  EXPECT_THAT(offsets, ::testing::ElementsAre(trace.chunks[0].offset, trace.chunks[2].offset));
+}
+
 TEST(TraceDamage, AFileMadeOfDamageCostsNoMemory) {
   mcap::ByteBuffer bytes;
   mcap::append_magic(bytes);
