@@ -56,12 +56,35 @@ std::string profile_of(const Definitions& definitions) {
   return streams.find(Stream::kPose) == nullptr ? std::string() : std::string(trace_format::kProfile);
 }
 
+/// The nodes that a file's channels /pose say its poses have: those of the first that is found. Others that say
+/// otherwise belong to no frame of it.
+class PoseNodes {
+ public:
+  bool agrees(const mcap::Channel& channel) {
+    if (channel.topic != trace_format::channel_of(Stream::kPose).topic) return true;
+    auto names = parse_node_names(channel);
+    if (std::exchange(known_, true)) return names == names_;
+    names_ = std::move(names);
+    return true;
+  }
+
+ private:
+  bool known_ = false;
+  std::optional<std::vector<std::string>> names_;
+};
+
+Definitions without_contradictions(Definitions definitions, PoseNodes& pose_nodes) {
+  std::erase_if(definitions.channels, [&](const auto& entry) { return !pose_nodes.agrees(entry.second); });
+  return definitions;
+}
+
 class Recoverer {
  public:
   Recoverer(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, Definitions definitions)
       : source_(source),
         walker_(source, mcap::MagicBytes::kMayBeBroken),
-        output_(sink, profile_of(definitions), definitions.compression.value_or(mcap::Compression::kNone), definitions),
+        output_(sink, profile_of(definitions), definitions.compression.value_or(mcap::Compression::kNone),
+                without_contradictions(definitions, pose_nodes_)),
         gate_(output_.streams(), [this](const mcap::Message& message) { write(message); }) {}
 
   Recovery run(const std::function<bool(double)>& progress);
@@ -87,6 +110,7 @@ class Recoverer {
 
   const mcap::ByteSource& source_;
   mcap::RecordWalker walker_;
+  PoseNodes pose_nodes_;
   McapOutput output_;
   FrameGate gate_;
   Recovery result_;
@@ -327,10 +351,16 @@ void Recoverer::take_inner(Opcode opcode, Bytes content, Trust trust) {
     case Opcode::kSchema:
       output_.add(mcap::decode_schema(content));
       break;
-    case Opcode::kChannel:
-      output_.add(mcap::decode_channel(content));
+    case Opcode::kChannel: {
+      mcap::Channel channel = mcap::decode_channel(content);
+      if (!output_.definitions().channels.contains(channel.id) && !pose_nodes_.agrees(channel)) {
+        result_.bytes_lost += content.size() + mcap::kRecordHeadBytes;
+        break;
+      }
+      output_.add(std::move(channel));
       learn_node_count();
       break;
+    }
     case Opcode::kMessage:
       gate_.take(mcap::decode_message(content), trust);
       ++messages_found_;

@@ -281,6 +281,37 @@ TEST(Recover, GivesAChannelNoSchemaThatComesAfterItsMessages) {
   EXPECT_TRUE(reader.damages().empty());
 }
 
+TEST(Recover, FramesFitTheFirstChannelOfPosesWhateverOthersSay) {
+  const auto channel = [](std::uint16_t id, const char* nodes) {
+    mcap::Channel pose = trace_format::channel_of(trace_format::Stream::kPose);
+    pose.id = id;
+    pose.metadata["nodes"] = nodes;
+    return pose;
+  };
+  MessageEncoder encoder;
+  mcap::ByteBuffer records;
+  append_record(records, trace_format::schema_of(trace_format::Stream::kPose));
+  append_record(records, channel(5, R"(["a"])"));
+  append_record(records, mcap::Message{.channel_id = 5,
+                                       .sequence = 0,
+                                       .log_time = 0,
+                                       .publish_time = 0,
+                                       .data = encoder.pose(0, test::frame(0, 1, 0).pose)});
+  append_record(records, channel(1, R"(["a","b","c"])"));
+  append_record(records, mcap::Message{.channel_id = 1,
+                                       .sequence = 1,
+                                       .log_time = 1,
+                                       .publish_time = 1,
+                                       .data = encoder.pose(1, test::frame(1, 3, 0).pose)});
+  const auto outcome = recover(test::file_of_chunk(records, 0));
+  ASSERT_TRUE(outcome);
+  EXPECT_EQ(outcome->recovery.messages, 1U);
+  EXPECT_TRUE(outcome->recovery.lost_something());
+  const auto again = recover(outcome->bytes);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->recovery.messages, 1U) << "nor is it lost when the channels are sorted by their numbers";
+}
+
 TEST_P(RecoverCompressed, SaysWhatIsLostWithARecordThatIsMadeAnew) {
   const auto with_hole = [&](std::uint64_t begin, std::uint64_t end, std::uint64_t size) {
     std::vector<std::byte> bytes(trace_.bytes.begin(), trace_.bytes.begin() + static_cast<std::ptrdiff_t>(size));
