@@ -33,6 +33,7 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
+using ::testing::UnorderedElementsAre;
 
 // Lines of JSON.
 
@@ -246,6 +247,15 @@ TEST(Humanoid, OfTheBuiltInAvatarIsWhole) {
     EXPECT_TRUE(humanoid.node_of.contains(name)) << name;
 }
 
+TEST(Humanoid, OfBonesInOnePlaceTheSecondIsLeftOutAndSaid) {
+  const Humanoid humanoid =
+      find_humanoid(test::skeleton(4), glb_of(R"({"extensions":{"VRMC_vrm":{"humanoid":{"humanBones":)"
+                                              R"({"head":{"node":2},"hips":{"node":2}}}}}})"));
+  EXPECT_EQ(humanoid.node_of, (decltype(humanoid.node_of){{"Head", 2}}));
+  ASSERT_EQ(humanoid.problems.size(), 1U);
+  EXPECT_THAT(humanoid.problems.front(), HasSubstr("humanBones.hips.node is 2, which is the bone Head already"));
+}
+
 TEST(Humanoid, IsWhatVrmSays) {
   const Avatar avatar = test::skeleton(4);
   const Humanoid one =
@@ -254,6 +264,9 @@ TEST(Humanoid, IsWhatVrmSays) {
   EXPECT_EQ(one.source, Humanoid::Source::kVrm);
   EXPECT_EQ(one.facing, Humanoid::Facing::kPlusZ);
   EXPECT_EQ(one.node_of, (decltype(one.node_of){{"Hips", 2}, {"LeftThumbProximal", 3}}));
+  const std::string field = "extensions.VRMC_vrm.humanoid.humanBones.";
+  EXPECT_THAT(one.problems, UnorderedElementsAre(field + "head.node is no node of the file: the bone Head is left out",
+                                                 field + "jaw.node is no node of the file: the bone Jaw is left out"));
   const Humanoid zero = find_humanoid(
       avatar, glb_of(R"({"extensions":{"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1},{"bone":7},5,)"
                      R"({"bone":"leftUpperArm","node":0}]}}}})"));
@@ -397,6 +410,16 @@ TEST_F(Vmc, CollidersComeGoAndJump) {
   state.show(frame);
   ASSERT_EQ(frame.colliders.size(), 1U);
   EXPECT_TRUE(frame.teleported.empty());
+}
+
+TEST_F(Vmc, CollidersStandWhereTheAvatarDoes) {
+  VmcState state(avatar_, humanoid_, glm::dvec3(5, 6, 7));
+  state.take(collider(1, 1, 2, 3));
+  TraceFrame frame;
+  state.show(frame);
+  EXPECT_EQ(frame.pose.origin_m, glm::dvec3(5, 6, 7));
+  ASSERT_EQ(frame.colliders.size(), 1U);
+  EXPECT_EQ(frame.colliders[0].position_m, glm::dvec3(6, 8, 10));
 }
 
 TEST_F(Vmc, AMalformedDatagramChangesNothingAndIsCounted) {
