@@ -1,0 +1,199 @@
+// Traces that leave as HDF5 and come back: to the bit, or not at all.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/cli/exchange_fixture.hpp"
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/traces/trace_fixture.hpp"
+#include "traces/builtin_avatar.hpp"
+#include "traces/hdf5_library.hpp"
+#include "traces/shared_library.hpp"
+#include "traces/trace_hdf5.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Hdf5Exchange : public test::ExchangeTest {};
+
+TEST_F(Hdf5Exchange, ThereAndBackIsTheSameTraceToTheBit) {
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5").exit_code, 0);
+  ASSERT_EQ(run("vestige import a.h5 -o back.mcap").exit_code, 0);
+  EXPECT_EQ(run("vestige cat a.mcap > a.txt; vestige cat back.mcap > back.txt; cmp a.txt back.txt").exit_code, 0);
+  EXPECT_EQ(hash_of("back.mcap"), hash_of("a.mcap"));
+  EXPECT_EQ(run("grep -c -a units a.h5").exit_code, 0);
+}
+
+TEST_F(Hdf5Exchange, OfABrokenFileIsRefused) {
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5 && head -c 30000 a.h5 > cut.h5").exit_code, 0);
+  expect_failure("vestige import cut.h5 -o b.mcap", 1, {"cut.h5"}, "b.mcap");
+  write("text.h5", "nothing");
+  expect_failure("vestige import text.h5 -o b.mcap", 1, {"text.h5"}, "b.mcap");
+}
+
+/// Changes an .h5 in place, as another program may.
+class Hdf5Editor {
+ public:
+  explicit Hdf5Editor(const std::filesystem::path& path)
+      : file_(h5_.open_file(path.c_str(), kHdf5ReadWrite, 0), h5_.close_file) {
+    library_.find("H5Acreate_by_name", create_attribute_);
+    library_.find("H5Arename_by_name", rename_attribute_);
+    library_.find("H5Ldelete", remove_);
+    EXPECT_GE(file_.id(), 0);
+  }
+
+  void rename(const char* group, const char* from, const char* to) {
+    EXPECT_GE(rename_attribute_(file_.id(), group, from, to, 0), 0);
+  }
+  /// A text in place of another of the same length.
+  void set_text(const char* group, const char* key, const char* text) {
+    const Hdf5Handle attribute(h5_.open_attribute(file_.id(), group, key, 0, 0), h5_.close_attribute);
+    const Hdf5Handle type(h5_.attribute_type(attribute.id()), h5_.close_type);
+    EXPECT_GE(h5_.write_attribute(attribute.id(), type.id(), text), 0);
+  }
+  void add_list(const char* group, const char* key, std::size_t text_bytes, const void* data) {
+    const hsize_t count = 1000;
+    const Hdf5Handle space(h5_.create_simple_space(1, &count, nullptr), h5_.close_space);
+    const Hdf5Handle type(h5_.copy_type(h5_.text), h5_.close_type);
+    EXPECT_GE(h5_.set_size(type.id(), text_bytes), 0);
+    const Hdf5Handle attribute(create_attribute_(file_.id(), group, key, type.id(), space.id(), 0, 0, 0),
+                               h5_.close_attribute);
+    EXPECT_GE(h5_.write_attribute(attribute.id(), type.id(), data), 0);
+  }
+  /// A list in place of a table.
+  void replace(const char* name, hid_t type, hsize_t count, const void* data) {
+    EXPECT_GE(remove_(file_.id(), name, 0), 0);
+    const Hdf5Handle space(h5_.create_simple_space(1, &count, nullptr), h5_.close_space);
+    const Hdf5Handle dataset(h5_.create_dataset(file_.id(), name, type, space.id(), 0, 0, 0), h5_.close_dataset);
+    EXPECT_GE(h5_.write(dataset.id(), type, 0, 0, 0, data), 0);
+  }
+
+ private:
+  static constexpr unsigned kHdf5ReadWrite = 1;  ///< H5F_ACC_RDWR
+  const Hdf5Library& h5_ = hdf5();
+  SharedLibrary library_{"libhdf5_serial.so.103"};
+  decltype(&::H5Acreate_by_name) create_attribute_ = nullptr;
+  decltype(&::H5Arename_by_name) rename_attribute_ = nullptr;
+  decltype(&::H5Ldelete) remove_ = nullptr;
+  Hdf5Handle file_;
+};
+
+TEST_F(Hdf5Exchange, OfAFileWhoseAvatarIsNotTheRecordedOneIsRefused) {
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5").exit_code, 0);
+  std::string file = read_text_file(folder_ / "a.h5");
+  const std::size_t place = file.find("\"generator\":\"");
+  ASSERT_NE(place, std::string::npos);
+  file.replace(place + 13, 1, "X");
+  write("changed.h5", file);
+  expect_failure("vestige import changed.h5 -o b.mcap", 1,
+                 {"changed.h5", "avatar.glb", "SHA-256", "remove the attribute"}, "b.mcap");
+  // Another program's file need not say what it was.
+  Hdf5Editor(folder_ / "changed.h5").rename("session", "sha256:avatar.glb", "formerly");
+  EXPECT_EQ(run("vestige import changed.h5 -o b.mcap").exit_code, 0);
+}
+
+TEST_F(Hdf5Exchange, OfAFileWhoseSessionHasListsInPlaceOfTextsIsRefused) {
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5").exit_code, 0);
+  const char* key = "sha256:avatar.glb";
+  const std::vector<const char*> texts(1000, "x");
+  const std::string flat(64 * texts.size(), 'x');
+  constexpr std::size_t kVariable = ~std::size_t{0};
+  for (const std::size_t text_bytes : {std::size_t{64}, kVariable}) {
+    ASSERT_EQ(run("cp a.h5 list.h5").exit_code, 0);
+    {
+      Hdf5Editor editor(folder_ / "list.h5");
+      editor.rename("session", key, "formerly");
+      editor.add_list("session", key, text_bytes,
+                      text_bytes == kVariable ? static_cast<const void*>(texts.data()) : flat.data());
+    }
+    expect_failure("vestige import list.h5 -o b.mcap", 1, {"list.h5", key, "is not one text"}, "b.mcap");
+  }
+}
+
+TEST_F(Hdf5Exchange, OfAnotherVersionOrOtherNodesOrNumbersIsRefused) {
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5").exit_code, 0);
+  const auto refused = [&](const std::function<void(Hdf5Editor&)>& change, const std::vector<std::string>& words) {
+    ASSERT_EQ(run("cp a.h5 changed.h5").exit_code, 0);
+    {
+      Hdf5Editor editor(folder_ / "changed.h5");
+      change(editor);
+    }
+    expect_failure("vestige import changed.h5 -o b.mcap", 1, words, "b.mcap");
+  };
+  const Hdf5Library& h5 = hdf5();
+  refused([](Hdf5Editor& editor) { editor.set_text("/", "format_version", "2"); },
+          {"changed.h5: its format version is '2', not 1"});
+  refused([](Hdf5Editor& editor) { editor.set_text("session", "format_version", "2"); },
+          {"changed.h5: its format version is '2', not 1"});
+  refused([](Hdf5Editor& editor) { editor.set_text("/", "format", "another thing"); },
+          {"changed.h5: its format is 'another thing'"});
+  const std::size_t nodes = test::builtin_avatar().nodes.size();
+  // Texts of one length, as export writes them, and of any, as Python does.
+  const Hdf5Handle any_length(h5.copy_type(h5.text), h5.close_type);
+  ASSERT_GE(h5.set_size(any_length.id(), ~std::size_t{0}), 0);
+  const std::string letters(nodes, 'x');
+  const std::vector<const char*> texts(nodes, "x");
+  for (const auto& [type, data] : {std::pair<hid_t, const void*>(h5.text, letters.data()),
+                                   std::pair<hid_t, const void*>(any_length.id(), texts.data())})
+    refused([&](Hdf5Editor& editor) { editor.replace("pose/node_names", type, nodes, data); },
+            {"pose/node_names does not name its avatar's nodes"});
+  const std::vector<std::int64_t> ids(30, std::int64_t{1} << 33);
+  refused([&](Hdf5Editor& editor) { editor.replace("colliders/id", h5.int64, ids.size(), ids.data()); },
+          {"colliders/id", "may not fit unsigned whole numbers of 32 bits"});
+  const std::vector<double> times(300, 0.5);
+  refused([&](Hdf5Editor& editor) { editor.replace("time_ns", h5.float64, times.size(), times.data()); },
+          {"time_ns", "may not fit whole numbers of 64 bits"});
+}
+
+TEST_F(Hdf5Exchange, NoChangedByteOfAFileCrashesOrChangesAFrame) {
+  ASSERT_EQ(
+      run("vestige record --count 3 --duration 0.003 -o small.mcap && vestige export small.mcap -o small.h5").exit_code,
+      0);
+  const auto frames_of = [](const std::filesystem::path& path) {
+    TraceHdf5 file(path);
+    std::vector<TraceFrame> frames;
+    for (TraceFrame frame; file.next(frame);) frames.push_back(frame);
+    return frames;
+  };
+  const std::vector<TraceFrame> whole = frames_of(folder_ / "small.h5");
+  ASSERT_EQ(whole.size(), 3U);
+  const std::string bytes = read_text_file(folder_ / "small.h5");
+  const std::size_t avatar = bytes.find("glTF");
+  constexpr std::size_t kStep = 31;
+  int refused = 0;
+  for (std::size_t at = 0; at < bytes.size(); at += kStep) {
+    // Most of the file, for whose bytes its SHA-256 vouches.
+    if (at > avatar + 200 && at + 200 < avatar + builtin_avatar_glb().size()) continue;
+    std::string changed = bytes;
+    changed[at] = static_cast<char>(~changed[at]);
+    write("changed.h5", changed);
+    try {
+      const std::vector<TraceFrame> frames = frames_of(folder_ / "changed.h5");
+      ASSERT_EQ(frames.size(), whole.size()) << at;
+      for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_TRUE(test::same_bits(frames[i], whole[i])) << at;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("changed.h5")) << at;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 50);
+}
+
+/// Every size at which something else of it cannot be written: attachments, tables, what HDF5 writes when it closes.
+TEST_F(Hdf5Exchange, OntoAFullDiskIsAnErrorAndLeavesNothing) {
+  ASSERT_EQ(run("vestige export a.mcap -o whole.h5").exit_code, 0);
+  const auto whole = static_cast<double>(std::filesystem::file_size(folder_ / "whole.h5")) / 1024;
+  for (const double share : {0.001, 0.02, 0.25, 0.5, 0.7, 0.8, 0.9, 0.95, 0.99})
+    expect_failure(fmt::format("ulimit -f {}; vestige export a.mcap -o full.h5", std::ceil(whole * share)), 1,
+                   {"full.h5"}, "full.h5");
+  expect_no_hidden_file();
+}
+
+}  // namespace
+}  // namespace vestige
