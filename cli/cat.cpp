@@ -44,6 +44,11 @@ class Printer {
   bool take(const mcap::Message& message, std::uint64_t offset);
   /// Throws `Error` where a topic asked for is in no channel.
   void require_topics() const;
+  /// As soon as it is sure that nothing else will be defined.
+  void require_known_topics() const {
+    const auto& statistics = definitions_.statistics;
+    if (statistics && statistics->channel_count == definitions_.channels.size()) require_topics();
+  }
 
   std::uint64_t messages() const { return messages_; }
   const mcap::DamageList& damages() const { return damages_; }
@@ -142,11 +147,16 @@ void run_cat(const CatOptions& options, Invocation& invocation) {
   check_outputs({"-", options.common.json}, {options.file}, options.common);
   const mcap::FileSource source(options.file);
   Printer printer(options, range, gather_definitions(source));
+  printer.require_known_topics();
   catch_interrupts();
   auto damages =
       options.order == "time" ? print_in_order_of_time(source, printer, range) : print_in_file_order(source, printer);
   if (!damages) return;
   if (interrupted()) throw Error(options.file, "printing it was stopped", "");
+  if (printer.messages() == 0 && (options.range.from_s || options.range.to_s))
+    warn(fmt::format("{}: no such message is in the time asked for; 'vestige inspect' says how long it lasts",
+                     options.file),
+         options.common.verbosity());
   printer.require_topics();
   damages->add(printer.damages());
   warn_of_damage(options.file, *damages, options.common.verbosity());

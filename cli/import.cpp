@@ -70,6 +70,9 @@ void refuse_parts(const ImportOptions& options) {
 
 /// The files in a folder that `export` wrote.
 void expand_folder(ImportOptions& options) {
+  if (options.from == "-")
+    throw UsageError("-", "a folder or an .h5 is not read from standard input",
+                     "name it; --poses, --motion and --colliders take '-'");
   const std::filesystem::path folder(options.from);
   if (!std::filesystem::is_directory(folder))
     throw Error(options.from,

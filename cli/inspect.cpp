@@ -61,7 +61,7 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
   if (summary.dropped != 0) {
     text += fmt::format("lost {} while recording\n", counted(summary.dropped, "message"));
     for (const auto& [topic, count] : summary.dropped_by_topic)
-      text += fmt::format("  {:<20} {:>9} messages lost\n", topic, count);
+      text += fmt::format("  {:<20} {:>9} {} lost\n", topic, count, count == 1 ? "message" : "messages");
   }
   if (!summary.recovered.empty()) text += fmt::format("it {}\n", summary.recovered);
   if (verbose && summary.session)

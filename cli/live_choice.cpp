@@ -74,7 +74,8 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
     UdpReceiver datagrams(parse_host_port(choice.source, kScheme, "--live"), choice.source);
     RecordingThread thread(recorder);
     if (verbosity != Verbosity::kQuiet)
-      print_message(fmt::format("vestige: listening on {}; Ctrl-C ends\n", choice.source));
+      print_message(
+          fmt::format("vestige: listening on {}; it begins with the first datagram, Ctrl-C ends\n", choice.source));
     counts = record_state(datagrams, state, thread, settings);
     thread.stop();
     warn_of(state.problems(), choice.source, verbosity);

@@ -100,13 +100,14 @@ std::string name_of(const std::vector<std::filesystem::path>& files) {
 void refuse_part_name(const RecordOptions& options, const RecordingLimits& limits) {
   const std::filesystem::path trace(options.output);
   const std::filesystem::path json(options.common.json);
-  if ((!limits.splits() && !limits.ring_s) || json.empty() || !is_part_path(trace, json)) return;
+  if ((!limits.splits() && !limits.ring_s) || json.empty()) return;
+  if (!is_part_path(trace, json) && trace.filename() != json.filename()) return;
   std::error_code none;
   const auto folder_of = [&](const std::filesystem::path& path) {
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, none).parent_path(), none);
   };
   if (folder_of(trace) == folder_of(json))
-    throw UsageError(options.common.json, "parts of the recording are called like this", "choose another name");
+    throw UsageError(options.common.json, "the recording or a part of it is called like this", "choose another name");
 }
 
 void run_record(const RecordOptions& options, Invocation& invocation) {

@@ -22,6 +22,7 @@
 #include "detector/path_choice.hpp"
 #include "traces/error.hpp"
 #include "traces/input_file.hpp"
+#include "traces/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -262,8 +263,9 @@ std::string summary(const ReplayResult& result, const Run& run) {
   const GlInfo gl = detector.gl_info();
   const std::string where = gl.context.empty() ? "" : fmt::format(" on {} ({})", gl.context, gl.renderer);
   std::string text =
-      fmt::format("{}{}: {} frames, {} colliders, {} contacts, {:.0f} Hz\n", detector.name(), where, result.frames,
-                  run.colliders, result.contacts, static_cast<double>(result.frames) / result.detection_s);
+      fmt::format("{}{}: {}, {}, {}, {:.0f} Hz\n", detector.name(), where, counted(result.frames, "frame"),
+                  counted(run.colliders, "collider"), counted(result.contacts, "contact"),
+                  static_cast<double>(result.frames) / result.detection_s);
   if (run.picked) text += fmt::format("picked {} ({})\n", describe_picked(*run.picked), run.picked->why);
   for (std::size_t i = 0; i < map.actuator_count; ++i)
     text += fmt::format("  {:<24} {:>8} contacts\n", map.names[i], result.contacts_of_actuator[i + 1]);

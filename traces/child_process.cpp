@@ -1,6 +1,7 @@
 #include "traces/child_process.hpp"
 
 #include <fcntl.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,6 +17,7 @@ namespace vestige {
 namespace {
 
 [[noreturn]] void run_child(const std::function<void()>& work, std::uint64_t most_s) {
+  static_cast<void>(::prctl(PR_SET_PDEATHSIG, SIGKILL));  // whoever stops the parent stops it too
   const rlimit no_core = {0, 0};
   static_cast<void>(::setrlimit(RLIMIT_CORE, &no_core));
   const rlimit time = {most_s, RLIM_INFINITY};

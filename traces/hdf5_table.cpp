@@ -17,13 +17,13 @@ Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, const char* 
   if (h5.dimensions(space.id(), dimensions_.data(), nullptr) < 0) fail("is no table");
   const Hdf5Handle type(h5.type_of(dataset_.id()), h5.close_type);
   type_.kind = h5.class_of(type.id());
-  if (type_.kind != H5T_INTEGER && type_.kind != H5T_FLOAT) fail("does not hold numbers");
+  if (type_.kind != H5T_INTEGER && type_.kind != H5T_FLOAT) fail("does not hold numbers", kHdf5TypeRemedy);
   type_.bytes = h5.size_of(type.id());
   type_.is_signed = type_.kind == H5T_FLOAT || h5.sign_of(type.id()) == H5T_SGN_2;
 }
 
-void Hdf5Table::fail(std::string_view cause) const {
-  throw Error(path_.string(), fmt::format("its table {} {}", name_, cause), kHdf5Remedy);
+void Hdf5Table::fail(std::string_view cause, const char* remedy) const {
+  throw Error(path_.string(), fmt::format("its table {} {}", name_, cause), remedy);
 }
 
 void Hdf5Table::expect(const std::vector<hsize_t>& shape) const {
@@ -51,7 +51,8 @@ void Hdf5Table::read(const Type& type, hsize_t first, hsize_t rows, void* out) c
                      type.kind == H5T_FLOAT ? "floats"
                      : type.is_signed       ? "whole numbers"
                                             : "unsigned whole numbers",
-                     8 * type.bytes));
+                     8 * type.bytes),
+         kHdf5TypeRemedy);
   const hid_t as = type.kind == H5T_FLOAT ? (type.bytes == 4 ? h5.float32 : h5.float64)
                    : type.is_signed       ? h5.int64
                    : type.bytes == 8      ? h5.uint64
@@ -67,7 +68,9 @@ void Hdf5Table::read(const Type& type, hsize_t first, hsize_t rows, void* out) c
   if (h5.select_hyperslab(place.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
       h5.read(dataset_.id(), as, memory.id(), place.id(), H5P_DEFAULT, out) < 0)
     fail(fmt::format(
-        "cannot be read from row {} on: the file is damaged, or compressed by a filter that is not installed", first));
+             "cannot be read from row {} on: the file is damaged, or compressed by a filter that is not installed",
+             first),
+         kHdf5DamagedRemedy);
 }
 
 }  // namespace vestige

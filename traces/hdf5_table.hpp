@@ -11,6 +11,8 @@
 namespace vestige {
 
 /// What whoever is told of a file that is not as it should be may do.
+inline constexpr const char* kHdf5DamagedRemedy = "export it again, or take an undamaged copy";
+inline constexpr const char* kHdf5TypeRemedy = "convert it, as numpy's astype does, to the type that FORMAT.md has";
 inline constexpr const char* kHdf5Remedy =
     "name a file that 'vestige export' wrote, or that has its tables (FORMAT.md)";
 
@@ -22,7 +24,7 @@ class Hdf5Table {
 
   const std::vector<hsize_t>& dimensions() const { return dimensions_; }
 
-  [[noreturn]] void fail(std::string_view cause) const;
+  [[noreturn]] void fail(std::string_view cause, const char* remedy = kHdf5Remedy) const;
 
   /// Throws unless it has this shape; 0 stands for any size.
   void expect(const std::vector<hsize_t>& shape) const;

@@ -12,6 +12,7 @@
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/message_stream.hpp"
+#include "traces/number_text.hpp"
 #include "traces/recover.hpp"
 #include "traces/session_check.hpp"
 #include "traces/sha256.hpp"
@@ -148,8 +149,8 @@ void FrameCheck::take_event(const CheckedRecord& record, const mcap::Message& me
   if (event.kind != trace_format::kDroppedKind) return;
   result_.dropped += event.count;
   report(record,
-         fmt::format("{} messages of {} were dropped while recording, about frame {}", event.count,
-                     dropped_topic(event), message.sequence),
+         fmt::format("{} of {} {} dropped while recording, about frame {}", counted(event.count, "message"),
+                     dropped_topic(event), event.count == 1 ? "was" : "were", message.sequence),
          "they were never in the file");
 }
 

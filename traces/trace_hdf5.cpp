@@ -22,7 +22,6 @@ constexpr const char* kSession = "session";
 constexpr const char* kNodeNames = "pose/node_names";
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 constexpr hsize_t kMostColumns = 1000000;
-constexpr std::size_t kMostTextBytes = 1 << 20;
 constexpr const char* kFormat = "vestige trace";
 
 }  // namespace
@@ -46,19 +45,8 @@ class TraceHdf5::Implementation {
     translation_.expect({frames, nodes_, 3});
     rotation_.expect({frames, nodes_, 4});
     scale_.expect({frames, nodes_, 3});
-    const Hdf5Table ids(file_.id(), path, "colliders/id");
-    const hsize_t colliders = ids.dimensions()[0];
-    if (nodes_ > kMostColumns || colliders > kMostColumns) ids.fail("is one of more than a million columns");
-    ids.expect({colliders});
-    ids.read(0, colliders, ids_);
-    if (colliders > 0) {
-      position_.expect({frames, colliders, 3});
-      present_.expect({frames, colliders});
-      teleported_.expect({frames, colliders});
-      std::vector<std::uint32_t> sorted = ids_;
-      std::ranges::sort(sorted);
-      if (std::ranges::adjacent_find(sorted) != sorted.end()) ids.fail("has an id twice");
-    }
+    if (nodes_ > kMostColumns) translation_.fail("has more than a million nodes");
+    read_ids(frames);
     const std::size_t row_bytes =
         static_cast<std::size_t>(nodes_) * 10 * sizeof(float) + ids_.size() * (3 * sizeof(double) + 2) + 40;
     block_rows_ = std::max<std::size_t>(1, kBlockBytes / row_bytes);
@@ -71,7 +59,9 @@ class TraceHdf5::Implementation {
     if (place == 0) read_block();
     frame.index = block_.index[place];
     frame.time_ns = block_.time_ns[place];
-    if (frame.index > std::numeric_limits<std::uint32_t>::max() || (row_ > 0 && frame.index <= last_index_))
+    if (frame.index > std::numeric_limits<std::uint32_t>::max())
+      index_.fail(fmt::format("says {} in row {}: numbers of frames have 32 bits", frame.index, row_));
+    if (row_ > 0 && frame.index <= last_index_)
       index_.fail(fmt::format("says {} in row {}, after {}", frame.index, row_, last_index_));
     if (frame.time_ns < last_time_ns_)
       time_.fail(fmt::format("says {} in row {}, after {}", frame.time_ns, row_, last_time_ns_));
@@ -113,41 +103,69 @@ class TraceHdf5::Implementation {
     }
   }
 
-  /// Empty where there are none.
-  std::vector<std::string> read_node_names() const {
-    std::vector<std::string> names;
-    const Hdf5Library& h5 = hdf5();
-    if (h5.link_exists(file_.id(), kNodeNames, H5P_DEFAULT) <= 0) return names;
-    const auto fail = [&](std::string_view cause) {
-      throw Error(path_.string(), fmt::format("its table {} {}", kNodeNames, cause), kHdf5Remedy);
-    };
-    const Hdf5Handle dataset(h5.open_dataset(file_.id(), kNodeNames, H5P_DEFAULT), h5.close_dataset);
-    const Hdf5Handle type(h5.type_of(dataset.id()), h5.close_type);
-    const Hdf5Handle space(h5.space_of(dataset.id()), h5.close_space);
-    if (dataset.id() < 0 || h5.class_of(type.id()) != H5T_STRING) fail("does not hold texts");
-    const hssize_t count = h5.element_count(space.id());
-    if (count < 0 || static_cast<hsize_t>(count) > kMostColumns) fail("has more than a million texts");
-    names.resize(static_cast<std::size_t>(count));
-    if (h5.is_variable_text(type.id()) > 0) {
-      std::vector<char*> texts(names.size(), nullptr);
-      if (h5.read(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()) < 0) fail("cannot be read");
-      for (std::size_t i = 0; i < names.size(); ++i) {
-        if (texts[i] != nullptr) names[i] = texts[i];
-        h5.free_memory(texts[i]);
-      }
-      return names;
-    }
-    const std::size_t size = h5.size_of(type.id());
-    if (size > kMostTextBytes) fail("has too long texts");
-    std::string texts(names.size() * size, '\0');
-    if (h5.read(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, texts.data()) < 0) fail("cannot be read");
-    for (std::size_t i = 0; i < names.size(); ++i) names[i] = without_padding(texts.substr(i * size, size));
-    return names;
+  /// A trace without colliders may do without their tables.
+  void read_ids(hsize_t frames) {
+    if (hdf5().link_exists(file_.id(), "colliders", H5P_DEFAULT) <= 0) return;
+    const Hdf5Table ids(file_.id(), path_, "colliders/id");
+    const hsize_t colliders = ids.dimensions()[0];
+    ids.expect({colliders});
+    if (colliders > kMostColumns) ids.fail("has more than a million colliders");
+    ids.read(0, colliders, ids_);
+    if (colliders == 0) return;
+    std::vector<std::uint32_t> sorted = ids_;
+    std::ranges::sort(sorted);
+    if (std::ranges::adjacent_find(sorted) != sorted.end()) ids.fail("has an id twice");
+    position_.emplace(file_.id(), path_, "colliders/position").expect({frames, colliders, 3});
+    present_.emplace(file_.id(), path_, "colliders/present").expect({frames, colliders});
+    teleported_.emplace(file_.id(), path_, "colliders/teleported").expect({frames, colliders});
   }
 
-  static std::string without_padding(std::string text) {
-    text.resize(std::min(text.find('\0'), text.size()));
-    return text;
+  [[noreturn]] void fail(std::string_view what, std::string_view cause, const char* remedy = kHdf5Remedy) const {
+    throw Error(path_.string(), fmt::format("its {} {}", what, cause), remedy);
+  }
+
+  /// All texts of a table or an attribute, of any length or of one. `read` fills memory of the file's own type;
+  /// negative: it failed.
+  template <typename Read>
+  std::vector<std::string> read_texts(const std::string& what, hid_t type, hid_t space, Read read) const {
+    const Hdf5Library& h5 = hdf5();
+    if (h5.class_of(type) != H5T_STRING) fail(what, "is no text");
+    const hssize_t count = h5.element_count(space);
+    const std::size_t size = h5.size_of(type);
+    constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+    if (count < 0 || static_cast<hsize_t>(count) > kMostColumns || size > kMostBytes ||
+        static_cast<std::size_t>(count) * size > kMostBytes)
+      fail(what, "is too large");
+    std::vector<std::string> texts(static_cast<std::size_t>(count));
+    if (h5.is_variable_text(type) > 0) {
+      std::vector<char*> found(texts.size(), nullptr);
+      if (read(static_cast<void*>(found.data())) < 0) fail(what, "cannot be read", kHdf5DamagedRemedy);
+      for (std::size_t i = 0; i < texts.size(); ++i) {
+        if (found[i] != nullptr) texts[i] = found[i];
+        h5.free_memory(found[i]);
+      }
+      return texts;
+    }
+    std::string found(texts.size() * size, '\0');
+    if (read(static_cast<void*>(found.data())) < 0) fail(what, "cannot be read", kHdf5DamagedRemedy);
+    for (std::size_t i = 0; i < texts.size(); ++i) {
+      const std::string_view text = std::string_view(found).substr(i * size, size);
+      texts[i] = text.substr(0, text.find('\0'));  // what a text leaves is filled
+    }
+    return texts;
+  }
+
+  /// Empty where there are none.
+  std::vector<std::string> read_node_names() const {
+    const Hdf5Library& h5 = hdf5();
+    if (h5.link_exists(file_.id(), kNodeNames, H5P_DEFAULT) <= 0) return {};
+    const std::string what = fmt::format("table {}", kNodeNames);
+    const Hdf5Handle dataset(h5.open_dataset(file_.id(), kNodeNames, H5P_DEFAULT), h5.close_dataset);
+    if (dataset.id() < 0) fail(what, "is no table");
+    const Hdf5Handle type(h5.type_of(dataset.id()), h5.close_type);
+    const Hdf5Handle space(h5.space_of(dataset.id()), h5.close_space);
+    return read_texts(what, type.id(), space.id(),
+                      [&](void* out) { return h5.read(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out); });
   }
 
   /// Empty where there is none.
@@ -169,31 +187,19 @@ class TraceHdf5::Implementation {
     return bytes;
   }
 
-  /// What an attribute of a group says, if both are there and it is a text.
+  /// What an attribute of a group says, if both are there.
   std::optional<std::string> read_text(const char* group, const std::string& key) const {
     const Hdf5Library& h5 = hdf5();
     if (h5.attribute_exists(file_.id(), group, key.c_str(), H5P_DEFAULT) <= 0) return {};
+    const std::string what = fmt::format("attribute '{}'", key);
     const Hdf5Handle attribute(h5.open_attribute(file_.id(), group, key.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                                h5.close_attribute);
     const Hdf5Handle type(h5.attribute_type(attribute.id()), h5.close_type);
-    if (h5.class_of(type.id()) != H5T_STRING) return {};
     const Hdf5Handle space(h5.attribute_space(attribute.id()), h5.close_space);
-    if (h5.element_count(space.id()) != 1 || h5.size_of(type.id()) > kMostTextBytes)
-      throw Error(path_.string(), fmt::format("its attribute '{}' is not one text", key), kHdf5Remedy);
-    std::string text;
-    bool is_read = false;
-    if (h5.is_variable_text(type.id()) > 0) {
-      char* found = nullptr;
-      is_read = h5.read_attribute(attribute.id(), type.id(), static_cast<void*>(&found)) >= 0;
-      if (found != nullptr) text = found;
-      h5.free_memory(found);
-    } else {
-      text.resize(h5.size_of(type.id()));
-      is_read = h5.read_attribute(attribute.id(), type.id(), text.data()) >= 0;
-      text = without_padding(std::move(text));
-    }
-    if (!is_read) throw Error(path_.string(), fmt::format("its attribute '{}' cannot be read", key), kHdf5Remedy);
-    return text;
+    if (h5.element_count(space.id()) != 1) fail(what, "is not one text");
+    return read_texts(what, type.id(), space.id(),
+                      [&](void* out) { return h5.read_attribute(attribute.id(), type.id(), out); })
+        .front();
   }
 
   static glm::dvec3 vector(const std::vector<double>& numbers, std::size_t place) {
@@ -209,9 +215,9 @@ class TraceHdf5::Implementation {
     rotation_.read(row_, rows, block_.rotation);
     scale_.read(row_, rows, block_.scale);
     if (ids_.empty()) return;
-    position_.read(row_, rows, block_.position);
-    present_.read(row_, rows, block_.present);
-    teleported_.read(row_, rows, block_.teleported);
+    position_->read(row_, rows, block_.position);
+    present_->read(row_, rows, block_.present);
+    teleported_->read(row_, rows, block_.teleported);
   }
 
   void fill_pose(std::size_t place, Pose& pose) const {
@@ -232,8 +238,8 @@ class TraceHdf5::Implementation {
     frame.teleported.clear();
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const std::size_t k = place * ids_.size() + i;
-      if (block_.present[k] > 1) present_.fail(fmt::format("says {} in row {}", block_.present[k], row_));
-      if (block_.teleported[k] > 1) teleported_.fail(fmt::format("says {} in row {}", block_.teleported[k], row_));
+      if (block_.present[k] > 1) present_->fail(fmt::format("says {} in row {}", block_.present[k], row_));
+      if (block_.teleported[k] > 1) teleported_->fail(fmt::format("says {} in row {}", block_.teleported[k], row_));
       if (block_.present[k] != 0) frame.colliders.push_back({ids_[i], vector(block_.position, k)});
       if (block_.teleported[k] != 0) frame.teleported.push_back(ids_[i]);
     }
@@ -259,9 +265,9 @@ class TraceHdf5::Implementation {
   Hdf5Table translation_{file_.id(), path_, "pose/translation"};
   Hdf5Table rotation_{file_.id(), path_, "pose/rotation"};
   Hdf5Table scale_{file_.id(), path_, "pose/scale"};
-  Hdf5Table position_{file_.id(), path_, "colliders/position"};
-  Hdf5Table present_{file_.id(), path_, "colliders/present"};
-  Hdf5Table teleported_{file_.id(), path_, "colliders/teleported"};
+  std::optional<Hdf5Table> position_;
+  std::optional<Hdf5Table> present_;
+  std::optional<Hdf5Table> teleported_;
   hsize_t nodes_ = 0;
   hsize_t frames_ = 0;
   std::vector<std::uint32_t> ids_;
@@ -290,7 +296,7 @@ TraceHdf5::TraceHdf5(const std::filesystem::path& path) {
     throw Error(path.string(),
                 fmt::format("is damaged: HDF5's own library {} on it (signal {})",
                             signal == SIGXCPU ? "never comes to an end" : "crashes", signal),
-                "export it again, or take an undamaged copy");
+                kHdf5DamagedRemedy);
   implementation_ = std::make_unique<Implementation>(path);
 }
 TraceHdf5::~TraceHdf5() = default;

@@ -151,6 +151,12 @@ TEST_F(Files, CatPrintsATimeInEitherOrder) {
   EXPECT_EQ(run(range + " --order time").standard_output, lines);
   EXPECT_EQ(run("vestige cat a.mcap --order time").standard_output, run("vestige cat a.mcap").standard_output);
   expect_failure("vestige cat a.mcap --from 2 --to 1", 2, {"--to", "not after --from"});
+  const test::Outcome beyond = run("vestige cat a.mcap --from 5");
+  EXPECT_EQ(beyond.exit_code, 0);
+  EXPECT_THAT(beyond.standard_error, HasSubstr("no such message is in the time asked for"));
+  const test::Outcome unknown = run("vestige cat a.mcap --topic /pose --topic /posse");
+  EXPECT_EQ(unknown.exit_code, 1);
+  EXPECT_EQ(unknown.standard_output, "") << "nor half of it";
   ASSERT_EQ(run("head -c -3000 a.mcap > cut.mcap").exit_code, 0);
   expect_failure("vestige cat cut.mcap --order time", 1, {"cut.mcap: cannot be read by its index"});
 }

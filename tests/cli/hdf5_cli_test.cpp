@@ -57,6 +57,15 @@ class Hdf5Editor {
     const Hdf5Handle type(h5_.attribute_type(attribute.id()), h5_.close_type);
     EXPECT_GE(h5_.write_attribute(attribute.id(), type.id(), text), 0);
   }
+  void set_number(const char* group, const char* key, std::int64_t number) {
+    const hsize_t count = 1;
+    const Hdf5Handle space(h5_.create_simple_space(1, &count, nullptr), h5_.close_space);
+    rename(group, key, "formerly");
+    const Hdf5Handle attribute(create_attribute_(file_.id(), group, key, h5_.int64, space.id(), 0, 0, 0),
+                               h5_.close_attribute);
+    EXPECT_GE(h5_.write_attribute(attribute.id(), h5_.int64, &number), 0);
+  }
+  void remove(const char* name) { EXPECT_GE(remove_(file_.id(), name, 0), 0); }
   void add_list(const char* group, const char* key, std::size_t text_bytes, const void* data) {
     const hsize_t count = 1000;
     const Hdf5Handle space(h5_.create_simple_space(1, &count, nullptr), h5_.close_space);
@@ -131,6 +140,8 @@ TEST_F(Hdf5Exchange, OfAnotherVersionOrOtherNodesOrNumbersIsRefused) {
           {"changed.h5: its format version is '2', not 1"});
   refused([](Hdf5Editor& editor) { editor.set_text("session", "format_version", "2"); },
           {"changed.h5: its format version is '2', not 1"});
+  refused([](Hdf5Editor& editor) { editor.set_number("/", "format_version", 1); },
+          {"changed.h5: its attribute 'format_version' is no text"});
   refused([](Hdf5Editor& editor) { editor.set_text("/", "format", "another thing"); },
           {"changed.h5: its format is 'another thing'"});
   const std::size_t nodes = test::builtin_avatar().nodes.size();
@@ -145,10 +156,17 @@ TEST_F(Hdf5Exchange, OfAnotherVersionOrOtherNodesOrNumbersIsRefused) {
             {"pose/node_names does not name its avatar's nodes"});
   const std::vector<std::int64_t> ids(30, std::int64_t{1} << 33);
   refused([&](Hdf5Editor& editor) { editor.replace("colliders/id", h5.int64, ids.size(), ids.data()); },
-          {"colliders/id", "may not fit unsigned whole numbers of 32 bits"});
+          {"colliders/id", "may not fit unsigned whole numbers of 32 bits", "astype"});
   const std::vector<double> times(300, 0.5);
   refused([&](Hdf5Editor& editor) { editor.replace("time_ns", h5.float64, times.size(), times.data()); },
           {"time_ns", "may not fit whole numbers of 64 bits"});
+}
+
+TEST_F(Hdf5Exchange, WithoutCollidersNeedsNoTablesOfThem) {
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5").exit_code, 0);
+  Hdf5Editor(folder_ / "a.h5").remove("colliders");
+  EXPECT_EQ(run("vestige import a.h5 -o b.mcap").exit_code, 0);
+  EXPECT_EQ(json_of("vestige replay b.mcap --json -")["colliders"], 0);
 }
 
 TEST_F(Hdf5Exchange, NoChangedByteOfAFileCrashesOrChangesAFrame) {

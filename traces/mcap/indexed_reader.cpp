@@ -25,7 +25,8 @@ IndexedReader::IndexedReader(const ByteSource& source, const TimeRange& range, T
     : source_(source), range_(range), take_definition_(std::move(take_definition)) {
   SummaryResult result = read_summary(source);
   if (!result.summary)
-    throw Error(source.name(), fmt::format("cannot be read by its index: {}", result.problem), "recover it first");
+    throw Error(source.name(), fmt::format("cannot be read by its index: {}", result.problem),
+                "read it in the order of the file, or recover it first");
   summary_ = std::move(*result.summary);
   const std::vector<ChunkIndex>& chunks = summary_.chunk_indexes;
   for (std::uint32_t chunk = 0; chunk < chunks.size(); ++chunk)

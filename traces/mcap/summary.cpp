@@ -28,15 +28,15 @@ std::pair<std::uint64_t, std::uint64_t> place_of(const Index& index) {
 }
 
 Footer read_tail(const ByteSource& source) {
-  if (source.size() < kMagicBytes + kTailBytes) throw Malformed("it has no footer");
+  if (source.size() < kMagicBytes + kTailBytes) throw Malformed("its last bytes are no footer");
   std::array<std::byte, kTailBytes> tail = {};
   source.read_at(source.size() - kTailBytes, tail);
   const Bytes bytes = tail;
-  if (!is_magic(bytes.last(kMagicBytes))) throw Malformed("it has no footer");
+  if (!is_magic(bytes.last(kMagicBytes))) throw Malformed("its last bytes are no footer");
   Cursor cursor(bytes);
   if (cursor.number<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kFooter) ||
       cursor.number<std::uint64_t>() != kFooterContentBytes)
-    throw Malformed("it has no footer");
+    throw Malformed("its last bytes are no footer");
   return decode_footer(cursor.bytes(kFooterContentBytes));
 }
 
