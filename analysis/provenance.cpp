@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-#include "traces/utf8.hpp"
+#include "traces/base/utf8.hpp"
 #include "version.hpp"
 
 namespace vestige {

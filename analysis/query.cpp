@@ -12,7 +12,7 @@
 #include "analysis/loose_triangles.hpp"
 #include "analysis/statistics.hpp"
 #include "detector/exact/truth.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

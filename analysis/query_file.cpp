@@ -8,7 +8,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "traces/csv.hpp"
+#include "traces/base/csv.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige {

@@ -11,7 +11,7 @@
 
 #include "analysis/render_thread.hpp"
 #include "detector/texture_hash.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

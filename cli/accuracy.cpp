@@ -17,7 +17,7 @@
 #include "cli/scene.hpp"
 #include "cli/scene_choice.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/trace.hpp"
 
 namespace vestige::cli {

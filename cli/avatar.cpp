@@ -14,7 +14,7 @@
 #include "traces/avatar_gltf.hpp"
 #include "traces/box.hpp"
 #include "traces/builtin_avatar.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/reference_skinning.hpp"
 
 namespace vestige::cli {

@@ -17,8 +17,8 @@
 #include "cli/batch_options.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 

@@ -12,9 +12,9 @@
 #include "analysis/provenance.hpp"
 #include "cli/batch_options.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 

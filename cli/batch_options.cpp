@@ -14,7 +14,7 @@
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "detector/intensity.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

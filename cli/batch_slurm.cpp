@@ -7,7 +7,7 @@
 #include "cli/batch_options.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -11,7 +11,7 @@
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/definitions.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/message_text.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige::cli {

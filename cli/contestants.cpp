@@ -6,7 +6,7 @@
 
 #include "cli/options.hpp"
 #include "detector/embree_detector.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

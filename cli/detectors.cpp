@@ -7,7 +7,7 @@
 #include "cli/help/validators.hpp"
 #include "detector/embree_detector.hpp"
 #include "detector/mapped_skin.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

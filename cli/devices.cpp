@@ -11,7 +11,7 @@
 #include "cli/verbs.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_limits.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/trace_check.hpp"
 
 namespace vestige::cli {

@@ -9,10 +9,10 @@
 #include "cli/output_bytes.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/frame_file.hpp"
 #include "traces/frame_thinning.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige::cli {

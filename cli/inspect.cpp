@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/trace_summary.hpp"
 
 namespace vestige::cli {

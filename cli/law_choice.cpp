@@ -9,7 +9,7 @@
 
 #include "cli/help/validators.hpp"
 #include "detector/actuator_model.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

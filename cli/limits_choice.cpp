@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "cli/help/validators.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -4,10 +4,10 @@
 #include <unistd.h>
 
 #include "cli/snapshots.hpp"
-#include "traces/error.hpp"
-#include "traces/host_port.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/host_port.hpp"
 #include "traces/humanoid.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 

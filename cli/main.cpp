@@ -10,7 +10,7 @@
 #include "cli/help/manual.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "version.hpp"
 
 namespace vestige::cli {

@@ -6,7 +6,7 @@
 #include "cli/help/command_table.hpp"
 #include "cli/help/manual.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/output_file.hpp"
 #include "version.hpp"
 

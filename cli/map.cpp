@@ -15,7 +15,7 @@
 #include "cli/verbs.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige::cli {

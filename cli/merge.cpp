@@ -6,7 +6,7 @@
 
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 

@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "cli/help/help_text.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/trace.hpp"
 
 namespace vestige::cli {

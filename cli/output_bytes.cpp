@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige::cli {

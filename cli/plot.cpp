@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -7,7 +7,7 @@
 #include "analysis/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -17,8 +17,8 @@
 #include "cli/snapshots.hpp"
 #include "cli/verbs.hpp"
 #include "traces/colliders.hpp"
-#include "traces/error.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/recorder.hpp"
 #include "traces/recording.hpp"
 

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "cli/verbs.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 

@@ -20,9 +20,9 @@
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
 #include "detector/path_choice.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "traces/mcap/byte_source.hpp"
-#include "traces/nanoseconds.hpp"
+#include "traces/base/nanoseconds.hpp"
 #include "traces/trace_index.hpp"
 
 namespace vestige::cli {

@@ -10,7 +10,7 @@
 #include "cli/options.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige::cli {

@@ -11,7 +11,7 @@
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/motion.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "cli/help/validators.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/output_file.hpp"
 #include "transport/frame_file_sink.hpp"
 #include "transport/osc_sink.hpp"

@@ -17,8 +17,8 @@
 #include "detector/actuator_map_watch.hpp"
 #include "detector/path_choice.hpp"
 #include "detector/pressure.hpp"
-#include "traces/error.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "transport/sender.hpp"
 
 namespace vestige::cli {

@@ -13,7 +13,7 @@
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -5,7 +5,7 @@
 #include "cli/default_trace.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/terminal.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -14,8 +14,8 @@
 #include <new>
 #include <utility>
 
-#include "traces/descriptor.hpp"
-#include "traces/error.hpp"
+#include "traces/base/descriptor.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

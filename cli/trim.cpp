@@ -3,7 +3,7 @@
 #include "cli/range_choice.hpp"
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::cli {
 

@@ -8,8 +8,8 @@
 #include "cli/help/validators.hpp"
 #include "cli/sink_choice.hpp"
 #include "cli/verbs.hpp"
-#include "traces/error.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "transport/sender.hpp"
 
 namespace vestige::cli {

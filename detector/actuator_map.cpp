@@ -11,10 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include "traces/builtin_avatar.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
-#include "traces/sha256.hpp"
-#include "traces/strict_json.hpp"
+#include "traces/base/sha256.hpp"
+#include "traces/base/strict_json.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

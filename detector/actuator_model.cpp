@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "detector/portable_math.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
-#include "traces/strict_json.hpp"
+#include "traces/base/strict_json.hpp"
 
 namespace vestige {
 

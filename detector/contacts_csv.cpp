@@ -7,8 +7,8 @@
 #include <iterator>
 #include <utility>
 
-#include "traces/csv.hpp"
-#include "traces/error.hpp"
+#include "traces/base/csv.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige {

@@ -11,8 +11,8 @@
 
 #include "detector/contact_description.hpp"
 #include "detector/skin_motion.hpp"
-#include "traces/error.hpp"
-#include "traces/shared_library.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/shared_library.hpp"
 
 namespace vestige {
 

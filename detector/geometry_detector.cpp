@@ -23,7 +23,7 @@
 #include "detector/skipping_geometry_detector.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

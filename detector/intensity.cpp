@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "detector/portable_math.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -14,7 +14,7 @@
 #include "detector/gl/skinned_mesh.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

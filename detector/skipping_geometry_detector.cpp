@@ -24,7 +24,7 @@
 #include "detector/skinning.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "detector/pressure.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

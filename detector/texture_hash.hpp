@@ -4,7 +4,7 @@
 #include <string>
 
 #include "detector/contact.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige {
 

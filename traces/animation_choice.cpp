@@ -6,7 +6,7 @@
 #include <charconv>
 #include <iterator>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -9,8 +9,8 @@
 #include <cstring>
 #include <utility>
 
-#include "traces/descriptor.hpp"
-#include "traces/error.hpp"
+#include "traces/base/descriptor.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <optional>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige {

@@ -7,7 +7,7 @@
 
 #include "traces/avatar_gltf.hpp"
 #include "traces/colliders.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/gltf_animation.hpp"
 #include "traces/gltf_document.hpp"
 #include "traces/gltf_nodes.hpp"

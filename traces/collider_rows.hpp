@@ -6,7 +6,7 @@
 #include <string_view>
 #include <unordered_set>
 
-#include "traces/csv.hpp"
+#include "traces/base/csv.hpp"
 #include "traces/trace.hpp"
 
 namespace vestige {

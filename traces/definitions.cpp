@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
 #include "traces/mcap/summary.hpp"

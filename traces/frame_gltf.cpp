@@ -13,11 +13,11 @@
 #include <version.hpp>
 
 #include "traces/column_file.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/frame_file.hpp"
 #include "traces/glb_container.hpp"
 #include "traces/gltf_meshopt.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 

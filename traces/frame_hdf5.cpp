@@ -8,7 +8,7 @@
 #include <map>
 #include <optional>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/frame_file.hpp"
 #include "traces/hdf5_library.hpp"
 #include "traces/scratch_file.hpp"

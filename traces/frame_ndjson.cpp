@@ -3,7 +3,7 @@
 #include <iterator>
 
 #include "traces/frame_file.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 

@@ -4,7 +4,7 @@
 
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
-#include "traces/nanoseconds.hpp"
+#include "traces/base/nanoseconds.hpp"
 #include "traces/trace_format.hpp"
 
 namespace vestige {

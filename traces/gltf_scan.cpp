@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "traces/gltf_uri.hpp"
-#include "traces/utf8.hpp"
+#include "traces/base/utf8.hpp"
 
 namespace vestige::gltf {
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "traces/error.hpp"
-#include "traces/shared_library.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/shared_library.hpp"
 
 namespace vestige {
 

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "traces/body_roles.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/glb_container.hpp"
 #include "traces/gltf_report.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "traces/descriptor.hpp"
-#include "traces/error.hpp"
+#include "traces/base/descriptor.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

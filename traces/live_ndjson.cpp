@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "traces/mcap/decode.hpp"
-#include "traces/nanoseconds.hpp"
+#include "traces/base/nanoseconds.hpp"
 
 namespace vestige {
 

@@ -11,8 +11,8 @@
 #include <string_view>
 #include <utility>
 
-#include "traces/error.hpp"
-#include "traces/nanoseconds.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/nanoseconds.hpp"
 
 namespace vestige {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <version.hpp>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

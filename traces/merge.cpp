@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "traces/definitions.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/summary_check.hpp"
 #include "traces/mcap_output.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/trace_index.hpp"
 
 namespace vestige {

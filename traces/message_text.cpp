@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "traces/input_file.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 #include <cstring>
 #include <utility>
 
-#include "traces/descriptor.hpp"
+#include "traces/base/descriptor.hpp"
 
 namespace vestige {
 

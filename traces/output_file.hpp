@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "traces/frame_file.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 

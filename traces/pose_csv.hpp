@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "traces/avatar.hpp"
-#include "traces/csv.hpp"
+#include "traces/base/csv.hpp"
 #include "traces/trace.hpp"
 
 namespace vestige {

@@ -9,12 +9,12 @@
 #include <limits>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/nanoseconds.hpp"
+#include "traces/base/nanoseconds.hpp"
 #include "traces/trace_format.hpp"
 
 namespace vestige {

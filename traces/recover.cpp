@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "traces/definitions.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/frame_gate.hpp"
 #include "traces/mcap/chunk_salvage.hpp"
 #include "traces/mcap/crc32.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "traces/body_roles.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "traces/definitions.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap_output.hpp"
-#include "traces/nanoseconds.hpp"
+#include "traces/base/nanoseconds.hpp"
 
 namespace vestige {
 

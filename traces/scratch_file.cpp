@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

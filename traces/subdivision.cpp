@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -8,14 +8,14 @@
 #include <string>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/message_stream.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/recover.hpp"
 #include "traces/session_check.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/trace.hpp"
 #include "traces/trace_messages.hpp"
 #include "traces/trace_nodes.hpp"

@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
-#include "traces/child_process.hpp"
-#include "traces/error.hpp"
+#include "traces/base/child_process.hpp"
+#include "traces/base/error.hpp"
 #include "traces/hdf5_table.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/trace_format.hpp"
 
 namespace vestige {

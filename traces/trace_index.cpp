@@ -7,7 +7,7 @@
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/session_check.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/trace_format.hpp"
 
 namespace vestige {

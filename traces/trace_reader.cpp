@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/message_stream.hpp"
 #include "traces/recover.hpp"

@@ -10,10 +10,10 @@
 #include <version.hpp>
 
 #include "traces/append_file.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/writer.hpp"
-#include "traces/nanoseconds.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/nanoseconds.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_messages.hpp"
 #include "traces/viz_messages.hpp"

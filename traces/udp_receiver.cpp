@@ -9,7 +9,7 @@
 #include <cstring>
 #include <memory>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/host_port.hpp"
+#include "traces/base/host_port.hpp"
 
 namespace vestige {
 

@@ -8,7 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/trace_format.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/timeline.hpp"
 
 namespace vestige {

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "traces/error.hpp"
-#include "traces/host_port.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/host_port.hpp"
 
 namespace vestige {
 

@@ -14,7 +14,7 @@
 #include <thread>
 #include <utility>
 
-#include "traces/descriptor.hpp"
+#include "traces/base/descriptor.hpp"
 
 namespace vestige {
 

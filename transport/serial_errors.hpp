@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

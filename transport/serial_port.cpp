@@ -19,7 +19,7 @@
 #include <system_error>
 #include <utility>
 
-#include "traces/descriptor.hpp"
+#include "traces/base/descriptor.hpp"
 #include "transport/actuator_sink.hpp"
 #include "transport/serial_errors.hpp"
 

@@ -16,7 +16,7 @@
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
 #include "traces/input_file.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige {

@@ -11,9 +11,9 @@
 
 #include "analysis/batch/batch_folder.hpp"
 #include "analysis/batch/batch_plan.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige {
 

@@ -8,10 +8,10 @@
 #include <set>
 
 #include "analysis/provenance.hpp"
-#include "traces/descriptor.hpp"
+#include "traces/base/descriptor.hpp"
 #include "traces/output_file.hpp"
-#include "traces/sha256.hpp"
-#include "traces/utf8.hpp"
+#include "traces/base/sha256.hpp"
+#include "traces/base/utf8.hpp"
 #include "version.hpp"
 
 namespace vestige {

@@ -16,7 +16,7 @@
 #include "detector/intensity.hpp"
 #include "traces/avatar.hpp"
 #include "traces/colliders.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

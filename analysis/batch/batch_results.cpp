@@ -11,7 +11,7 @@
 
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/mapping/scores.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

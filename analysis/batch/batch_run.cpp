@@ -25,7 +25,7 @@
 #include "traces/animation_choice.hpp"
 #include "traces/output_file.hpp"
 #include "traces/recording.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/trace_reader.hpp"
 #include "traces/trace_writer.hpp"
 

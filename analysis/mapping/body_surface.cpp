@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/reference_skinning.hpp"
 
 namespace vestige {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "traces/csv.hpp"
+#include "traces/base/csv.hpp"
 #include "traces/input_file.hpp"
 #include "traces/output_file.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "analysis/mapping/map_maker.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

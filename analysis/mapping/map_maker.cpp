@@ -11,7 +11,7 @@
 
 #include "analysis/mapping/skin_patches.hpp"
 #include "analysis/png_image.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

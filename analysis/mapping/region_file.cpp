@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "traces/strict_json.hpp"
+#include "traces/base/strict_json.hpp"
 
 namespace vestige {
 

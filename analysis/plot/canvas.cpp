@@ -20,7 +20,7 @@
 #include <sstream>
 #include <vector>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::plot {
 

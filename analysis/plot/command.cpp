@@ -5,7 +5,7 @@
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/plot/headless_window.hpp"
 #include "cli/terminal.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::plot {
 

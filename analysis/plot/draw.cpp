@@ -18,7 +18,7 @@
 #include "analysis/plot/texture_figure.hpp"
 #include "analysis/plot/timeline_figure.hpp"
 #include "cli/terminal.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/output_file.hpp"
 #include "traces/trace_reader.hpp"
 

@@ -11,7 +11,7 @@
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/palette.hpp"
 #include "analysis/plot/report_words.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 

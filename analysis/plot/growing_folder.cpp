@@ -6,7 +6,7 @@
 #include <system_error>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::plot {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "analysis/plot/json_field.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::plot {
 

@@ -16,7 +16,7 @@
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/terminal.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/output_file.hpp"
 #include "version.hpp"
 

@@ -15,7 +15,7 @@
 #include "analysis/plot/report_words.hpp"
 #include "analysis/plot/scale_bar.hpp"
 #include "analysis/plot/subject.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/pose.hpp"
 
 namespace vestige::plot {

@@ -9,7 +9,7 @@
 
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/palette.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::plot {
 

@@ -22,7 +22,7 @@
 #include <utility>
 
 #include "analysis/plot/html.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/reference_skinning.hpp"
 
 namespace vestige::plot {

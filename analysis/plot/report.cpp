@@ -24,10 +24,10 @@
 #include "detector/actuator_layout.hpp"
 #include "detector/intensity.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 #include "traces/output_file.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige::plot {
 

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "analysis/plot/json_field.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige::plot {
 

@@ -13,7 +13,7 @@
 #include "analysis/plot/html.hpp"
 #include "analysis/plot/report_style.hpp"
 #include "analysis/plot/report_words.hpp"
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::plot {
 

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::plot {
 

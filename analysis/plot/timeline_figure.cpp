@@ -9,8 +9,8 @@
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/colour_bar.hpp"
 #include "analysis/plot/palette.hpp"
-#include "traces/csv.hpp"
-#include "traces/error.hpp"
+#include "traces/base/csv.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige::plot {

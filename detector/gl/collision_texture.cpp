@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "detector/gl/gl_objects.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -5,8 +5,8 @@
 #include <array>
 
 #include "detector/gl/gl_context.hpp"
-#include "traces/error.hpp"
-#include "traces/shared_library.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/shared_library.hpp"
 
 #ifndef EGL_PLATFORM_SURFACELESS_MESA
 #define EGL_PLATFORM_SURFACELESS_MESA 0x31DD

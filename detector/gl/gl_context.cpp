@@ -8,7 +8,7 @@
 #include <functional>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -6,8 +6,8 @@
 
 #include <array>
 
-#include "traces/error.hpp"
-#include "traces/shared_library.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/shared_library.hpp"
 
 namespace vestige {
 

@@ -14,7 +14,7 @@
 
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 #include "analysis/mapping/contact_recording_file.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

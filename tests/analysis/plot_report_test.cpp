@@ -6,7 +6,7 @@
 
 #include "tests/analysis/box_avatar.hpp"
 #include "tests/support/process.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/query_text.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "tests/support/query_text.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

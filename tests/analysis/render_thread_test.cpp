@@ -8,7 +8,7 @@
 #include "detector/gl/scene_renderer.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/scene_run.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

@@ -17,7 +17,7 @@
 #include "detector/skinning.hpp"
 #include "tests/support/skin_geometry.hpp"
 #include "tests/support/small_avatar.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

@@ -12,7 +12,7 @@
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/builtin_avatar.hpp"
 #include "traces/hdf5_library.hpp"
-#include "traces/shared_library.hpp"
+#include "traces/base/shared_library.hpp"
 #include "traces/trace_hdf5.hpp"
 
 namespace vestige {

@@ -17,7 +17,7 @@
 #include "tests/support/background_process.hpp"
 #include "tests/support/command_line.hpp"
 #include "tests/support/npm.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/record_walker.hpp"
 #include "traces/output_file.hpp"
 #include "traces/recover.hpp"

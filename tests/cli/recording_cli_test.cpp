@@ -13,7 +13,7 @@
 #include "tests/support/command_line.hpp"
 #include "tests/support/osc.hpp"
 #include "tests/support/udp.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 #include "traces/trace_reader.hpp"
 

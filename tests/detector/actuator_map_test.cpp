@@ -11,7 +11,7 @@
 #include "tests/support/message_of.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/builtin_avatar.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige {

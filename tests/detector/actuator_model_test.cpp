@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "detector/portable_math.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

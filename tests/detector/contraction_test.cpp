@@ -13,7 +13,7 @@
 #include "detector/skinning.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "traces/pose.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige {
 

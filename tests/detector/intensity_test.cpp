@@ -8,7 +8,7 @@
 #include "detector/actuator_drive.hpp"
 #include "detector/texture_hash.hpp"
 #include "tests/support/flat_body.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "tests/fuzz/require.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/glb_container.hpp"
 #include "traces/reference_skinning.hpp"
 

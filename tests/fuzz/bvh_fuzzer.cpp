@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "tests/fuzz/require.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/retarget.hpp"
 
 // Whatever a BVH file holds, reading it and putting it on an avatar ends in an error that says something, or in an

@@ -7,7 +7,7 @@
 #include "traces/builtin_avatar.hpp"
 #include "traces/collider_rows.hpp"
 #include "traces/colliders.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/pose_csv.hpp"
 
 // Whatever a CSV file holds, reading it as colliders, contacts or poses ends in an error that says something, or in

@@ -4,7 +4,7 @@
 
 #include "detector/actuator_map.hpp"
 #include "tests/fuzz/require.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 // Whatever bytes an actuator map and its sidecar hold, reading it ends in an error that says something, or in a map in
 // which every texel names an actuator that there is. The first two bytes say how long the sidecar is, which follows.

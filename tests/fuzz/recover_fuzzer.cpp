@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "tests/fuzz/require.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/recover.hpp"
 #include "traces/trace_check.hpp"

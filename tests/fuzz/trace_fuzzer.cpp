@@ -1,7 +1,7 @@
 #include <cstring>
 
 #include "tests/fuzz/require.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/trace_check.hpp"
 #include "traces/trace_reader.hpp"
 #include "traces/trace_summary.hpp"

@@ -3,7 +3,7 @@
 #include <functional>
 #include <string>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige::test {
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/traces/gltf_builder.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/reference_skinning.hpp"
 
 namespace vestige {

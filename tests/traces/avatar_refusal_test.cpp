@@ -9,7 +9,7 @@
 #include "tests/support/test_data.hpp"
 #include "tests/traces/gltf_builder.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/bvh_text.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

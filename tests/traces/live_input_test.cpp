@@ -12,7 +12,7 @@
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/humanoid.hpp"
 #include "traces/live_ndjson.hpp"
 #include "traces/mcap/decode.hpp"

@@ -9,7 +9,7 @@
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/writer.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige::test {
 

@@ -11,7 +11,7 @@
 
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap_output.hpp"
 #include "traces/rewrite.hpp"
 

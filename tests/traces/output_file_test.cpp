@@ -9,7 +9,7 @@
 
 #include "tests/support/test_data.hpp"
 #include "traces/append_file.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige {

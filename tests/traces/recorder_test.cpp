@@ -11,7 +11,7 @@
 #include "tests/support/test_data.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/message_stream.hpp"

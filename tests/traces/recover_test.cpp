@@ -11,7 +11,7 @@
 #include "tests/support/memory_growth.hpp"
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/trace_check.hpp"

@@ -12,7 +12,7 @@
 #include "traces/avatar_gltf.hpp"
 #include "traces/body_roles.hpp"
 #include "traces/builtin_avatar.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

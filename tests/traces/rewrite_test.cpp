@@ -9,7 +9,7 @@
 
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/trace_check.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_summary.hpp"

@@ -12,7 +12,7 @@
 #include "tests/traces/forged_trace.hpp"
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/trace_format.hpp"

@@ -12,7 +12,7 @@
 #include "tests/support/test_data.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"

@@ -12,9 +12,9 @@
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_summary.hpp"
 

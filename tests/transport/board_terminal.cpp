@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige::test {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "tests/support/test_data.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 #include "transport/vest_frame.hpp"
 

@@ -15,7 +15,7 @@
 #include <map>
 
 #include "tests/support/test_data.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/input_file.hpp"
 
 namespace vestige {

@@ -17,7 +17,7 @@
 #include <fstream>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/timeline_csv.hpp"
 
 namespace vestige::test {

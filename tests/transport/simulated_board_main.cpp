@@ -11,7 +11,7 @@
 
 #include "tests/transport/board_terminal.hpp"
 #include "tests/transport/simulated_board.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/output_file.hpp"
 
 namespace {

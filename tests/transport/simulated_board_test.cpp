@@ -20,7 +20,7 @@
 #include "tests/support/process.hpp"
 #include "tests/support/wire_frames.hpp"
 #include "tests/transport/pin_duty.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 // The board as a program, used as a client uses a serial port. Nothing here depends on how fast the machine is.
 namespace vestige::test {

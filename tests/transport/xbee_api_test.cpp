@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

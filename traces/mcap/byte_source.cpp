@@ -8,8 +8,8 @@
 #include <cstring>
 #include <utility>
 
-#include "traces/descriptor.hpp"
-#include "traces/error.hpp"
+#include "traces/base/descriptor.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/record.hpp"
 #include "traces/output_file.hpp"
 #include "traces/scratch_file.hpp"

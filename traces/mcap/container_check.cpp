@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/chunk_check.hpp"
 #include "traces/mcap/chunk_expander.hpp"
 #include "traces/mcap/crc32.hpp"

@@ -6,7 +6,7 @@
 #include <tuple>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/chunk_expander.hpp"
 
 namespace vestige::mcap {

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/mcap/decode.hpp"
 
 namespace vestige::mcap {

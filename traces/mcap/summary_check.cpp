@@ -7,7 +7,7 @@
 
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige::mcap {
 

@@ -15,7 +15,7 @@
 #include "tests/support/message_of.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

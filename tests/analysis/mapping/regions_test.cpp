@@ -6,7 +6,7 @@
 #include "analysis/mapping/map_maker.hpp"
 #include "tests/analysis/mapping/map_fixture.hpp"
 #include "tests/support/message_of.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

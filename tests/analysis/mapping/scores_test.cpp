@@ -12,7 +12,7 @@
 #include "detector/actuator_model.hpp"
 #include "tests/support/flat_body.hpp"
 #include "tests/support/mapping_run.hpp"
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

@@ -1,4 +1,4 @@
-#include "traces/strict_json.hpp"
+#include "traces/base/strict_json.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -1,10 +1,10 @@
-#include "traces/line_reader.hpp"
+#include "traces/base/line_reader.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

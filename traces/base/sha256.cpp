@@ -1,4 +1,4 @@
-#include "traces/sha256.hpp"
+#include "traces/base/sha256.hpp"
 
 #include <fmt/format.h>
 

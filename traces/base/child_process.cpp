@@ -1,4 +1,4 @@
-#include "traces/child_process.hpp"
+#include "traces/base/child_process.hpp"
 
 #include <fcntl.h>
 #include <sys/prctl.h>

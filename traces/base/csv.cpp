@@ -1,4 +1,4 @@
-#include "traces/csv.hpp"
+#include "traces/base/csv.hpp"
 
 #include <fmt/format.h>
 

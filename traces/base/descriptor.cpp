@@ -1,4 +1,4 @@
-#include "traces/descriptor.hpp"
+#include "traces/base/descriptor.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 #include "traces/output_file.hpp"
 
 namespace vestige {

@@ -1,11 +1,11 @@
-#include "traces/host_port.hpp"
+#include "traces/base/host_port.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

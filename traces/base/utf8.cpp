@@ -1,4 +1,4 @@
-#include "traces/utf8.hpp"
+#include "traces/base/utf8.hpp"
 
 #include <algorithm>
 

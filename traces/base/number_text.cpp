@@ -1,4 +1,4 @@
-#include "traces/number_text.hpp"
+#include "traces/base/number_text.hpp"
 
 #include <fmt/format.h>
 

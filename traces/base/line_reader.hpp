@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "traces/descriptor.hpp"
+#include "traces/base/descriptor.hpp"
 
 namespace vestige {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "traces/error.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 

@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "traces/error.hpp"
-#include "traces/line_reader.hpp"
+#include "traces/base/error.hpp"
+#include "traces/base/line_reader.hpp"
 
 namespace vestige {
 
