@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "traces/base/csv.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 

@@ -13,7 +13,7 @@
 #include "cli/batch_options.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::cli {

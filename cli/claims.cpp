@@ -9,7 +9,7 @@
 
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::cli {
 

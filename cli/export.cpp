@@ -13,7 +13,7 @@
 #include "traces/frame_file.hpp"
 #include "traces/frame_thinning.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige::cli {
 

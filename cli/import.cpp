@@ -15,7 +15,7 @@
 #include "traces/collider_rows.hpp"
 #include "traces/colliders.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/pose_csv.hpp"
 #include "traces/trace_hdf5.hpp"

@@ -7,7 +7,7 @@
 #include "cli/help/manual.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "version.hpp"
 
 namespace vestige::cli {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cli/terminal.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige::cli {
 

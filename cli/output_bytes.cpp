@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "traces/base/error.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige::cli {
 

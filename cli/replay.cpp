@@ -21,7 +21,7 @@
 #include "cli/verbs.hpp"
 #include "detector/path_choice.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::cli {

@@ -11,7 +11,7 @@
 #include "traces/avatar_gltf.hpp"
 #include "traces/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::cli {
 

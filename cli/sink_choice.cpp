@@ -9,7 +9,7 @@
 
 #include "cli/help/validators.hpp"
 #include "traces/base/error.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "transport/frame_file_sink.hpp"
 #include "transport/osc_sink.hpp"
 #include "transport/serial_sink.hpp"

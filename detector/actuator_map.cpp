@@ -12,7 +12,7 @@
 
 #include "traces/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/base/strict_json.hpp"
 #include "traces/trace_reader.hpp"

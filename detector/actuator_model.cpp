@@ -8,7 +8,7 @@
 
 #include "detector/portable_math.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/base/strict_json.hpp"
 
 namespace vestige {

@@ -9,7 +9,7 @@
 
 #include "traces/base/csv.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 

@@ -9,7 +9,7 @@
 
 #include "detector/contact.hpp"
 #include "detector/frame.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige {
 

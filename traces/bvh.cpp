@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 

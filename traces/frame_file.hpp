@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "traces/avatar.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/trace.hpp"
 
 namespace vestige {

@@ -12,7 +12,7 @@
 #include <optional>
 #include <version.hpp>
 
-#include "traces/column_file.hpp"
+#include "traces/files/column_file.hpp"
 #include "traces/base/error.hpp"
 #include "traces/frame_file.hpp"
 #include "traces/glb_container.hpp"

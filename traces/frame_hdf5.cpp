@@ -11,7 +11,7 @@
 #include "traces/base/error.hpp"
 #include "traces/frame_file.hpp"
 #include "traces/hdf5_library.hpp"
-#include "traces/scratch_file.hpp"
+#include "traces/files/scratch_file.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige {

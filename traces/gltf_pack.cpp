@@ -13,7 +13,7 @@
 #include "traces/gltf_json.hpp"
 #include "traces/gltf_meshopt.hpp"
 #include "traces/gltf_uri.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige {

@@ -22,7 +22,7 @@ endforeach()
 
 target_sources(vestige_traces PRIVATE
   ${schema_headers}
-  append_file.cpp
+  files/append_file.cpp
   definitions.cpp
   frame_gate.cpp
   frame_ring.cpp

@@ -9,7 +9,7 @@
 #include <optional>
 #include <version.hpp>
 
-#include "traces/append_file.hpp"
+#include "traces/files/append_file.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/writer.hpp"
 #include "traces/base/nanoseconds.hpp"

@@ -9,10 +9,10 @@
 #include <string>
 #include <string_view>
 
-#include "traces/append_file.hpp"
+#include "traces/files/append_file.hpp"
 #include "traces/avatar.hpp"
 #include "traces/mcap/compression.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/trace.hpp"
 
 namespace vestige {

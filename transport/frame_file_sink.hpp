@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "transport/actuator_sink.hpp"
 
 namespace vestige {

@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <utility>
 
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige {
 

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "analysis/batch/batch_plan.hpp"
-#include "traces/input_file.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/input_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige {
 

@@ -9,7 +9,7 @@
 
 #include "analysis/provenance.hpp"
 #include "traces/base/descriptor.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/base/utf8.hpp"
 #include "version.hpp"

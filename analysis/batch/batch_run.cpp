@@ -23,7 +23,7 @@
 #include "analysis/provenance.hpp"
 #include "detector/frame.hpp"
 #include "traces/animation_choice.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/recording.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/trace_reader.hpp"

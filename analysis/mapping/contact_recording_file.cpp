@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "traces/base/csv.hpp"
-#include "traces/input_file.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/input_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige {
 

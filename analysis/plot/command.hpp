@@ -11,7 +11,7 @@
 
 #include "analysis/plot/figure.hpp"
 #include "analysis/plot/scene_moments.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige::plot {
 

@@ -19,7 +19,7 @@
 #include "analysis/plot/timeline_figure.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige::plot {

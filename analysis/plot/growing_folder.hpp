@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige::plot {
 

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::plot {
 

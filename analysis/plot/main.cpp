@@ -17,7 +17,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "version.hpp"
 
 namespace {

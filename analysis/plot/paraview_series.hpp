@@ -9,7 +9,7 @@
 
 #include "analysis/plot/growing_folder.hpp"
 #include "analysis/plot/subject.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/trace.hpp"
 
 class vtkPolyData;

@@ -25,8 +25,8 @@
 #include "detector/intensity.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/input_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/base/sha256.hpp"
 
 namespace vestige::plot {

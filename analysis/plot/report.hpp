@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige::plot {
 

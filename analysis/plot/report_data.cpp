@@ -8,7 +8,7 @@
 
 #include "analysis/plot/json_field.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
 
 namespace vestige::plot {

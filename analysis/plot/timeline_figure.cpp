@@ -11,7 +11,7 @@
 #include "analysis/plot/palette.hpp"
 #include "traces/base/csv.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::plot {
 

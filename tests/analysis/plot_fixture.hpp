@@ -15,7 +15,7 @@
 
 #include "tests/support/process.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::test {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "tests/analysis/plot_fixture.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 namespace {

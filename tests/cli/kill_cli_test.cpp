@@ -19,7 +19,7 @@
 #include "tests/support/npm.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/record_walker.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 #include "traces/recover.hpp"
 #include "traces/trace_reader.hpp"
 

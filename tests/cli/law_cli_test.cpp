@@ -12,7 +12,7 @@
 #include "tests/support/command_line.hpp"
 #include "tests/support/timeline_files.hpp"
 #include "traces/builtin_avatar.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 namespace {

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "tests/support/command_line.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 namespace {

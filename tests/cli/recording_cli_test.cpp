@@ -14,7 +14,7 @@
 #include "tests/support/osc.hpp"
 #include "tests/support/udp.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige {

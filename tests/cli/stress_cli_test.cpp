@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tests/support/command_line.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 namespace {

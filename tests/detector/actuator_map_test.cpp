@@ -12,7 +12,7 @@
 #include "tests/support/test_data.hpp"
 #include "traces/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 namespace {

@@ -4,7 +4,7 @@
 #include <fstream>
 
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace {
 

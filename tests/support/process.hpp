@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tests/support/test_data.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::test {
 

@@ -8,7 +8,7 @@
 #include "tests/support/test_data.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/reference_skinning.hpp"
 
 namespace vestige {

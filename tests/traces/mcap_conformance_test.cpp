@@ -10,7 +10,7 @@
 #include <set>
 
 #include "tests/support/test_data.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/writer.hpp"

@@ -1,4 +1,4 @@
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <fstream>
 
 #include "tests/support/test_data.hpp"
-#include "traces/append_file.hpp"
+#include "traces/files/append_file.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 namespace {

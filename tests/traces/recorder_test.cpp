@@ -12,7 +12,7 @@
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/message_stream.hpp"
 #include "traces/recording_thread.hpp"

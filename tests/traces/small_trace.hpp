@@ -10,7 +10,7 @@
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"

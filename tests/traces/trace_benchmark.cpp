@@ -7,7 +7,7 @@
 #include <chrono>
 
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/mcap/chunk_expander.hpp"
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"

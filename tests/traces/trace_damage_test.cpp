@@ -13,7 +13,7 @@
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/summary.hpp"

@@ -13,7 +13,7 @@
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/base/error.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/trace_format.hpp"
 #include "traces/trace_summary.hpp"

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige::test {
 

@@ -17,7 +17,7 @@
 #include "tests/support/test_data.hpp"
 #include "tests/transport/driver.hpp"
 #include "tests/transport/pseudo_terminal.hpp"
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 #include "transport/actuator_sink.hpp"
 
 namespace vestige {

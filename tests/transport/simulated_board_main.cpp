@@ -12,7 +12,7 @@
 #include "tests/transport/board_terminal.hpp"
 #include "tests/transport/simulated_board.hpp"
 #include "traces/base/error.hpp"
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <exception>
 
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige {
 

@@ -11,8 +11,8 @@
 #include "traces/base/descriptor.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/record.hpp"
-#include "traces/output_file.hpp"
-#include "traces/scratch_file.hpp"
+#include "traces/files/output_file.hpp"
+#include "traces/files/scratch_file.hpp"
 
 namespace vestige::mcap {
 

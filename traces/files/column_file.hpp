@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "traces/scratch_file.hpp"
+#include "traces/files/scratch_file.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "traces/column_file.hpp"
+#include "traces/files/column_file.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "traces/append_file.hpp"
+#include "traces/files/append_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "traces/input_file.hpp"
+#include "traces/files/input_file.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige {
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "traces/scratch_file.hpp"
+#include "traces/files/scratch_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "traces/output_file.hpp"
+#include "traces/files/output_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
