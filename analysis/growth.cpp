@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "analysis/sweep_report.hpp"
-#include "traces/subdivision.hpp"
+#include "traces/scene/subdivision.hpp"
 
 namespace vestige {
 
@@ -22,7 +22,7 @@ SweepSettings settings_for(const GrowthSettings& settings, const Avatar& avatar,
   return sweep;
 }
 
-/// For the avatar that traces/subdivision.hpp makes.
+/// For the avatar that traces/scene/subdivision.hpp makes.
 ActuatorMap subdivided(const ActuatorMap& map) {
   ActuatorMap fine = map;
   if (map.triangle_count == 0) return fine;

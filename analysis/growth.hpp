@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/sweep.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "detector/frame.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "traces/avatar.hpp"
-#include "traces/colliders.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/colliders.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

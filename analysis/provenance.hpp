@@ -7,7 +7,7 @@
 #include <string>
 
 #include "detector/detector.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "detector/gl/gl_context.hpp"
-#include "traces/avatar.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

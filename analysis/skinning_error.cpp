@@ -5,8 +5,8 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "traces/box.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/box.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "detector/detector.hpp"
-#include "traces/avatar.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "analysis/stress_families.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

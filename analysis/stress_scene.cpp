@@ -4,7 +4,7 @@
 
 #include "analysis/loose_triangles.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 

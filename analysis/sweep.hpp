@@ -10,7 +10,7 @@
 #include "analysis/statistics.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige {

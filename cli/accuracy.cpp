@@ -18,7 +18,7 @@
 #include "cli/scene_choice.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige::cli {
 

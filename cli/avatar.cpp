@@ -12,10 +12,10 @@
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/box.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/box.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige::cli {
 

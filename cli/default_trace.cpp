@@ -5,7 +5,7 @@
 #include "analysis/provenance.hpp"
 #include "cli/scene.hpp"
 #include "cli/terminal.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/recording.hpp"
 
 namespace vestige::cli {

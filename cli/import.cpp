@@ -13,7 +13,7 @@
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/collider_rows.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "detector/actuator_drive.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige::cli {
 

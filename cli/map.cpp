@@ -14,7 +14,7 @@
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 

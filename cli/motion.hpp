@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/terminal.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/retarget.hpp"
 
 namespace vestige::cli {

@@ -10,7 +10,7 @@
 
 #include "cli/help/help_text.hpp"
 #include "traces/base/error.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige::cli {
 

@@ -16,7 +16,7 @@
 #include "cli/scene_choice.hpp"
 #include "cli/snapshots.hpp"
 #include "cli/verbs.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/recorder.hpp"

@@ -9,7 +9,7 @@
 #include "analysis/mapping/layouts.hpp"
 #include "cli/options.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 

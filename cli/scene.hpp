@@ -7,7 +7,7 @@
 #include "cli/terminal.hpp"
 #include "detector/actuator_map.hpp"
 #include "traces/animation_choice.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/trace_reader.hpp"
 #include "traces/trace_writer.hpp"
 

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "cli/terminal.hpp"
-#include "traces/avatar.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige::cli {
 

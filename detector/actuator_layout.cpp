@@ -9,8 +9,8 @@
 
 #include "detector/texture_stretch.hpp"
 #include "detector/uv_texels.hpp"
-#include "traces/pose.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/pose.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

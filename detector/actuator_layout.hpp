@@ -14,7 +14,7 @@
 #include "detector/actuator_map.hpp"
 #include "detector/contact.hpp"
 #include "detector/surface_distance.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

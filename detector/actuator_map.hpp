@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

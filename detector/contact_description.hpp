@@ -6,7 +6,7 @@
 #include "detector/actuator_map.hpp"
 #include "detector/contact.hpp"
 #include "detector/decision.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -7,7 +7,7 @@
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
 #include "detector/skin_motion.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -11,7 +11,7 @@
 #include "detector/contact.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -10,8 +10,8 @@
 
 #include "detector/method.hpp"
 #include "detector/skinning.hpp"
-#include "traces/avatar.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

@@ -7,7 +7,7 @@
 
 #include "detector/actuator_map.hpp"
 #include "detector/detector.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 #include "detector/meet_boxes.hpp"
 #include "detector/meshlets.hpp"
 #include "detector/method.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 #include "detector/meshlets.hpp"
 #include "detector/method.hpp"
 #include "detector/segment_boxes.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

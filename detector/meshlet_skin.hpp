@@ -10,7 +10,7 @@
 #include "detector/decision.hpp"
 #include "detector/meshlets.hpp"
 #include "detector/skinning.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

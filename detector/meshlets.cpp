@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "detector/skinning.hpp"
-#include "traces/pose.hpp"
+#include "traces/scene/pose.hpp"
 
 namespace vestige {
 

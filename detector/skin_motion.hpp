@@ -7,7 +7,7 @@
 #include "detector/decision.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

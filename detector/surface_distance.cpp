@@ -10,8 +10,8 @@
 #include <tuple>
 #include <utility>
 
-#include "traces/box.hpp"
-#include "traces/welding.hpp"
+#include "traces/scene/box.hpp"
+#include "traces/scene/welding.hpp"
 
 namespace vestige {
 

@@ -9,7 +9,7 @@
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
 #include "detector/skin_motion.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

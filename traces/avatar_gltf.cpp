@@ -11,7 +11,7 @@
 #include "traces/gltf_document.hpp"
 #include "traces/gltf_mesh.hpp"
 #include "traces/gltf_nodes.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "traces/collider_rows.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige {
 

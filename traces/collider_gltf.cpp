@@ -6,7 +6,7 @@
 #include <set>
 
 #include "traces/avatar_gltf.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
 #include "traces/gltf_animation.hpp"
 #include "traces/gltf_document.hpp"

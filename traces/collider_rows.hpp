@@ -7,7 +7,7 @@
 #include <unordered_set>
 
 #include "traces/base/csv.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "traces/mcap/encode.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 #include "traces/trace_messages.hpp"
 
 namespace vestige {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <set>
 
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/gltf_document.hpp"
 
 namespace vestige::gltf {

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/gltf_report.hpp"
 
 namespace vestige::gltf {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/gltf_document.hpp"
 
 namespace vestige::gltf {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/base/csv.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

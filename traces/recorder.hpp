@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/frame_ring.hpp"
 #include "traces/trace_writer.hpp"
 

@@ -4,9 +4,9 @@
 #include <functional>
 #include <glm/vec3.hpp>
 
-#include "traces/avatar.hpp"
-#include "traces/colliders.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/colliders.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "traces/recorder.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/bvh.hpp"
 
 namespace vestige {

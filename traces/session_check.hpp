@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

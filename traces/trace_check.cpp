@@ -16,7 +16,7 @@
 #include "traces/recover.hpp"
 #include "traces/session_check.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 #include "traces/trace_messages.hpp"
 #include "traces/trace_nodes.hpp"
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "traces/mcap/record.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

@@ -10,10 +10,10 @@
 #include <string_view>
 
 #include "traces/files/append_file.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/mcap/compression.hpp"
 #include "traces/files/output_file.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

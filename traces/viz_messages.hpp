@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/mcap/record.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

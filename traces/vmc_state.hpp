@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/frame_ring.hpp"
 #include "traces/humanoid.hpp"
 #include "traces/osc_packet.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

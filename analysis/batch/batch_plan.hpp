@@ -14,8 +14,8 @@
 #include "detector/actuator_map.hpp"
 #include "detector/actuator_model.hpp"
 #include "detector/intensity.hpp"
-#include "traces/avatar.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

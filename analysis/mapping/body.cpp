@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "traces/pose.hpp"
+#include "traces/scene/pose.hpp"
 
 namespace vestige {
 

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "traces/base/error.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/avatar.hpp"
-#include "traces/box.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/box.hpp"
 #include "traces/scenarios/skin.hpp"
 
 namespace vestige {

@@ -6,7 +6,7 @@
 
 #include "analysis/mapping/map_maker.hpp"
 #include "detector/actuator_map.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -8,7 +8,7 @@
 #include "analysis/mapping/law_score.hpp"
 #include "analysis/mapping/localisation.hpp"
 #include "analysis/statistics.hpp"
-#include "traces/box.hpp"
+#include "traces/scene/box.hpp"
 
 namespace vestige {
 

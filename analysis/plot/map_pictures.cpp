@@ -16,7 +16,7 @@
 #include "analysis/plot/scale_bar.hpp"
 #include "analysis/plot/subject.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/pose.hpp"
+#include "traces/scene/pose.hpp"
 
 namespace vestige::plot {
 

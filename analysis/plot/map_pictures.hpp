@@ -11,7 +11,7 @@
 #include "analysis/plot/surface.hpp"
 #include "detector/actuator_map.hpp"
 #include "detector/contacts_csv.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige::plot {
 

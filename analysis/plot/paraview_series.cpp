@@ -23,7 +23,7 @@
 
 #include "analysis/plot/html.hpp"
 #include "traces/base/error.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige::plot {
 

@@ -10,7 +10,7 @@
 #include "analysis/plot/growing_folder.hpp"
 #include "analysis/plot/subject.hpp"
 #include "traces/files/output_file.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/trace.hpp"
 
 class vtkPolyData;
 

@@ -4,7 +4,7 @@
 
 #include "analysis/mapping/layouts.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige::plot {

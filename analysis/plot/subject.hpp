@@ -5,7 +5,7 @@
 #include <string>
 
 #include "detector/actuator_map.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige::plot {

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige::plot {
 

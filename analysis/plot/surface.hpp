@@ -6,7 +6,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige::plot {
 

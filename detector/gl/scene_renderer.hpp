@@ -9,8 +9,8 @@
 #include "detector/gl/gl_objects.hpp"
 #include "detector/gl/skinned_mesh.hpp"
 #include "detector/skinning.hpp"
-#include "traces/avatar.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

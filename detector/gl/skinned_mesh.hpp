@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "detector/gl/gl_objects.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -17,7 +17,7 @@
 
 #include "tests/analysis/plot_fixture.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 #include "traces/trace_reader.hpp"
 
 namespace vestige {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tests/support/command_line.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige::test {
 

@@ -10,7 +10,7 @@
 #include "tests/cli/exchange_fixture.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/hdf5_library.hpp"
 #include "traces/base/shared_library.hpp"
 #include "traces/trace_hdf5.hpp"

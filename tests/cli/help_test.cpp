@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "tests/support/command_line.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {

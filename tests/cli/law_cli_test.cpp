@@ -11,7 +11,7 @@
 
 #include "tests/support/command_line.hpp"
 #include "tests/support/timeline_files.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige {

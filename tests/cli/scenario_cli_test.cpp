@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/command_line.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige {
 namespace {

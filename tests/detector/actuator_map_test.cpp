@@ -10,7 +10,7 @@
 
 #include "tests/support/message_of.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 

@@ -11,7 +11,7 @@
 
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "detector/skinning.hpp"
 #include "tests/support/builtin_avatar.hpp"
-#include "traces/pose.hpp"
+#include "traces/scene/pose.hpp"
 #include "traces/base/sha256.hpp"
 
 namespace vestige {

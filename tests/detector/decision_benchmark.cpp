@@ -29,7 +29,7 @@
 #include "detector/triangle_boxes.hpp"
 #include "traces/animation_choice.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {

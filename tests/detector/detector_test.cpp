@@ -14,7 +14,7 @@
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige {
 namespace {

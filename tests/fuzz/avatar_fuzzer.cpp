@@ -8,7 +8,7 @@
 #include "traces/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
 #include "traces/glb_container.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 // Whatever bytes a glTF file holds, loading it ends in an error that says something, or in an avatar that keeps what
 // avatar.hpp promises and can be posed.

@@ -4,9 +4,9 @@
 #include "detector/contacts_csv.hpp"
 #include "tests/fuzz/require.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/collider_rows.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
 #include "traces/pose_csv.hpp"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "tests/fuzz/require.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/live_ndjson.hpp"
 
 // Whatever comes on standard input, what is read of it can be recorded, and is the same in whatever pieces it comes.

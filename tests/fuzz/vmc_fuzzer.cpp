@@ -3,7 +3,7 @@
 
 #include "tests/fuzz/require.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/humanoid.hpp"
 #include "traces/vmc_state.hpp"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "detector/actuator_map.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige::test {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "detector/frame.hpp"
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/gltf_influences.hpp"
 
 namespace vestige::test {

@@ -12,9 +12,9 @@
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
 #include "detector/texture_hash.hpp"
-#include "traces/avatar.hpp"
-#include "traces/colliders.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/colliders.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige::test {
 

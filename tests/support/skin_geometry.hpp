@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/small_avatar.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige::test {
 

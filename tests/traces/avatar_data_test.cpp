@@ -9,7 +9,7 @@
 #include "traces/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 namespace {

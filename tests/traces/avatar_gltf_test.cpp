@@ -5,7 +5,7 @@
 
 #include "tests/traces/gltf_builder.hpp"
 #include "traces/base/error.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 namespace {

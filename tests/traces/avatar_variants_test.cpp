@@ -9,7 +9,7 @@
 #include "tests/traces/gltf_builder.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 // One avatar, stored in all the ways that glTF has: each must load as the same triangles, to the bit.
 

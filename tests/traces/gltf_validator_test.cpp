@@ -10,7 +10,7 @@
 
 #include "tests/support/npm.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {

@@ -11,7 +11,7 @@
 #include "tests/support/osc.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/humanoid.hpp"
 #include "traces/live_ndjson.hpp"

@@ -11,8 +11,8 @@
 #include <tuple>
 
 #include "tests/support/builtin_avatar.hpp"
-#include "traces/pose.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/pose.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 namespace {

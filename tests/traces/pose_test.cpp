@@ -1,4 +1,4 @@
-#include "traces/pose.hpp"
+#include "traces/scene/pose.hpp"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 namespace {

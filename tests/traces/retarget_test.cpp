@@ -11,7 +11,7 @@
 #include "tests/traces/bvh_text.hpp"
 #include "traces/avatar_gltf.hpp"
 #include "traces/body_roles.hpp"
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

@@ -6,7 +6,7 @@
 
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/skin_geometry.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige {
 namespace {

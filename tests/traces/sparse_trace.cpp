@@ -16,8 +16,8 @@
 
 #include "traces/animation_choice.hpp"
 #include "traces/avatar_gltf.hpp"
-#include "traces/builtin_avatar.hpp"
-#include "traces/colliders.hpp"
+#include "traces/scene/builtin_avatar.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/definitions.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap_output.hpp"

@@ -1,4 +1,4 @@
-#include "traces/subdivision.hpp"
+#include "traces/scene/subdivision.hpp"
 
 #include <gtest/gtest.h>
 

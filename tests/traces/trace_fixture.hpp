@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/trace_reader.hpp"
 #include "traces/trace_writer.hpp"
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "traces/pose.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/pose.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

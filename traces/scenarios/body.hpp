@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "traces/avatar.hpp"
-#include "traces/box.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/box.hpp"
 
 namespace vestige {
 

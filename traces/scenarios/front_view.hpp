@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "traces/box.hpp"
+#include "traces/scene/box.hpp"
 #include "traces/scenarios/skin.hpp"
 
 namespace vestige {

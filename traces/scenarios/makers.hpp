@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige {
 

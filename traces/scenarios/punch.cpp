@@ -2,8 +2,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "traces/pose.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/pose.hpp"
+#include "traces/scene/reference_skinning.hpp"
 #include "traces/scenarios/body.hpp"
 #include "traces/scenarios/front_view.hpp"
 #include "traces/scenarios/makers.hpp"

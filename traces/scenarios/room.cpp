@@ -4,8 +4,8 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "traces/pose.hpp"
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/pose.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

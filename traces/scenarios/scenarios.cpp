@@ -1,6 +1,6 @@
 #include <array>
 
-#include "traces/colliders.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/scenarios/makers.hpp"
 
 namespace vestige {

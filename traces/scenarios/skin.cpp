@@ -9,9 +9,9 @@
 #include <iterator>
 #include <tuple>
 
-#include "traces/pose.hpp"
-#include "traces/reference_skinning.hpp"
-#include "traces/welding.hpp"
+#include "traces/scene/pose.hpp"
+#include "traces/scene/reference_skinning.hpp"
+#include "traces/scene/welding.hpp"
 
 namespace vestige {
 

@@ -2,7 +2,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 #include "traces/scenarios/body.hpp"
 #include "traces/scenarios/makers.hpp"
 #include "traces/scenarios/random.hpp"

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/avatar.hpp"
-#include "traces/trace.hpp"
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 

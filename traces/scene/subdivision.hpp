@@ -1,6 +1,6 @@
 #pragma once
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -1,10 +1,10 @@
-#include "traces/pose.hpp"
+#include "traces/scene/pose.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-#include "traces/avatar.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

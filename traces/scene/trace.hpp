@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/pose.hpp"
+#include "traces/scene/pose.hpp"
 
 namespace vestige {
 

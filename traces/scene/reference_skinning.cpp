@@ -1,4 +1,4 @@
-#include "traces/reference_skinning.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "traces/builtin_avatar.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 #include <span>
 
