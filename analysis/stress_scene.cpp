@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "analysis/loose_triangles.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {

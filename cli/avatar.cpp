@@ -11,7 +11,7 @@
 #include "analysis/uv_overlap.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/box.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"

@@ -13,7 +13,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"

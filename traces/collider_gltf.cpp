@@ -5,12 +5,12 @@
 #include <charconv>
 #include <set>
 
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
-#include "traces/gltf_animation.hpp"
-#include "traces/gltf_document.hpp"
-#include "traces/gltf_nodes.hpp"
+#include "traces/gltf/gltf_animation.hpp"
+#include "traces/gltf/gltf_document.hpp"
+#include "traces/gltf/gltf_nodes.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 
 #include "traces/body_roles.hpp"
 #include "traces/base/error.hpp"
-#include "traces/glb_container.hpp"
+#include "traces/gltf/glb_container.hpp"
 #include "traces/gltf_report.hpp"
 
 namespace vestige {

@@ -23,7 +23,7 @@
 #include "analysis/plot/timeline_figure.hpp"
 #include "detector/actuator_layout.hpp"
 #include "detector/intensity.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/files/output_file.hpp"

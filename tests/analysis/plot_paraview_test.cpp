@@ -16,7 +16,7 @@
 #include <regex>
 
 #include "tests/analysis/plot_fixture.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/reference_skinning.hpp"
 #include "traces/trace_reader.hpp"
 

@@ -28,7 +28,7 @@
 #include "detector/skin_motion.hpp"
 #include "detector/triangle_boxes.hpp"
 #include "traces/animation_choice.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {

@@ -13,7 +13,7 @@
 #include "tests/support/builtin_map.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige {

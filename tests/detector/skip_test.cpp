@@ -12,7 +12,7 @@
 #include "tests/support/simd_targets.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige {
 namespace {

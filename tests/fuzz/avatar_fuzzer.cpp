@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "tests/fuzz/require.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
-#include "traces/glb_container.hpp"
+#include "traces/gltf/glb_container.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 // Whatever bytes a glTF file holds, loading it ends in an error that says something, or in an avatar that keeps what

@@ -3,7 +3,7 @@
 
 #include "detector/contacts_csv.hpp"
 #include "tests/fuzz/require.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/collider_rows.hpp"
 #include "traces/scene/colliders.hpp"

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "tests/fuzz/require.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/humanoid.hpp"
 #include "traces/vmc_state.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige::test {

@@ -7,7 +7,7 @@
 
 #include "detector/frame.hpp"
 #include "traces/scene/avatar.hpp"
-#include "traces/gltf_influences.hpp"
+#include "traces/gltf/gltf_influences.hpp"
 
 namespace vestige::test {
 

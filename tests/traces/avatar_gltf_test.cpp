@@ -1,4 +1,4 @@
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

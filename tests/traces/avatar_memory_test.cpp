@@ -10,7 +10,7 @@
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/gltf_builder.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 // How much memory loading takes: this program counts what is on the heap, so it holds nothing but these tests.
 

@@ -7,7 +7,7 @@
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/gltf_builder.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
 #include "traces/scene/reference_skinning.hpp"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/traces/gltf_builder.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige {
 namespace {

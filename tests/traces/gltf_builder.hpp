@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige::test {
 

@@ -10,7 +10,7 @@
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/osc.hpp"
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/humanoid.hpp"

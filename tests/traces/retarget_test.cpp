@@ -9,7 +9,7 @@
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/bvh_text.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/body_roles.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"

@@ -15,7 +15,7 @@
 #include <stdexcept>
 
 #include "traces/animation_choice.hpp"
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/definitions.hpp"

@@ -18,7 +18,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "traces/glb_container.hpp"
+#include "traces/gltf/glb_container.hpp"
 #include "traces/mannequin/animations.hpp"
 #include "traces/mannequin/charts.hpp"
 #include "traces/mannequin/shape.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "traces/gltf_json.hpp"
-#include "traces/gltf_meshopt.hpp"
+#include "traces/gltf/gltf_meshopt.hpp"
 #include "traces/gltf_report.hpp"
 
 namespace vestige::gltf {

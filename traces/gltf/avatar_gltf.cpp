@@ -1,4 +1,4 @@
-#include "traces/avatar_gltf.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <limits>
 #include <set>
 
-#include "traces/gltf_animation.hpp"
-#include "traces/gltf_document.hpp"
-#include "traces/gltf_mesh.hpp"
-#include "traces/gltf_nodes.hpp"
+#include "traces/gltf/gltf_animation.hpp"
+#include "traces/gltf/gltf_document.hpp"
+#include "traces/gltf/gltf_mesh.hpp"
+#include "traces/gltf/gltf_nodes.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "traces/gltf_document.hpp"
+#include "traces/gltf/gltf_document.hpp"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "traces/glb_container.hpp"
-#include "traces/gltf_accessor.hpp"
-#include "traces/gltf_extensions.hpp"
-#include "traces/gltf_meshopt.hpp"
+#include "traces/gltf/glb_container.hpp"
+#include "traces/gltf/gltf_accessor.hpp"
+#include "traces/gltf/gltf_extensions.hpp"
+#include "traces/gltf/gltf_meshopt.hpp"
 #include "traces/gltf_uri.hpp"
 
 namespace vestige::gltf {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "traces/scene/avatar.hpp"
-#include "traces/gltf_document.hpp"
+#include "traces/gltf/gltf_document.hpp"
 
 namespace vestige::gltf {
 

@@ -1,4 +1,4 @@
-#include "traces/gltf_nodes.hpp"
+#include "traces/gltf/gltf_nodes.hpp"
 
 #include <fmt/format.h>
 

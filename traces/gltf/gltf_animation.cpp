@@ -1,4 +1,4 @@
-#include "traces/gltf_animation.hpp"
+#include "traces/gltf/gltf_animation.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "traces/gltf_accessor.hpp"
+#include "traces/gltf/gltf_accessor.hpp"
 
 namespace vestige::gltf {
 

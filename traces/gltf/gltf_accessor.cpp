@@ -1,4 +1,4 @@
-#include "traces/gltf_accessor.hpp"
+#include "traces/gltf/gltf_accessor.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/gltf_influences.hpp"
+#include "traces/gltf/gltf_influences.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/glb_container.hpp"
+#include "traces/gltf/glb_container.hpp"
 
 #include <fmt/format.h>
 

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "traces/avatar_gltf.hpp"
-#include "traces/glb_container.hpp"
-#include "traces/gltf_document.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
+#include "traces/gltf/glb_container.hpp"
+#include "traces/gltf/gltf_document.hpp"
 #include "traces/gltf_json.hpp"
-#include "traces/gltf_meshopt.hpp"
+#include "traces/gltf/gltf_meshopt.hpp"
 #include "traces/gltf_uri.hpp"
 #include "traces/files/input_file.hpp"
 

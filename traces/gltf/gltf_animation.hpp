@@ -1,7 +1,7 @@
 #pragma once
 
 #include "traces/scene/avatar.hpp"
-#include "traces/gltf_document.hpp"
+#include "traces/gltf/gltf_document.hpp"
 
 namespace vestige::gltf {
 

@@ -1,4 +1,4 @@
-#include "traces/gltf_mesh.hpp"
+#include "traces/gltf/gltf_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <map>
 #include <utility>
 
-#include "traces/gltf_accessor.hpp"
-#include "traces/gltf_influences.hpp"
+#include "traces/gltf/gltf_accessor.hpp"
+#include "traces/gltf/gltf_influences.hpp"
 
 namespace vestige::gltf {
 

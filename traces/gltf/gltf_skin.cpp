@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
-#include "traces/gltf_accessor.hpp"
-#include "traces/gltf_mesh.hpp"
-#include "traces/gltf_nodes.hpp"
+#include "traces/gltf/gltf_accessor.hpp"
+#include "traces/gltf/gltf_mesh.hpp"
+#include "traces/gltf/gltf_nodes.hpp"
 
 namespace vestige::gltf {
 

@@ -1,4 +1,4 @@
-#include "traces/gltf_extensions.hpp"
+#include "traces/gltf/gltf_extensions.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/gltf_meshopt.hpp"
+#include "traces/gltf/gltf_meshopt.hpp"
 
 namespace vestige::gltf {
 

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/gltf_document.hpp"
+#include "traces/gltf/gltf_document.hpp"
 
 namespace vestige::gltf {
 

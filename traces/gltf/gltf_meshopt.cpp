@@ -1,4 +1,4 @@
-#include "traces/gltf_meshopt.hpp"
+#include "traces/gltf/gltf_meshopt.hpp"
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>
