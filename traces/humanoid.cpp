@@ -11,7 +11,7 @@
 #include "traces/body_roles.hpp"
 #include "traces/base/error.hpp"
 #include "traces/gltf/glb_container.hpp"
-#include "traces/gltf_report.hpp"
+#include "traces/gltf/json/gltf_report.hpp"
 
 namespace vestige {
 

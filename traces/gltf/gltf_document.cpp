@@ -10,7 +10,7 @@
 #include "traces/gltf/gltf_accessor.hpp"
 #include "traces/gltf/gltf_extensions.hpp"
 #include "traces/gltf/gltf_meshopt.hpp"
-#include "traces/gltf_uri.hpp"
+#include "traces/gltf/json/gltf_uri.hpp"
 
 namespace vestige::gltf {
 

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "traces/gltf_json.hpp"
+#include "traces/gltf/json/gltf_json.hpp"
 #include "traces/gltf/gltf_meshopt.hpp"
-#include "traces/gltf_report.hpp"
+#include "traces/gltf/json/gltf_report.hpp"
 
 namespace vestige::gltf {
 

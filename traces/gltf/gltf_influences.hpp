@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "traces/scene/avatar.hpp"
-#include "traces/gltf_report.hpp"
+#include "traces/gltf/json/gltf_report.hpp"
 
 namespace vestige::gltf {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/gltf_report.hpp"
+#include "traces/gltf/json/gltf_report.hpp"
 
 namespace vestige::gltf {
 

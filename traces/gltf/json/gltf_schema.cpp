@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "traces/gltf_json.hpp"
+#include "traces/gltf/json/gltf_json.hpp"
 
 namespace vestige::gltf {
 

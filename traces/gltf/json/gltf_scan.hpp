@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/gltf_report.hpp"
+#include "traces/gltf/json/gltf_report.hpp"
 
 namespace vestige::gltf {
 

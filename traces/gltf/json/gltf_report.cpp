@@ -1,4 +1,4 @@
-#include "traces/gltf_report.hpp"
+#include "traces/gltf/json/gltf_report.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/gltf_uri.hpp"
+#include "traces/gltf/json/gltf_uri.hpp"
 
 #include <fmt/format.h>
 

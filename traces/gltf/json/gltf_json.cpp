@@ -1,4 +1,4 @@
-#include "traces/gltf_json.hpp"
+#include "traces/gltf/json/gltf_json.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/gltf_scan.hpp"
+#include "traces/gltf/json/gltf_scan.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "traces/gltf_uri.hpp"
+#include "traces/gltf/json/gltf_uri.hpp"
 #include "traces/base/utf8.hpp"
 
 namespace vestige::gltf {

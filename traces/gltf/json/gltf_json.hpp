@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "traces/gltf_scan.hpp"
+#include "traces/gltf/json/gltf_scan.hpp"
 
 namespace vestige::gltf {
 
