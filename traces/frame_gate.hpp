@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "traces/mcap/chunk_salvage.hpp"
+#include "traces/mcap/check/chunk_salvage.hpp"
 #include "traces/mcap/record.hpp"
 #include "traces/message_stream.hpp"
 #include "traces/trace_messages.hpp"

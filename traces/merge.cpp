@@ -11,7 +11,7 @@
 #include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/mcap/summary_check.hpp"
+#include "traces/mcap/check/summary_check.hpp"
 #include "traces/mcap_output.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/trace_index.hpp"

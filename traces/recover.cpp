@@ -10,7 +10,7 @@
 #include "traces/definitions.hpp"
 #include "traces/base/error.hpp"
 #include "traces/frame_gate.hpp"
-#include "traces/mcap/chunk_salvage.hpp"
+#include "traces/mcap/check/chunk_salvage.hpp"
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"

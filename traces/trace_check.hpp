@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "traces/mcap/byte_source.hpp"
-#include "traces/mcap/container_check.hpp"
-#include "traces/mcap/problem.hpp"
+#include "traces/mcap/check/container_check.hpp"
+#include "traces/mcap/check/problem.hpp"
 
 namespace vestige {
 

@@ -28,10 +28,10 @@ target_sources(vestige_traces PRIVATE
   frame_ring.cpp
   mcap/byte_source.cpp
   mcap/chunk_expander.cpp
-  mcap/chunk_check.cpp
-  mcap/chunk_salvage.cpp
+  mcap/check/chunk_check.cpp
+  mcap/check/chunk_salvage.cpp
   mcap/compression.cpp
-  mcap/container_check.cpp
+  mcap/check/container_check.cpp
   mcap/crc32.cpp
   mcap/decode.cpp
   mcap/encode.cpp
@@ -39,7 +39,7 @@ target_sources(vestige_traces PRIVATE
   mcap/record_walker.cpp
   mcap/stream_reader.cpp
   mcap/summary.cpp
-  mcap/summary_check.cpp
+  mcap/check/summary_check.cpp
   mcap/writer.cpp
   mcap_output.cpp
   merge.cpp

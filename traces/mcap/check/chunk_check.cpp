@@ -1,4 +1,4 @@
-#include "traces/mcap/chunk_check.hpp"
+#include "traces/mcap/check/chunk_check.hpp"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "traces/mcap/byte_source.hpp"
-#include "traces/mcap/problem.hpp"
+#include "traces/mcap/check/problem.hpp"
 #include "traces/mcap/record.hpp"
 #include "traces/mcap/record_walker.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "traces/mcap/byte_source.hpp"
-#include "traces/mcap/problem.hpp"
+#include "traces/mcap/check/problem.hpp"
 #include "traces/mcap/record.hpp"
 
 namespace vestige::mcap {

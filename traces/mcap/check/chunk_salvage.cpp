@@ -1,4 +1,4 @@
-#include "traces/mcap/chunk_salvage.hpp"
+#include "traces/mcap/check/chunk_salvage.hpp"
 
 #include <algorithm>
 #include <array>

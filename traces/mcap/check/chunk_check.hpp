@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "traces/mcap/problem.hpp"
+#include "traces/mcap/check/problem.hpp"
 #include "traces/mcap/record.hpp"
 #include "traces/mcap/record_walker.hpp"
 

@@ -1,4 +1,4 @@
-#include "traces/mcap/container_check.hpp"
+#include "traces/mcap/check/container_check.hpp"
 
 #include <fmt/format.h>
 
@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
-#include "traces/mcap/chunk_check.hpp"
+#include "traces/mcap/check/chunk_check.hpp"
 #include "traces/mcap/chunk_expander.hpp"
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
-#include "traces/mcap/summary_check.hpp"
+#include "traces/mcap/check/summary_check.hpp"
 
 namespace vestige::mcap {
 

@@ -1,4 +1,4 @@
-#include "traces/mcap/summary_check.hpp"
+#include "traces/mcap/check/summary_check.hpp"
 
 #include <fmt/format.h>
 
