@@ -8,7 +8,7 @@
 
 #include "analysis/sweep.hpp"
 #include "traces/scene/avatar.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 

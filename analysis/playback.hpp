@@ -6,7 +6,7 @@
 
 #include "detector/detector.hpp"
 #include "traces/timeline.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 

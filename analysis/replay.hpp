@@ -16,7 +16,7 @@
 #include "detector/detector.hpp"
 #include "detector/texture_exr.hpp"
 #include "traces/timeline.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 

@@ -11,7 +11,7 @@
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "traces/scene/avatar.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 

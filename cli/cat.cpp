@@ -10,7 +10,7 @@
 #include "cli/range_choice.hpp"
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
-#include "traces/definitions.hpp"
+#include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/stream_reader.hpp"

@@ -19,7 +19,7 @@
 #include "traces/base/number_text.hpp"
 #include "traces/pose_csv.hpp"
 #include "traces/trace_hdf5.hpp"
-#include "traces/trace_writer.hpp"
+#include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige::cli {
 

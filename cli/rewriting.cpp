@@ -6,7 +6,7 @@
 
 #include "traces/mcap/byte_source.hpp"
 #include "traces/base/nanoseconds.hpp"
-#include "traces/trace_index.hpp"
+#include "traces/trace_file/trace_index.hpp"
 
 namespace vestige::cli {
 

@@ -8,8 +8,8 @@
 #include "detector/actuator_map.hpp"
 #include "traces/animation_choice.hpp"
 #include "traces/scene/avatar.hpp"
-#include "traces/trace_reader.hpp"
-#include "traces/trace_writer.hpp"
+#include "traces/trace_file/trace_reader.hpp"
+#include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige::cli {
 

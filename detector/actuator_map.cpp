@@ -15,7 +15,7 @@
 #include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/base/strict_json.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 

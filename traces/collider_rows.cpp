@@ -8,7 +8,7 @@
 
 #include "traces/frame_file.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

@@ -12,7 +12,7 @@
 #include "traces/frame_file.hpp"
 #include "traces/hdf5_library.hpp"
 #include "traces/files/scratch_file.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 

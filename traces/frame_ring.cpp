@@ -5,7 +5,7 @@
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/base/nanoseconds.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

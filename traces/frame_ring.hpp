@@ -11,7 +11,7 @@
 
 #include "traces/mcap/encode.hpp"
 #include "traces/scene/trace.hpp"
-#include "traces/trace_messages.hpp"
+#include "traces/trace_file/trace_messages.hpp"
 
 namespace vestige {
 

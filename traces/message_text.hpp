@@ -3,8 +3,8 @@
 #include <string>
 
 #include "traces/mcap/record.hpp"
-#include "traces/message_stream.hpp"
-#include "traces/trace_messages.hpp"
+#include "traces/trace_file/message_stream.hpp"
+#include "traces/trace_file/trace_messages.hpp"
 
 namespace vestige {
 

@@ -15,7 +15,7 @@
 #include "traces/mcap/record_walker.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/base/nanoseconds.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

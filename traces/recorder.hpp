@@ -9,7 +9,7 @@
 
 #include "traces/scene/avatar.hpp"
 #include "traces/frame_ring.hpp"
-#include "traces/trace_writer.hpp"
+#include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige {
 

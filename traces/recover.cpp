@@ -7,15 +7,15 @@
 #include <tuple>
 #include <utility>
 
-#include "traces/definitions.hpp"
+#include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"
 #include "traces/frame_gate.hpp"
 #include "traces/mcap/check/chunk_salvage.hpp"
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
-#include "traces/mcap_output.hpp"
-#include "traces/trace_nodes.hpp"
+#include "traces/trace_file/mcap_output.hpp"
+#include "traces/trace_file/trace_nodes.hpp"
 
 namespace vestige {
 

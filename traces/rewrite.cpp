@@ -6,10 +6,10 @@
 #include <set>
 #include <utility>
 
-#include "traces/definitions.hpp"
+#include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/mcap_output.hpp"
+#include "traces/trace_file/mcap_output.hpp"
 #include "traces/base/nanoseconds.hpp"
 
 namespace vestige {

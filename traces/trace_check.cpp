@@ -11,14 +11,14 @@
 #include "traces/base/error.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/message_stream.hpp"
+#include "traces/trace_file/message_stream.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/recover.hpp"
-#include "traces/session_check.hpp"
+#include "traces/trace_file/session_check.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/scene/trace.hpp"
-#include "traces/trace_messages.hpp"
-#include "traces/trace_nodes.hpp"
+#include "traces/trace_file/trace_messages.hpp"
+#include "traces/trace_file/trace_nodes.hpp"
 
 namespace vestige {
 

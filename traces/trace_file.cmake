@@ -23,7 +23,7 @@ endforeach()
 target_sources(vestige_traces PRIVATE
   ${schema_headers}
   files/append_file.cpp
-  definitions.cpp
+  trace_file/definitions.cpp
   frame_gate.cpp
   frame_ring.cpp
   mcap/byte_source.cpp
@@ -41,22 +41,22 @@ target_sources(vestige_traces PRIVATE
   mcap/summary.cpp
   mcap/check/summary_check.cpp
   mcap/writer.cpp
-  mcap_output.cpp
+  trace_file/mcap_output.cpp
   merge.cpp
   message_text.cpp
   recorder.cpp
   recover.cpp
   rewrite.cpp
   trace_check.cpp
-  trace_format.cpp
-  trace_messages.cpp
-  trace_nodes.cpp
-  message_stream.cpp
-  trace_index.cpp
-  trace_reader.cpp
+  trace_file/trace_format.cpp
+  trace_file/trace_messages.cpp
+  trace_file/trace_nodes.cpp
+  trace_file/message_stream.cpp
+  trace_file/trace_index.cpp
+  trace_file/trace_reader.cpp
   trace_summary.cpp
-  trace_writer.cpp
-  viz_messages.cpp)
+  trace_file/trace_writer.cpp
+  trace_file/viz_messages.cpp)
 target_include_directories(vestige_traces SYSTEM PRIVATE ${schema_folder})
 target_link_libraries(vestige_traces PRIVATE vestige_version Threads::Threads)
 

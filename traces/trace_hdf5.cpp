@@ -12,7 +12,7 @@
 #include "traces/base/error.hpp"
 #include "traces/hdf5_table.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

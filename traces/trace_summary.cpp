@@ -9,14 +9,14 @@
 
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/message_stream.hpp"
+#include "traces/trace_file/message_stream.hpp"
 #include "traces/base/nanoseconds.hpp"
 #include "traces/recover.hpp"
-#include "traces/session_check.hpp"
+#include "traces/trace_file/session_check.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace_format.hpp"
-#include "traces/trace_index.hpp"
-#include "traces/trace_messages.hpp"
+#include "traces/trace_file/trace_format.hpp"
+#include "traces/trace_file/trace_index.hpp"
+#include "traces/trace_file/trace_messages.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 
 #include "traces/base/error.hpp"
 #include "traces/mcap/decode.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

@@ -17,7 +17,7 @@
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 

@@ -26,8 +26,8 @@
 #include "traces/files/output_file.hpp"
 #include "traces/recording.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace_reader.hpp"
-#include "traces/trace_writer.hpp"
+#include "traces/trace_file/trace_reader.hpp"
+#include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige {
 

@@ -20,7 +20,7 @@
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/output_file.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::plot {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "detector/contacts_csv.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::plot {
 

@@ -6,7 +6,7 @@
 
 #include "detector/actuator_map.hpp"
 #include "traces/scene/avatar.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::plot {
 

@@ -18,7 +18,7 @@
 #include "tests/analysis/plot_fixture.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/reference_skinning.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 namespace {

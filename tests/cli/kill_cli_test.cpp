@@ -21,7 +21,7 @@
 #include "traces/mcap/record_walker.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/recover.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 namespace {

@@ -15,7 +15,7 @@
 #include "tests/support/udp.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 namespace {

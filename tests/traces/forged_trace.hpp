@@ -7,8 +7,8 @@
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/mcap/writer.hpp"
-#include "traces/trace_format.hpp"
-#include "traces/trace_messages.hpp"
+#include "traces/trace_file/trace_format.hpp"
+#include "traces/trace_file/trace_messages.hpp"
 
 namespace vestige::test {
 

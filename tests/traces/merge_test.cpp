@@ -12,7 +12,7 @@
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/base/error.hpp"
-#include "traces/mcap_output.hpp"
+#include "traces/trace_file/mcap_output.hpp"
 #include "traces/rewrite.hpp"
 
 namespace vestige {

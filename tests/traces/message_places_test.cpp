@@ -10,8 +10,8 @@
 #include "tests/traces/small_trace.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/trace_index.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_index.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 #include "traces/trace_summary.hpp"
 
 namespace vestige {

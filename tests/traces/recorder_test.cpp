@@ -14,9 +14,9 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/message_stream.hpp"
+#include "traces/trace_file/message_stream.hpp"
 #include "traces/recording_thread.hpp"
-#include "traces/trace_messages.hpp"
+#include "traces/trace_file/trace_messages.hpp"
 #include "traces/trace_summary.hpp"
 
 namespace vestige {

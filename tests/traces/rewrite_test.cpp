@@ -11,7 +11,7 @@
 #include "tests/traces/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/trace_check.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_summary.hpp"
 
 namespace vestige {

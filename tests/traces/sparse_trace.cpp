@@ -18,11 +18,11 @@
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/colliders.hpp"
-#include "traces/definitions.hpp"
+#include "traces/trace_file/definitions.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/mcap_output.hpp"
+#include "traces/trace_file/mcap_output.hpp"
 #include "traces/recording.hpp"
-#include "traces/trace_writer.hpp"
+#include "traces/trace_file/trace_writer.hpp"
 
 namespace {
 

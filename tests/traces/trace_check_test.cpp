@@ -15,9 +15,9 @@
 #include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/trace_format.hpp"
-#include "traces/trace_messages.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_format.hpp"
+#include "traces/trace_file/trace_messages.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 namespace {

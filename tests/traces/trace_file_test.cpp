@@ -15,7 +15,7 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_summary.hpp"
 
 namespace vestige {

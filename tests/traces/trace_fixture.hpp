@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "traces/scene/avatar.hpp"
-#include "traces/trace_reader.hpp"
-#include "traces/trace_writer.hpp"
+#include "traces/trace_file/trace_reader.hpp"
+#include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige::test {
 

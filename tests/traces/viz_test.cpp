@@ -10,7 +10,7 @@
 #include "tests/support/npm.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 namespace {

@@ -1,4 +1,4 @@
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 #include <schemas/collider_frame_bfbs_generated.h>
 #include <schemas/event_bfbs_generated.h>

@@ -1,4 +1,4 @@
-#include "traces/mcap_output.hpp"
+#include "traces/trace_file/mcap_output.hpp"
 
 #include <fmt/format.h>
 

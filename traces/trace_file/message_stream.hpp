@@ -12,7 +12,7 @@
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

@@ -1,8 +1,8 @@
-#include "traces/session_check.hpp"
+#include "traces/trace_file/session_check.hpp"
 
 #include <fmt/format.h>
 
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

@@ -5,9 +5,9 @@
 #include <set>
 #include <string>
 
-#include "traces/definitions.hpp"
+#include "traces/trace_file/definitions.hpp"
 #include "traces/mcap/writer.hpp"
-#include "traces/message_stream.hpp"
+#include "traces/trace_file/message_stream.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "traces/trace_index.hpp"
+#include "traces/trace_file/trace_index.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/session_check.hpp"
+#include "traces/trace_file/session_check.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

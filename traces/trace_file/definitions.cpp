@@ -1,4 +1,4 @@
-#include "traces/definitions.hpp"
+#include "traces/trace_file/definitions.hpp"
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "traces/trace_messages.hpp"
+#include "traces/trace_file/trace_messages.hpp"
 
 #include <fmt/format.h>
 #include <schemas/collider_frame_generated.h>

@@ -1,4 +1,4 @@
-#include "traces/viz_messages.hpp"
+#include "traces/trace_file/viz_messages.hpp"
 
 #include <fmt/format.h>
 #include <schemas/frame_transforms_bfbs_generated.h>
@@ -13,7 +13,7 @@
 #include <span>
 #include <utility>
 
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

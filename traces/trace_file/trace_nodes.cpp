@@ -1,10 +1,10 @@
-#include "traces/trace_nodes.hpp"
+#include "traces/trace_file/trace_nodes.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "traces/mcap/decode.hpp"
-#include "traces/trace_format.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 

@@ -7,7 +7,7 @@
 
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/record_walker.hpp"
-#include "traces/message_stream.hpp"
+#include "traces/trace_file/message_stream.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "traces/trace_writer.hpp"
+#include "traces/trace_file/trace_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -14,9 +14,9 @@
 #include "traces/mcap/writer.hpp"
 #include "traces/base/nanoseconds.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace_format.hpp"
-#include "traces/trace_messages.hpp"
-#include "traces/viz_messages.hpp"
+#include "traces/trace_file/trace_format.hpp"
+#include "traces/trace_file/trace_messages.hpp"
+#include "traces/trace_file/viz_messages.hpp"
 
 namespace vestige {
 

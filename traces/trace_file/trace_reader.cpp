@@ -1,4 +1,4 @@
-#include "traces/trace_reader.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 
 #include "traces/base/error.hpp"
 #include "traces/mcap/byte_source.hpp"
-#include "traces/message_stream.hpp"
+#include "traces/trace_file/message_stream.hpp"
 #include "traces/recover.hpp"
-#include "traces/trace_index.hpp"
-#include "traces/trace_messages.hpp"
-#include "traces/trace_nodes.hpp"
+#include "traces/trace_file/trace_index.hpp"
+#include "traces/trace_file/trace_messages.hpp"
+#include "traces/trace_file/trace_nodes.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "traces/message_stream.hpp"
+#include "traces/trace_file/message_stream.hpp"
 
 #include <fmt/format.h>
 
