@@ -14,7 +14,7 @@
 #include "traces/base/error.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/message_text.hpp"
+#include "traces/repair/message_text.hpp"
 
 namespace vestige::cli {
 

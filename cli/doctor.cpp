@@ -6,7 +6,7 @@
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/trace_check.hpp"
+#include "traces/repair/trace_check.hpp"
 
 namespace vestige::cli {
 

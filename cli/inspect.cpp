@@ -4,7 +4,7 @@
 
 #include "cli/verbs.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/trace_summary.hpp"
+#include "traces/repair/trace_summary.hpp"
 
 namespace vestige::cli {
 

@@ -1,4 +1,4 @@
-#include "traces/recover.hpp"
+#include "traces/repair/recover.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 
 #include "cli/options.hpp"
 #include "traces/mcap/record_walker.hpp"
-#include "traces/rewrite.hpp"
+#include "traces/repair/rewrite.hpp"
 
 namespace vestige::cli {
 

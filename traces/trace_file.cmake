@@ -24,7 +24,7 @@ target_sources(vestige_traces PRIVATE
   ${schema_headers}
   files/append_file.cpp
   trace_file/definitions.cpp
-  frame_gate.cpp
+  repair/frame_gate.cpp
   frame_ring.cpp
   mcap/byte_source.cpp
   mcap/chunk_expander.cpp
@@ -42,19 +42,19 @@ target_sources(vestige_traces PRIVATE
   mcap/check/summary_check.cpp
   mcap/writer.cpp
   trace_file/mcap_output.cpp
-  merge.cpp
-  message_text.cpp
+  repair/merge.cpp
+  repair/message_text.cpp
   recorder.cpp
-  recover.cpp
-  rewrite.cpp
-  trace_check.cpp
+  repair/recover.cpp
+  repair/rewrite.cpp
+  repair/trace_check.cpp
   trace_file/trace_format.cpp
   trace_file/trace_messages.cpp
   trace_file/trace_nodes.cpp
   trace_file/message_stream.cpp
   trace_file/trace_index.cpp
   trace_file/trace_reader.cpp
-  trace_summary.cpp
+  repair/trace_summary.cpp
   trace_file/trace_writer.cpp
   trace_file/viz_messages.cpp)
 target_include_directories(vestige_traces SYSTEM PRIVATE ${schema_folder})

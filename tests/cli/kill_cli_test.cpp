@@ -20,7 +20,7 @@
 #include "traces/base/error.hpp"
 #include "traces/mcap/record_walker.hpp"
 #include "traces/files/output_file.hpp"
-#include "traces/recover.hpp"
+#include "traces/repair/recover.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {

@@ -4,8 +4,8 @@
 #include "tests/fuzz/require.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/recover.hpp"
-#include "traces/trace_check.hpp"
+#include "traces/repair/recover.hpp"
+#include "traces/repair/trace_check.hpp"
 
 // Whatever bytes a file holds, recovering it ends in an error that says something, or in a sound file, of which
 // recovering loses nothing more; and messages that can be read from the damaged file and are not in the recovered one

@@ -1,6 +1,6 @@
 // `vestige merge`: parts of one recording become the whole again.
 
-#include "traces/merge.hpp"
+#include "traces/repair/merge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include "tests/traces/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/trace_file/mcap_output.hpp"
-#include "traces/rewrite.hpp"
+#include "traces/repair/rewrite.hpp"
 
 namespace vestige {
 namespace {

@@ -12,7 +12,7 @@
 #include "traces/mcap/summary.hpp"
 #include "traces/trace_file/trace_index.hpp"
 #include "traces/trace_file/trace_reader.hpp"
-#include "traces/trace_summary.hpp"
+#include "traces/repair/trace_summary.hpp"
 
 namespace vestige {
 namespace {

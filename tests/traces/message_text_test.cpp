@@ -1,6 +1,6 @@
 // What `vestige cat` prints: JSON that reads back to the same bits.
 
-#include "traces/message_text.hpp"
+#include "traces/repair/message_text.hpp"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 #include "traces/trace_file/message_stream.hpp"
 #include "traces/recording_thread.hpp"
 #include "traces/trace_file/trace_messages.hpp"
-#include "traces/trace_summary.hpp"
+#include "traces/repair/trace_summary.hpp"
 
 namespace vestige {
 namespace {

@@ -1,6 +1,6 @@
 // What `vestige recover` makes of damaged files.
 
-#include "traces/recover.hpp"
+#include "traces/repair/recover.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 #include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/trace_check.hpp"
-#include "traces/trace_summary.hpp"
+#include "traces/repair/trace_check.hpp"
+#include "traces/repair/trace_summary.hpp"
 
 namespace vestige {
 namespace {

@@ -9,7 +9,7 @@
 #include "tests/support/test_data.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
-#include "traces/recover.hpp"
+#include "traces/repair/recover.hpp"
 
 namespace vestige {
 namespace {

@@ -1,6 +1,6 @@
 // `vestige recompress` and `vestige trim`.
 
-#include "traces/rewrite.hpp"
+#include "traces/repair/rewrite.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,9 +10,9 @@
 #include "tests/traces/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/base/error.hpp"
-#include "traces/trace_check.hpp"
+#include "traces/repair/trace_check.hpp"
 #include "traces/trace_file/trace_format.hpp"
-#include "traces/trace_summary.hpp"
+#include "traces/repair/trace_summary.hpp"
 
 namespace vestige {
 namespace {

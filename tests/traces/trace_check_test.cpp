@@ -1,6 +1,6 @@
 // What `vestige doctor` finds: nothing in sound files, and in broken ones what is wrong, where.
 
-#include "traces/trace_check.hpp"
+#include "traces/repair/trace_check.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

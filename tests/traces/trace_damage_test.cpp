@@ -17,7 +17,7 @@
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/trace_summary.hpp"
+#include "traces/repair/trace_summary.hpp"
 
 namespace vestige {
 namespace {

@@ -16,7 +16,7 @@
 #include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/trace_file/trace_format.hpp"
-#include "traces/trace_summary.hpp"
+#include "traces/repair/trace_summary.hpp"
 
 namespace vestige {
 namespace {

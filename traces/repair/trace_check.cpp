@@ -1,4 +1,4 @@
-#include "traces/trace_check.hpp"
+#include "traces/repair/trace_check.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include "traces/mcap/summary.hpp"
 #include "traces/trace_file/message_stream.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/recover.hpp"
+#include "traces/repair/recover.hpp"
 #include "traces/trace_file/session_check.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/scene/trace.hpp"

@@ -1,4 +1,4 @@
-#include "traces/rewrite.hpp"
+#include "traces/repair/rewrite.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/message_text.hpp"
+#include "traces/repair/message_text.hpp"
 
 #include <fmt/format.h>
 

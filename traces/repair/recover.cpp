@@ -1,4 +1,4 @@
-#include "traces/recover.hpp"
+#include "traces/repair/recover.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"
-#include "traces/frame_gate.hpp"
+#include "traces/repair/frame_gate.hpp"
 #include "traces/mcap/check/chunk_salvage.hpp"
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"

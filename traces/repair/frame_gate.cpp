@@ -1,4 +1,4 @@
-#include "traces/frame_gate.hpp"
+#include "traces/repair/frame_gate.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "traces/merge.hpp"
+#include "traces/repair/merge.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/trace_summary.hpp"
+#include "traces/repair/trace_summary.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/trace_file/message_stream.hpp"
 #include "traces/base/nanoseconds.hpp"
-#include "traces/recover.hpp"
+#include "traces/repair/recover.hpp"
 #include "traces/trace_file/session_check.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/trace_file/trace_format.hpp"
