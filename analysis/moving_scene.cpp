@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "traces/recording.hpp"
+#include "traces/recording/recording.hpp"
 
 namespace vestige {
 

@@ -6,7 +6,7 @@
 #include "cli/scene.hpp"
 #include "cli/terminal.hpp"
 #include "traces/scene/colliders.hpp"
-#include "traces/recording.hpp"
+#include "traces/recording/recording.hpp"
 
 namespace vestige::cli {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "traces/recorder.hpp"
+#include "traces/recording/recorder.hpp"
 
 namespace vestige::cli {
 

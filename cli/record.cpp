@@ -19,8 +19,8 @@
 #include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/recorder.hpp"
-#include "traces/recording.hpp"
+#include "traces/recording/recorder.hpp"
+#include "traces/recording/recording.hpp"
 
 namespace vestige::cli {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "traces/live_ndjson.hpp"
-#include "traces/recording_thread.hpp"
+#include "traces/recording/recording_thread.hpp"
 #include "traces/udp_receiver.hpp"
 #include "traces/vmc_state.hpp"
 

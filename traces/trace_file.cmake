@@ -25,7 +25,7 @@ target_sources(vestige_traces PRIVATE
   files/append_file.cpp
   trace_file/definitions.cpp
   repair/frame_gate.cpp
-  frame_ring.cpp
+  recording/frame_ring.cpp
   mcap/byte_source.cpp
   mcap/chunk_expander.cpp
   mcap/check/chunk_check.cpp
@@ -44,7 +44,7 @@ target_sources(vestige_traces PRIVATE
   trace_file/mcap_output.cpp
   repair/merge.cpp
   repair/message_text.cpp
-  recorder.cpp
+  recording/recorder.cpp
   repair/recover.cpp
   repair/rewrite.cpp
   repair/trace_check.cpp
@@ -65,7 +65,7 @@ add_library(vestige_live STATIC
   live_ndjson.cpp
   live_recording.cpp
   osc_packet.cpp
-  recording_thread.cpp
+  recording/recording_thread.cpp
   udp_receiver.cpp
   vmc_state.cpp)
 target_link_libraries(vestige_live PUBLIC vestige_traces

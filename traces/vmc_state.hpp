@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "traces/scene/avatar.hpp"
-#include "traces/frame_ring.hpp"
+#include "traces/recording/frame_ring.hpp"
 #include "traces/humanoid.hpp"
 #include "traces/osc_packet.hpp"
 #include "traces/scene/trace.hpp"

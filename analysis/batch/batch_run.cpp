@@ -24,7 +24,7 @@
 #include "detector/frame.hpp"
 #include "traces/animation_choice.hpp"
 #include "traces/files/output_file.hpp"
-#include "traces/recording.hpp"
+#include "traces/recording/recording.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 #include "traces/trace_file/trace_writer.hpp"

@@ -1,6 +1,6 @@
 // Recordings that last: parts, limits, the ring, chunks brought to disk.
 
-#include "traces/recorder.hpp"
+#include "traces/recording/recorder.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 #include "traces/files/input_file.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/trace_file/message_stream.hpp"
-#include "traces/recording_thread.hpp"
+#include "traces/recording/recording_thread.hpp"
 #include "traces/trace_file/trace_messages.hpp"
 #include "traces/repair/trace_summary.hpp"
 

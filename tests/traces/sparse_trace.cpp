@@ -21,7 +21,7 @@
 #include "traces/trace_file/definitions.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/trace_file/mcap_output.hpp"
-#include "traces/recording.hpp"
+#include "traces/recording/recording.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
 namespace {

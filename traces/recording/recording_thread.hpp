@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-#include "traces/recorder.hpp"
+#include "traces/recording/recorder.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "traces/recording_thread.hpp"
+#include "traces/recording/recording_thread.hpp"
 
 #include <chrono>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "traces/frame_ring.hpp"
+#include "traces/recording/frame_ring.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "traces/recording.hpp"
+#include "traces/recording/recording.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "traces/scene/avatar.hpp"
-#include "traces/frame_ring.hpp"
+#include "traces/recording/frame_ring.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "traces/recorder.hpp"
+#include "traces/recording/recorder.hpp"
 
 #include <fmt/format.h>
 
