@@ -7,7 +7,7 @@
 
 #include "cli/options.hpp"
 #include "cli/scene.hpp"
-#include "traces/live_recording.hpp"
+#include "traces/live/live_recording.hpp"
 #include "traces/recording/recorder.hpp"
 
 namespace vestige::cli {

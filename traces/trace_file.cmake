@@ -62,11 +62,11 @@ target_link_libraries(vestige_traces PRIVATE vestige_version Threads::Threads)
 
 # What comes in live; apart, so that programs that record nothing do not need liblo.
 add_library(vestige_live STATIC
-  live_ndjson.cpp
-  live_recording.cpp
-  osc_packet.cpp
+  live/live_ndjson.cpp
+  live/live_recording.cpp
+  live/osc_packet.cpp
   recording/recording_thread.cpp
-  udp_receiver.cpp
-  vmc_state.cpp)
+  live/udp_receiver.cpp
+  live/vmc_state.cpp)
 target_link_libraries(vestige_live PUBLIC vestige_traces
   PRIVATE PkgConfig::LIBLO nlohmann_json::nlohmann_json Threads::Threads)

@@ -14,10 +14,10 @@
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/humanoid.hpp"
-#include "traces/live_ndjson.hpp"
+#include "traces/live/live_ndjson.hpp"
 #include "traces/mcap/decode.hpp"
-#include "traces/osc_packet.hpp"
-#include "traces/vmc_state.hpp"
+#include "traces/live/osc_packet.hpp"
+#include "traces/live/vmc_state.hpp"
 
 namespace vestige {
 namespace {

@@ -1,4 +1,4 @@
-#include "traces/udp_receiver.hpp"
+#include "traces/live/udp_receiver.hpp"
 
 #include <fmt/format.h>
 #include <netdb.h>

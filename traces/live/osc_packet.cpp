@@ -1,4 +1,4 @@
-#include "traces/osc_packet.hpp"
+#include "traces/live/osc_packet.hpp"
 
 #include <lo/lo.h>
 

@@ -1,4 +1,4 @@
-#include "traces/live_ndjson.hpp"
+#include "traces/live/live_ndjson.hpp"
 
 #include <fmt/format.h>
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "traces/live_ndjson.hpp"
+#include "traces/live/live_ndjson.hpp"
 #include "traces/recording/recording_thread.hpp"
-#include "traces/udp_receiver.hpp"
-#include "traces/vmc_state.hpp"
+#include "traces/live/udp_receiver.hpp"
+#include "traces/live/vmc_state.hpp"
 
 namespace vestige {
 

@@ -13,7 +13,7 @@
 #include "traces/scene/avatar.hpp"
 #include "traces/recording/frame_ring.hpp"
 #include "traces/humanoid.hpp"
-#include "traces/osc_packet.hpp"
+#include "traces/live/osc_packet.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {

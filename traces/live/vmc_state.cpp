@@ -1,4 +1,4 @@
-#include "traces/vmc_state.hpp"
+#include "traces/live/vmc_state.hpp"
 
 #include <fmt/format.h>
 

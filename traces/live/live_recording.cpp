@@ -1,4 +1,4 @@
-#include "traces/live_recording.hpp"
+#include "traces/live/live_recording.hpp"
 
 #include <poll.h>
 #include <unistd.h>
