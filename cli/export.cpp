@@ -10,8 +10,8 @@
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
-#include "traces/frame_file.hpp"
-#include "traces/frame_thinning.hpp"
+#include "traces/exchange/frame_file.hpp"
+#include "traces/exchange/frame_thinning.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
 

@@ -12,13 +12,13 @@
 #include "cli/motion.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
-#include "traces/collider_rows.hpp"
+#include "traces/exchange/collider_rows.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/pose_csv.hpp"
-#include "traces/trace_hdf5.hpp"
+#include "traces/exchange/pose_csv.hpp"
+#include "traces/exchange/trace_hdf5.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige::cli {

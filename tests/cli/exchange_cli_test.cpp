@@ -8,7 +8,7 @@
 
 #include "tests/cli/exchange_fixture.hpp"
 #include "tests/support/npm.hpp"
-#include "traces/pose_csv.hpp"
+#include "traces/exchange/pose_csv.hpp"
 
 namespace vestige {
 namespace {

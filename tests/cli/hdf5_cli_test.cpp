@@ -11,9 +11,9 @@
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/scene/builtin_avatar.hpp"
-#include "traces/hdf5_library.hpp"
+#include "traces/exchange/hdf5_library.hpp"
 #include "traces/base/shared_library.hpp"
-#include "traces/trace_hdf5.hpp"
+#include "traces/exchange/trace_hdf5.hpp"
 
 namespace vestige {
 namespace {

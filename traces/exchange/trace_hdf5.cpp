@@ -1,4 +1,4 @@
-#include "traces/trace_hdf5.hpp"
+#include "traces/exchange/trace_hdf5.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 
 #include "traces/base/child_process.hpp"
 #include "traces/base/error.hpp"
-#include "traces/hdf5_table.hpp"
+#include "traces/exchange/hdf5_table.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/trace_file/trace_format.hpp"
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "traces/hdf5_library.hpp"
+#include "traces/exchange/hdf5_library.hpp"
 
 namespace vestige {
 

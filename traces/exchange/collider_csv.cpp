@@ -4,7 +4,7 @@
 #include <limits>
 #include <map>
 
-#include "traces/collider_rows.hpp"
+#include "traces/exchange/collider_rows.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige {

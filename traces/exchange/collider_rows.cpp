@@ -1,4 +1,4 @@
-#include "traces/collider_rows.hpp"
+#include "traces/exchange/collider_rows.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "traces/frame_file.hpp"
+#include "traces/exchange/frame_file.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/trace_file/trace_format.hpp"
 

@@ -1,4 +1,4 @@
-#include "traces/pose_csv.hpp"
+#include "traces/exchange/pose_csv.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "traces/frame_file.hpp"
+#include "traces/exchange/frame_file.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige {

@@ -2,7 +2,7 @@
 
 #include <iterator>
 
-#include "traces/frame_file.hpp"
+#include "traces/exchange/frame_file.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "traces/hdf5_table.hpp"
+#include "traces/exchange/hdf5_table.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/hdf5_library.hpp"
+#include "traces/exchange/hdf5_library.hpp"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "traces/base/error.hpp"
-#include "traces/frame_file.hpp"
-#include "traces/hdf5_library.hpp"
+#include "traces/exchange/frame_file.hpp"
+#include "traces/exchange/hdf5_library.hpp"
 #include "traces/files/scratch_file.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
