@@ -6,7 +6,7 @@
 #include "cli/snapshots.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/host_port.hpp"
-#include "traces/humanoid.hpp"
+#include "traces/motion/humanoid.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::cli {

@@ -9,7 +9,7 @@
 
 #include "cli/terminal.hpp"
 #include "traces/scene/avatar.hpp"
-#include "traces/retarget.hpp"
+#include "traces/motion/retarget.hpp"
 
 namespace vestige::cli {
 

@@ -6,7 +6,7 @@
 
 #include "cli/terminal.hpp"
 #include "detector/actuator_map.hpp"
-#include "traces/animation_choice.hpp"
+#include "traces/motion/animation_choice.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 #include "traces/trace_file/trace_writer.hpp"

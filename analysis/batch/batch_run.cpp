@@ -22,7 +22,7 @@
 #include "analysis/mapping/scores.hpp"
 #include "analysis/provenance.hpp"
 #include "detector/frame.hpp"
-#include "traces/animation_choice.hpp"
+#include "traces/motion/animation_choice.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/recording/recording.hpp"
 #include "traces/base/sha256.hpp"

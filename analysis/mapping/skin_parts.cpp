@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "traces/body_roles.hpp"
+#include "traces/motion/body_roles.hpp"
 
 namespace vestige {
 

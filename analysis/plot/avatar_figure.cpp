@@ -10,7 +10,7 @@
 #include "analysis/plot/palette.hpp"
 #include "analysis/plot/scale_bar.hpp"
 #include "analysis/plot/studio.hpp"
-#include "traces/animation_choice.hpp"
+#include "traces/motion/animation_choice.hpp"
 
 namespace vestige::plot {
 

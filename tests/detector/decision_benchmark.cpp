@@ -27,7 +27,7 @@
 #include "detector/meshlets.hpp"
 #include "detector/skin_motion.hpp"
 #include "detector/triangle_boxes.hpp"
-#include "traces/animation_choice.hpp"
+#include "traces/motion/animation_choice.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 

@@ -5,7 +5,7 @@
 
 #include "tests/fuzz/require.hpp"
 #include "traces/base/error.hpp"
-#include "traces/retarget.hpp"
+#include "traces/motion/retarget.hpp"
 
 // Whatever a BVH file holds, reading it and putting it on an avatar ends in an error that says something, or in an
 // animation that can be played and is finite.

@@ -4,7 +4,7 @@
 #include "tests/fuzz/require.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
-#include "traces/humanoid.hpp"
+#include "traces/motion/humanoid.hpp"
 #include "traces/live/vmc_state.hpp"
 
 // Whatever comes over the network, the state stays one that can be recorded: finite, each collider once. The input is

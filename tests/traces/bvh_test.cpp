@@ -1,6 +1,6 @@
 // Motion capture as others write it, and as it should not be written.
 
-#include "traces/bvh.hpp"
+#include "traces/motion/bvh.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

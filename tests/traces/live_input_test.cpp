@@ -13,7 +13,7 @@
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
-#include "traces/humanoid.hpp"
+#include "traces/motion/humanoid.hpp"
 #include "traces/live/live_ndjson.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/live/osc_packet.hpp"

@@ -1,6 +1,6 @@
 // Motion capture on other bodies than the one that was captured.
 
-#include "traces/retarget.hpp"
+#include "traces/motion/retarget.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include "tests/support/test_data.hpp"
 #include "tests/traces/bvh_text.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
-#include "traces/body_roles.hpp"
+#include "traces/motion/body_roles.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 

@@ -14,7 +14,7 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "traces/animation_choice.hpp"
+#include "traces/motion/animation_choice.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/colliders.hpp"

@@ -12,7 +12,7 @@
 
 #include "traces/scene/avatar.hpp"
 #include "traces/recording/frame_ring.hpp"
-#include "traces/humanoid.hpp"
+#include "traces/motion/humanoid.hpp"
 #include "traces/live/osc_packet.hpp"
 #include "traces/scene/trace.hpp"
 

@@ -1,4 +1,4 @@
-#include "traces/retarget.hpp"
+#include "traces/motion/retarget.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "traces/body_roles.hpp"
+#include "traces/motion/body_roles.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

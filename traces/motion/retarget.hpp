@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "traces/scene/avatar.hpp"
-#include "traces/bvh.hpp"
+#include "traces/motion/bvh.hpp"
 
 namespace vestige {
 

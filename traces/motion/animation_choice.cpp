@@ -1,4 +1,4 @@
-#include "traces/animation_choice.hpp"
+#include "traces/motion/animation_choice.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/bvh.hpp"
+#include "traces/motion/bvh.hpp"
 
 #include <fmt/format.h>
 

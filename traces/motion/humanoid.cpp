@@ -1,4 +1,4 @@
-#include "traces/humanoid.hpp"
+#include "traces/motion/humanoid.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "traces/body_roles.hpp"
+#include "traces/motion/body_roles.hpp"
 #include "traces/base/error.hpp"
 #include "traces/gltf/glb_container.hpp"
 #include "traces/gltf/json/gltf_report.hpp"
