@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "detector/detector.hpp"
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {

@@ -15,7 +15,7 @@
 #include "detector/contacts_csv.hpp"
 #include "detector/detector.hpp"
 #include "detector/texture_exr.hpp"
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {

@@ -6,7 +6,7 @@
 
 #include "detector/actuator_model.hpp"
 #include "detector/intensity.hpp"
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 
 namespace vestige {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "detector/contact.hpp"
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 
 namespace vestige {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "traces/base/error.hpp"
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 
 namespace vestige {
 

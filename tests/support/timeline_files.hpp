@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/support/process.hpp"
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 
 namespace vestige::test {
 

@@ -1,4 +1,4 @@
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -18,7 +18,7 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
-#include "traces/timeline_csv.hpp"
+#include "traces/timeline/timeline_csv.hpp"
 
 namespace vestige::test {
 

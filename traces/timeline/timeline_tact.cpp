@@ -1,4 +1,4 @@
-#include "traces/timeline_tact.hpp"
+#include "traces/timeline/timeline_tact.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/timeline_csv.hpp"
+#include "traces/timeline/timeline_csv.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/timeline_hjif.hpp"
+#include "traces/timeline/timeline_hjif.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

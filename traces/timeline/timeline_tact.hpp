@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 
 namespace vestige {
 

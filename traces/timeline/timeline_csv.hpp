@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 
 namespace vestige {
 

@@ -1,10 +1,10 @@
-#include "traces/timeline.hpp"
+#include "traces/timeline/timeline.hpp"
 
 #include <fmt/format.h>
 
-#include "traces/timeline_csv.hpp"
-#include "traces/timeline_hjif.hpp"
-#include "traces/timeline_tact.hpp"
+#include "traces/timeline/timeline_csv.hpp"
+#include "traces/timeline/timeline_hjif.hpp"
+#include "traces/timeline/timeline_tact.hpp"
 
 namespace vestige {
 
