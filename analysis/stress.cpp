@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "detector/contact_description.hpp"
+#include "detector/detectors/contact_description.hpp"
 #include "detector/exact/truth.hpp"
 #include "detector/skin_motion.hpp"
 

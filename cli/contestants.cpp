@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "cli/options.hpp"
-#include "detector/embree_detector.hpp"
+#include "detector/detectors/embree_detector.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "cli/help/validators.hpp"
-#include "detector/embree_detector.hpp"
+#include "detector/detectors/embree_detector.hpp"
 #include "detector/mapped_skin.hpp"
 #include "traces/base/error.hpp"
 

@@ -19,7 +19,7 @@
 #include "cli/law_choice.hpp"
 #include "cli/scene.hpp"
 #include "cli/verbs.hpp"
-#include "detector/path_choice.hpp"
+#include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"

@@ -15,7 +15,7 @@
 #include "cli/verbs.hpp"
 #include "detector/actuator_drive.hpp"
 #include "detector/actuator_map_watch.hpp"
-#include "detector/path_choice.hpp"
+#include "detector/detectors/path_choice.hpp"
 #include "detector/pressure.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"

@@ -13,7 +13,7 @@
 
 #include "analysis/stress_report.hpp"
 #include "analysis/winding_number.hpp"
-#include "detector/embree_detector.hpp"
+#include "detector/detectors/embree_detector.hpp"
 #include "detector/skinning.hpp"
 #include "tests/support/skin_geometry.hpp"
 #include "tests/support/small_avatar.hpp"

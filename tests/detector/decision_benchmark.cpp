@@ -18,7 +18,7 @@
 #include "analysis/moving_scene.hpp"
 #include "analysis/provenance.hpp"
 #include "analysis/statistics.hpp"
-#include "detector/contact_description.hpp"
+#include "detector/detectors/contact_description.hpp"
 #include "detector/decision.hpp"
 #include "detector/detector.hpp"
 #include "detector/meshlet_candidates.hpp"

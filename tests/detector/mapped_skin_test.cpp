@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "detector/contact_description.hpp"
+#include "detector/detectors/contact_description.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "detector/contact_finder.hpp"
+#include "detector/detectors/contact_finder.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/captured_pairs.hpp"
 #include "detector/gl/collision_texture.hpp"
@@ -20,7 +20,7 @@
 #include "detector/gl/skinned_mesh.hpp"
 #include "detector/skin_motion.hpp"
 #include "detector/skinning.hpp"
-#include "detector/skipping_geometry_detector.hpp"
+#include "detector/detectors/skipping_geometry_detector.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
 #include "traces/base/error.hpp"

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "detector/contact_finder.hpp"
+#include "detector/detectors/contact_finder.hpp"
 #include "detector/detector.hpp"
 #include "detector/meshlet_candidates.hpp"
 #include "detector/meshlet_skin.hpp"

@@ -1,4 +1,4 @@
-#include "detector/skipping_geometry_detector.hpp"
+#include "detector/detectors/skipping_geometry_detector.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "detector/contact_finder.hpp"
+#include "detector/detectors/contact_finder.hpp"
 #include "detector/decision.hpp"
 #include "detector/gl/captured_pairs.hpp"
 #include "detector/gl/collision_texture.hpp"

@@ -1,8 +1,8 @@
-#include "detector/contact_finder.hpp"
+#include "detector/detectors/contact_finder.hpp"
 
 #include <utility>
 
-#include "detector/contact_description.hpp"
+#include "detector/detectors/contact_description.hpp"
 #include "detector/decision.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "detector/path_choice.hpp"
+#include "detector/detectors/path_choice.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "detector/contact_description.hpp"
+#include "detector/detectors/contact_description.hpp"
 #include "detector/detector.hpp"
 #include "detector/exact/truth.hpp"
 #include "detector/skin_motion.hpp"

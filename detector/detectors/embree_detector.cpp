@@ -1,4 +1,4 @@
-#include "detector/embree_detector.hpp"
+#include "detector/detectors/embree_detector.hpp"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "detector/contact_description.hpp"
+#include "detector/detectors/contact_description.hpp"
 #include "detector/skin_motion.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/shared_library.hpp"
