@@ -6,7 +6,7 @@
 #include "detector/contact.hpp"
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
-#include "detector/skin_motion.hpp"
+#include "detector/broad/skin_motion.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

@@ -5,12 +5,12 @@
 
 #include "detector/detectors/contact_finder.hpp"
 #include "detector/detector.hpp"
-#include "detector/meshlet_candidates.hpp"
-#include "detector/meshlet_skin.hpp"
-#include "detector/meshlet_triangles.hpp"
-#include "detector/meshlets.hpp"
-#include "detector/skin_motion.hpp"
-#include "detector/triangle_boxes.hpp"
+#include "detector/broad/meshlet_candidates.hpp"
+#include "detector/broad/meshlet_skin.hpp"
+#include "detector/broad/meshlet_triangles.hpp"
+#include "detector/broad/meshlets.hpp"
+#include "detector/broad/skin_motion.hpp"
+#include "detector/broad/triangle_boxes.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "detector/detectors/contact_description.hpp"
-#include "detector/skin_motion.hpp"
+#include "detector/broad/skin_motion.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/shared_library.hpp"
 

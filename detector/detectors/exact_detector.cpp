@@ -1,7 +1,7 @@
 #include "detector/detectors/contact_description.hpp"
 #include "detector/detector.hpp"
 #include "detector/exact/truth.hpp"
-#include "detector/skin_motion.hpp"
+#include "detector/broad/skin_motion.hpp"
 
 namespace vestige {
 

@@ -18,7 +18,7 @@
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
 #include "detector/gl/skinned_mesh.hpp"
-#include "detector/skin_motion.hpp"
+#include "detector/broad/skin_motion.hpp"
 #include "detector/skinning.hpp"
 #include "detector/detectors/skipping_geometry_detector.hpp"
 #include "shaders/constants.h"

@@ -1,6 +1,6 @@
 // Meshlets and their bounds: whatever the rig, no vertex leaves its boxes, and no pair that may meet is left out.
 
-#include "detector/meshlets.hpp"
+#include "detector/broad/meshlets.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "detector/decision.hpp"
-#include "detector/meet_boxes.hpp"
-#include "detector/meshlet_bounds.hpp"
-#include "detector/meshlet_candidates.hpp"
-#include "detector/meshlet_skin.hpp"
-#include "detector/meshlet_triangles.hpp"
-#include "detector/skin_motion.hpp"
-#include "detector/triangle_boxes.hpp"
+#include "detector/broad/meet_boxes.hpp"
+#include "detector/broad/meshlet_bounds.hpp"
+#include "detector/broad/meshlet_candidates.hpp"
+#include "detector/broad/meshlet_skin.hpp"
+#include "detector/broad/meshlet_triangles.hpp"
+#include "detector/broad/skin_motion.hpp"
+#include "detector/broad/triangle_boxes.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/random_rig.hpp"
 #include "tests/support/scene_run.hpp"

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "detector/frame.hpp"
-#include "detector/meshlet_bounds.hpp"
-#include "detector/meshlets.hpp"
+#include "detector/broad/meshlet_bounds.hpp"
+#include "detector/broad/meshlets.hpp"
 #include "detector/method.hpp"
-#include "detector/segment_boxes.hpp"
+#include "detector/broad/segment_boxes.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

@@ -6,8 +6,8 @@
 #include <span>
 
 #include "detector/frame.hpp"
-#include "detector/meshlet_skin.hpp"
-#include "detector/meshlets.hpp"
+#include "detector/broad/meshlet_skin.hpp"
+#include "detector/broad/meshlets.hpp"
 #include "detector/method.hpp"
 
 namespace vestige {

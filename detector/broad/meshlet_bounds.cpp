@@ -1,11 +1,11 @@
-#include "detector/meshlet_bounds.hpp"
+#include "detector/broad/meshlet_bounds.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "detector/meshlet_bounds.cpp"  // NOLINT(bugprone-suspicious-include)
+#define HWY_TARGET_INCLUDE "detector/broad/meshlet_bounds.cpp"  // NOLINT(bugprone-suspicious-include)
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each instruction set.
 #include <hwy/highway.h>

@@ -1,9 +1,9 @@
-#include "detector/meshlet_skin.hpp"
+#include "detector/broad/meshlet_skin.hpp"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "detector/meshlet_skin.cpp"  // NOLINT(bugprone-suspicious-include)
+#define HWY_TARGET_INCLUDE "detector/broad/meshlet_skin.cpp"  // NOLINT(bugprone-suspicious-include)
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each instruction set.
 #include <hwy/highway.h>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "detector/frame.hpp"
-#include "detector/meet_boxes.hpp"
+#include "detector/broad/meet_boxes.hpp"
 
 namespace vestige {
 

@@ -1,14 +1,14 @@
-#include "detector/meet_boxes.hpp"
+#include "detector/broad/meet_boxes.hpp"
 
 #include <algorithm>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "detector/meet_boxes.cpp"  // NOLINT(bugprone-suspicious-include)
+#define HWY_TARGET_INCLUDE "detector/broad/meet_boxes.cpp"  // NOLINT(bugprone-suspicious-include)
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each instruction set.
 #include <hwy/highway.h>
 
-#include "detector/mask_bits-inl.hpp"
+#include "detector/broad/mask_bits-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "detector/triangle_boxes.hpp"
+#include "detector/broad/triangle_boxes.hpp"
 
 #include <cmath>
 #include <glm/common.hpp>

@@ -1,15 +1,15 @@
-#include "detector/meshlet_triangles.hpp"
+#include "detector/broad/meshlet_triangles.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "detector/meshlet_triangles.cpp"  // NOLINT(bugprone-suspicious-include)
+#define HWY_TARGET_INCLUDE "detector/broad/meshlet_triangles.cpp"  // NOLINT(bugprone-suspicious-include)
 #include <hwy/foreach_target.h>
 // After foreach_target.h, which includes this file once for each instruction set.
 #include <hwy/highway.h>
 
-#include "detector/mask_bits-inl.hpp"
+#include "detector/broad/mask_bits-inl.hpp"
 
 // Boxes. Those of `static` and `ccd` are not rounded. For `carried`, a start carried by m and rounded to fp32 is at or
 // above `low` only if it was at or above low - m. With M the largest magnitude of the six coordinates and u = 2^-24, m,

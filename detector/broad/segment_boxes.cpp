@@ -1,4 +1,4 @@
-#include "detector/segment_boxes.hpp"
+#include "detector/broad/segment_boxes.hpp"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "detector/decision.hpp"
-#include "detector/meshlets.hpp"
+#include "detector/broad/meshlets.hpp"
 #include "detector/skinning.hpp"
 #include "traces/scene/avatar.hpp"
 

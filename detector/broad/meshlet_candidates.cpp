@@ -1,4 +1,4 @@
-#include "detector/meshlet_candidates.hpp"
+#include "detector/broad/meshlet_candidates.hpp"
 
 #include <algorithm>
 #include <array>

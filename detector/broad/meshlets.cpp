@@ -1,4 +1,4 @@
-#include "detector/meshlets.hpp"
+#include "detector/broad/meshlets.hpp"
 
 #include <bit>
 #include <cmath>

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "detector/frame.hpp"
-#include "detector/meet_boxes.hpp"
-#include "detector/meshlets.hpp"
+#include "detector/broad/meet_boxes.hpp"
+#include "detector/broad/meshlets.hpp"
 #include "detector/method.hpp"
 #include "traces/scene/avatar.hpp"
 

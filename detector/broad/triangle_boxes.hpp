@@ -8,7 +8,7 @@
 
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
-#include "detector/skin_motion.hpp"
+#include "detector/broad/skin_motion.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "detector/skin_motion.hpp"
+#include "detector/broad/skin_motion.hpp"
 
 #include "detector/skinning.hpp"
 
