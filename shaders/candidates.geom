@@ -62,7 +62,7 @@ bool one_sign(float x, float x_error, float y, float y_error) {
 // Seen from the way's start: the volumes that the way spans with the triangle's edges, of which two of opposite signs
 // prove a miss, and that of the triangle itself, the start's height. What the way takes from it is the sum of the
 // others: a miss where both ends have heights of one sign. A volume has 6 terms, each at most the product of the largest
-// coordinates, and in each meet 8 roundings (detector/bounded.hpp), fewer with fma; twice that covers the bound's own
+// coordinates, and in each meet 8 roundings (detector/decide/bounded.hpp), fewer with fma; twice that covers the bound's own
 // rounding and those of adding volumes. Flushed denormals err by less than 2^-126 times two factors of at most 2^27,
 // fewer than 64 times.
 bool proven_beside(vec3 start, vec3 end) {

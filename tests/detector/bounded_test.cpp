@@ -1,12 +1,12 @@
-#include "detector/bounded.hpp"
+#include "detector/decide/bounded.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "detector/ccd_formulas.hpp"
-#include "detector/nearest_float.hpp"
+#include "detector/decide/ccd_formulas.hpp"
+#include "detector/decide/nearest_float.hpp"
 
 namespace vestige {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
-#include "detector/ccd_exact.hpp"
-#include "detector/ccd_filter.hpp"
+#include "detector/decide/ccd_exact.hpp"
+#include "detector/decide/ccd_filter.hpp"
 #include "detector/decision.hpp"
 
 namespace vestige {

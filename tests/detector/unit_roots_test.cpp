@@ -1,6 +1,6 @@
 // Roots that are asked, not approximated.
 
-#include "detector/unit_roots.hpp"
+#include "detector/decide/unit_roots.hpp"
 
 #include <gtest/gtest.h>
 

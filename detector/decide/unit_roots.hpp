@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "detector/polynomial.hpp"
+#include "detector/decide/polynomial.hpp"
 
 namespace vestige {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "detector/scaled_integers.hpp"
+#include "detector/decide/scaled_integers.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "detector/nearest_float.hpp"
+#include "detector/decide/nearest_float.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "detector/bounded.hpp"
-#include "detector/decide_static_exactly.hpp"
+#include "detector/decide/bounded.hpp"
+#include "detector/decide/decide_static_exactly.hpp"
 #include "detector/decision.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "detector/unit_roots.hpp"
+#include "detector/decide/unit_roots.hpp"
 
 #include <bit>
 #include <cstdint>

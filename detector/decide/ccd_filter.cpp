@@ -1,4 +1,4 @@
-#include "detector/ccd_filter.hpp"
+#include "detector/decide/ccd_filter.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <glm/common.hpp>
 #include <limits>
 
-#include "detector/bounded.hpp"
-#include "detector/ccd_formulas.hpp"
+#include "detector/decide/bounded.hpp"
+#include "detector/decide/ccd_formulas.hpp"
 
 namespace vestige {
 

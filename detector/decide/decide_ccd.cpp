@@ -1,5 +1,5 @@
-#include "detector/ccd_exact.hpp"
-#include "detector/ccd_filter.hpp"
+#include "detector/decide/ccd_exact.hpp"
+#include "detector/decide/ccd_filter.hpp"
 #include "detector/decision.hpp"
 
 namespace vestige {

@@ -1,11 +1,11 @@
-#include "detector/ccd_exact.hpp"
+#include "detector/decide/ccd_exact.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <utility>
 
-#include "detector/unit_roots.hpp"
+#include "detector/decide/unit_roots.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "detector/polynomial.hpp"
+#include "detector/decide/polynomial.hpp"
 
 #include <algorithm>
 #include <cmath>

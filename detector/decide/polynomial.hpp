@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "detector/scaled_integers.hpp"
+#include "detector/decide/scaled_integers.hpp"
 
 namespace vestige {
 

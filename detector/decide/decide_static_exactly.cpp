@@ -1,11 +1,11 @@
-#include "detector/decide_static_exactly.hpp"
+#include "detector/decide/decide_static_exactly.hpp"
 
 #include <algorithm>
 #include <array>
 #include <optional>
 
-#include "detector/integer_vector.hpp"
-#include "detector/nearest_float.hpp"
+#include "detector/decide/integer_vector.hpp"
+#include "detector/decide/nearest_float.hpp"
 
 namespace vestige {
 

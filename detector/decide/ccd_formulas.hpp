@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "detector/bounded.hpp"
+#include "detector/decide/bounded.hpp"
 
 namespace vestige {
 
