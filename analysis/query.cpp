@@ -11,7 +11,7 @@
 #include "analysis/clocks.hpp"
 #include "analysis/loose_triangles.hpp"
 #include "analysis/statistics.hpp"
-#include "detector/exact/truth.hpp"
+#include "detector/truth/truth.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

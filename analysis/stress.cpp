@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "detector/detectors/contact_description.hpp"
-#include "detector/exact/truth.hpp"
+#include "detector/truth/truth.hpp"
 #include "detector/broad/skin_motion.hpp"
 
 namespace vestige {

@@ -1,6 +1,6 @@
 #include "detector/detectors/contact_description.hpp"
 #include "detector/detector.hpp"
-#include "detector/exact/truth.hpp"
+#include "detector/truth/truth.hpp"
 #include "detector/broad/skin_motion.hpp"
 
 namespace vestige {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "detector/decision.hpp"
-#include "detector/exact/truth.hpp"
+#include "detector/truth/truth.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace vestige {

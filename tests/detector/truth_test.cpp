@@ -1,7 +1,7 @@
 // Why the slow truth may be called that: it is right where the answer is known, and keeps every symmetry that the
 // question has, on hard cases of every kind.
 
-#include "detector/exact/truth.hpp"
+#include "detector/truth/truth.hpp"
 
 #include <gtest/gtest.h>
 

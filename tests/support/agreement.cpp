@@ -5,7 +5,7 @@
 #include <bit>
 
 #include "detector/decision.hpp"
-#include "detector/exact/truth.hpp"
+#include "detector/truth/truth.hpp"
 #include "tests/support/contact_cases.hpp"
 
 namespace vestige::test {

@@ -3,8 +3,8 @@
 #include <glm/common.hpp>
 #include <utility>
 
-#include "detector/exact/truth.hpp"
-#include "detector/exact/whole_number.hpp"
+#include "detector/truth/truth.hpp"
+#include "detector/truth/whole_number.hpp"
 
 namespace vestige::exact {
 

@@ -1,4 +1,4 @@
-#include "detector/exact/polynomial.hpp"
+#include "detector/truth/polynomial.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "detector/exact/polynomial.hpp"
+#include "detector/truth/polynomial.hpp"
 
 namespace vestige::exact {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "detector/exact/whole_number.hpp"
+#include "detector/truth/whole_number.hpp"
 
 namespace vestige::exact {
 

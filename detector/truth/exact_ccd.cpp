@@ -4,8 +4,8 @@
 #include <glm/vector_relational.hpp>
 #include <vector>
 
-#include "detector/exact/algebraic_time.hpp"
-#include "detector/exact/truth.hpp"
+#include "detector/truth/algebraic_time.hpp"
+#include "detector/truth/truth.hpp"
 
 namespace vestige::exact {
 

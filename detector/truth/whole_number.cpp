@@ -1,4 +1,4 @@
-#include "detector/exact/whole_number.hpp"
+#include "detector/truth/whole_number.hpp"
 
 #include <algorithm>
 #include <cmath>

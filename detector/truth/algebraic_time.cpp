@@ -1,4 +1,4 @@
-#include "detector/exact/algebraic_time.hpp"
+#include "detector/truth/algebraic_time.hpp"
 
 #include <algorithm>
 #include <cmath>
