@@ -11,7 +11,7 @@
 #include "analysis/comparison.hpp"
 #include "analysis/detector_team.hpp"
 #include "analysis/skinning_error.hpp"
-#include "detector/actuator_drive.hpp"
+#include "detector/actuators/actuator_drive.hpp"
 #include "detector/contacts_csv.hpp"
 #include "detector/detector.hpp"
 #include "detector/texture_exr.hpp"

@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <limits>
 
-#include "detector/uv_texels.hpp"
+#include "detector/actuators/uv_texels.hpp"
 
 namespace vestige {
 

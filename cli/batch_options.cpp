@@ -13,7 +13,7 @@
 #include "analysis/mapping/scores.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
-#include "detector/intensity.hpp"
+#include "detector/actuators/intensity.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {

@@ -6,7 +6,7 @@
 
 #include "cli/help/validators.hpp"
 #include "detector/detectors/embree_detector.hpp"
-#include "detector/mapped_skin.hpp"
+#include "detector/actuators/mapped_skin.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {

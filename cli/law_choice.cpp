@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/help/validators.hpp"
-#include "detector/actuator_model.hpp"
+#include "detector/actuators/actuator_model.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {

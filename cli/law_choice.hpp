@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "detector/actuator_drive.hpp"
+#include "detector/actuators/actuator_drive.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige::cli {

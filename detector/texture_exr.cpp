@@ -13,7 +13,7 @@
 #include <limits>
 #include <utility>
 
-#include "detector/pressure.hpp"
+#include "detector/actuators/pressure.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

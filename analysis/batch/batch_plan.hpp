@@ -10,10 +10,10 @@
 #include <string_view>
 #include <vector>
 
-#include "detector/actuator_layout.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuator_map.hpp"
-#include "detector/actuator_model.hpp"
-#include "detector/intensity.hpp"
+#include "detector/actuators/actuator_model.hpp"
+#include "detector/actuators/intensity.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"

@@ -3,7 +3,7 @@
 #include <limits>
 #include <numeric>
 
-#include "detector/portable_math.hpp"
+#include "detector/actuators/portable_math.hpp"
 
 namespace vestige {
 

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "detector/portable_math.hpp"
+#include "detector/actuators/portable_math.hpp"
 
 namespace vestige {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "detector/actuator_layout.hpp"
-#include "detector/held_amplitudes.hpp"
+#include "detector/actuators/actuator_layout.hpp"
+#include "detector/actuators/held_amplitudes.hpp"
 
 namespace vestige {
 

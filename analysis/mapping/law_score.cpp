@@ -8,8 +8,8 @@
 #include "analysis/mapping/balance.hpp"
 #include "analysis/mapping/localisation.hpp"
 #include "analysis/statistics.hpp"
-#include "detector/actuator_drive.hpp"
-#include "detector/portable_math.hpp"
+#include "detector/actuators/actuator_drive.hpp"
+#include "detector/actuators/portable_math.hpp"
 
 namespace vestige {
 

@@ -4,8 +4,8 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-#include "detector/actuator_layout.hpp"
-#include "detector/held_amplitudes.hpp"
+#include "detector/actuators/actuator_layout.hpp"
+#include "detector/actuators/held_amplitudes.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 
 #include "analysis/mapping/map_raster.hpp"
 #include "analysis/mapping/skin_pieces.hpp"
-#include "detector/texture_stretch.hpp"
+#include "detector/actuators/texture_stretch.hpp"
 
 namespace vestige {
 

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "detector/texture_stretch.hpp"
+#include "detector/actuators/texture_stretch.hpp"
 
 namespace vestige {
 

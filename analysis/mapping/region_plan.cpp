@@ -10,7 +10,7 @@
 #include <set>
 
 #include "analysis/mapping/skin_patches.hpp"
-#include "detector/surface_distance.hpp"
+#include "detector/actuators/surface_distance.hpp"
 
 namespace vestige {
 

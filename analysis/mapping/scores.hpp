@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "analysis/mapping/contact_recording.hpp"
-#include "detector/actuator_layout.hpp"
-#include "detector/actuator_model.hpp"
-#include "detector/intensity.hpp"
+#include "detector/actuators/actuator_layout.hpp"
+#include "detector/actuators/actuator_model.hpp"
+#include "detector/actuators/intensity.hpp"
 
 namespace vestige {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "detector/actuator_layout.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "analysis/plot/paraview_series.hpp"
 #include "analysis/plot/subject.hpp"
-#include "detector/intensity.hpp"
+#include "detector/actuators/intensity.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::plot {

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "detector/actuator_model.hpp"
-#include "detector/intensity.hpp"
+#include "detector/actuators/actuator_model.hpp"
+#include "detector/actuators/intensity.hpp"
 
 namespace vestige::plot {
 

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "detector/actuator_drive.hpp"
+#include "detector/actuators/actuator_drive.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_fixture.hpp"
 

@@ -1,4 +1,4 @@
-#include "detector/actuator_layout.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "detector/actuator_map_watch.hpp"
+#include "detector/actuators/actuator_map_watch.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,11 +1,11 @@
-#include "detector/actuator_model.hpp"
+#include "detector/actuators/actuator_model.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "detector/portable_math.hpp"
+#include "detector/actuators/portable_math.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

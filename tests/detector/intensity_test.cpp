@@ -1,11 +1,11 @@
-#include "detector/intensity.hpp"
+#include "detector/actuators/intensity.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "detector/actuator_drive.hpp"
+#include "detector/actuators/actuator_drive.hpp"
 #include "detector/texture_hash.hpp"
 #include "tests/support/flat_body.hpp"
 #include "traces/base/error.hpp"

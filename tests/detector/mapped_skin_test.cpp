@@ -1,4 +1,4 @@
-#include "detector/mapped_skin.hpp"
+#include "detector/actuators/mapped_skin.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

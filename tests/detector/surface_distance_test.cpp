@@ -1,4 +1,4 @@
-#include "detector/surface_distance.hpp"
+#include "detector/actuators/surface_distance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "detector/actuator_layout.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "detector/actuator_layout.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 #include "detector/contact.hpp"
 #include "tests/support/small_avatar.hpp"
 

@@ -7,7 +7,7 @@
 #include <ctime>
 #include <map>
 
-#include "detector/actuator_model.hpp"
+#include "detector/actuators/actuator_model.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
 #include "tests/support/finer_map.hpp"

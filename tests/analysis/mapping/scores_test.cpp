@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "detector/actuator_model.hpp"
+#include "detector/actuators/actuator_model.hpp"
 #include "tests/support/flat_body.hpp"
 #include "tests/support/mapping_run.hpp"
 #include "traces/base/error.hpp"

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "detector/actuator_model.hpp"
-#include "detector/intensity.hpp"
+#include "detector/actuators/actuator_model.hpp"
+#include "detector/actuators/intensity.hpp"
 #include "traces/timeline/timeline.hpp"
 
 namespace vestige {

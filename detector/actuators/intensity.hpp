@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "detector/actuator_layout.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 #include "detector/contact.hpp"
-#include "detector/held_amplitudes.hpp"
+#include "detector/actuators/held_amplitudes.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "detector/intensity.hpp"
+#include "detector/actuators/intensity.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "detector/portable_math.hpp"
+#include "detector/actuators/portable_math.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "detector/actuator_model.hpp"
+#include "detector/actuators/actuator_model.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "detector/portable_math.hpp"
+#include "detector/actuators/portable_math.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/base/strict_json.hpp"

@@ -13,7 +13,7 @@
 
 #include "detector/actuator_map.hpp"
 #include "detector/contact.hpp"
-#include "detector/surface_distance.hpp"
+#include "detector/actuators/surface_distance.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "detector/held_amplitudes.hpp"
+#include "detector/actuators/held_amplitudes.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "detector/actuator_layout.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuator_map.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "detector/mapped_skin.hpp"
+#include "detector/actuators/mapped_skin.hpp"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "detector/texture_stretch.hpp"
+#include "detector/actuators/texture_stretch.hpp"
 
 namespace vestige {
 

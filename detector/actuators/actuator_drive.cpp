@@ -1,4 +1,4 @@
-#include "detector/actuator_drive.hpp"
+#include "detector/actuators/actuator_drive.hpp"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "detector/pressure.hpp"
+#include "detector/actuators/pressure.hpp"
 
 #include <algorithm>
 #include <cmath>

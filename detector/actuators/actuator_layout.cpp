@@ -1,4 +1,4 @@
-#include "detector/actuator_layout.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "detector/texture_stretch.hpp"
-#include "detector/uv_texels.hpp"
+#include "detector/actuators/texture_stretch.hpp"
+#include "detector/actuators/uv_texels.hpp"
 #include "traces/scene/pose.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
