@@ -5,7 +5,7 @@
 #include <span>
 
 #include "analysis/clocks.hpp"
-#include "detector/texture_hash.hpp"
+#include "detector/output/texture_hash.hpp"
 
 namespace vestige {
 

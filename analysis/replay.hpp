@@ -12,9 +12,9 @@
 #include "analysis/detector_team.hpp"
 #include "analysis/skinning_error.hpp"
 #include "detector/actuators/actuator_drive.hpp"
-#include "detector/contacts_csv.hpp"
+#include "detector/output/contacts_csv.hpp"
 #include "detector/detector.hpp"
-#include "detector/texture_exr.hpp"
+#include "detector/output/texture_exr.hpp"
 #include "traces/timeline/timeline.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "analysis/render_thread.hpp"
-#include "detector/texture_hash.hpp"
+#include "detector/output/texture_hash.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

@@ -5,7 +5,7 @@
 
 #include "analysis/plot/figure.hpp"
 #include "analysis/plot/subject.hpp"
-#include "detector/contacts_csv.hpp"
+#include "detector/output/contacts_csv.hpp"
 
 namespace vestige::plot {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/plot/surface.hpp"
-#include "detector/contacts_csv.hpp"
+#include "detector/output/contacts_csv.hpp"
 
 namespace vestige::plot {
 

@@ -10,7 +10,7 @@
 #include "analysis/plot/studio.hpp"
 #include "analysis/plot/surface.hpp"
 #include "detector/actuator_map.hpp"
-#include "detector/contacts_csv.hpp"
+#include "detector/output/contacts_csv.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige::plot {

@@ -12,7 +12,7 @@
 
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
-#include "detector/texture_hash.hpp"
+#include "detector/output/texture_hash.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "detector/actuators/actuator_drive.hpp"
-#include "detector/texture_hash.hpp"
+#include "detector/output/texture_hash.hpp"
 #include "tests/support/flat_body.hpp"
 #include "traces/base/error.hpp"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "detector/contacts_csv.hpp"
+#include "detector/output/contacts_csv.hpp"
 #include "tests/fuzz/require.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"

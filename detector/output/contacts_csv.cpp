@@ -1,4 +1,4 @@
-#include "detector/contacts_csv.hpp"
+#include "detector/output/contacts_csv.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "detector/texture_hash.hpp"
+#include "detector/output/texture_hash.hpp"
 
 #include <bit>
 #include <span>

@@ -1,4 +1,4 @@
-#include "detector/texture_exr.hpp"
+#include "detector/output/texture_exr.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
