@@ -6,8 +6,8 @@
 #include <functional>
 #include <iterator>
 
-#include "analysis/provenance.hpp"
-#include "analysis/statistics.hpp"
+#include "analysis/base/provenance.hpp"
+#include "analysis/base/statistics.hpp"
 
 namespace vestige {
 

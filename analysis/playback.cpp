@@ -5,7 +5,7 @@
 #include <optional>
 #include <thread>
 
-#include "analysis/clocks.hpp"
+#include "analysis/base/clocks.hpp"
 #include "detector/frame.hpp"
 
 namespace vestige {

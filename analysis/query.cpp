@@ -8,9 +8,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "analysis/clocks.hpp"
+#include "analysis/base/clocks.hpp"
 #include "analysis/loose_triangles.hpp"
-#include "analysis/statistics.hpp"
+#include "analysis/base/statistics.hpp"
 #include "detector/truth/truth.hpp"
 #include "traces/base/error.hpp"
 

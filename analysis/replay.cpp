@@ -4,7 +4,7 @@
 #include <chrono>
 #include <span>
 
-#include "analysis/clocks.hpp"
+#include "analysis/base/clocks.hpp"
 #include "detector/output/texture_hash.hpp"
 
 namespace vestige {

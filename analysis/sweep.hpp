@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/statistics.hpp"
+#include "analysis/base/statistics.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "traces/scene/avatar.hpp"

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string_view>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "analysis/render_thread.hpp"
 
 namespace vestige {

@@ -11,7 +11,7 @@
 #include <set>
 
 #include "analysis/accuracy_report.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/scene.hpp"

@@ -6,8 +6,8 @@
 #include <set>
 #include <tuple>
 
-#include "analysis/png_image.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/png_image.hpp"
+#include "analysis/base/provenance.hpp"
 #include "analysis/uv_overlap.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"

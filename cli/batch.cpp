@@ -13,7 +13,7 @@
 #include "analysis/batch/batch_run.hpp"
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/mapping/contact_recording.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/batch_options.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"

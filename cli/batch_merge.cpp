@@ -9,7 +9,7 @@
 #include "analysis/batch/batch_record.hpp"
 #include "analysis/batch/batch_results.hpp"
 #include "analysis/batch/rank_by.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/batch_options.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"

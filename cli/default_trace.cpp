@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/scene.hpp"
 #include "cli/terminal.hpp"
 #include "traces/scene/colliders.hpp"

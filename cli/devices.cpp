@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/verbs.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_limits.hpp"

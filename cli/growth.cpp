@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "analysis/growth_report.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "analysis/sweep_report.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/scene.hpp"

@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/motion.hpp"
 #include "cli/scene.hpp"

@@ -8,7 +8,7 @@
 #include "analysis/mapping/map_check.hpp"
 #include "analysis/mapping/map_maker.hpp"
 #include "analysis/mapping/skin_patches.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/output_bytes.hpp"

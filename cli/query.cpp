@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/limits_choice.hpp"
 #include "cli/live_choice.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "analysis/mapping/layouts.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/law_choice.hpp"

@@ -6,7 +6,7 @@
 
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/playback.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/law_choice.hpp"

@@ -8,7 +8,7 @@
 #include <memory>
 #include <set>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "analysis/stress_report.hpp"
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"

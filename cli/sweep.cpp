@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "analysis/sweep_report.hpp"
 #include "cli/scene.hpp"
 #include "cli/sweep_choice.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <thread>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/sink_choice.hpp"
 #include "cli/verbs.hpp"

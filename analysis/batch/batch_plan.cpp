@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <set>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "traces/base/descriptor.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/base/sha256.hpp"

@@ -16,11 +16,11 @@
 #include <thread>
 #include <utility>
 
-#include "analysis/clocks.hpp"
+#include "analysis/base/clocks.hpp"
 #include "analysis/mapping/contact_recording.hpp"
 #include "analysis/mapping/contact_recording_file.hpp"
 #include "analysis/mapping/scores.hpp"
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "detector/frame.hpp"
 #include "traces/motion/animation_choice.hpp"
 #include "traces/files/output_file.hpp"

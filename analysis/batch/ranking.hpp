@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/statistics.hpp"
+#include "analysis/base/statistics.hpp"
 
 namespace vestige {
 

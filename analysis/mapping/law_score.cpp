@@ -7,7 +7,7 @@
 
 #include "analysis/mapping/balance.hpp"
 #include "analysis/mapping/localisation.hpp"
-#include "analysis/statistics.hpp"
+#include "analysis/base/statistics.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/actuators/portable_math.hpp"
 

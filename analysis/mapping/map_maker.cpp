@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "analysis/mapping/skin_patches.hpp"
-#include "analysis/png_image.hpp"
+#include "analysis/base/png_image.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

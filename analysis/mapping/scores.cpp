@@ -7,7 +7,7 @@
 
 #include "analysis/mapping/law_score.hpp"
 #include "analysis/mapping/localisation.hpp"
-#include "analysis/statistics.hpp"
+#include "analysis/base/statistics.hpp"
 #include "traces/scene/box.hpp"
 
 namespace vestige {

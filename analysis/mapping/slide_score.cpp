@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "analysis/statistics.hpp"
+#include "analysis/base/statistics.hpp"
 
 namespace vestige {
 

@@ -21,7 +21,7 @@
 #include <regex>
 #include <utility>
 
-#include "analysis/plot/html.hpp"
+#include "analysis/base/html.hpp"
 #include "traces/base/error.hpp"
 #include "traces/scene/reference_skinning.hpp"
 

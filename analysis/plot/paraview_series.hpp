@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/plot/growing_folder.hpp"
+#include "analysis/base/growing_folder.hpp"
 #include "analysis/plot/subject.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/scene/trace.hpp"

@@ -13,7 +13,7 @@
 #include "analysis/mapping/scores.hpp"
 #include "analysis/plot/error_figure.hpp"
 #include "analysis/plot/figure_export.hpp"
-#include "analysis/plot/growing_folder.hpp"
+#include "analysis/base/growing_folder.hpp"
 #include "analysis/plot/headless_window.hpp"
 #include "analysis/plot/map_pictures.hpp"
 #include "analysis/plot/ranking_figure.hpp"

@@ -10,7 +10,7 @@
 
 #include "analysis/batch/ranking.hpp"
 #include "analysis/plot/axis.hpp"
-#include "analysis/plot/html.hpp"
+#include "analysis/base/html.hpp"
 #include "analysis/plot/report_style.hpp"
 #include "analysis/plot/report_words.hpp"
 #include "traces/base/number_text.hpp"

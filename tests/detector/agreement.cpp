@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "tests/support/contact_cases.hpp"
 
 namespace {

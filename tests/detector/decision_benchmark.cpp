@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "analysis/moving_scene.hpp"
-#include "analysis/provenance.hpp"
-#include "analysis/statistics.hpp"
+#include "analysis/base/provenance.hpp"
+#include "analysis/base/statistics.hpp"
 #include "detector/detectors/contact_description.hpp"
 #include "detector/decision.hpp"
 #include "detector/detector.hpp"

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/adversarial_pairs.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/plot/growing_folder.hpp"
+#include "analysis/base/growing_folder.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "analysis/plot/html.hpp"
+#include "analysis/base/html.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/clocks.hpp"
+#include "analysis/base/clocks.hpp"
 
 #include <ctime>
 

@@ -1,4 +1,4 @@
-#include "analysis/provenance.hpp"
+#include "analysis/base/provenance.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "analysis/png_image.hpp"
+#include "analysis/base/png_image.hpp"
 
 #include <png.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/statistics.hpp"
+#include "analysis/base/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
