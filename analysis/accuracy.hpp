@@ -8,7 +8,7 @@
 
 #include "analysis/event_score.hpp"
 #include "analysis/moving_scene.hpp"
-#include "analysis/skinning_error.hpp"
+#include "analysis/run/skinning_error.hpp"
 #include "analysis/true_contacts.hpp"
 #include "detector/detector.hpp"
 

@@ -1,4 +1,4 @@
-#include "analysis/replay.hpp"
+#include "analysis/run/replay.hpp"
 
 #include <fmt/format.h>
 

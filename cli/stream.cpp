@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "analysis/mapping/layouts.hpp"
-#include "analysis/playback.hpp"
+#include "analysis/run/playback.hpp"
 #include "analysis/base/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"

@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "analysis/comparison.hpp"
-#include "analysis/skinning_error.hpp"
+#include "analysis/run/comparison.hpp"
+#include "analysis/run/skinning_error.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"

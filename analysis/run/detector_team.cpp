@@ -1,4 +1,4 @@
-#include "analysis/detector_team.hpp"
+#include "analysis/run/detector_team.hpp"
 
 #include <system_error>
 #include <utility>

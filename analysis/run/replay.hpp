@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "analysis/comparison.hpp"
-#include "analysis/detector_team.hpp"
-#include "analysis/skinning_error.hpp"
+#include "analysis/run/comparison.hpp"
+#include "analysis/run/detector_team.hpp"
+#include "analysis/run/skinning_error.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/output/contacts_csv.hpp"
 #include "detector/detector.hpp"

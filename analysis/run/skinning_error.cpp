@@ -1,4 +1,4 @@
-#include "analysis/skinning_error.hpp"
+#include "analysis/run/skinning_error.hpp"
 
 #include <algorithm>
 #include <glm/common.hpp>

@@ -1,4 +1,4 @@
-#include "analysis/playback.hpp"
+#include "analysis/run/playback.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,4 +1,4 @@
-#include "analysis/comparison.hpp"
+#include "analysis/run/comparison.hpp"
 
 #include <fmt/format.h>
 
