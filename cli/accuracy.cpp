@@ -1,4 +1,4 @@
-#include "analysis/accuracy.hpp"
+#include "analysis/accuracy/accuracy.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include <numeric>
 #include <set>
 
-#include "analysis/accuracy_report.hpp"
+#include "analysis/accuracy/accuracy_report.hpp"
 #include "analysis/base/provenance.hpp"
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"

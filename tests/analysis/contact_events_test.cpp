@@ -1,11 +1,11 @@
 // Events and their scores from sequences of contacts made by hand.
 
-#include "analysis/contact_events.hpp"
+#include "analysis/accuracy/contact_events.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "analysis/event_score.hpp"
+#include "analysis/accuracy/event_score.hpp"
 
 namespace vestige {
 namespace {

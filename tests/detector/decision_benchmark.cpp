@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/moving_scene.hpp"
+#include "analysis/accuracy/moving_scene.hpp"
 #include "analysis/base/provenance.hpp"
 #include "analysis/base/statistics.hpp"
 #include "detector/detectors/contact_description.hpp"

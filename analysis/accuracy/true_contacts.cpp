@@ -1,4 +1,4 @@
-#include "analysis/true_contacts.hpp"
+#include "analysis/accuracy/true_contacts.hpp"
 
 #include <algorithm>
 #include <atomic>

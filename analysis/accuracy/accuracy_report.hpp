@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/accuracy.hpp"
+#include "analysis/accuracy/accuracy.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "analysis/contact_events.hpp"
+#include "analysis/accuracy/contact_events.hpp"
 
 #include <algorithm>
 #include <tuple>

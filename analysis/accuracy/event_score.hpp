@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/contact_events.hpp"
+#include "analysis/accuracy/contact_events.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "analysis/event_score.hpp"
+#include "analysis/accuracy/event_score.hpp"
 
 #include <algorithm>
 #include <cmath>

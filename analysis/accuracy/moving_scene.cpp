@@ -1,4 +1,4 @@
-#include "analysis/moving_scene.hpp"
+#include "analysis/accuracy/moving_scene.hpp"
 
 #include <cmath>
 

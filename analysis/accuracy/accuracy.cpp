@@ -1,4 +1,4 @@
-#include "analysis/accuracy.hpp"
+#include "analysis/accuracy/accuracy.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "analysis/accuracy_report.hpp"
+#include "analysis/accuracy/accuracy_report.hpp"
 
 #include <fmt/format.h>
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "analysis/event_score.hpp"
-#include "analysis/moving_scene.hpp"
+#include "analysis/accuracy/event_score.hpp"
+#include "analysis/accuracy/moving_scene.hpp"
 #include "analysis/run/skinning_error.hpp"
-#include "analysis/true_contacts.hpp"
+#include "analysis/accuracy/true_contacts.hpp"
 #include "detector/detector.hpp"
 
 namespace vestige {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/contact_events.hpp"
-#include "analysis/moving_scene.hpp"
+#include "analysis/accuracy/contact_events.hpp"
+#include "analysis/accuracy/moving_scene.hpp"
 #include "detector/detector.hpp"
 
 namespace vestige {
