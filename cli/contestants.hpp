@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/sweep.hpp"
+#include "analysis/frequency/sweep.hpp"
 #include "cli/detectors.hpp"
 #include "cli/terminal.hpp"
 

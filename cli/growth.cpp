@@ -1,4 +1,4 @@
-#include "analysis/growth.hpp"
+#include "analysis/frequency/growth.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
-#include "analysis/growth_report.hpp"
+#include "analysis/frequency/growth_report.hpp"
 #include "analysis/base/provenance.hpp"
-#include "analysis/sweep_report.hpp"
+#include "analysis/frequency/sweep_report.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/scene.hpp"
 #include "cli/sweep_choice.hpp"

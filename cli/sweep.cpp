@@ -1,4 +1,4 @@
-#include "analysis/sweep.hpp"
+#include "analysis/frequency/sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "analysis/base/provenance.hpp"
-#include "analysis/sweep_report.hpp"
+#include "analysis/frequency/sweep_report.hpp"
 #include "cli/scene.hpp"
 #include "cli/sweep_choice.hpp"
 #include "cli/verbs.hpp"

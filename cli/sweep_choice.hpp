@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/sweep.hpp"
+#include "analysis/frequency/sweep.hpp"
 #include "cli/contestants.hpp"
 #include "cli/options.hpp"
 

@@ -1,10 +1,10 @@
-#include "analysis/growth.hpp"
+#include "analysis/frequency/growth.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "analysis/sweep_report.hpp"
+#include "analysis/frequency/sweep_report.hpp"
 
 namespace vestige {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/growth.hpp"
+#include "analysis/frequency/growth.hpp"
 
 namespace vestige {
 

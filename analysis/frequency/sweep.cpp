@@ -1,4 +1,4 @@
-#include "analysis/sweep.hpp"
+#include "analysis/frequency/sweep.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "analysis/render_thread.hpp"
+#include "analysis/frequency/render_thread.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "traces/base/error.hpp"
 

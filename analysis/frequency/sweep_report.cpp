@@ -1,4 +1,4 @@
-#include "analysis/sweep_report.hpp"
+#include "analysis/frequency/sweep_report.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "analysis/base/provenance.hpp"
-#include "analysis/render_thread.hpp"
+#include "analysis/frequency/render_thread.hpp"
 
 namespace vestige {
 

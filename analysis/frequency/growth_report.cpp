@@ -1,4 +1,4 @@
-#include "analysis/growth_report.hpp"
+#include "analysis/frequency/growth_report.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "analysis/sweep_report.hpp"
+#include "analysis/frequency/sweep_report.hpp"
 
 namespace vestige {
 

@@ -1,11 +1,11 @@
-#include "analysis/growth.hpp"
+#include "analysis/frequency/growth.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "analysis/sweep_report.hpp"
+#include "analysis/frequency/sweep_report.hpp"
 #include "traces/scene/subdivision.hpp"
 
 namespace vestige {

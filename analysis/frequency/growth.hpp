@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/sweep.hpp"
+#include "analysis/frequency/sweep.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 

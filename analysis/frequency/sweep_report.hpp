@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/sweep.hpp"
+#include "analysis/frequency/sweep.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "analysis/claims.hpp"
+#include "analysis/frequency/claims.hpp"
 
 #include <fmt/format.h>
 

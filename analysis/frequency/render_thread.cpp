@@ -1,4 +1,4 @@
-#include "analysis/render_thread.hpp"
+#include "analysis/frequency/render_thread.hpp"
 
 #include <algorithm>
 #include <chrono>
