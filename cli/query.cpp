@@ -1,4 +1,4 @@
-#include "analysis/query.hpp"
+#include "analysis/stress/query.hpp"
 
 #include <fmt/format.h>
 

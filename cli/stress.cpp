@@ -1,4 +1,4 @@
-#include "analysis/stress.hpp"
+#include "analysis/stress/stress.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "analysis/base/provenance.hpp"
-#include "analysis/stress_report.hpp"
+#include "analysis/stress/stress_report.hpp"
 #include "cli/detectors.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"

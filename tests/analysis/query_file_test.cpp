@@ -1,6 +1,6 @@
 // Query files are foreign bytes: what is read of them, and how they are refused.
 
-#include "analysis/query_file.hpp"
+#include "analysis/stress/query_file.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

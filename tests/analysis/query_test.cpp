@@ -1,6 +1,6 @@
 // Queries with known truth: what is counted.
 
-#include "analysis/query.hpp"
+#include "analysis/stress/query.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

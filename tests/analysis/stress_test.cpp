@@ -1,4 +1,4 @@
-#include "analysis/stress.hpp"
+#include "analysis/stress/stress.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 #include <set>
 #include <string>
 
-#include "analysis/stress_report.hpp"
-#include "analysis/winding_number.hpp"
+#include "analysis/stress/stress_report.hpp"
+#include "analysis/stress/winding_number.hpp"
 #include "detector/detectors/embree_detector.hpp"
 #include "detector/skinning.hpp"
 #include "tests/support/skin_geometry.hpp"

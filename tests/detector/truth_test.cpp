@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "analysis/query_file.hpp"
+#include "analysis/stress/query_file.hpp"
 #include "tests/support/contact_cases.hpp"
 #include "tests/support/test_data.hpp"
 

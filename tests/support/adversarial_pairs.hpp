@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "analysis/loose_triangles.hpp"
+#include "analysis/stress/loose_triangles.hpp"
 
 namespace vestige::test {
 

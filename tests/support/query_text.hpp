@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "analysis/query_file.hpp"
+#include "analysis/stress/query_file.hpp"
 
 namespace vestige::test {
 

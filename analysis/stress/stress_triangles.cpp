@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/loose_triangles.hpp"
-#include "analysis/stress_families.hpp"
+#include "analysis/stress/loose_triangles.hpp"
+#include "analysis/stress/stress_families.hpp"
 
 namespace vestige {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "analysis/stress.hpp"
+#include "analysis/stress/stress.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "analysis/query.hpp"
+#include "analysis/stress/query.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "analysis/base/clocks.hpp"
-#include "analysis/loose_triangles.hpp"
+#include "analysis/stress/loose_triangles.hpp"
 #include "analysis/base/statistics.hpp"
 #include "detector/truth/truth.hpp"
 #include "traces/base/error.hpp"

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "analysis/stress_families.hpp"
+#include "analysis/stress/stress_families.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {

@@ -1,8 +1,8 @@
-#include "analysis/stress_scene.hpp"
+#include "analysis/stress/stress_scene.hpp"
 
 #include <numeric>
 
-#include "analysis/loose_triangles.hpp"
+#include "analysis/stress/loose_triangles.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/stress_families.hpp"
+#include "analysis/stress/stress_families.hpp"
 #include "detector/detector.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "analysis/query_file.hpp"
+#include "analysis/stress/query_file.hpp"
 
 #include <fmt/format.h>
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/query_file.hpp"
+#include "analysis/stress/query_file.hpp"
 #include "detector/detector.hpp"
 #include "detector/method.hpp"
 

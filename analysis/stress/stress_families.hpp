@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-#include "analysis/stress_scene.hpp"
+#include "analysis/stress/stress_scene.hpp"
 
 namespace vestige {
 

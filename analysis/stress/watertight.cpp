@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analysis/stress_families.hpp"
-#include "analysis/winding_number.hpp"
+#include "analysis/stress/stress_families.hpp"
+#include "analysis/stress/winding_number.hpp"
 #include "detector/skinning.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "analysis/winding_number.hpp"
+#include "analysis/stress/winding_number.hpp"
 
 #include <array>
 #include <cstddef>

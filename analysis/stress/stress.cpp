@@ -1,4 +1,4 @@
-#include "analysis/stress.hpp"
+#include "analysis/stress/stress.hpp"
 
 #include <algorithm>
 #include <array>

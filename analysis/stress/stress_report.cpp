@@ -1,4 +1,4 @@
-#include "analysis/stress_report.hpp"
+#include "analysis/stress/stress_report.hpp"
 
 #include <fmt/format.h>
 

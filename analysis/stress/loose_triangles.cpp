@@ -1,4 +1,4 @@
-#include "analysis/loose_triangles.hpp"
+#include "analysis/stress/loose_triangles.hpp"
 
 #include <fmt/format.h>
 
