@@ -8,7 +8,7 @@
 
 #include "analysis/base/png_image.hpp"
 #include "analysis/base/provenance.hpp"
-#include "analysis/uv_overlap.hpp"
+#include "analysis/mapping/uv_overlap.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/gltf/avatar_gltf.hpp"

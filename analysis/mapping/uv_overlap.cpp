@@ -1,4 +1,4 @@
-#include "analysis/uv_overlap.hpp"
+#include "analysis/mapping/uv_overlap.hpp"
 
 #include <algorithm>
 #include <array>
