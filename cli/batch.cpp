@@ -12,7 +12,7 @@
 #include "analysis/batch/batch_results.hpp"
 #include "analysis/batch/batch_run.hpp"
 #include "analysis/batch/rank_by.hpp"
-#include "analysis/mapping/contact_recording.hpp"
+#include "analysis/scoring/contact_recording.hpp"
 #include "analysis/base/provenance.hpp"
 #include "cli/batch_options.hpp"
 #include "cli/help/validators.hpp"

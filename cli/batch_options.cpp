@@ -10,7 +10,7 @@
 #include "analysis/batch/batch_inputs.hpp"
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/mapping/layouts.hpp"
-#include "analysis/mapping/scores.hpp"
+#include "analysis/scoring/scores.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "detector/actuators/intensity.hpp"

@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "analysis/batch/rank_by.hpp"
-#include "analysis/mapping/scores.hpp"
+#include "analysis/scoring/scores.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

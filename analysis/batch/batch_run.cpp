@@ -17,9 +17,9 @@
 #include <utility>
 
 #include "analysis/base/clocks.hpp"
-#include "analysis/mapping/contact_recording.hpp"
-#include "analysis/mapping/contact_recording_file.hpp"
-#include "analysis/mapping/scores.hpp"
+#include "analysis/scoring/contact_recording.hpp"
+#include "analysis/scoring/contact_recording_file.hpp"
+#include "analysis/scoring/scores.hpp"
 #include "analysis/base/provenance.hpp"
 #include "detector/frame.hpp"
 #include "traces/motion/animation_choice.hpp"

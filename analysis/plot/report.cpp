@@ -9,8 +9,8 @@
 #include <set>
 #include <utility>
 
-#include "analysis/mapping/contact_recording_file.hpp"
-#include "analysis/mapping/scores.hpp"
+#include "analysis/scoring/contact_recording_file.hpp"
+#include "analysis/scoring/scores.hpp"
 #include "analysis/plot/error_figure.hpp"
 #include "analysis/plot/figure_export.hpp"
 #include "analysis/base/growing_folder.hpp"

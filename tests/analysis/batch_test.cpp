@@ -7,7 +7,7 @@
 
 #include "analysis/batch/batch_plan.hpp"
 #include "analysis/batch/slurm_script.hpp"
-#include "analysis/mapping/contact_recording_file.hpp"
+#include "analysis/scoring/contact_recording_file.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/base/error.hpp"

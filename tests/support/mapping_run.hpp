@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/mapping/scores.hpp"
+#include "analysis/scoring/scores.hpp"
 #include "detector/detector.hpp"
 #include "tests/support/flat_body.hpp"
 #include "tests/support/scene_run.hpp"

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "analysis/mapping/balance.hpp"
-#include "analysis/mapping/information.hpp"
-#include "analysis/mapping/link_load.hpp"
-#include "analysis/mapping/localisation.hpp"
-#include "analysis/mapping/slide_score.hpp"
-#include "analysis/mapping/timing_score.hpp"
+#include "analysis/scoring/balance.hpp"
+#include "analysis/scoring/information.hpp"
+#include "analysis/scoring/link_load.hpp"
+#include "analysis/scoring/localisation.hpp"
+#include "analysis/scoring/slide_score.hpp"
+#include "analysis/scoring/timing_score.hpp"
 #include "tests/support/flat_body.hpp"
 
 namespace vestige {

@@ -1,6 +1,6 @@
 // Whole recordings on a flat body, where every number can be found on paper.
 
-#include "analysis/mapping/scores.hpp"
+#include "analysis/scoring/scores.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

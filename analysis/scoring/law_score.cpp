@@ -1,12 +1,12 @@
-#include "analysis/mapping/law_score.hpp"
+#include "analysis/scoring/law_score.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "analysis/mapping/balance.hpp"
-#include "analysis/mapping/localisation.hpp"
+#include "analysis/scoring/balance.hpp"
+#include "analysis/scoring/localisation.hpp"
 #include "analysis/base/statistics.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/actuators/portable_math.hpp"

@@ -1,4 +1,4 @@
-#include "analysis/mapping/localisation.hpp"
+#include "analysis/scoring/localisation.hpp"
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "analysis/mapping/link_load.hpp"
+#include "analysis/scoring/link_load.hpp"
 
 #include <algorithm>
 #include <cmath>

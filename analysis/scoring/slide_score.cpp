@@ -1,4 +1,4 @@
-#include "analysis/mapping/slide_score.hpp"
+#include "analysis/scoring/slide_score.hpp"
 
 #include <algorithm>
 #include <cmath>

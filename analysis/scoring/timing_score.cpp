@@ -1,4 +1,4 @@
-#include "analysis/mapping/timing_score.hpp"
+#include "analysis/scoring/timing_score.hpp"
 
 #include <limits>
 

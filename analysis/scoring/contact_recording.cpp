@@ -1,4 +1,4 @@
-#include "analysis/mapping/contact_recording.hpp"
+#include "analysis/scoring/contact_recording.hpp"
 
 namespace vestige {
 

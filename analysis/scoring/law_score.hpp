@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "analysis/mapping/information.hpp"
-#include "analysis/mapping/link_load.hpp"
-#include "analysis/mapping/scores.hpp"
-#include "analysis/mapping/slide_score.hpp"
-#include "analysis/mapping/timing_score.hpp"
+#include "analysis/scoring/information.hpp"
+#include "analysis/scoring/link_load.hpp"
+#include "analysis/scoring/scores.hpp"
+#include "analysis/scoring/slide_score.hpp"
+#include "analysis/scoring/timing_score.hpp"
 
 namespace vestige {
 

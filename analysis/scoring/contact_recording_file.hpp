@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/mapping/contact_recording.hpp"
+#include "analysis/scoring/contact_recording.hpp"
 
 namespace vestige {
 

@@ -1,12 +1,12 @@
-#include "analysis/mapping/scores.hpp"
+#include "analysis/scoring/scores.hpp"
 
 #include <algorithm>
 #include <deque>
 #include <iterator>
 #include <limits>
 
-#include "analysis/mapping/law_score.hpp"
-#include "analysis/mapping/localisation.hpp"
+#include "analysis/scoring/law_score.hpp"
+#include "analysis/scoring/localisation.hpp"
 #include "analysis/base/statistics.hpp"
 #include "traces/scene/box.hpp"
 

@@ -1,4 +1,4 @@
-#include "analysis/mapping/contact_recording_file.hpp"
+#include "analysis/scoring/contact_recording_file.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/mapping/information.hpp"
+#include "analysis/scoring/information.hpp"
 
 #include <algorithm>
 #include <cmath>

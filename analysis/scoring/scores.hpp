@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/mapping/contact_recording.hpp"
+#include "analysis/scoring/contact_recording.hpp"
 #include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuators/actuator_model.hpp"
 #include "detector/actuators/intensity.hpp"

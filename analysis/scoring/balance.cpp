@@ -1,4 +1,4 @@
-#include "analysis/mapping/balance.hpp"
+#include "analysis/scoring/balance.hpp"
 
 #include <limits>
 #include <numeric>
