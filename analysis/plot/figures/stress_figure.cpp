@@ -1,4 +1,4 @@
-#include "analysis/plot/stress_figure.hpp"
+#include "analysis/plot/figures/stress_figure.hpp"
 
 #include <fmt/format.h>
 

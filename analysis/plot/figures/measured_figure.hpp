@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "analysis/plot/figure.hpp"
-#include "analysis/plot/timeline_figure.hpp"
+#include "analysis/plot/figures/timeline_figure.hpp"
 
 namespace vestige::plot {
 

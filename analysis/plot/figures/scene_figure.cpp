@@ -1,4 +1,4 @@
-#include "analysis/plot/scene_figure.hpp"
+#include "analysis/plot/figures/scene_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/body_figure.hpp"
+#include "analysis/plot/figures/body_figure.hpp"
 
 #include <fmt/format.h>
 

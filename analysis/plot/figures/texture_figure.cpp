@@ -1,4 +1,4 @@
-#include "analysis/plot/texture_figure.hpp"
+#include "analysis/plot/figures/texture_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/measured_figure.hpp"
+#include "analysis/plot/figures/measured_figure.hpp"
 
 #include <fmt/format.h>
 

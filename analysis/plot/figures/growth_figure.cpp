@@ -1,4 +1,4 @@
-#include "analysis/plot/growth_figure.hpp"
+#include "analysis/plot/figures/growth_figure.hpp"
 
 #include <fmt/format.h>
 

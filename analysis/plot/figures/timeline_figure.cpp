@@ -1,4 +1,4 @@
-#include "analysis/plot/timeline_figure.hpp"
+#include "analysis/plot/figures/timeline_figure.hpp"
 
 #include <fmt/format.h>
 

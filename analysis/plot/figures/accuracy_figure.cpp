@@ -1,4 +1,4 @@
-#include "analysis/plot/accuracy_figure.hpp"
+#include "analysis/plot/figures/accuracy_figure.hpp"
 
 #include <fmt/format.h>
 

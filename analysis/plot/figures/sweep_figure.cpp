@@ -1,4 +1,4 @@
-#include "analysis/plot/sweep_figure.hpp"
+#include "analysis/plot/figures/sweep_figure.hpp"
 
 #include <fmt/format.h>
 

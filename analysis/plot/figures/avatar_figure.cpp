@@ -1,4 +1,4 @@
-#include "analysis/plot/avatar_figure.hpp"
+#include "analysis/plot/figures/avatar_figure.hpp"
 
 #include <fmt/format.h>
 
