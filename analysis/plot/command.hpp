@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "analysis/plot/figure.hpp"
-#include "analysis/plot/scene_moments.hpp"
+#include "analysis/plot/data/scene_moments.hpp"
 #include "traces/files/output_file.hpp"
 
 namespace vestige::plot {

@@ -12,7 +12,7 @@
 #include "analysis/plot/palette.hpp"
 #include "analysis/plot/region_colours.hpp"
 #include "analysis/plot/region_image.hpp"
-#include "analysis/plot/report_words.hpp"
+#include "analysis/plot/data/report_words.hpp"
 #include "analysis/plot/scale_bar.hpp"
 #include "analysis/plot/subject.hpp"
 #include "traces/base/number_text.hpp"

@@ -17,7 +17,7 @@
 #include "analysis/plot/headless_window.hpp"
 #include "analysis/plot/map_pictures.hpp"
 #include "analysis/plot/figures/ranking_figure.hpp"
-#include "analysis/plot/report_data.hpp"
+#include "analysis/plot/data/report_data.hpp"
 #include "analysis/plot/report_page.hpp"
 #include "analysis/plot/subject.hpp"
 #include "analysis/plot/figures/timeline_figure.hpp"

@@ -12,7 +12,7 @@
 #include "analysis/plot/axis.hpp"
 #include "analysis/base/html.hpp"
 #include "analysis/plot/report_style.hpp"
-#include "analysis/plot/report_words.hpp"
+#include "analysis/plot/data/report_words.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::plot {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/plot/report_data.hpp"
+#include "analysis/plot/data/report_data.hpp"
 
 namespace vestige::plot {
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "analysis/plot/accuracy_data.hpp"
+#include "analysis/plot/data/accuracy_data.hpp"
 #include "analysis/plot/figure.hpp"
 
 namespace vestige::plot {

@@ -10,7 +10,7 @@
 
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/palette.hpp"
-#include "analysis/plot/report_words.hpp"
+#include "analysis/plot/data/report_words.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::plot {

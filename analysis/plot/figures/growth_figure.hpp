@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "analysis/plot/figure.hpp"
-#include "analysis/plot/growth_data.hpp"
+#include "analysis/plot/data/growth_data.hpp"
 
 namespace vestige::plot {
 

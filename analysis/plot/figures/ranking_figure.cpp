@@ -9,7 +9,7 @@
 
 #include "analysis/plot/axis.hpp"
 #include "analysis/plot/palette.hpp"
-#include "analysis/plot/report_words.hpp"
+#include "analysis/plot/data/report_words.hpp"
 
 namespace vestige::plot {
 

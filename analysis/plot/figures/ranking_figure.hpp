@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "analysis/plot/figure.hpp"
-#include "analysis/plot/report_data.hpp"
+#include "analysis/plot/data/report_data.hpp"
 
 namespace vestige::plot {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/plot/figure.hpp"
-#include "analysis/plot/scene_moments.hpp"
+#include "analysis/plot/data/scene_moments.hpp"
 #include "analysis/plot/subject.hpp"
 
 namespace vestige::plot {

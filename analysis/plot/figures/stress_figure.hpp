@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "analysis/plot/figure.hpp"
-#include "analysis/plot/stress_data.hpp"
+#include "analysis/plot/data/stress_data.hpp"
 
 namespace vestige::plot {
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "analysis/plot/figure.hpp"
-#include "analysis/plot/sweep_data.hpp"
+#include "analysis/plot/data/sweep_data.hpp"
 
 namespace vestige::plot {
 

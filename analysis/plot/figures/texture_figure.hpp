@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "analysis/plot/figure.hpp"
-#include "analysis/plot/texture_contacts.hpp"
+#include "analysis/plot/data/texture_contacts.hpp"
 
 namespace vestige::plot {
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/texture_contacts.hpp"
+#include "analysis/plot/data/texture_contacts.hpp"
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

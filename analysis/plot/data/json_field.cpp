@@ -1,4 +1,4 @@
-#include "analysis/plot/json_field.hpp"
+#include "analysis/plot/data/json_field.hpp"
 
 #include <fmt/format.h>
 

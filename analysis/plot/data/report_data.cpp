@@ -1,4 +1,4 @@
-#include "analysis/plot/report_data.hpp"
+#include "analysis/plot/data/report_data.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "analysis/plot/json_field.hpp"
+#include "analysis/plot/data/json_field.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"

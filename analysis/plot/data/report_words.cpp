@@ -1,4 +1,4 @@
-#include "analysis/plot/report_words.hpp"
+#include "analysis/plot/data/report_words.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "analysis/plot/growth_data.hpp"
+#include "analysis/plot/data/growth_data.hpp"
 
 #include <algorithm>
 
-#include "analysis/plot/json_field.hpp"
+#include "analysis/plot/data/json_field.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::plot {

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/plot/report_data.hpp"
+#include "analysis/plot/data/report_data.hpp"
 
 namespace vestige::plot {
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/scene_moments.hpp"
+#include "analysis/plot/data/scene_moments.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
-#include "analysis/plot/accuracy_data.hpp"
+#include "analysis/plot/data/accuracy_data.hpp"
 
 #include <algorithm>
 
-#include "analysis/plot/json_field.hpp"
+#include "analysis/plot/data/json_field.hpp"
 
 namespace vestige::plot {
 

@@ -1,10 +1,10 @@
-#include "analysis/plot/sweep_data.hpp"
+#include "analysis/plot/data/sweep_data.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "analysis/plot/json_field.hpp"
+#include "analysis/plot/data/json_field.hpp"
 
 namespace vestige::plot {
 
