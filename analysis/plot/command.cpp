@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "analysis/plot/figure_export.hpp"
-#include "analysis/plot/headless_window.hpp"
+#include "analysis/plot/canvas/figure_export.hpp"
+#include "analysis/plot/canvas/headless_window.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
 

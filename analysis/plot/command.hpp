@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/plot/figure.hpp"
+#include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/data/scene_moments.hpp"
 #include "traces/files/output_file.hpp"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/plot/body_sides.hpp"
-#include "analysis/plot/figure.hpp"
+#include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/studio.hpp"
 #include "analysis/plot/surface.hpp"
 #include "detector/actuator_map.hpp"

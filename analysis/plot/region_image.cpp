@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "analysis/plot/canvas.hpp"
+#include "analysis/plot/canvas/canvas.hpp"
 #include "analysis/plot/studio.hpp"
 
 namespace vestige::plot {

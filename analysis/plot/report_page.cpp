@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "analysis/batch/ranking.hpp"
-#include "analysis/plot/axis.hpp"
+#include "analysis/plot/canvas/axis.hpp"
 #include "analysis/base/html.hpp"
 #include "analysis/plot/report_style.hpp"
 #include "analysis/plot/data/report_words.hpp"

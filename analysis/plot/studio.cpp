@@ -7,7 +7,7 @@
 #include <glm/vec2.hpp>
 #include <limits>
 
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

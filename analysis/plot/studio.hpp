@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/plot/camera.hpp"
-#include "analysis/plot/canvas.hpp"
+#include "analysis/plot/canvas/canvas.hpp"
 #include "analysis/plot/depth_map.hpp"
 #include "analysis/plot/surface.hpp"
 

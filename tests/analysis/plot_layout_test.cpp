@@ -3,8 +3,8 @@
 
 #include <vector>
 
-#include "analysis/plot/axis.hpp"
-#include "analysis/plot/free_place.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/canvas/free_place.hpp"
 
 namespace vestige::plot {
 namespace {

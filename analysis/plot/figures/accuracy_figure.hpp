@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "analysis/plot/data/accuracy_data.hpp"
-#include "analysis/plot/figure.hpp"
+#include "analysis/plot/canvas/figure.hpp"
 
 namespace vestige::plot {
 

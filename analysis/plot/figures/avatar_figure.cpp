@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/plot/axis.hpp"
-#include "analysis/plot/palette.hpp"
-#include "analysis/plot/scale_bar.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/studio.hpp"
 #include "traces/motion/animation_choice.hpp"
 

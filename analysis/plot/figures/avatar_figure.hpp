@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/plot/figure.hpp"
+#include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/subject.hpp"
 
 namespace vestige::plot {

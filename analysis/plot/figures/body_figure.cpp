@@ -7,14 +7,14 @@
 #include <cmath>
 #include <optional>
 
-#include "analysis/plot/axis.hpp"
+#include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/body_sides.hpp"
 #include "analysis/plot/contact_density.hpp"
-#include "analysis/plot/heat.hpp"
-#include "analysis/plot/palette.hpp"
-#include "analysis/plot/region_colours.hpp"
+#include "analysis/plot/canvas/heat.hpp"
+#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/plot/canvas/region_colours.hpp"
 #include "analysis/plot/region_image.hpp"
-#include "analysis/plot/scale_bar.hpp"
+#include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/studio.hpp"
 
 namespace vestige::plot {

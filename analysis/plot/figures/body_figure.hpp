@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "analysis/plot/figure.hpp"
+#include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/subject.hpp"
 #include "detector/output/contacts_csv.hpp"
 

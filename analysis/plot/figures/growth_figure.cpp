@@ -6,8 +6,8 @@
 #include <array>
 #include <utility>
 
-#include "analysis/plot/axis.hpp"
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

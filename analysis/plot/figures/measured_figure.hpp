@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "analysis/plot/figure.hpp"
+#include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/figures/timeline_figure.hpp"
 
 namespace vestige::plot {

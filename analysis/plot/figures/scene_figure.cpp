@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "analysis/plot/axis.hpp"
-#include "analysis/plot/palette.hpp"
-#include "analysis/plot/region_colours.hpp"
-#include "analysis/plot/scale_bar.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/canvas/palette.hpp"
+#include "analysis/plot/canvas/region_colours.hpp"
+#include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/studio.hpp"
 
 namespace vestige::plot {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <set>
 
-#include "analysis/plot/axis.hpp"
-#include "analysis/plot/free_place.hpp"
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/canvas/free_place.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

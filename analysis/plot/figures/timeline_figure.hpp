@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/plot/figure.hpp"
+#include "analysis/plot/canvas/figure.hpp"
 
 namespace vestige::plot {
 

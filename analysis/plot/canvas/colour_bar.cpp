@@ -1,8 +1,8 @@
-#include "analysis/plot/colour_bar.hpp"
+#include "analysis/plot/canvas/colour_bar.hpp"
 
 #include <cmath>
 
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

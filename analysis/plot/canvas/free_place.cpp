@@ -1,4 +1,4 @@
-#include "analysis/plot/free_place.hpp"
+#include "analysis/plot/canvas/free_place.hpp"
 
 #include <algorithm>
 #include <numeric>

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/plot/canvas.hpp"
+#include "analysis/plot/canvas/canvas.hpp"
 
 namespace vestige::plot {
 

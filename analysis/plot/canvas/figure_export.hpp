@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "analysis/plot/figure.hpp"
+#include "analysis/plot/canvas/figure.hpp"
 
 namespace vestige::plot {
 

@@ -1,9 +1,9 @@
-#include "analysis/plot/scale_bar.hpp"
+#include "analysis/plot/canvas/scale_bar.hpp"
 
 #include <fmt/format.h>
 
-#include "analysis/plot/axis.hpp"
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

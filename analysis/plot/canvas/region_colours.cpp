@@ -1,9 +1,9 @@
-#include "analysis/plot/region_colours.hpp"
+#include "analysis/plot/canvas/region_colours.hpp"
 
 #include <array>
 #include <cmath>
 
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

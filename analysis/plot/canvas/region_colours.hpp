@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "analysis/plot/canvas.hpp"
+#include "analysis/plot/canvas/canvas.hpp"
 
 namespace vestige::plot {
 

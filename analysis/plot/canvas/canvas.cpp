@@ -1,4 +1,4 @@
-#include "analysis/plot/canvas.hpp"
+#include "analysis/plot/canvas/canvas.hpp"
 
 #include <fmt/format.h>
 #include <vtkBrush.h>

@@ -1,4 +1,4 @@
-#include "analysis/plot/figure_export.hpp"
+#include "analysis/plot/canvas/figure_export.hpp"
 
 #include <fmt/format.h>
 #include <vtkBase64Utilities.h>
@@ -23,7 +23,7 @@
 #include <cstring>
 #include <sstream>
 
-#include "analysis/plot/headless_window.hpp"
+#include "analysis/plot/canvas/headless_window.hpp"
 
 namespace vestige::plot {
 

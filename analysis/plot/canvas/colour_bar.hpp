@@ -3,8 +3,8 @@
 #include <string_view>
 #include <vector>
 
-#include "analysis/plot/axis.hpp"
-#include "analysis/plot/canvas.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/canvas/canvas.hpp"
 
 namespace vestige::plot {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "analysis/plot/canvas.hpp"
+#include "analysis/plot/canvas/canvas.hpp"
 
 namespace vestige::plot {
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/heat.hpp"
+#include "analysis/plot/canvas/heat.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "analysis/plot/axis.hpp"
-#include "analysis/plot/colour_bar.hpp"
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/canvas/colour_bar.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 

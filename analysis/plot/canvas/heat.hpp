@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/plot/canvas.hpp"
+#include "analysis/plot/canvas/canvas.hpp"
 
 namespace vestige::plot {
 

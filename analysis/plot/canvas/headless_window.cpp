@@ -1,4 +1,4 @@
-#include "analysis/plot/headless_window.hpp"
+#include "analysis/plot/canvas/headless_window.hpp"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>

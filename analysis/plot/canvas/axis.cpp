@@ -1,4 +1,4 @@
-#include "analysis/plot/axis.hpp"
+#include "analysis/plot/canvas/axis.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "analysis/plot/palette.hpp"
+#include "analysis/plot/canvas/palette.hpp"
 
 namespace vestige::plot {
 
