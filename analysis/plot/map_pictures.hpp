@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "analysis/plot/body_sides.hpp"
+#include "analysis/plot/studio/body_sides.hpp"
 #include "analysis/plot/canvas/figure.hpp"
-#include "analysis/plot/studio.hpp"
-#include "analysis/plot/surface.hpp"
+#include "analysis/plot/studio/studio.hpp"
+#include "analysis/plot/studio/surface.hpp"
 #include "detector/actuator_map.hpp"
 #include "detector/output/contacts_csv.hpp"
 #include "traces/scene/avatar.hpp"

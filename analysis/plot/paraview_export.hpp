@@ -6,7 +6,7 @@
 #include <string>
 
 #include "analysis/plot/paraview_series.hpp"
-#include "analysis/plot/subject.hpp"
+#include "analysis/plot/studio/subject.hpp"
 #include "detector/actuators/intensity.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 

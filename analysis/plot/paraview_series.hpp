@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "analysis/base/growing_folder.hpp"
-#include "analysis/plot/subject.hpp"
+#include "analysis/plot/studio/subject.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/scene/trace.hpp"
 

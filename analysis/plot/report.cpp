@@ -19,7 +19,7 @@
 #include "analysis/plot/figures/ranking_figure.hpp"
 #include "analysis/plot/data/report_data.hpp"
 #include "analysis/plot/report_page.hpp"
-#include "analysis/plot/subject.hpp"
+#include "analysis/plot/studio/subject.hpp"
 #include "analysis/plot/figures/timeline_figure.hpp"
 #include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuators/intensity.hpp"

@@ -9,7 +9,7 @@
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
-#include "analysis/plot/studio.hpp"
+#include "analysis/plot/studio/studio.hpp"
 #include "traces/motion/animation_choice.hpp"
 
 namespace vestige::plot {

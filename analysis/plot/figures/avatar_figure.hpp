@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/plot/canvas/figure.hpp"
-#include "analysis/plot/subject.hpp"
+#include "analysis/plot/studio/subject.hpp"
 
 namespace vestige::plot {
 

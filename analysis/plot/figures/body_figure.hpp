@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "analysis/plot/canvas/figure.hpp"
-#include "analysis/plot/subject.hpp"
+#include "analysis/plot/studio/subject.hpp"
 #include "detector/output/contacts_csv.hpp"
 
 namespace vestige::plot {

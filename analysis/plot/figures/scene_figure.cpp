@@ -10,7 +10,7 @@
 #include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/region_colours.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
-#include "analysis/plot/studio.hpp"
+#include "analysis/plot/studio/studio.hpp"
 
 namespace vestige::plot {
 

@@ -5,7 +5,7 @@
 
 #include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/data/scene_moments.hpp"
-#include "analysis/plot/subject.hpp"
+#include "analysis/plot/studio/subject.hpp"
 
 namespace vestige::plot {
 

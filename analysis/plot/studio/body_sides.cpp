@@ -1,8 +1,8 @@
-#include "analysis/plot/body_sides.hpp"
+#include "analysis/plot/studio/body_sides.hpp"
 
 #include <algorithm>
 
-#include "analysis/plot/studio.hpp"
+#include "analysis/plot/studio/studio.hpp"
 
 namespace vestige::plot {
 

@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/plot/camera.hpp"
+#include "analysis/plot/studio/camera.hpp"
 #include "analysis/plot/canvas/canvas.hpp"
-#include "analysis/plot/depth_map.hpp"
-#include "analysis/plot/surface.hpp"
+#include "analysis/plot/studio/depth_map.hpp"
+#include "analysis/plot/studio/surface.hpp"
 
 namespace vestige::plot {
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/surface.hpp"
+#include "analysis/plot/studio/surface.hpp"
 
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "analysis/plot/depth_map.hpp"
+#include "analysis/plot/studio/depth_map.hpp"
 
 #include <algorithm>
 #include <array>

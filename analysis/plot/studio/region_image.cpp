@@ -1,4 +1,4 @@
-#include "analysis/plot/region_image.hpp"
+#include "analysis/plot/studio/region_image.hpp"
 
 #include <algorithm>
 #include <cmath>

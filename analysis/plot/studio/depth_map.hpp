@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
-#include "analysis/plot/camera.hpp"
-#include "analysis/plot/surface.hpp"
+#include "analysis/plot/studio/camera.hpp"
+#include "analysis/plot/studio/surface.hpp"
 
 namespace vestige::plot {
 

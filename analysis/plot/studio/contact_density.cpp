@@ -1,4 +1,4 @@
-#include "analysis/plot/contact_density.hpp"
+#include "analysis/plot/studio/contact_density.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "analysis/plot/surface.hpp"
+#include "analysis/plot/studio/surface.hpp"
 #include "detector/output/contacts_csv.hpp"
 
 namespace vestige::plot {

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "analysis/plot/camera.hpp"
-#include "analysis/plot/surface.hpp"
+#include "analysis/plot/studio/camera.hpp"
+#include "analysis/plot/studio/surface.hpp"
 
 namespace vestige::plot {
 

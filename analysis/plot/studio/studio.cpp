@@ -1,4 +1,4 @@
-#include "analysis/plot/studio.hpp"
+#include "analysis/plot/studio/studio.hpp"
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/plot/canvas/canvas.hpp"
-#include "analysis/plot/studio.hpp"
+#include "analysis/plot/studio/studio.hpp"
 
 namespace vestige::plot {
 

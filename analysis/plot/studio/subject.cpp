@@ -1,4 +1,4 @@
-#include "analysis/plot/subject.hpp"
+#include "analysis/plot/studio/subject.hpp"
 
 #include <glm/vec2.hpp>
 
