@@ -1,4 +1,4 @@
-#include "analysis/plot/report.hpp"
+#include "analysis/plot/report/report.hpp"
 
 #include <fmt/format.h>
 
@@ -15,10 +15,10 @@
 #include "analysis/plot/canvas/figure_export.hpp"
 #include "analysis/base/growing_folder.hpp"
 #include "analysis/plot/canvas/headless_window.hpp"
-#include "analysis/plot/map_pictures.hpp"
+#include "analysis/plot/report/map_pictures.hpp"
 #include "analysis/plot/figures/ranking_figure.hpp"
 #include "analysis/plot/data/report_data.hpp"
-#include "analysis/plot/report_page.hpp"
+#include "analysis/plot/report/report_page.hpp"
 #include "analysis/plot/studio/subject.hpp"
 #include "analysis/plot/figures/timeline_figure.hpp"
 #include "detector/actuators/actuator_layout.hpp"

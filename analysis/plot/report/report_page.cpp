@@ -1,4 +1,4 @@
-#include "analysis/plot/report_page.hpp"
+#include "analysis/plot/report/report_page.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "analysis/batch/ranking.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/base/html.hpp"
-#include "analysis/plot/report_style.hpp"
+#include "analysis/plot/report/report_style.hpp"
 #include "analysis/plot/data/report_words.hpp"
 #include "traces/base/number_text.hpp"
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/map_pictures.hpp"
+#include "analysis/plot/report/map_pictures.hpp"
 
 #include <fmt/format.h>
 
