@@ -10,7 +10,7 @@
 #include "analysis/plot/figures/body_figure.hpp"
 #include "analysis/plot/figures/growth_figure.hpp"
 #include "analysis/plot/figures/measured_figure.hpp"
-#include "analysis/plot/paraview_export.hpp"
+#include "analysis/plot/paraview/paraview_export.hpp"
 #include "analysis/plot/report/report.hpp"
 #include "analysis/plot/figures/scene_figure.hpp"
 #include "analysis/plot/figures/stress_figure.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "analysis/plot/paraview_series.hpp"
+#include "analysis/plot/paraview/paraview_series.hpp"
 #include "analysis/plot/studio/subject.hpp"
 #include "detector/actuators/intensity.hpp"
 #include "traces/trace_file/trace_reader.hpp"

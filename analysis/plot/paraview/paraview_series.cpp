@@ -1,4 +1,4 @@
-#include "analysis/plot/paraview_series.hpp"
+#include "analysis/plot/paraview/paraview_series.hpp"
 
 #include <fmt/format.h>
 #include <vtkCellArray.h>

@@ -1,4 +1,4 @@
-#include "analysis/plot/paraview_export.hpp"
+#include "analysis/plot/paraview/paraview_export.hpp"
 
 #include <algorithm>
 #include <cmath>
