@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "analysis/plot/draw.hpp"
+#include "cli/plot/draw.hpp"
 #include "cli/help/command_table.hpp"
 #include "cli/help/completion.hpp"
 #include "cli/help/help_text.hpp"

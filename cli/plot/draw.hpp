@@ -1,6 +1,6 @@
 #pragma once
 
-#include "analysis/plot/command.hpp"
+#include "cli/plot/command.hpp"
 
 namespace vestige::plot {
 

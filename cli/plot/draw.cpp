@@ -1,4 +1,4 @@
-#include "analysis/plot/draw.hpp"
+#include "cli/plot/draw.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/command.hpp"
+#include "cli/plot/command.hpp"
 
 #include <fmt/format.h>
 
