@@ -12,10 +12,10 @@
 
 #include "analysis/accuracy/accuracy_report.hpp"
 #include "analysis/base/provenance.hpp"
-#include "cli/detectors.hpp"
+#include "cli/choices/detectors.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/scene.hpp"
-#include "cli/scene_choice.hpp"
+#include "cli/choices/scene.hpp"
+#include "cli/choices/scene_choice.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/scene/trace.hpp"

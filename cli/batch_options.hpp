@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "analysis/batch/batch_plan.hpp"
-#include "cli/detectors.hpp"
-#include "cli/law_choice.hpp"
+#include "cli/choices/detectors.hpp"
+#include "cli/choices/law_choice.hpp"
 #include "cli/options.hpp"
 
 namespace vestige::cli {

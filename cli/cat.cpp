@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "cli/range_choice.hpp"
+#include "cli/choices/range_choice.hpp"
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/trace_file/definitions.hpp"

@@ -7,7 +7,7 @@
 
 #include "cli/help/validators.hpp"
 #include "cli/output_bytes.hpp"
-#include "cli/scene.hpp"
+#include "cli/choices/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/exchange/frame_file.hpp"

@@ -10,8 +10,8 @@
 #include "analysis/base/provenance.hpp"
 #include "analysis/frequency/sweep_report.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/scene.hpp"
-#include "cli/sweep_choice.hpp"
+#include "cli/choices/scene.hpp"
+#include "cli/choices/sweep_choice.hpp"
 #include "cli/verbs.hpp"
 
 namespace vestige::cli {

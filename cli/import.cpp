@@ -9,8 +9,8 @@
 
 #include "analysis/base/provenance.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/motion.hpp"
-#include "cli/scene.hpp"
+#include "cli/choices/motion.hpp"
+#include "cli/choices/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/exchange/collider_rows.hpp"
 #include "traces/scene/colliders.hpp"

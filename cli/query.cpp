@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "analysis/base/provenance.hpp"
-#include "cli/detectors.hpp"
+#include "cli/choices/detectors.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 

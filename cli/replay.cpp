@@ -14,10 +14,10 @@
 
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/base/provenance.hpp"
-#include "cli/detectors.hpp"
+#include "cli/choices/detectors.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/law_choice.hpp"
-#include "cli/scene.hpp"
+#include "cli/choices/law_choice.hpp"
+#include "cli/choices/scene.hpp"
 #include "cli/verbs.hpp"
 #include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"

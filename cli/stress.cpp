@@ -10,7 +10,7 @@
 
 #include "analysis/base/provenance.hpp"
 #include "analysis/stress/stress_report.hpp"
-#include "cli/detectors.hpp"
+#include "cli/choices/detectors.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"

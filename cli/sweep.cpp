@@ -8,8 +8,8 @@
 
 #include "analysis/base/provenance.hpp"
 #include "analysis/frequency/sweep_report.hpp"
-#include "cli/scene.hpp"
-#include "cli/sweep_choice.hpp"
+#include "cli/choices/scene.hpp"
+#include "cli/choices/sweep_choice.hpp"
 #include "cli/verbs.hpp"
 #include "traces/mcap/compression.hpp"
 

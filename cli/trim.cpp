@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "cli/range_choice.hpp"
+#include "cli/choices/range_choice.hpp"
 #include "cli/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/options.hpp"
-#include "cli/scene.hpp"
+#include "cli/choices/scene.hpp"
 #include "traces/live/live_recording.hpp"
 #include "traces/recording/recorder.hpp"
 

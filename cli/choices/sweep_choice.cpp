@@ -1,8 +1,8 @@
-#include "cli/sweep_choice.hpp"
+#include "cli/choices/sweep_choice.hpp"
 
 #include <algorithm>
 
-#include "cli/default_trace.hpp"
+#include "cli/choices/default_trace.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"

@@ -1,4 +1,4 @@
-#include "cli/limits_choice.hpp"
+#include "cli/choices/limits_choice.hpp"
 
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/frequency/sweep.hpp"
-#include "cli/contestants.hpp"
+#include "cli/choices/contestants.hpp"
 #include "cli/options.hpp"
 
 namespace vestige::cli {

@@ -1,4 +1,4 @@
-#include "cli/contestants.hpp"
+#include "cli/choices/contestants.hpp"
 
 #include <fmt/format.h>
 

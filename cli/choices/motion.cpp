@@ -1,4 +1,4 @@
-#include "cli/motion.hpp"
+#include "cli/choices/motion.hpp"
 
 #include <fmt/format.h>
 

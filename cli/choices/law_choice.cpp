@@ -1,4 +1,4 @@
-#include "cli/law_choice.hpp"
+#include "cli/choices/law_choice.hpp"
 
 #include <fmt/format.h>
 

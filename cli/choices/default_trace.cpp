@@ -1,9 +1,9 @@
-#include "cli/default_trace.hpp"
+#include "cli/choices/default_trace.hpp"
 
 #include <memory>
 
 #include "analysis/base/provenance.hpp"
-#include "cli/scene.hpp"
+#include "cli/choices/scene.hpp"
 #include "cli/terminal.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/recording/recording.hpp"

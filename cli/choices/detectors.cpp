@@ -1,4 +1,4 @@
-#include "cli/detectors.hpp"
+#include "cli/choices/detectors.hpp"
 
 #include <fmt/format.h>
 

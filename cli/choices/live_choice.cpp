@@ -1,9 +1,9 @@
-#include "cli/live_choice.hpp"
+#include "cli/choices/live_choice.hpp"
 
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "cli/snapshots.hpp"
+#include "cli/choices/snapshots.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/host_port.hpp"
 #include "traces/motion/humanoid.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "analysis/frequency/sweep.hpp"
-#include "cli/detectors.hpp"
+#include "cli/choices/detectors.hpp"
 #include "cli/terminal.hpp"
 
 namespace vestige::cli {

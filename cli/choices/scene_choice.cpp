@@ -1,4 +1,4 @@
-#include "cli/scene_choice.hpp"
+#include "cli/choices/scene_choice.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "analysis/mapping/layouts.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/motion.hpp"
+#include "cli/choices/motion.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {

@@ -1,4 +1,4 @@
-#include "cli/scene.hpp"
+#include "cli/choices/scene.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "cli/snapshots.hpp"
+#include "cli/choices/snapshots.hpp"
 
 #include <csignal>
 
