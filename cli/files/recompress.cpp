@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "cli/rewriting.hpp"
+#include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
 
 namespace vestige::cli {

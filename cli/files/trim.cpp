@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "cli/choices/range_choice.hpp"
-#include "cli/rewriting.hpp"
+#include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 

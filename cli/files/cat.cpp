@@ -8,7 +8,7 @@
 #include <set>
 
 #include "cli/choices/range_choice.hpp"
-#include "cli/rewriting.hpp"
+#include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"

@@ -1,4 +1,4 @@
-#include "cli/rewriting.hpp"
+#include "cli/files/rewriting.hpp"
 
 #include <fmt/format.h>
 

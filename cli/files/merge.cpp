@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "cli/rewriting.hpp"
+#include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/number_text.hpp"
 
