@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "analysis/batch/slurm_script.hpp"
-#include "cli/batch_options.hpp"
+#include "cli/maps/batch_options.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"

@@ -1,4 +1,4 @@
-#include "cli/batch_options.hpp"
+#include "cli/maps/batch_options.hpp"
 
 #include <fmt/format.h>
 

@@ -10,7 +10,7 @@
 #include "analysis/batch/batch_results.hpp"
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/base/provenance.hpp"
-#include "cli/batch_options.hpp"
+#include "cli/maps/batch_options.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"

@@ -14,7 +14,7 @@
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/scoring/contact_recording.hpp"
 #include "analysis/base/provenance.hpp"
-#include "cli/batch_options.hpp"
+#include "cli/maps/batch_options.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
