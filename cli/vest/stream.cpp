@@ -11,7 +11,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/choices/law_choice.hpp"
 #include "cli/choices/scene.hpp"
-#include "cli/sink_choice.hpp"
+#include "cli/vest/sink_choice.hpp"
 #include "cli/verbs.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/actuators/actuator_map_watch.hpp"

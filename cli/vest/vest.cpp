@@ -6,7 +6,7 @@
 
 #include "analysis/base/provenance.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/sink_choice.hpp"
+#include "cli/vest/sink_choice.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"

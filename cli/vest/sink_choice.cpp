@@ -1,4 +1,4 @@
-#include "cli/sink_choice.hpp"
+#include "cli/vest/sink_choice.hpp"
 
 #include <fmt/format.h>
 #include <strings.h>
