@@ -1,6 +1,6 @@
 #include "transport/frame_file_sink.hpp"
 
-#include "transport/vest_frame.hpp"
+#include "transport/wire/vest_frame.hpp"
 
 namespace vestige {
 

@@ -7,8 +7,8 @@
 
 #include "transport/actuator_sink.hpp"
 #include "transport/serial_port.hpp"
-#include "transport/vest_frame.hpp"
-#include "transport/xbee_api.hpp"
+#include "transport/wire/vest_frame.hpp"
+#include "transport/wire/xbee_api.hpp"
 
 namespace vestige {
 

@@ -10,7 +10,7 @@
 
 #include "cli/options.hpp"
 #include "transport/actuator_sink.hpp"
-#include "transport/vest_frame.hpp"
+#include "transport/wire/vest_frame.hpp"
 
 namespace vestige {
 class FrameFileSink;

@@ -1,9 +1,9 @@
 #include <algorithm>
 
 #include "tests/fuzz/require.hpp"
-#include "transport/cobs.hpp"
-#include "transport/vest_frame.hpp"
-#include "transport/xbee_api.hpp"
+#include "transport/wire/cobs.hpp"
+#include "transport/wire/vest_frame.hpp"
+#include "transport/wire/xbee_api.hpp"
 
 // Whatever comes over the line, through an XBee or not, reading it ends; and it is read the same in whatever pieces.
 // The first byte of the input chooses the way and the length of the pieces.

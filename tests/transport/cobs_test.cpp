@@ -1,4 +1,4 @@
-#include "transport/cobs.hpp"
+#include "transport/wire/cobs.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "transport/crc16.hpp"
+#include "transport/wire/crc16.hpp"
 
 namespace vestige {
 namespace {

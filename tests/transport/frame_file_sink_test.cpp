@@ -9,7 +9,7 @@
 #include "tests/support/test_data.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
-#include "transport/vest_frame.hpp"
+#include "transport/wire/vest_frame.hpp"
 
 namespace vestige {
 namespace {

@@ -1,4 +1,4 @@
-#include "transport/vest_frame.hpp"
+#include "transport/wire/vest_frame.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "tests/transport/wire_answers.hpp"
-#include "transport/cobs.hpp"
+#include "transport/wire/cobs.hpp"
 
 namespace vestige {
 namespace {

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "transport/cobs.hpp"
-#include "transport/crc16.hpp"
+#include "transport/wire/cobs.hpp"
+#include "transport/wire/crc16.hpp"
 
 // What a board sends, put together for tests.
 

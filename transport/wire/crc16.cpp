@@ -1,4 +1,4 @@
-#include "transport/crc16.hpp"
+#include "transport/wire/crc16.hpp"
 
 #include <boost/crc.hpp>
 

@@ -1,4 +1,4 @@
-#include "transport/xbee_api.hpp"
+#include "transport/wire/xbee_api.hpp"
 
 #include <fmt/format.h>
 

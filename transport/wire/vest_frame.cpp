@@ -1,11 +1,11 @@
-#include "transport/vest_frame.hpp"
+#include "transport/wire/vest_frame.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
 
-#include "transport/cobs.hpp"
-#include "transport/crc16.hpp"
+#include "transport/wire/cobs.hpp"
+#include "transport/wire/crc16.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "transport/cobs.hpp"
+#include "transport/wire/cobs.hpp"
 
 #include <algorithm>
 
