@@ -10,9 +10,9 @@
 #include "cli/help/validators.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/output_file.hpp"
-#include "transport/frame_file_sink.hpp"
-#include "transport/osc_sink.hpp"
-#include "transport/serial_sink.hpp"
+#include "transport/sinks/frame_file_sink.hpp"
+#include "transport/sinks/osc_sink.hpp"
+#include "transport/sinks/serial_sink.hpp"
 
 namespace vestige::cli {
 

@@ -1,4 +1,4 @@
-#include "transport/serial_port.hpp"
+#include "transport/sinks/serial_port.hpp"
 
 #include <gmock/gmock.h>
 #include <grp.h>

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "transport/actuator_sink.hpp"
-#include "transport/osc_address.hpp"
+#include "transport/sinks/osc_address.hpp"
 
 namespace vestige {
 

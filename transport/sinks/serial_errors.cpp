@@ -1,4 +1,4 @@
-#include "transport/serial_errors.hpp"
+#include "transport/sinks/serial_errors.hpp"
 
 #include <fmt/format.h>
 #include <grp.h>
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <system_error>
 
-#include "transport/serial_port.hpp"
+#include "transport/sinks/serial_port.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "transport/serial_port.hpp"
+#include "transport/sinks/serial_port.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -21,7 +21,7 @@
 
 #include "traces/base/descriptor.hpp"
 #include "transport/actuator_sink.hpp"
-#include "transport/serial_errors.hpp"
+#include "transport/sinks/serial_errors.hpp"
 
 namespace vestige {
 

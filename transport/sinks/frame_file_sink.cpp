@@ -1,4 +1,4 @@
-#include "transport/frame_file_sink.hpp"
+#include "transport/sinks/frame_file_sink.hpp"
 
 #include "transport/wire/vest_frame.hpp"
 

@@ -1,4 +1,4 @@
-#include "transport/osc_address.hpp"
+#include "transport/sinks/osc_address.hpp"
 
 #include <fmt/format.h>
 

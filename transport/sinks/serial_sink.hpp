@@ -6,7 +6,7 @@
 #include <string>
 
 #include "transport/actuator_sink.hpp"
-#include "transport/serial_port.hpp"
+#include "transport/sinks/serial_port.hpp"
 #include "transport/wire/vest_frame.hpp"
 #include "transport/wire/xbee_api.hpp"
 

@@ -1,4 +1,4 @@
-#include "transport/serial_sink.hpp"
+#include "transport/sinks/serial_sink.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "transport/osc_sink.hpp"
+#include "transport/sinks/osc_sink.hpp"
 
 #include <fmt/format.h>
 #include <lo/lo.h>
