@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/traces/mcap_files.hpp"
+#include "tests/traces/mcap/mcap_files.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/mcap/writer.hpp"
 #include "traces/trace_file/trace_format.hpp"

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "tests/traces/mcap_files.hpp"
+#include "tests/traces/mcap/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/trace_file/mcap_output.hpp"

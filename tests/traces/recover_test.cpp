@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "tests/support/memory_growth.hpp"
-#include "tests/traces/mcap_files.hpp"
+#include "tests/traces/mcap/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"

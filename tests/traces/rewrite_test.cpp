@@ -7,7 +7,7 @@
 
 #include <ctime>
 
-#include "tests/traces/mcap_files.hpp"
+#include "tests/traces/mcap/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/repair/trace_check.hpp"

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "tests/support/test_data.hpp"
-#include "tests/traces/mcap_files.hpp"
+#include "tests/traces/mcap/mcap_files.hpp"
 #include "tests/traces/small_trace.hpp"
 #include "tests/traces/trace_fixture.hpp"
 #include "traces/base/error.hpp"
