@@ -8,7 +8,7 @@
 
 #include "detector/actuators/actuator_drive.hpp"
 #include "tests/support/test_data.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 
 namespace vestige {
 namespace {

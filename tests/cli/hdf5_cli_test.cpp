@@ -9,7 +9,7 @@
 
 #include "tests/cli/exchange_fixture.hpp"
 #include "tests/support/builtin_avatar.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/exchange/hdf5_library.hpp"
 #include "traces/base/shared_library.hpp"

@@ -3,7 +3,7 @@
 
 #include <fstream>
 
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace {

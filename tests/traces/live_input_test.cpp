@@ -9,7 +9,7 @@
 
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/osc.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"

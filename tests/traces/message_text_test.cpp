@@ -7,7 +7,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 
 namespace vestige {
 namespace {

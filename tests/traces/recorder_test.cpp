@@ -9,8 +9,8 @@
 #include <thread>
 
 #include "tests/support/test_data.hpp"
-#include "tests/traces/small_trace.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/small_trace.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/mcap/stream_reader.hpp"

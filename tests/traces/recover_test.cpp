@@ -10,7 +10,7 @@
 
 #include "tests/support/memory_growth.hpp"
 #include "tests/traces/mcap/mcap_files.hpp"
-#include "tests/traces/small_trace.hpp"
+#include "tests/traces/trace_file/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"

@@ -8,7 +8,7 @@
 #include <ctime>
 
 #include "tests/traces/mcap/mcap_files.hpp"
-#include "tests/traces/small_trace.hpp"
+#include "tests/traces/trace_file/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/repair/trace_check.hpp"
 #include "traces/trace_file/trace_format.hpp"

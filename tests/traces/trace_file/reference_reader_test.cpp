@@ -7,8 +7,8 @@
 
 #include "tests/support/npm.hpp"
 #include "tests/support/test_data.hpp"
-#include "tests/traces/small_trace.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/small_trace.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/repair/recover.hpp"
 
 namespace vestige {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/mcap/chunk_expander.hpp"
 #include "traces/mcap/crc32.hpp"

@@ -10,8 +10,8 @@
 
 #include "tests/support/memory_growth.hpp"
 #include "tests/support/test_data.hpp"
-#include "tests/traces/small_trace.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/small_trace.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/mcap/encode.hpp"

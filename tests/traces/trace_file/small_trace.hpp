@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "tests/support/test_data.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/decode.hpp"

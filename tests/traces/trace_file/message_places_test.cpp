@@ -6,8 +6,8 @@
 #include <set>
 
 #include "tests/support/message_of.hpp"
-#include "tests/traces/forged_trace.hpp"
-#include "tests/traces/small_trace.hpp"
+#include "tests/traces/trace_file/forged_trace.hpp"
+#include "tests/traces/trace_file/small_trace.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/trace_file/trace_index.hpp"

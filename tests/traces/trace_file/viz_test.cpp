@@ -9,7 +9,7 @@
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/npm.hpp"
 #include "tests/support/test_data.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "tests/traces/mcap/mcap_files.hpp"
-#include "tests/traces/trace_fixture.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/mcap/writer.hpp"
 #include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_messages.hpp"
