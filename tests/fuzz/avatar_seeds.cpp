@@ -4,7 +4,7 @@
 #include <fstream>
 #include <iostream>
 
-#include "tests/traces/gltf_builder.hpp"
+#include "tests/traces/gltf/gltf_builder.hpp"
 
 // Writes one small file for each way in which glTF stores an avatar, in the form that avatar_fuzzer reads.
 

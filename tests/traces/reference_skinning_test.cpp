@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/traces/gltf_builder.hpp"
+#include "tests/traces/gltf/gltf_builder.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige {

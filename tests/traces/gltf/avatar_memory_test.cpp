@@ -9,7 +9,7 @@
 #include <new>
 
 #include "tests/support/test_data.hpp"
-#include "tests/traces/gltf_builder.hpp"
+#include "tests/traces/gltf/gltf_builder.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 
 // How much memory loading takes: this program counts what is on the heap, so it holds nothing but these tests.

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/traces/gltf_builder.hpp"
+#include "tests/traces/gltf/gltf_builder.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "tests/support/test_data.hpp"
-#include "tests/traces/gltf_builder.hpp"
+#include "tests/traces/gltf/gltf_builder.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
 
