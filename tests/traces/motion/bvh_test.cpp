@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/test_data.hpp"
-#include "tests/traces/bvh_text.hpp"
+#include "tests/traces/motion/bvh_text.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

@@ -8,7 +8,7 @@
 #include <algorithm>
 
 #include "tests/support/test_data.hpp"
-#include "tests/traces/bvh_text.hpp"
+#include "tests/traces/motion/bvh_text.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/motion/body_roles.hpp"
 #include "traces/scene/builtin_avatar.hpp"
