@@ -31,7 +31,7 @@ inline std::vector<ActuatorFrame> read_timeline_csv(const std::string& csv) {
 
 /// What the schemas say against a .hjif file; empty: nothing.
 inline std::string hjif_complaints(const std::filesystem::path& file) {
-  const Outcome outcome = run("python3 '" VESTIGE_SOURCE_DIR "/tests/traces/validate_hjif.py' '" +
+  const Outcome outcome = run("python3 '" VESTIGE_SOURCE_DIR "/tests/traces/timeline/validate_hjif.py' '" +
                                   data("hjif").string() + "' '" + file.string() + "'",
                               "/");
   if (outcome.exit_code == 0) return "";
