@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "tests/transport/pseudo_terminal.hpp"
-#include "tests/transport/wire_answers.hpp"
+#include "tests/transport/wire/wire_answers.hpp"
 
 namespace vestige::test {
 

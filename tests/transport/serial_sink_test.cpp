@@ -9,7 +9,7 @@
 #include "tests/transport/driver.hpp"
 #include "tests/transport/fake_board.hpp"
 #include "tests/transport/pseudo_terminal.hpp"
-#include "tests/transport/wire_answers.hpp"
+#include "tests/transport/wire/wire_answers.hpp"
 
 namespace vestige {
 namespace {

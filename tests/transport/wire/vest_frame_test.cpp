@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "tests/transport/wire_answers.hpp"
+#include "tests/transport/wire/wire_answers.hpp"
 #include "transport/wire/cobs.hpp"
 
 namespace vestige {
