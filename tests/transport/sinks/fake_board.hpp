@@ -7,7 +7,7 @@
 #include <optional>
 #include <thread>
 
-#include "tests/transport/pseudo_terminal.hpp"
+#include "tests/transport/sinks/pseudo_terminal.hpp"
 #include "tests/transport/wire/wire_answers.hpp"
 
 namespace vestige::test {

@@ -15,8 +15,8 @@
 #include <thread>
 
 #include "tests/support/test_data.hpp"
-#include "tests/transport/driver.hpp"
-#include "tests/transport/pseudo_terminal.hpp"
+#include "tests/transport/sinks/driver.hpp"
+#include "tests/transport/sinks/pseudo_terminal.hpp"
 #include "traces/files/input_file.hpp"
 #include "transport/actuator_sink.hpp"
 

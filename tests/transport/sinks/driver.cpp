@@ -1,4 +1,4 @@
-#include "tests/transport/driver.hpp"
+#include "tests/transport/sinks/driver.hpp"
 
 #include <linux/serial.h>
 #include <sys/ioctl.h>

@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "tests/support/test_data.hpp"
-#include "tests/transport/driver.hpp"
-#include "tests/transport/fake_board.hpp"
-#include "tests/transport/pseudo_terminal.hpp"
+#include "tests/transport/sinks/driver.hpp"
+#include "tests/transport/sinks/fake_board.hpp"
+#include "tests/transport/sinks/pseudo_terminal.hpp"
 #include "tests/transport/wire/wire_answers.hpp"
 
 namespace vestige {
