@@ -1,4 +1,4 @@
-#include "tests/transport/simulated_board.hpp"
+#include "tests/transport/firmware/simulated_board.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@
 #include "tests/support/background_process.hpp"
 #include "tests/support/process.hpp"
 #include "tests/support/wire_frames.hpp"
-#include "tests/transport/pin_duty.hpp"
+#include "tests/transport/firmware/pin_duty.hpp"
 #include "traces/base/error.hpp"
 
 // The board as a program, used as a client uses a serial port. Nothing here depends on how fast the machine is.

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/transport/pin_duty.hpp"
+#include "tests/transport/firmware/pin_duty.hpp"
 
 struct avr_t;
 struct avr_uart_t;

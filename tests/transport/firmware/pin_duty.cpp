@@ -1,4 +1,4 @@
-#include "tests/transport/pin_duty.hpp"
+#include "tests/transport/firmware/pin_duty.hpp"
 
 namespace vestige::test {
 

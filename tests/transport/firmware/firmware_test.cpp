@@ -9,7 +9,7 @@
 
 #include "tests/support/process.hpp"
 #include "tests/support/wire_frames.hpp"
-#include "tests/transport/simulated_board.hpp"
+#include "tests/transport/firmware/simulated_board.hpp"
 
 // The firmware's own ELF, run in virtual time: times here are the microcontroller's, the same on every machine.
 namespace vestige::test {

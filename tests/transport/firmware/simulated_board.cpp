@@ -1,4 +1,4 @@
-#include "tests/transport/simulated_board.hpp"
+#include "tests/transport/firmware/simulated_board.hpp"
 
 #include <avr_ioport.h>
 #include <avr_timer.h>

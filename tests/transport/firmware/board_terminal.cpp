@@ -1,4 +1,4 @@
-#include "tests/transport/board_terminal.hpp"
+#include "tests/transport/firmware/board_terminal.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <string>
 
-#include "tests/transport/board_terminal.hpp"
-#include "tests/transport/simulated_board.hpp"
+#include "tests/transport/firmware/board_terminal.hpp"
+#include "tests/transport/firmware/simulated_board.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/output_file.hpp"
 
