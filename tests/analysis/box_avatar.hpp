@@ -8,7 +8,7 @@
 #include <fstream>
 #include <vector>
 
-#include "tests/analysis/plot_fixture.hpp"
+#include "tests/analysis/plot/plot_fixture.hpp"
 
 namespace vestige::test {
 

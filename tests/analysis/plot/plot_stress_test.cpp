@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/analysis/plot_fixture.hpp"
+#include "tests/analysis/plot/plot_fixture.hpp"
 
 namespace vestige {
 namespace {

@@ -15,7 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "tests/analysis/plot_fixture.hpp"
+#include "tests/analysis/plot/plot_fixture.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/reference_skinning.hpp"
 #include "traces/trace_file/trace_reader.hpp"

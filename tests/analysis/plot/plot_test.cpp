@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "tests/analysis/plot_fixture.hpp"
+#include "tests/analysis/plot/plot_fixture.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige {
