@@ -7,7 +7,7 @@
 #include <cmath>
 #include <functional>
 
-#include "tests/cli/exchange_fixture.hpp"
+#include "tests/cli/files/exchange_fixture.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/scene/builtin_avatar.hpp"

@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "tests/cli/exchange_fixture.hpp"
+#include "tests/cli/files/exchange_fixture.hpp"
 #include "tests/support/npm.hpp"
 #include "traces/exchange/pose_csv.hpp"
 
