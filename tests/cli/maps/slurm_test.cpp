@@ -40,7 +40,7 @@ class Slurm : public test::CommandLineTest {
     return run(
         "cat >job.sh <<'JOB'\n" + script +
         "\nJOB\nmkdir cluster && chmod 755 . && timeout -s KILL 300 unshare -u -p -f --kill-child --mount-proc bash "
-        "'" VESTIGE_SOURCE_DIR "/tests/cli/slurm_cluster.sh' \"$PWD/cluster\" 'bash job.sh'");
+        "'" VESTIGE_SOURCE_DIR "/tests/cli/maps/slurm_cluster.sh' \"$PWD/cluster\" 'bash job.sh'");
   }
 };
 

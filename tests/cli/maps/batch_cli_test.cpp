@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "tests/cli/batch_command_line.hpp"
+#include "tests/cli/maps/batch_command_line.hpp"
 
 namespace vestige {
 namespace {

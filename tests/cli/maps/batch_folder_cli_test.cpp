@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "tests/cli/batch_command_line.hpp"
+#include "tests/cli/maps/batch_command_line.hpp"
 
 namespace vestige {
 namespace {
