@@ -3,7 +3,7 @@
 // --seed K --threads N [--family NAME]. Prints JSON; exits 4 where anything differs. Which pairs are asked about
 // depends on --seed, --pairs and --family alone.
 
-#include "tests/support/agreement.hpp"
+#include "tests/support/pairs/agreement.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "analysis/base/provenance.hpp"
-#include "tests/support/contact_cases.hpp"
+#include "tests/support/pairs/contact_cases.hpp"
 
 namespace {
 

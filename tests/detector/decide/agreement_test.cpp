@@ -1,13 +1,13 @@
 // The deciding code against the slow truth, on cases that are hard in every way we know. The program `agreement` asks
 // the same of as many pairs as one likes.
 
-#include "tests/support/agreement.hpp"
+#include "tests/support/pairs/agreement.hpp"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "tests/support/contact_cases.hpp"
+#include "tests/support/pairs/contact_cases.hpp"
 
 namespace vestige {
 namespace {

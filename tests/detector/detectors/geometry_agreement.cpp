@@ -16,7 +16,7 @@
 #include "analysis/base/provenance.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
-#include "tests/support/adversarial_pairs.hpp"
+#include "tests/support/pairs/adversarial_pairs.hpp"
 
 namespace vestige {
 namespace {

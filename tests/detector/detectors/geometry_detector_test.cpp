@@ -12,7 +12,7 @@
 
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
-#include "tests/support/adversarial_pairs.hpp"
+#include "tests/support/pairs/adversarial_pairs.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
 #include "tests/support/scene_run.hpp"

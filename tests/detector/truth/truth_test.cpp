@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "analysis/stress/query_file.hpp"
-#include "tests/support/contact_cases.hpp"
+#include "tests/support/pairs/contact_cases.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace vestige {

@@ -1,4 +1,4 @@
-#include "tests/support/agreement.hpp"
+#include "tests/support/pairs/agreement.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "detector/decision.hpp"
 #include "detector/truth/truth.hpp"
-#include "tests/support/contact_cases.hpp"
+#include "tests/support/pairs/contact_cases.hpp"
 
 namespace vestige::test {
 

@@ -1,4 +1,4 @@
-#include "tests/support/contact_cases.hpp"
+#include "tests/support/pairs/contact_cases.hpp"
 
 #include <algorithm>
 #include <array>
