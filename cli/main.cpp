@@ -11,6 +11,7 @@
 #include "cli/help/suggest.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/system_error.hpp"
 #include "version.hpp"
 
 namespace vestige::cli {

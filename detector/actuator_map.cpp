@@ -10,11 +10,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/base/strict_json.hpp"
+#include "traces/files/input_file.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {

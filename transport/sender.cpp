@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <utility>
 
+#include "traces/base/system_error.hpp"
 #include "traces/files/output_file.hpp"
 
 namespace vestige {

@@ -8,8 +8,8 @@
 
 #include "analysis/accuracy/event_score.hpp"
 #include "analysis/accuracy/moving_scene.hpp"
-#include "analysis/run/skinning_error.hpp"
 #include "analysis/accuracy/true_contacts.hpp"
+#include "analysis/run/skinning_error.hpp"
 #include "detector/detector.hpp"
 
 namespace vestige {

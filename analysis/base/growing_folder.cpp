@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
+#include "traces/base/system_error.hpp"
 
 namespace vestige::plot {
 

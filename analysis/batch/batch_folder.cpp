@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "analysis/batch/batch_plan.hpp"
+#include "traces/base/system_error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/files/output_file.hpp"
 

@@ -13,10 +13,10 @@
 #include "analysis/mapping/body.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/mapping/map_check.hpp"
+#include "traces/base/sha256.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
-#include "traces/files/input_file.hpp"
-#include "traces/base/sha256.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {

@@ -12,8 +12,8 @@
 #include "analysis/batch/batch_folder.hpp"
 #include "analysis/batch/batch_plan.hpp"
 #include "traces/base/error.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 

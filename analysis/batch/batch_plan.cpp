@@ -9,9 +9,9 @@
 
 #include "analysis/base/provenance.hpp"
 #include "traces/base/descriptor.hpp"
-#include "traces/files/output_file.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/base/utf8.hpp"
+#include "traces/files/output_file.hpp"
 #include "version.hpp"
 
 namespace vestige {

@@ -10,13 +10,14 @@
 #include <string_view>
 #include <vector>
 
-#include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuator_map.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuators/actuator_model.hpp"
 #include "detector/actuators/intensity.hpp"
+#include "traces/base/error.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/colliders.hpp"
-#include "traces/base/error.hpp"
 
 namespace vestige {
 

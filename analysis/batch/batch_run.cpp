@@ -17,15 +17,16 @@
 #include <utility>
 
 #include "analysis/base/clocks.hpp"
+#include "analysis/base/provenance.hpp"
 #include "analysis/scoring/contact_recording.hpp"
 #include "analysis/scoring/contact_recording_file.hpp"
 #include "analysis/scoring/scores.hpp"
-#include "analysis/base/provenance.hpp"
 #include "detector/frame.hpp"
-#include "traces/motion/animation_choice.hpp"
-#include "traces/files/output_file.hpp"
-#include "traces/recording/recording.hpp"
 #include "traces/base/sha256.hpp"
+#include "traces/base/system_error.hpp"
+#include "traces/files/output_file.hpp"
+#include "traces/motion/animation_choice.hpp"
+#include "traces/recording/recording.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 

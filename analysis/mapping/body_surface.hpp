@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "traces/scenarios/skin.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/box.hpp"
-#include "traces/scenarios/skin.hpp"
 
 namespace vestige {
 

@@ -9,8 +9,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "analysis/mapping/skin_patches.hpp"
 #include "analysis/base/png_image.hpp"
+#include "analysis/mapping/skin_patches.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {

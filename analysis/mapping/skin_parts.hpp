@@ -16,8 +16,8 @@ inline constexpr std::size_t kSkinParts = 9;
 std::string_view to_string(SkinPart part);
 std::optional<SkinPart> skin_part_named(std::string_view name);
 
-/// The part that each node's skin belongs to, by its role in the body (traces/motion/body_roles.hpp), else its parent's. None
-/// for nodes without a role above them.
+/// The part that each node's skin belongs to, by its role in the body (traces/motion/body_roles.hpp), else its
+/// parent's. None for nodes without a role above them.
 std::vector<std::optional<SkinPart>> parts_of_nodes(const Avatar& avatar);
 
 }  // namespace vestige

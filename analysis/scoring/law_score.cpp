@@ -5,9 +5,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "analysis/base/statistics.hpp"
 #include "analysis/scoring/balance.hpp"
 #include "analysis/scoring/localisation.hpp"
-#include "analysis/base/statistics.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/actuators/portable_math.hpp"
 

@@ -5,9 +5,9 @@
 #include <iterator>
 #include <limits>
 
+#include "analysis/base/statistics.hpp"
 #include "analysis/scoring/law_score.hpp"
 #include "analysis/scoring/localisation.hpp"
-#include "analysis/base/statistics.hpp"
 #include "traces/scene/box.hpp"
 
 namespace vestige {

@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "analysis/base/clocks.hpp"
-#include "analysis/stress/loose_triangles.hpp"
 #include "analysis/base/statistics.hpp"
+#include "analysis/stress/loose_triangles.hpp"
 #include "detector/truth/truth.hpp"
 #include "traces/base/error.hpp"
 

@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
+#include "detector/broad/skin_motion.hpp"
 #include "detector/detectors/contact_description.hpp"
 #include "detector/truth/truth.hpp"
-#include "detector/broad/skin_motion.hpp"
 
 namespace vestige {
 

@@ -7,8 +7,8 @@
 #include "detector/actuator_map.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
-#include "traces/scene/avatar.hpp"
 #include "traces/scenarios/random.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

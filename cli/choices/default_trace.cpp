@@ -5,8 +5,9 @@
 #include "analysis/base/provenance.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/terminal.hpp"
-#include "traces/scene/colliders.hpp"
 #include "traces/recording/recording.hpp"
+#include "traces/scenarios/scenarios.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige::cli {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "cli/help/validators.hpp"
-#include "detector/detectors/embree_detector.hpp"
 #include "detector/actuators/mapped_skin.hpp"
+#include "detector/detectors/embree_detector.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {

@@ -6,8 +6,8 @@
 #include "cli/choices/snapshots.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/host_port.hpp"
-#include "traces/motion/humanoid.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/motion/humanoid.hpp"
 
 namespace vestige::cli {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/options.hpp"
 #include "cli/choices/scene.hpp"
+#include "cli/options.hpp"
 #include "traces/live/live_recording.hpp"
 #include "traces/recording/recorder.hpp"
 

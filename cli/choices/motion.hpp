@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cli/terminal.hpp"
-#include "traces/scene/avatar.hpp"
 #include "traces/motion/retarget.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige::cli {
 

@@ -8,10 +8,10 @@
 #include "analysis/mapping/body_surface.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "cli/options.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
-#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige::cli {
 

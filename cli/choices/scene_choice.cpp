@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "analysis/mapping/layouts.hpp"
+#include "cli/choices/motion.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/choices/motion.hpp"
 #include "traces/base/error.hpp"
+#include "traces/exchange/collider_files.hpp"
 
 namespace vestige::cli {
 

@@ -10,11 +10,12 @@
 #include "cli/choices/range_choice.hpp"
 #include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
-#include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/system_error.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/repair/message_text.hpp"
+#include "traces/trace_file/definitions.hpp"
 
 namespace vestige::cli {
 

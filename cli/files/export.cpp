@@ -5,14 +5,15 @@
 #include <memory>
 #include <optional>
 
+#include "cli/choices/scene.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/output_bytes.hpp"
-#include "cli/choices/scene.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
+#include "traces/base/system_error.hpp"
 #include "traces/exchange/frame_file.hpp"
 #include "traces/exchange/frame_thinning.hpp"
-#include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
 
 namespace vestige::cli {

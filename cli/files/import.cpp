@@ -8,17 +8,18 @@
 #include <optional>
 
 #include "analysis/base/provenance.hpp"
-#include "cli/help/validators.hpp"
 #include "cli/choices/motion.hpp"
 #include "cli/choices/scene.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
-#include "traces/exchange/collider_rows.hpp"
-#include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/exchange/collider_files.hpp"
+#include "traces/exchange/collider_rows.hpp"
 #include "traces/exchange/pose_csv.hpp"
 #include "traces/exchange/trace_hdf5.hpp"
+#include "traces/files/input_file.hpp"
+#include "traces/scene/colliders.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige::cli {

@@ -9,18 +9,18 @@
 #include <vector>
 
 #include "analysis/base/provenance.hpp"
-#include "cli/help/validators.hpp"
 #include "cli/choices/limits_choice.hpp"
 #include "cli/choices/live_choice.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/scene_choice.hpp"
 #include "cli/choices/snapshots.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
-#include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/recording/recorder.hpp"
 #include "traces/recording/recording.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige::cli {
 

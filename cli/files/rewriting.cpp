@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "traces/mcap/byte_source.hpp"
 #include "traces/base/nanoseconds.hpp"
+#include "traces/mcap/byte_source.hpp"
 #include "traces/trace_file/trace_index.hpp"
 
 namespace vestige::cli {

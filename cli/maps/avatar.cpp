@@ -11,10 +11,10 @@
 #include "analysis/mapping/uv_overlap.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
+#include "traces/base/error.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/box.hpp"
 #include "traces/scene/builtin_avatar.hpp"
-#include "traces/base/error.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 namespace vestige::cli {

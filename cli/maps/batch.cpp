@@ -7,15 +7,15 @@
 #include <thread>
 #include <utility>
 
+#include "analysis/base/provenance.hpp"
 #include "analysis/batch/batch_inputs.hpp"
 #include "analysis/batch/batch_record.hpp"
 #include "analysis/batch/batch_results.hpp"
 #include "analysis/batch/batch_run.hpp"
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/scoring/contact_recording.hpp"
-#include "analysis/base/provenance.hpp"
-#include "cli/maps/batch_options.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/maps/batch_options.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"

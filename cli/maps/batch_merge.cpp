@@ -6,15 +6,15 @@
 #include <map>
 #include <memory>
 
+#include "analysis/base/provenance.hpp"
 #include "analysis/batch/batch_record.hpp"
 #include "analysis/batch/batch_results.hpp"
 #include "analysis/batch/rank_by.hpp"
-#include "analysis/base/provenance.hpp"
 #include "cli/maps/batch_options.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::cli {
 

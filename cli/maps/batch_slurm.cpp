@@ -4,8 +4,8 @@
 #include <memory>
 
 #include "analysis/batch/slurm_script.hpp"
-#include "cli/maps/batch_options.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/maps/batch_options.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 

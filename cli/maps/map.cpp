@@ -4,19 +4,19 @@
 #include <map>
 #include <memory>
 
+#include "analysis/base/provenance.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/mapping/map_check.hpp"
 #include "analysis/mapping/map_maker.hpp"
 #include "analysis/mapping/skin_patches.hpp"
-#include "analysis/base/provenance.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
-#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige::cli {
 

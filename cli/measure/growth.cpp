@@ -6,12 +6,12 @@
 #include <memory>
 #include <utility>
 
-#include "analysis/frequency/growth_report.hpp"
 #include "analysis/base/provenance.hpp"
+#include "analysis/frequency/growth_report.hpp"
 #include "analysis/frequency/sweep_report.hpp"
-#include "cli/help/validators.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/sweep_choice.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 
 namespace vestige::cli {

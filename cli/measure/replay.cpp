@@ -12,17 +12,17 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/mapping/layouts.hpp"
 #include "analysis/base/provenance.hpp"
+#include "analysis/mapping/layouts.hpp"
 #include "cli/choices/detectors.hpp"
-#include "cli/help/validators.hpp"
 #include "cli/choices/law_choice.hpp"
 #include "cli/choices/scene.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::cli {
 

@@ -8,15 +8,16 @@
 #include <string>
 #include <string_view>
 
-#include "cli/plot/draw.hpp"
 #include "cli/help/command_table.hpp"
 #include "cli/help/completion.hpp"
 #include "cli/help/help_text.hpp"
 #include "cli/help/manual.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/plot/draw.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/system_error.hpp"
 #include "traces/files/output_file.hpp"
 #include "version.hpp"
 

@@ -4,19 +4,19 @@
 #include <memory>
 #include <optional>
 
+#include "analysis/base/provenance.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/run/playback.hpp"
-#include "analysis/base/provenance.hpp"
 #include "cli/choices/detectors.hpp"
-#include "cli/help/validators.hpp"
 #include "cli/choices/law_choice.hpp"
 #include "cli/choices/scene.hpp"
-#include "cli/vest/sink_choice.hpp"
+#include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
+#include "cli/vest/sink_choice.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/actuators/actuator_map_watch.hpp"
-#include "detector/detectors/path_choice.hpp"
 #include "detector/actuators/pressure.hpp"
+#include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "transport/sender.hpp"

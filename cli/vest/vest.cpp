@@ -6,8 +6,8 @@
 
 #include "analysis/base/provenance.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/vest/sink_choice.hpp"
 #include "cli/verbs.hpp"
+#include "cli/vest/sink_choice.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "transport/sender.hpp"

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "detector/actuator_map.hpp"
-#include "detector/contact.hpp"
 #include "detector/actuators/surface_distance.hpp"
+#include "detector/contact.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
-#include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuator_map.hpp"
+#include "detector/actuators/actuator_layout.hpp"
 
 namespace vestige {
 

@@ -8,8 +8,8 @@
 
 #include "detector/actuators/portable_math.hpp"
 #include "traces/base/error.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/base/strict_json.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige {
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "detector/actuators/actuator_layout.hpp"
-#include "detector/contact.hpp"
 #include "detector/actuators/held_amplitudes.hpp"
+#include "detector/contact.hpp"
 
 namespace vestige {
 

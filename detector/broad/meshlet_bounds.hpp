@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "detector/frame.hpp"
 #include "detector/broad/meet_boxes.hpp"
 #include "detector/broad/meshlets.hpp"
+#include "detector/frame.hpp"
 #include "detector/method.hpp"
 #include "traces/scene/avatar.hpp"
 

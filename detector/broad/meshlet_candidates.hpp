@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "detector/frame.hpp"
 #include "detector/broad/meshlet_bounds.hpp"
 #include "detector/broad/meshlets.hpp"
-#include "detector/method.hpp"
 #include "detector/broad/segment_boxes.hpp"
+#include "detector/frame.hpp"
+#include "detector/method.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "detector/decision.hpp"
 #include "detector/broad/meshlets.hpp"
+#include "detector/decision.hpp"
 #include "detector/skinning.hpp"
 #include "traces/scene/avatar.hpp"
 

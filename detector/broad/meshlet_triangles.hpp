@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <span>
 
-#include "detector/frame.hpp"
 #include "detector/broad/meshlet_skin.hpp"
 #include "detector/broad/meshlets.hpp"
+#include "detector/frame.hpp"
 #include "detector/method.hpp"
 
 namespace vestige {

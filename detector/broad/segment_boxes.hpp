@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "detector/frame.hpp"
 #include "detector/broad/meet_boxes.hpp"
+#include "detector/frame.hpp"
 
 namespace vestige {
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "detector/broad/skin_motion.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
-#include "detector/broad/skin_motion.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

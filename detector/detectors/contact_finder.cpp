@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "detector/detectors/contact_description.hpp"
 #include "detector/decision.hpp"
+#include "detector/detectors/contact_description.hpp"
 
 namespace vestige {
 

@@ -3,10 +3,10 @@
 #include <cstdint>
 
 #include "detector/actuator_map.hpp"
+#include "detector/broad/skin_motion.hpp"
 #include "detector/contact.hpp"
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
-#include "detector/broad/skin_motion.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

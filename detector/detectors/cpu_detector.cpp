@@ -3,14 +3,14 @@
 #include <span>
 #include <vector>
 
-#include "detector/detectors/contact_finder.hpp"
-#include "detector/detector.hpp"
 #include "detector/broad/meshlet_candidates.hpp"
 #include "detector/broad/meshlet_skin.hpp"
 #include "detector/broad/meshlet_triangles.hpp"
 #include "detector/broad/meshlets.hpp"
 #include "detector/broad/skin_motion.hpp"
 #include "detector/broad/triangle_boxes.hpp"
+#include "detector/detector.hpp"
+#include "detector/detectors/contact_finder.hpp"
 
 namespace vestige {
 

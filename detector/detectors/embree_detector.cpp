@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "detector/detectors/contact_description.hpp"
 #include "detector/broad/skin_motion.hpp"
+#include "detector/detectors/contact_description.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/shared_library.hpp"
 

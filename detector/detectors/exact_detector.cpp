@@ -1,7 +1,7 @@
-#include "detector/detectors/contact_description.hpp"
-#include "detector/detector.hpp"
-#include "detector/truth/truth.hpp"
 #include "detector/broad/skin_motion.hpp"
+#include "detector/detector.hpp"
+#include "detector/detectors/contact_description.hpp"
+#include "detector/truth/truth.hpp"
 
 namespace vestige {
 

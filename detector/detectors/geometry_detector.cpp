@@ -11,16 +11,16 @@
 #include <utility>
 #include <vector>
 
-#include "detector/detectors/contact_finder.hpp"
+#include "detector/broad/skin_motion.hpp"
 #include "detector/detector.hpp"
+#include "detector/detectors/contact_finder.hpp"
+#include "detector/detectors/skipping_geometry_detector.hpp"
 #include "detector/gl/captured_pairs.hpp"
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
 #include "detector/gl/skinned_mesh.hpp"
-#include "detector/broad/skin_motion.hpp"
 #include "detector/skinning.hpp"
-#include "detector/detectors/skipping_geometry_detector.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"
 #include "traces/base/error.hpp"

@@ -13,14 +13,14 @@
 #include <utility>
 #include <vector>
 
-#include "detector/detectors/contact_finder.hpp"
-#include "detector/decision.hpp"
-#include "detector/gl/captured_pairs.hpp"
-#include "detector/gl/collision_texture.hpp"
-#include "detector/gl/gl_objects.hpp"
 #include "detector/broad/meshlet_candidates.hpp"
 #include "detector/broad/meshlet_skin.hpp"
 #include "detector/broad/meshlets.hpp"
+#include "detector/decision.hpp"
+#include "detector/detectors/contact_finder.hpp"
+#include "detector/gl/captured_pairs.hpp"
+#include "detector/gl/collision_texture.hpp"
+#include "detector/gl/gl_objects.hpp"
 #include "detector/skinning.hpp"
 #include "shaders/constants.h"
 #include "shaders/shaders.hpp"

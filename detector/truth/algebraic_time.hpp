@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "detector/truth/polynomial.hpp"
+#include "detector/truth/integer_polynomial.hpp"
 
 namespace vestige::exact {
 

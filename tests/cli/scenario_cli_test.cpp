@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/command_line.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige {

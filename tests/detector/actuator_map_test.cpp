@@ -10,9 +10,9 @@
 
 #include "tests/support/message_of.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {

@@ -12,8 +12,8 @@
 
 #include "detector/skinning.hpp"
 #include "tests/support/builtin_avatar.hpp"
-#include "traces/scene/pose.hpp"
 #include "traces/base/sha256.hpp"
+#include "traces/scene/pose.hpp"
 
 namespace vestige {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 
 #include "tests/fuzz/require.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/gltf/glb_container.hpp"
 #include "traces/scene/reference_skinning.hpp"
 

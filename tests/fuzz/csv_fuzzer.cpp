@@ -3,12 +3,13 @@
 
 #include "detector/output/contacts_csv.hpp"
 #include "tests/fuzz/require.hpp"
+#include "traces/base/error.hpp"
+#include "traces/exchange/collider_files.hpp"
+#include "traces/exchange/collider_rows.hpp"
+#include "traces/exchange/pose_csv.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
-#include "traces/exchange/collider_rows.hpp"
 #include "traces/scene/colliders.hpp"
-#include "traces/base/error.hpp"
-#include "traces/exchange/pose_csv.hpp"
 
 // Whatever a CSV file holds, reading it as colliders, contacts or poses ends in an error that says something, or in
 // frames that can be recorded: finite, one behind the other.

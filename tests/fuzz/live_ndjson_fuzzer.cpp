@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "tests/fuzz/require.hpp"
-#include "traces/scene/avatar.hpp"
 #include "traces/live/live_ndjson.hpp"
+#include "traces/scene/avatar.hpp"
 
 // Whatever comes on standard input, what is read of it can be recorded, and is the same in whatever pieces it comes.
 // The first byte says how long the pieces are.

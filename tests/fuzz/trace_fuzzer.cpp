@@ -3,8 +3,8 @@
 #include "tests/fuzz/require.hpp"
 #include "traces/base/error.hpp"
 #include "traces/repair/trace_check.hpp"
-#include "traces/trace_file/trace_reader.hpp"
 #include "traces/repair/trace_summary.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 // Whatever bytes a trace holds, reading it ends in an error that says something, or in frames that keep what
 // trace_reader.hpp promises. Summarising and checking it end, too.

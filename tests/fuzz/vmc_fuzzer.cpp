@@ -3,9 +3,9 @@
 
 #include "tests/fuzz/require.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
-#include "traces/scene/builtin_avatar.hpp"
-#include "traces/motion/humanoid.hpp"
 #include "traces/live/vmc_state.hpp"
+#include "traces/motion/humanoid.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 // Whatever comes over the network, the state stays one that can be recorded: finite, each collider once. The input is
 // several datagrams: two bytes of length, then so many bytes.

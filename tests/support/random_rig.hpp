@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "detector/frame.hpp"
-#include "traces/scene/avatar.hpp"
 #include "traces/gltf/gltf_influences.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige::test {
 

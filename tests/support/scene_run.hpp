@@ -12,6 +12,7 @@
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
 #include "detector/output/texture_hash.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/scene/trace.hpp"

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <exception>
 
-#include "traces/files/output_file.hpp"
+#include "traces/base/system_error.hpp"
 
 namespace vestige {
 

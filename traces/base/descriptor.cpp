@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
-#include "traces/files/output_file.hpp"
+#include "traces/base/system_error.hpp"
 
 namespace vestige {
 

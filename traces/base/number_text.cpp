@@ -40,35 +40,6 @@ void append_json(std::string& out, const glm::dvec3& vector) {
   out += ']';
 }
 
-void append_json(std::string& out, const Pose& pose) {
-  out += R"({"origin":)";
-  append_json(out, pose.origin_m);
-  out += R"(,"nodes":[)";
-  for (std::size_t i = 0; i < pose.nodes.size(); ++i) {
-    const NodeLocal& node = pose.nodes[i];
-    const float numbers[] = {node.translation.x, node.translation.y, node.translation.z, node.rotation.x,
-                             node.rotation.y,    node.rotation.z,    node.rotation.w,    node.scale.x,
-                             node.scale.y,       node.scale.z};
-    out += i == 0 ? "[" : ",[";
-    for (std::size_t k = 0; k < std::size(numbers); ++k) {
-      if (k > 0) out += ',';
-      append_number(out, numbers[k]);
-    }
-    out += ']';
-  }
-  out += "]}";
-}
-
-void append_json(std::string& out, const std::vector<ColliderSample>& colliders) {
-  out += '[';
-  for (std::size_t i = 0; i < colliders.size(); ++i) {
-    fmt::format_to(std::back_inserter(out), R"({}{{"id":{},"position":)", i == 0 ? "" : ",", colliders[i].id);
-    append_json(out, colliders[i].position_m);
-    out += '}';
-  }
-  out += ']';
-}
-
 void append_seconds(std::string& out, std::int64_t time_ns) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   fmt::format_to(std::back_inserter(out), "{}", time_ns / kSecond);

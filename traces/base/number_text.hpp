@@ -4,9 +4,6 @@
 #include <glm/vec3.hpp>
 #include <string>
 #include <string_view>
-#include <vector>
-
-#include "traces/scene/trace.hpp"
 
 namespace vestige {
 
@@ -16,12 +13,6 @@ namespace vestige {
 void append_json(std::string& out, float value);
 void append_json(std::string& out, double value);
 void append_json(std::string& out, const glm::dvec3& vector);
-
-/// `{"origin": [x, y, z], "nodes": [[tx, ty, tz, rx, ry, rz, rw, sx, sy, sz], …]}`
-void append_json(std::string& out, const Pose& pose);
-
-/// `[{"id", "position": [x, y, z]}, …]`
-void append_json(std::string& out, const std::vector<ColliderSample>& colliders);
 
 /// Nanoseconds as a decimal fraction of seconds, exactly: 1500000 is 0.0015.
 void append_seconds(std::string& out, std::int64_t time_ns);

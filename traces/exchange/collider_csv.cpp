@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 
+#include "traces/exchange/collider_files.hpp"
 #include "traces/exchange/collider_rows.hpp"
 #include "traces/scene/colliders.hpp"
 

@@ -5,12 +5,13 @@
 #include <charconv>
 #include <set>
 
-#include "traces/gltf/avatar_gltf.hpp"
-#include "traces/scene/colliders.hpp"
 #include "traces/base/error.hpp"
+#include "traces/exchange/collider_files.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/gltf/gltf_animation.hpp"
 #include "traces/gltf/gltf_document.hpp"
 #include "traces/gltf/gltf_nodes.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige {
 

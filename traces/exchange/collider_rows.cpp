@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iterator>
 
-#include "traces/exchange/frame_file.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/exchange/frame_file.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {

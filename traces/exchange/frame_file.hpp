@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
 #include "traces/files/output_file.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {

@@ -12,12 +12,12 @@
 #include <optional>
 #include <version.hpp>
 
-#include "traces/files/column_file.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/exchange/frame_file.hpp"
+#include "traces/files/column_file.hpp"
 #include "traces/gltf/glb_container.hpp"
 #include "traces/gltf/gltf_meshopt.hpp"
-#include "traces/base/number_text.hpp"
 
 namespace vestige {
 

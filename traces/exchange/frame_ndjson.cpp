@@ -2,8 +2,9 @@
 
 #include <iterator>
 
-#include "traces/exchange/frame_file.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/exchange/frame_file.hpp"
+#include "traces/scene/frame_json.hpp"
 
 namespace vestige {
 

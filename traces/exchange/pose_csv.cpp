@@ -9,8 +9,8 @@
 #include <map>
 #include <set>
 
-#include "traces/exchange/frame_file.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/exchange/frame_file.hpp"
 
 namespace vestige {
 

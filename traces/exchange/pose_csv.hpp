@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
 #include "traces/base/csv.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {

@@ -10,8 +10,8 @@
 
 #include "traces/base/child_process.hpp"
 #include "traces/base/error.hpp"
-#include "traces/exchange/hdf5_table.hpp"
 #include "traces/base/sha256.hpp"
+#include "traces/exchange/hdf5_table.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {

@@ -11,6 +11,7 @@
 
 #include "traces/base/descriptor.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/system_error.hpp"
 
 namespace vestige {
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "traces/base/descriptor.hpp"
+#include "traces/base/system_error.hpp"
 
 namespace vestige {
 
@@ -18,31 +19,8 @@ namespace {
 
 constexpr std::size_t kBufferBytes = 1 << 16;
 
-std::string_view remedy_for(int error_number) {
-  switch (error_number) {
-    case ENOSPC:
-    case EDQUOT:
-      return "the disk is full: free some space, or write to another disk";
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return "choose a folder that you may write to, or change its permissions";
-    case ENOENT:
-    case ENOTDIR:
-      return "check the name; create the folder first";
-    case EISDIR:
-      return "name a file, not a folder";
-    default:
-      return "";
-  }
-}
-
 bool is_standard_output(const std::filesystem::path& path) {
   return path == "-";
-}
-
-std::string shown_name(const std::filesystem::path& path) {
-  return is_standard_output(path) ? "standard output" : path.string();
 }
 
 /// Makes the rename itself durable; a folder that cannot be synced (some network disks) is no failure.
@@ -55,10 +33,6 @@ void sync_folder(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-Error system_error(const std::filesystem::path& path, std::string_view doing, int error_number) {
-  return Error(shown_name(path), fmt::format("{}: {}", doing, std::strerror(error_number)), remedy_for(error_number));
-}
 
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path) {
   while (!bytes.empty()) {

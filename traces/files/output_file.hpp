@@ -66,7 +66,4 @@ void refuse_terminal(std::string_view flag);
 /// Writes all of `bytes` to `descriptor`; throws `Error` naming `path`, `ReaderGone` for a pipe that nobody reads.
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
-/// The error of a failed system call on `path`, with a remedy where one is known (permission, disk full, no folder).
-Error system_error(const std::filesystem::path& path, std::string_view doing, int error_number);
-
 }  // namespace vestige

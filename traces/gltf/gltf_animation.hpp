@@ -1,7 +1,7 @@
 #pragma once
 
-#include "traces/scene/avatar.hpp"
 #include "traces/gltf/gltf_document.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige::gltf {
 

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "traces/gltf/json/gltf_json.hpp"
 #include "traces/gltf/gltf_meshopt.hpp"
+#include "traces/gltf/json/gltf_json.hpp"
 #include "traces/gltf/json/gltf_report.hpp"
 
 namespace vestige::gltf {

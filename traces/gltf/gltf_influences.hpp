@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
 #include "traces/gltf/json/gltf_report.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige::gltf {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
 #include "traces/gltf/gltf_document.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige::gltf {
 

@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/gltf/glb_container.hpp"
 #include "traces/gltf/gltf_document.hpp"
-#include "traces/gltf/json/gltf_json.hpp"
 #include "traces/gltf/gltf_meshopt.hpp"
+#include "traces/gltf/json/gltf_json.hpp"
 #include "traces/gltf/json/gltf_uri.hpp"
-#include "traces/files/input_file.hpp"
 
 namespace vestige {
 

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "traces/mcap/decode.hpp"
 #include "traces/base/nanoseconds.hpp"
+#include "traces/mcap/decode.hpp"
 
 namespace vestige {
 

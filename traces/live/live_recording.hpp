@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "traces/live/live_ndjson.hpp"
-#include "traces/recording/recording_thread.hpp"
 #include "traces/live/udp_receiver.hpp"
 #include "traces/live/vmc_state.hpp"
+#include "traces/recording/recording_thread.hpp"
 
 namespace vestige {
 

@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
-#include "traces/recording/frame_ring.hpp"
-#include "traces/motion/humanoid.hpp"
 #include "traces/live/osc_packet.hpp"
+#include "traces/motion/humanoid.hpp"
+#include "traces/recording/frame_ring.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {

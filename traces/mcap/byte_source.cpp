@@ -10,9 +10,10 @@
 
 #include "traces/base/descriptor.hpp"
 #include "traces/base/error.hpp"
-#include "traces/mcap/record.hpp"
+#include "traces/base/system_error.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/files/scratch_file.hpp"
+#include "traces/mcap/record.hpp"
 
 namespace vestige::mcap {
 

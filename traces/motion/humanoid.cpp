@@ -8,10 +8,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "traces/motion/body_roles.hpp"
 #include "traces/base/error.hpp"
 #include "traces/gltf/glb_container.hpp"
 #include "traces/gltf/json/gltf_report.hpp"
+#include "traces/motion/body_roles.hpp"
 
 namespace vestige {
 

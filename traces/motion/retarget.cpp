@@ -12,8 +12,8 @@
 #include <set>
 #include <utility>
 
-#include "traces/motion/body_roles.hpp"
 #include "traces/base/error.hpp"
+#include "traces/motion/body_roles.hpp"
 
 namespace vestige {
 

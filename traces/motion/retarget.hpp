@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
 #include "traces/motion/bvh.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

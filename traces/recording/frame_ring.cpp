@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "traces/base/nanoseconds.hpp"
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
-#include "traces/base/nanoseconds.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {

@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
+#include "traces/base/nanoseconds.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/base/nanoseconds.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {

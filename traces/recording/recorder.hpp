@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
 #include "traces/recording/frame_ring.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige {

@@ -7,13 +7,13 @@
 #include <tuple>
 #include <utility>
 
-#include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/sha256.hpp"
+#include "traces/mcap/check/summary_check.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/mcap/check/summary_check.hpp"
+#include "traces/trace_file/definitions.hpp"
 #include "traces/trace_file/mcap_output.hpp"
-#include "traces/base/sha256.hpp"
 #include "traces/trace_file/trace_index.hpp"
 
 namespace vestige {

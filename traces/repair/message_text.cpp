@@ -8,8 +8,9 @@
 #include <string_view>
 #include <utility>
 
-#include "traces/files/input_file.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/files/input_file.hpp"
+#include "traces/scene/frame_json.hpp"
 
 namespace vestige {
 

@@ -7,13 +7,13 @@
 #include <tuple>
 #include <utility>
 
-#include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"
-#include "traces/repair/frame_gate.hpp"
 #include "traces/mcap/check/chunk_salvage.hpp"
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
+#include "traces/repair/frame_gate.hpp"
+#include "traces/trace_file/definitions.hpp"
 #include "traces/trace_file/mcap_output.hpp"
 #include "traces/trace_file/trace_nodes.hpp"
 
@@ -407,21 +407,6 @@ void Recoverer::finish() {
 Recovery recover_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink,
                       const std::function<bool(double)>& progress) {
   return Recoverer(source, sink, gather_definitions(source)).run(progress);
-}
-
-std::string describe_recovered(const mcap::StringMap& metadata) {
-  constexpr std::array kCounts = {std::tuple{"bytes_lost", "byte", "lost"}, std::tuple{"chunks_lost", "chunk", "lost"},
-                                  std::tuple{"messages_lost", "message", "lost"},
-                                  std::tuple{"messages_left_out", "message", "left out"},
-                                  std::tuple{"messages_unverified", "message", "that no CRC vouches for"}};
-  std::string counts;
-  for (const auto& [key, thing, fate] : kCounts) {
-    const auto found = metadata.find(key);
-    if (found == metadata.end() || found->second == "0") continue;
-    const std::string number = found->second == "unknown" ? "an unknown number of" : found->second;
-    counts += fmt::format("{}{} {}{} {}", counts.empty() ? ": " : ", ", number, thing, number == "1" ? "" : "s", fate);
-  }
-  return "was recovered from a damaged file" + counts;
 }
 
 }  // namespace vestige

@@ -47,8 +47,4 @@ struct Recovery {
 Recovery recover_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink,
                       const std::function<bool(double)>& progress);
 
-/// What the metadata record `recovered` of a file says, as one clause: "was recovered from a damaged file: 12 messages
-/// lost, 3 that no CRC vouches for".
-std::string describe_recovered(const mcap::StringMap& metadata);
-
 }  // namespace vestige

@@ -6,11 +6,11 @@
 #include <set>
 #include <utility>
 
-#include "traces/trace_file/definitions.hpp"
 #include "traces/base/error.hpp"
-#include "traces/mcap/stream_reader.hpp"
-#include "traces/trace_file/mcap_output.hpp"
 #include "traces/base/nanoseconds.hpp"
+#include "traces/mcap/stream_reader.hpp"
+#include "traces/trace_file/definitions.hpp"
+#include "traces/trace_file/mcap_output.hpp"
 
 namespace vestige {
 

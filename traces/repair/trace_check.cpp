@@ -9,14 +9,14 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/trace_file/message_stream.hpp"
-#include "traces/base/number_text.hpp"
-#include "traces/repair/recover.hpp"
-#include "traces/trace_file/session_check.hpp"
-#include "traces/base/sha256.hpp"
 #include "traces/scene/trace.hpp"
+#include "traces/trace_file/message_stream.hpp"
+#include "traces/trace_file/recovered.hpp"
+#include "traces/trace_file/session_check.hpp"
 #include "traces/trace_file/trace_messages.hpp"
 #include "traces/trace_file/trace_nodes.hpp"
 

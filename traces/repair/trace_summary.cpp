@@ -7,13 +7,13 @@
 #include <set>
 #include <utility>
 
+#include "traces/base/nanoseconds.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/trace_file/message_stream.hpp"
-#include "traces/base/nanoseconds.hpp"
-#include "traces/repair/recover.hpp"
+#include "traces/trace_file/recovered.hpp"
 #include "traces/trace_file/session_check.hpp"
-#include "traces/base/sha256.hpp"
 #include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_index.hpp"
 #include "traces/trace_file/trace_messages.hpp"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "traces/scene/box.hpp"
 #include "traces/scenarios/skin.hpp"
+#include "traces/scene/box.hpp"
 
 namespace vestige {
 

@@ -4,6 +4,7 @@
 #include "traces/scenarios/body.hpp"
 #include "traces/scenarios/makers.hpp"
 #include "traces/scenarios/random.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scenarios/skin_walk.hpp"
 
 namespace vestige {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige {

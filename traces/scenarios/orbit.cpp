@@ -5,6 +5,7 @@
 #include "traces/scenarios/makers.hpp"
 #include "traces/scenarios/random.hpp"
 #include "traces/scenarios/room.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scenarios/skin.hpp"
 
 namespace vestige {

@@ -3,6 +3,7 @@
 #include "traces/scenarios/makers.hpp"
 #include "traces/scenarios/random.hpp"
 #include "traces/scenarios/room.hpp"
+#include "traces/scenarios/scenarios.hpp"
 
 namespace vestige {
 

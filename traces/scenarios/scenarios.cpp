@@ -1,7 +1,9 @@
+#include "traces/scenarios/scenarios.hpp"
+
 #include <array>
 
-#include "traces/scene/colliders.hpp"
 #include "traces/scenarios/makers.hpp"
+#include "traces/scene/colliders.hpp"
 
 namespace vestige {
 

@@ -5,8 +5,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
 #include "traces/scenarios/random.hpp"
+#include "traces/scene/avatar.hpp"
 
 namespace vestige {
 

@@ -8,6 +8,7 @@
 #include "traces/scenarios/front_view.hpp"
 #include "traces/scenarios/makers.hpp"
 #include "traces/scenarios/random.hpp"
+#include "traces/scenarios/scenarios.hpp"
 
 namespace vestige {
 

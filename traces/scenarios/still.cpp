@@ -6,6 +6,7 @@
 #include "traces/scenarios/body.hpp"
 #include "traces/scenarios/makers.hpp"
 #include "traces/scenarios/random.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scenarios/skin.hpp"
 
 namespace vestige {

@@ -2,10 +2,11 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "traces/scene/reference_skinning.hpp"
 #include "traces/scenarios/body.hpp"
 #include "traces/scenarios/makers.hpp"
 #include "traces/scenarios/random.hpp"
+#include "traces/scenarios/scenarios.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
 

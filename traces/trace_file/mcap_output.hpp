@@ -5,8 +5,8 @@
 #include <set>
 #include <string>
 
-#include "traces/trace_file/definitions.hpp"
 #include "traces/mcap/writer.hpp"
+#include "traces/trace_file/definitions.hpp"
 #include "traces/trace_file/message_stream.hpp"
 
 namespace vestige {

@@ -4,10 +4,10 @@
 
 #include <utility>
 
+#include "traces/base/sha256.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
 #include "traces/trace_file/session_check.hpp"
-#include "traces/base/sha256.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {

@@ -7,8 +7,8 @@
 
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/record_walker.hpp"
-#include "traces/trace_file/message_stream.hpp"
 #include "traces/scene/trace.hpp"
+#include "traces/trace_file/message_stream.hpp"
 
 namespace vestige {
 

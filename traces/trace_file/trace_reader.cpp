@@ -11,7 +11,7 @@
 #include "traces/base/error.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/trace_file/message_stream.hpp"
-#include "traces/repair/recover.hpp"
+#include "traces/trace_file/recovered.hpp"
 #include "traces/trace_file/trace_index.hpp"
 #include "traces/trace_file/trace_messages.hpp"
 #include "traces/trace_file/trace_nodes.hpp"

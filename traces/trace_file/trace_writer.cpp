@@ -9,11 +9,11 @@
 #include <optional>
 #include <version.hpp>
 
-#include "traces/files/append_file.hpp"
 #include "traces/base/error.hpp"
-#include "traces/mcap/writer.hpp"
 #include "traces/base/nanoseconds.hpp"
 #include "traces/base/sha256.hpp"
+#include "traces/files/append_file.hpp"
+#include "traces/mcap/writer.hpp"
 #include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_messages.hpp"
 #include "traces/trace_file/viz_messages.hpp"

@@ -10,9 +10,9 @@
 #include <string_view>
 
 #include "traces/files/append_file.hpp"
-#include "traces/scene/avatar.hpp"
-#include "traces/mcap/compression.hpp"
 #include "traces/files/output_file.hpp"
+#include "traces/mcap/compression.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "traces/scene/avatar.hpp"
 #include "traces/mcap/record.hpp"
+#include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {

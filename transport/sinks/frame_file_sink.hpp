@@ -10,7 +10,8 @@
 
 namespace vestige {
 
-/// Writes frames as they go to a board over the wire (`transport/wire/vest_frame.hpp`), one after another, without times.
+/// Writes frames as they go to a board over the wire (`transport/wire/vest_frame.hpp`), one after another, without
+/// times.
 ///
 /// A file is complete or absent: it is there after `commit`. "-" (standard output), a device or a pipe gets each frame
 /// at once, so that another program can pass it on.

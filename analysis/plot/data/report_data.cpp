@@ -8,8 +8,8 @@
 
 #include "analysis/plot/data/json_field.hpp"
 #include "traces/base/error.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
+#include "traces/files/input_file.hpp"
 
 namespace vestige::plot {
 

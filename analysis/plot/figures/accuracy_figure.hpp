@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "analysis/plot/data/accuracy_data.hpp"
 #include "analysis/plot/canvas/figure.hpp"
+#include "analysis/plot/data/accuracy_data.hpp"
 
 namespace vestige::plot {
 

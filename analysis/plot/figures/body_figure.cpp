@@ -8,13 +8,13 @@
 #include <optional>
 
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/studio/body_sides.hpp"
-#include "analysis/plot/studio/contact_density.hpp"
 #include "analysis/plot/canvas/heat.hpp"
 #include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/region_colours.hpp"
-#include "analysis/plot/studio/region_image.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
+#include "analysis/plot/studio/body_sides.hpp"
+#include "analysis/plot/studio/contact_density.hpp"
+#include "analysis/plot/studio/region_image.hpp"
 #include "analysis/plot/studio/studio.hpp"
 
 namespace vestige::plot {

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/plot/studio/contact_density.hpp"
 #include "analysis/plot/canvas/heat.hpp"
 #include "analysis/plot/canvas/palette.hpp"
 #include "analysis/plot/canvas/region_colours.hpp"
-#include "analysis/plot/studio/region_image.hpp"
-#include "analysis/plot/data/report_words.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
+#include "analysis/plot/data/report_words.hpp"
+#include "analysis/plot/studio/contact_density.hpp"
+#include "analysis/plot/studio/region_image.hpp"
 #include "analysis/plot/studio/subject.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/scene/pose.hpp"

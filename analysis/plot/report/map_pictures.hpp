@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "analysis/plot/studio/body_sides.hpp"
 #include "analysis/plot/canvas/figure.hpp"
+#include "analysis/plot/studio/body_sides.hpp"
 #include "analysis/plot/studio/studio.hpp"
 #include "analysis/plot/studio/surface.hpp"
 #include "detector/actuator_map.hpp"

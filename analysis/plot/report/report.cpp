@@ -9,25 +9,25 @@
 #include <set>
 #include <utility>
 
-#include "analysis/scoring/contact_recording_file.hpp"
-#include "analysis/scoring/scores.hpp"
-#include "analysis/plot/figures/error_figure.hpp"
-#include "analysis/plot/canvas/figure_export.hpp"
 #include "analysis/base/growing_folder.hpp"
+#include "analysis/plot/canvas/figure_export.hpp"
 #include "analysis/plot/canvas/headless_window.hpp"
-#include "analysis/plot/report/map_pictures.hpp"
-#include "analysis/plot/figures/ranking_figure.hpp"
 #include "analysis/plot/data/report_data.hpp"
+#include "analysis/plot/figures/error_figure.hpp"
+#include "analysis/plot/figures/ranking_figure.hpp"
+#include "analysis/plot/figures/timeline_figure.hpp"
+#include "analysis/plot/report/map_pictures.hpp"
 #include "analysis/plot/report/report_page.hpp"
 #include "analysis/plot/studio/subject.hpp"
-#include "analysis/plot/figures/timeline_figure.hpp"
+#include "analysis/scoring/contact_recording_file.hpp"
+#include "analysis/scoring/scores.hpp"
 #include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuators/intensity.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/files/output_file.hpp"
-#include "traces/base/sha256.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige::plot {
 

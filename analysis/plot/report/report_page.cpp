@@ -8,11 +8,11 @@
 #include <iterator>
 #include <string_view>
 
+#include "analysis/base/html.hpp"
 #include "analysis/batch/ranking.hpp"
 #include "analysis/plot/canvas/axis.hpp"
-#include "analysis/base/html.hpp"
-#include "analysis/plot/report/report_style.hpp"
 #include "analysis/plot/data/report_words.hpp"
+#include "analysis/plot/report/report_style.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::plot {

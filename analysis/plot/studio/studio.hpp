@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "analysis/plot/studio/camera.hpp"
 #include "analysis/plot/canvas/canvas.hpp"
+#include "analysis/plot/studio/camera.hpp"
 #include "analysis/plot/studio/depth_map.hpp"
 #include "analysis/plot/studio/surface.hpp"
 

@@ -3,9 +3,9 @@
 #include <glm/vec2.hpp>
 
 #include "analysis/mapping/layouts.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
-#include "traces/files/input_file.hpp"
 
 namespace vestige::plot {
 

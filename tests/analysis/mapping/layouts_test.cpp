@@ -14,8 +14,8 @@
 #include "tests/support/builtin_map.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/test_data.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige {
 namespace {

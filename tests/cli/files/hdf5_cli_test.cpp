@@ -10,10 +10,10 @@
 #include "tests/cli/files/exchange_fixture.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
-#include "traces/scene/builtin_avatar.hpp"
-#include "traces/exchange/hdf5_library.hpp"
 #include "traces/base/shared_library.hpp"
+#include "traces/exchange/hdf5_library.hpp"
 #include "traces/exchange/trace_hdf5.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {

@@ -18,8 +18,8 @@
 #include "tests/support/command_line.hpp"
 #include "tests/support/npm.hpp"
 #include "traces/base/error.hpp"
-#include "traces/mcap/record_walker.hpp"
 #include "traces/files/output_file.hpp"
+#include "traces/mcap/record_walker.hpp"
 #include "traces/repair/recover.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 

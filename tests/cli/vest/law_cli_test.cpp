@@ -11,8 +11,8 @@
 
 #include "tests/support/command_line.hpp"
 #include "tests/support/timeline_files.hpp"
-#include "traces/scene/builtin_avatar.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {

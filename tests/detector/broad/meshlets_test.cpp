@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "detector/decision.hpp"
 #include "detector/broad/meet_boxes.hpp"
 #include "detector/broad/meshlet_bounds.hpp"
 #include "detector/broad/meshlet_candidates.hpp"
@@ -23,6 +22,7 @@
 #include "detector/broad/meshlet_triangles.hpp"
 #include "detector/broad/skin_motion.hpp"
 #include "detector/broad/triangle_boxes.hpp"
+#include "detector/decision.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/random_rig.hpp"
 #include "tests/support/scene_run.hpp"

@@ -14,6 +14,7 @@
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige {

@@ -12,9 +12,9 @@
 
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
-#include "tests/support/pairs/adversarial_pairs.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
+#include "tests/support/pairs/adversarial_pairs.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"

@@ -13,6 +13,7 @@
 #include "detector/detector.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/skin_geometry.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige {

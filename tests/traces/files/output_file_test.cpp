@@ -8,8 +8,8 @@
 #include <fstream>
 
 #include "tests/support/test_data.hpp"
-#include "traces/files/append_file.hpp"
 #include "traces/base/error.hpp"
+#include "traces/files/append_file.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige {

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/test_data.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {

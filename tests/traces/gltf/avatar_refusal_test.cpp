@@ -8,8 +8,8 @@
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/gltf/gltf_builder.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/gltf/gltf_builder.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/base/error.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 // One avatar, stored in all the ways that glTF has: each must load as the same triangles, to the bit.

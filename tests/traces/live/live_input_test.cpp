@@ -10,14 +10,14 @@
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/osc.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
-#include "traces/gltf/avatar_gltf.hpp"
-#include "traces/scene/builtin_avatar.hpp"
 #include "traces/base/error.hpp"
-#include "traces/motion/humanoid.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/live/live_ndjson.hpp"
-#include "traces/mcap/decode.hpp"
 #include "traces/live/osc_packet.hpp"
 #include "traces/live/vmc_state.hpp"
+#include "traces/mcap/decode.hpp"
+#include "traces/motion/humanoid.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 namespace {

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/support/test_data.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/writer.hpp"
-#include "traces/base/sha256.hpp"
 
 namespace vestige::mcap {
 namespace {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "tests/support/test_data.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/mcap/writer.hpp"
-#include "traces/base/sha256.hpp"
 
 namespace vestige::test {
 

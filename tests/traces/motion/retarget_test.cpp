@@ -9,10 +9,10 @@
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/motion/bvh_text.hpp"
+#include "traces/base/error.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/motion/body_roles.hpp"
 #include "traces/scene/builtin_avatar.hpp"
-#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {

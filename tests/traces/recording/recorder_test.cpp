@@ -14,10 +14,10 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/trace_file/message_stream.hpp"
 #include "traces/recording/recording_thread.hpp"
-#include "traces/trace_file/trace_messages.hpp"
 #include "traces/repair/trace_summary.hpp"
+#include "traces/trace_file/message_stream.hpp"
+#include "traces/trace_file/trace_messages.hpp"
 
 namespace vestige {
 namespace {

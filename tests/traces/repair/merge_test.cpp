@@ -12,8 +12,8 @@
 #include "tests/traces/mcap/mcap_files.hpp"
 #include "tests/traces/trace_file/small_trace.hpp"
 #include "traces/base/error.hpp"
-#include "traces/trace_file/mcap_output.hpp"
 #include "traces/repair/rewrite.hpp"
+#include "traces/trace_file/mcap_output.hpp"
 
 namespace vestige {
 namespace {

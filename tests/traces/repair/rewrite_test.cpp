@@ -11,8 +11,8 @@
 #include "tests/traces/trace_file/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/repair/trace_check.hpp"
-#include "traces/trace_file/trace_format.hpp"
 #include "traces/repair/trace_summary.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 namespace {

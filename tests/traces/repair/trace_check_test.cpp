@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "tests/support/memory_growth.hpp"
-#include "tests/traces/trace_file/forged_trace.hpp"
 #include "tests/traces/mcap/mcap_files.hpp"
+#include "tests/traces/trace_file/forged_trace.hpp"
 #include "tests/traces/trace_file/small_trace.hpp"
 #include "traces/base/error.hpp"
 #include "traces/mcap/encode.hpp"

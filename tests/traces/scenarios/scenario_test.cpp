@@ -6,6 +6,7 @@
 
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/skin_geometry.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige {

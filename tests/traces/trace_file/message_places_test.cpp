@@ -10,9 +10,9 @@
 #include "tests/traces/trace_file/small_trace.hpp"
 #include "traces/mcap/indexed_reader.hpp"
 #include "traces/mcap/summary.hpp"
+#include "traces/repair/trace_summary.hpp"
 #include "traces/trace_file/trace_index.hpp"
 #include "traces/trace_file/trace_reader.hpp"
-#include "traces/repair/trace_summary.hpp"
 
 namespace vestige {
 namespace {

@@ -14,14 +14,15 @@
 #include <iostream>
 #include <stdexcept>
 
-#include "traces/motion/animation_choice.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
+#include "traces/mcap/stream_reader.hpp"
+#include "traces/motion/animation_choice.hpp"
+#include "traces/recording/recording.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/trace_file/definitions.hpp"
-#include "traces/mcap/stream_reader.hpp"
 #include "traces/trace_file/mcap_output.hpp"
-#include "traces/recording/recording.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
 namespace {

@@ -13,10 +13,10 @@
 #include "tests/traces/trace_file/small_trace.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/base/error.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/trace_file/trace_format.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/repair/trace_summary.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 namespace {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
+#include "traces/base/system_error.hpp"
 #include "traces/files/output_file.hpp"
 
 namespace vestige::test {

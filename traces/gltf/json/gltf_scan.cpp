@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
-#include "traces/gltf/json/gltf_uri.hpp"
 #include "traces/base/utf8.hpp"
+#include "traces/gltf/json/gltf_uri.hpp"
 
 namespace vestige::gltf {
 

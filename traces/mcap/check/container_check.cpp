@@ -9,11 +9,11 @@
 
 #include "traces/base/error.hpp"
 #include "traces/mcap/check/chunk_check.hpp"
+#include "traces/mcap/check/summary_check.hpp"
 #include "traces/mcap/chunk_expander.hpp"
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
-#include "traces/mcap/check/summary_check.hpp"
 
 namespace vestige::mcap {
 

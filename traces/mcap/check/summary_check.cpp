@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <span>
 
+#include "traces/base/sha256.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/stream_reader.hpp"
-#include "traces/base/sha256.hpp"
 
 namespace vestige::mcap {
 

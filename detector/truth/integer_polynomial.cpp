@@ -1,4 +1,4 @@
-#include "detector/truth/polynomial.hpp"
+#include "detector/truth/integer_polynomial.hpp"
 
 #include <algorithm>
 #include <utility>

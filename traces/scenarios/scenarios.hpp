@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "traces/scene/avatar.hpp"
+#include "traces/scene/colliders.hpp"
+
+namespace vestige {
+
+struct ScenarioSettings {
+  std::uint32_t count = 100;
+  std::uint64_t seed = 1;
+};
+
+/// A built-in scenario. The same avatar, animation, count and seed give the same positions at the same times, at any
+/// rate of sampling.
+struct Scenario {
+  std::string_view name;
+  std::string_view summary;  ///< one line
+  std::uint32_t default_count;
+  /// `animation` may be null: then the avatar rests.
+  std::unique_ptr<ColliderSource> (*make)(const Avatar& avatar, const Animation* animation,
+                                          const ScenarioSettings& settings);
+};
+
+/// All of them, in the order in which to list them.
+std::span<const Scenario> scenarios();
+
+/// Null where none has this name.
+const Scenario* find_scenario(std::string_view name);
+
+}  // namespace vestige

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "traces/scene/trace.hpp"
+
+namespace vestige {
+
+// The parts of a frame as JSON. Numbers are written as in traces/base/number_text.hpp.
+
+/// `{"origin": [x, y, z], "nodes": [[tx, ty, tz, rx, ry, rz, rw, sx, sy, sz], …]}`
+void append_json(std::string& out, const Pose& pose);
+
+/// `[{"id", "position": [x, y, z]}, …]`
+void append_json(std::string& out, const std::vector<ColliderSample>& colliders);
+
+}  // namespace vestige
