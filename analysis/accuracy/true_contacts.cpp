@@ -6,6 +6,7 @@
 #include <future>
 #include <thread>
 
+#include "analysis/run/detection_run.hpp"
 #include "detector/frame.hpp"
 
 namespace vestige {
@@ -31,14 +32,12 @@ struct Work {
 Part find_in_part(const MovingScene& scene, double rate_hz, Detector& detector, std::uint64_t first, std::uint64_t last,
                   Work& work) {
   SceneSampler sampler(scene, rate_hz, first);
-  FrameBuilder builder(scene.avatar, scene.collider_ids, detector.method());
+  DetectionRun detection(scene.avatar, scene.collider_ids, detector);
   ContactEventFinder finder;
-  ContactRow row;
-  builder.next(sampler.next());
+  detection.begin(sampler.next());
   for (std::uint64_t index = first + 1; index <= last && !work.stopped; ++index) {
-    const Frame& frame = builder.next(sampler.next());
-    detector.detect(frame, row);
-    finder.add(frame, row);
+    detection.step(sampler.next());
+    finder.add(detection.frame(), detection.row());
     ++work.frames_done;
   }
   const std::uint64_t contacts = finder.contacts();

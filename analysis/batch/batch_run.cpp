@@ -18,6 +18,7 @@
 
 #include "analysis/base/clocks.hpp"
 #include "analysis/base/provenance.hpp"
+#include "analysis/run/detection_run.hpp"
 #include "analysis/scoring/contact_recording.hpp"
 #include "analysis/scoring/contact_recording_file.hpp"
 #include "analysis/scoring/scores.hpp"
@@ -240,17 +241,15 @@ class BatchRun {
     RecordedTrace recorded;
     recorded.collider_ids = ids;
     ContactRecording& recording = recorded.contacts;
-    FrameBuilder builder(plan_.avatar, ids, detector.method());
+    DetectionRun detection(plan_.avatar, ids, detector);
     TraceFrame trace_frame;
-    ContactRow row;
     std::uint64_t frames = 0;
     std::uint64_t contacts = 0;
     for (bool more = reader.next(trace_frame); more; more = reader.next(trace_frame)) {
       times.reading_s += lap_s();
-      const Frame& frame = builder.next(trace_frame);
-      detector.detect(frame, row);
-      contacts += static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
-      recording.add(frame.time_s, row);
+      detection.step(trace_frame);
+      contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(), &Contact::hit));
+      recording.add(detection.frame().time_s, detection.row());
       times.detection_s += lap_s();
       ++frames;
       if (stop_) throw Stopped();
@@ -261,9 +260,9 @@ class BatchRun {
     item["frames"] = frames;
     item["colliders"] = ids.size();
     item["contacts"] = contacts;
-    item["origin_changes"] = builder.origin_changes();
-    item["non_finite_frames"] = builder.non_finite_frames();
-    item["non_finite_segments"] = builder.non_finite_segments();
+    item["origin_changes"] = detection.builder().origin_changes();
+    item["non_finite_frames"] = detection.builder().non_finite_frames();
+    item["non_finite_segments"] = detection.builder().non_finite_segments();
     item["damage"] = damage_of(reader, plan_.traces[mine_[i]].given);
     return recorded;
   }

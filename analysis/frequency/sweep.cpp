@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/frequency/render_thread.hpp"
+#include "analysis/run/detection_run.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "traces/base/error.hpp"
 
@@ -135,10 +136,13 @@ class Sweep {
     const std::uint32_t most = std::ranges::max(settings_.counts);
     Reference reference;
     for (const Place& place : places_) {
-      FrameBuilder builder(avatar_, first_ids(most), detector->method());
-      builder.next(place.front());
-      auto& rows = reference.rows.emplace_back(place.size() - 1);
-      for (std::size_t i = 1; i < place.size(); ++i) detector->detect(builder.next(place[i]), rows[i - 1]);
+      DetectionRun detection(avatar_, first_ids(most), *detector);
+      detection.begin(place.front());
+      auto& rows = reference.rows.emplace_back();
+      for (std::size_t i = 1; i < place.size(); ++i) {
+        detection.step(place[i]);
+        rows.push_back(detection.row());
+      }
     }
     return reference;
   }
@@ -156,11 +160,9 @@ class Sweep {
 
   /// Everywhere, since a place with another number of segments may need another program.
   void warm_up(std::size_t series, const SweepPoint& point) {
-    ContactRow row;
     for (const Place& place : places_) {
-      FrameBuilder builder(avatar_, first_ids(point.colliders), detectors_[series]->method());
-      for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i)
-        detectors_[series]->detect(builder.next(place[i]), row);
+      DetectionRun detection(avatar_, first_ids(point.colliders), *detectors_[series]);
+      for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i) detection.step(place[i]);
     }
   }
 
@@ -191,14 +193,13 @@ class Sweep {
   double measure(std::size_t series, SweepPoint& point) {
     const std::size_t place_number = point.repetitions.size() % places_.size();
     const Place& place = places_[place_number];
-    FrameBuilder builder(avatar_, first_ids(point.colliders), detectors_[series]->method());
-    builder.next(place.front());
-    ContactRow row;
+    DetectionRun detection(avatar_, first_ids(point.colliders), *detectors_[series]);
+    detection.begin(place.front());
     Repetition repetition;
     DetectorWork work;
     for (std::size_t i = 1; i < place.size(); ++i) {
       const auto start = std::chrono::steady_clock::now();
-      const DetectorWork done = detectors_[series]->detect(builder.next(place[i]), row);
+      const DetectorWork done = detection.step(place[i]);
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       point.frame_us.push_back(elapsed.count() * 1e6);
       repetition.seconds += elapsed.count();
@@ -209,7 +210,7 @@ class Sweep {
       }
       work += done;
       const ContactRow& expected = references_[series].rows[place_number][i - 1];
-      if (!std::equal(row.begin(), row.end(), expected.begin(), same))
+      if (!std::equal(detection.row().begin(), detection.row().end(), expected.begin(), same))
         throw Error(series_[series].detector,
                     fmt::format("frame {} gave other contacts with {} colliders than with {}", place[i].index,
                                 point.colliders, expected.size()),

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "analysis/base/clocks.hpp"
-#include "detector/frame.hpp"
+#include "analysis/run/detection_run.hpp"
 
 namespace vestige {
 
@@ -88,31 +88,30 @@ PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector
   auto begin = start;
   double offset_s = 0;
   TraceFrame trace_frame;
-  ContactRow row;
   bool going = frame_count > 0;
   while (going) {
     trace.rewind();
-    FrameBuilder builder(avatar, ids, detector.method());
+    DetectionRun detection(avatar, ids, detector);
     std::optional<Run> run;
     while (going && trace.next(trace_frame)) {
-      const Frame& frame = builder.next(trace_frame);
+      const double time_s = trace_frame.time_s();
       if (!run) {
-        run.emplace(options.rate, calls, frame.time_s, offset_s, begin, ids.size());
-      } else if (Clock::now() > run->due(frame.time_s)) {
+        run.emplace(options.rate, calls, time_s, offset_s, begin, ids.size());
+      } else if (Clock::now() > run->due(time_s)) {
         ++result.missed_deadlines;
       }
-      going = run->wait_for(frame.time_s, static_cast<double>(run->frames()) / frame_count);
+      going = run->wait_for(time_s, static_cast<double>(run->frames()) / frame_count);
       if (!going) break;
       const bool was_behind = result.fell_behind();
-      result.most_late_s = std::max(result.most_late_s, seconds(Clock::now() - run->due(frame.time_s)));
+      result.most_late_s = std::max(result.most_late_s, seconds(Clock::now() - run->due(time_s)));
       if (result.fell_behind() && !was_behind) calls.fell_behind();
-      detector.detect(frame, row);
-      run->take(frame.time_s, row);
+      detection.step(trace_frame);
+      run->take(time_s, detection.row());
       ++result.frames;
-      result.contacts += static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
+      result.contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(), &Contact::hit));
     }
-    result.non_finite_frames += builder.non_finite_frames();
-    result.non_finite_segments += builder.non_finite_segments();
+    result.non_finite_frames += detection.builder().non_finite_frames();
+    result.non_finite_segments += detection.builder().non_finite_segments();
     if (going) ++result.loops;
     going = going && options.loop && run;
     if (!going) break;

@@ -41,6 +41,15 @@ struct MapChange {
   std::shared_ptr<const ActuatorLayout> layout;  ///< what the drive's law goes on with; null for one that needs none
 };
 
+/// What to do with every frame of a trace.
+struct ReplayPlan {
+  const Avatar& avatar;
+  std::size_t actuator_count;
+  ReplayOutputs outputs;
+  ReplayExpectation expectation;
+  std::span<const MapChange> changes;  ///< ascending times; each says anew what actuator every contact has
+};
+
 struct ReplayResult {
   std::uint64_t frames = 0;
   std::uint64_t contacts = 0;
@@ -59,11 +68,9 @@ struct ReplayResult {
   bool interrupted = false;
 };
 
-/// Runs all frames of `trace` through `detectors`, whose rows must carry what the outputs need and `kHashedPlanes`;
-/// with `changes` (ascending times), which say anew what actuator every contact has, texture coordinates too.
-/// `progress` is told the share done and returns false to stop early.
-ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
-                    const ReplayOutputs& outputs, const ReplayExpectation& expectation,
-                    std::span<const MapChange> changes, const std::function<bool(double)>& progress);
+/// Runs all frames of `trace` through `detectors`. Their rows must carry what the outputs need and `kHashedPlanes`; if
+/// `plan` has map changes, texture coordinates too. `progress` is told the share done and returns false to stop early.
+ReplayResult replay(TraceReader& trace, DetectorTeam& detectors, const ReplayPlan& plan,
+                    const std::function<bool(double)>& progress);
 
 }  // namespace vestige

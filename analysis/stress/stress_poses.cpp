@@ -5,7 +5,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 #include "analysis/stress/stress_families.hpp"
@@ -78,11 +77,7 @@ StressScene posed_scene(StressOrder order, const Disturb& disturb, const Disturb
     disturb(moments, random);
     aim(avatar, moments, count, order.method, random);
     spoil(moments, random);
-    std::vector<std::uint32_t> ids(count);
-    std::iota(ids.begin(), ids.end(), 0U);
-    FrameBuilder builder(avatar, ids, order.method);
-    builder.next(moments.before);
-    scene.frames.push_back(builder.next(moments.now));
+    scene.frames.push_back(frame_after(moments.before, moments.now, avatar, count, order.method));
     done += count;
   }
   return scene;

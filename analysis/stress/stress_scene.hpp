@@ -9,6 +9,7 @@
 #include "detector/method.hpp"
 #include "traces/scenarios/random.hpp"
 #include "traces/scene/avatar.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 
@@ -43,5 +44,9 @@ struct StressOrder {
   Method method = Method::kStatic;  ///< kCcd aims at where things are halfway between the frames
   Random random{0};
 };
+
+/// What a detector is given for `now`, one frame after `before`. A collider's id is its column: below `columns`.
+Frame frame_after(const TraceFrame& before, const TraceFrame& now, const Avatar& avatar, std::size_t columns,
+                  Method method);
 
 }  // namespace vestige

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -102,11 +101,7 @@ void add_world_frames(const StressOrder& order, Aim aim, Random& random, std::ve
       before.colliders.push_back({segment.column, first.origin_m + glm::dvec3(segment.start)});
       now.colliders.push_back({segment.column, first.origin_m + glm::dvec3(segment.end)});
     }
-    std::vector<std::uint32_t> ids(count);
-    std::iota(ids.begin(), ids.end(), 0U);
-    FrameBuilder builder(avatar, ids, order.method);
-    builder.next(before);
-    frames.push_back(builder.next(now));
+    frames.push_back(frame_after(before, now, avatar, count, order.method));
   }
 }
 

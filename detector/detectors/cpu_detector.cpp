@@ -11,6 +11,7 @@
 #include "detector/broad/triangle_boxes.hpp"
 #include "detector/detector.hpp"
 #include "detector/detectors/contact_finder.hpp"
+#include "detector/detectors/make_detectors.hpp"
 
 namespace vestige {
 

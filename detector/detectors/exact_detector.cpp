@@ -1,6 +1,7 @@
 #include "detector/broad/skin_motion.hpp"
 #include "detector/detector.hpp"
 #include "detector/detectors/contact_description.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/truth/truth.hpp"
 
 namespace vestige {

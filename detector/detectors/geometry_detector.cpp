@@ -14,6 +14,7 @@
 #include "detector/broad/skin_motion.hpp"
 #include "detector/detector.hpp"
 #include "detector/detectors/contact_finder.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/detectors/skipping_geometry_detector.hpp"
 #include "detector/gl/captured_pairs.hpp"
 #include "detector/gl/collision_texture.hpp"

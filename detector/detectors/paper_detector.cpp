@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"

@@ -6,6 +6,7 @@
 
 #include "analysis/scoring/scores.hpp"
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "tests/support/flat_body.hpp"
 #include "tests/support/scene_run.hpp"
 

@@ -26,6 +26,8 @@ struct TraceFrame {
   Pose pose;
   std::vector<ColliderSample> colliders;  ///< any order, each id at most once
   std::vector<std::uint32_t> teleported;  ///< ids that jumped here since the last frame: their segment tests nothing
+
+  double time_s() const { return static_cast<double>(time_ns) / 1e9; }
 };
 
 /// What the metadata record `session` says: format_version, argv, commit, machine, clock, wall_start, sha256 of each

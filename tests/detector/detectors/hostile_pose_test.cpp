@@ -11,6 +11,7 @@
 #include <string>
 
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "tests/support/builtin_avatar.hpp"
