@@ -38,13 +38,12 @@ struct SeriesStep {
 
 /// A time series that ParaView opens. STEM.pvd lists the files of the folder STEM. Each step has three files (VTK XML
 /// PolyData, zlib):
-///   avatar_NNNNNN.vtp     the skin, world metres; cell data actuator (at the texel under each triangle's middle; 0:
-///   none),
-///                         amplitude (0 … 1, of that actuator), contacts (in this step); texture coordinates with v
-///                         upwards, as in VTK; field data actuator_name
+///   avatar_NNNNNN.vtp     the skin, world metres; cell data actuator (at the texel under each triangle's middle, or
+///                         0), amplitude (0 … 1, of that actuator), contacts (in this step); texture coordinates with
+///                         v upwards, as in VTK; field data actuator_name
 ///   colliders_NNNNNN.vtp  a point for each collider; point data collider (id)
-///   contacts_NNNNNN.vtp   a point for each contact; point data collider, triangle, actuator, side, speed_m_per_s,
-///   time_s
+///   contacts_NNNNNN.vtp   a point for each contact; point data collider, triangle, actuator, side,
+///                         speed_m_per_s, time_s
 /// Holds one step in memory. Without `commit`, no file remains.
 ///
 /// Functions throw `Error` with the file's name if the file exists (with `Overwrite::kRefuse`), if the folder does not
