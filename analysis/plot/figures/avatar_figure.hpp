@@ -17,7 +17,8 @@ struct ContactSheet {
   std::size_t poses = 6;                     ///< number for each animation
 
   /// Returns the animations to show. `animation` is a name, an index, "none" (the rest pose), or empty: all animations,
-  /// which may be none. Throws `UsageError` that lists the animations if there is no such animation.
+  /// or the rest pose if the avatar has none. Throws `UsageError` that lists the animations if there is no such
+  /// animation.
   static std::vector<const Animation*> choose(const Avatar& avatar, const std::string& animation);
 };
 
