@@ -39,8 +39,8 @@ struct RegionGrid {
   std::vector<std::string> names;  ///< names row by row, or empty
 };
 
-/// An actuator at a place of a region. The place is a point of space, of which the nearest skin of the region counts,
-/// or a height and an angle. Both are counted as the region's own `height` and `angle`.
+/// An actuator at a place of a region. The place is a point of space (the nearest skin of the region counts), or a
+/// height and an angle, counted as the region's own `height` and `angle`.
 struct RegionActuator {
   std::string name;
   std::optional<glm::dvec3> position_m;
