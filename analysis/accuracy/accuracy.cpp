@@ -18,7 +18,7 @@ constexpr std::size_t kTurnFrames = 32;
 constexpr std::uint64_t kSkinningFrames = 5;
 constexpr int kWarmUpFrames = 2;
 
-/// What a contestant carries from turn to turn at one rate.
+/// The state that a contestant keeps from turn to turn at one rate.
 struct Run {
   Run(const MovingScene& scene, const AccuracyContestant& contestant)
       : detection(scene.avatar, scene.collider_ids, *contestant.instance) {}
@@ -50,7 +50,7 @@ class RateMeasurement {
   bool is_done() const { return done_ == last_; }
   std::uint64_t frames_done() const { return done_; }
 
-  /// The next frames, by one contestant after the other.
+  /// Runs the next frames through one contestant after the other.
   void take_turns(std::mt19937_64& random) {
     std::vector<TraceFrame> frames;
     frames.reserve(kTurnFrames);
@@ -73,7 +73,7 @@ class RateMeasurement {
   }
 
  private:
-  /// Where a driver makes its programs when they are first needed, that is not a frame's time.
+  /// A driver may compile programs when they are first needed. This time must not count as a frame's time.
   void warm_up(const AccuracyContestant& contestant, double rate_hz) const {
     SceneSampler sampler(scene_, rate_hz);
     DetectionRun detection(scene_.avatar, scene_.collider_ids, *contestant.instance);

@@ -13,7 +13,7 @@ namespace vestige {
 
 namespace {
 
-/// Always as many, so that the origin of a part (detector/CONTRACT.md, 2) does not depend on the machine.
+/// The number of parts is fixed, so that the origin of a part (detector/CONTRACT.md, 2) does not depend on the machine.
 constexpr std::uint64_t kParts = 16;
 
 struct Part {
@@ -28,7 +28,7 @@ struct Work {
   std::atomic<bool> stopped = false;
 };
 
-/// Frames first + 1 … last; `first` only gives them their start.
+/// Finds contacts in the frames first + 1 … last. Frame `first` only gives the start of the first segments.
 Part find_in_part(const MovingScene& scene, double rate_hz, Detector& detector, std::uint64_t first, std::uint64_t last,
                   Work& work) {
   SceneSampler sampler(scene, rate_hz, first);

@@ -14,7 +14,7 @@ namespace vestige {
 
 namespace {
 
-/// What libpng's calls share; freed whether or not they throw.
+/// The objects that libpng's calls share. They are freed whether or not a call throws.
 struct Writer {
   std::string failure;
   std::vector<std::byte> bytes;
@@ -37,7 +37,7 @@ void take_bytes(png_structp png, png_bytep bytes, png_size_t count) {
   writer.bytes.insert(writer.bytes.end(), first, first + count);
 }
 
-/// Nothing with a destructor is made between setjmp and the calls that may jump.
+/// Objects with a destructor must not be made between setjmp and the calls that may jump.
 bool write_rows(Writer& writer, const std::byte* pixels, std::size_t row_bytes, std::uint32_t width,
                 std::uint32_t height, int depth, int colour, const png_text* text) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's own way

@@ -53,7 +53,7 @@ nlohmann::ordered_json to_json(const ItemTimes& times) {
           {"scoring_s", times.scoring_s}};
 }
 
-/// Thrown where the user stopped; not an error.
+/// Thrown if the user stops the run; not an error.
 struct Stopped {};
 
 /// One batch under way.
@@ -102,7 +102,7 @@ class BatchRun {
       for (std::size_t i = 0; i < count; ++i) threads.emplace_back([this] { run_thread(); });
     } catch (const std::system_error&) {
       const std::lock_guard lock(mutex_);
-      running_ -= count - threads.size();  // those that there are do all the work
+      running_ -= count - threads.size();  // the threads that exist do all the work
       if (threads.empty()) throw Error("--jobs", "the system starts no thread", "try again later");
     }
     for (std::unique_lock lock(mutex_); running_ != 0; lock.lock()) {
@@ -117,7 +117,7 @@ class BatchRun {
     try {
       work();
     } catch (const Stopped&) {
-      // What was under way is dropped.
+      // Unfinished work is dropped.
     } catch (...) {
       note_failure();
     }
@@ -184,7 +184,7 @@ class BatchRun {
     const auto colliders = trace.scenario->make(plan_.avatar, animation, {count, plan_.seed});
     TraceWriterOptions writing;
     writing.overwrite = Overwrite::kAllow;
-    writing.chunk_s = std::numeric_limits<double>::infinity();  // the same bytes however long it takes
+    writing.chunk_s = std::numeric_limits<double>::infinity();  // gives the same bytes, however long recording takes
     const std::string growing = folder_.growing_trace(trace.name);
     {
       TraceWriter writer(growing,
@@ -287,7 +287,7 @@ class BatchRun {
     write_contact_recording(folder_.contacts(trace.name), *computed.recording);
     computed.item["contacts_sha256"] = sha256_of_file(folder_.contacts(trace.name));
     write_json_file(folder_.item_times(trace.name), to_json(times));
-    write_json_file(folder_.item(trace.name), computed.item);  // last: it says that all is there
+    write_json_file(folder_.item(trace.name), computed.item);  // last, since this file means that all others exist
   }
 
   const BatchPlan& plan_;
@@ -296,7 +296,7 @@ class BatchRun {
   std::string key_;
   std::vector<std::size_t> mine_;  ///< positions of the shard's traces
   std::vector<double> weights_;
-  std::vector<std::atomic<double>> shares_;            ///< done of each
+  std::vector<std::atomic<double>> shares_;            ///< share done of each trace
   std::vector<std::optional<BatchItem>> items_;        ///< each is written by one thread
   std::vector<std::optional<BatchFailure>> failures_;  ///< likewise
   std::vector<LawChoice> laws_;

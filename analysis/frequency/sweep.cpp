@@ -19,10 +19,10 @@ namespace vestige {
 namespace {
 
 constexpr std::size_t kWarmUpFrames = 2;
-/// What is measured at a time beside a renderer: 18 of its frames.
+/// Length of one stretch beside a renderer: 18 of the renderer's frames.
 constexpr double kRenderedStretch_s = 0.2;
 
-/// Consecutive frames of the trace; the first only gives the segments of the second their start.
+/// Consecutive frames of the trace. The first frame only gives the start of the second frame's segments.
 using Place = std::vector<TraceFrame>;
 
 std::uint64_t place_length(std::uint64_t trace_frames, const SweepSettings& settings) {
@@ -48,8 +48,8 @@ std::vector<Place> read_places(TraceReader& trace, const SweepSettings& settings
   return places;
 }
 
-/// The rows of one contestant with every collider: those of fewer colliders are their beginnings, since a collider's
-/// contact does not depend on the others.
+/// The rows of one contestant with all colliders. Rows with fewer colliders are prefixes of these, since a collider's
+/// contact does not depend on the other colliders.
 struct Reference {
   std::vector<std::vector<ContactRow>> rows;  // by place, then frame
 };
@@ -158,7 +158,7 @@ class Sweep {
     point.texture_hash = hash.hex();
   }
 
-  /// Everywhere, since a place with another number of segments may need another program.
+  /// Runs at every place, since a place with another number of segments may need another program.
   void warm_up(std::size_t series, const SweepPoint& point) {
     for (const Place& place : places_) {
       DetectionRun detection(avatar_, first_ids(point.colliders), *detectors_[series]);
@@ -174,7 +174,7 @@ class Sweep {
     return std::make_unique<RenderThread>(contestant.make_renderer_context, avatar_, std::move(frames));
   }
 
-  /// One stretch beside the renderer, as many places as it takes. Returns the seconds timed.
+  /// Measures as many places as fit into one stretch beside the renderer. Returns the seconds timed.
   double measure_rendered(std::size_t series, SweepPoint& point) {
     const auto start = std::chrono::steady_clock::now();
     std::chrono::duration<double> elapsed = {};
@@ -189,7 +189,7 @@ class Sweep {
     return seconds;
   }
 
-  /// The place whose turn it is. Returns the seconds timed.
+  /// Measures the place whose turn it is. Returns the seconds timed.
   double measure(std::size_t series, SweepPoint& point) {
     const std::size_t place_number = point.repetitions.size() % places_.size();
     const Place& place = places_[place_number];

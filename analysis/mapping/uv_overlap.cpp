@@ -36,7 +36,7 @@ class CoveragePainter {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::size_t texel = row + column;
       column = column + 1 == coverage_.side ? 0 : column + 1;
-      // A triangle that wraps around may come by again: it is still one.
+      // A triangle that wraps around may cover a texel twice. It still counts once.
       if (last_[texel] == number) continue;
       last_[texel] = number;
       if (coverage_.layers[texel] < 255 && ++coverage_.layers[texel] == 255) ++full_[line];

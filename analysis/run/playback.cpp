@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = PlaybackCalls::Clock;
 
-constexpr auto kSlice = 50ms;  ///< of waiting, so that an interrupt is answered
+constexpr auto kSlice = 50ms;  ///< longest wait, so that an interrupt is noticed
 constexpr double kGap_s = 0.2;
 
 Clock::duration to_duration(double duration_s) {
@@ -26,7 +26,7 @@ Clock::duration to_duration(double duration_s) {
 /// One run through the trace.
 class Run {
  public:
-  /// `offset_s`: added to the trace's times in what is handed on.
+  /// `offset_s` is added to the trace's times that are handed on.
   Run(double rate, const PlaybackCalls& calls, double first_s, double offset_s, Clock::time_point begin,
       std::size_t columns)
       : rate_(rate),
@@ -40,7 +40,7 @@ class Run {
 
   Clock::time_point due(double time_s) const { return begin_ + to_duration((time_s - first_s_) / rate_); }
 
-  /// False: the playback is to end.
+  /// Waits until a frame is due. Returns false if the playback must end.
   bool wait_for(double time_s, double share) {
     const auto until = due(time_s);
     for (auto now = Clock::now(); now < until; now = Clock::now()) {
@@ -59,7 +59,8 @@ class Run {
   }
 
   std::uint64_t frames() const { return frames_; }
-  /// From the first frame to the first of the next run: the step between runs is as long as the others are.
+  /// Returns the time from the first frame to the first frame of the next run. The step between the runs is the mean
+  /// step.
   double length_s() const {
     const double length_s = last_s_ - first_s_;
     return frames_ > 1 ? length_s + length_s / static_cast<double>(frames_ - 1) : kGap_s;

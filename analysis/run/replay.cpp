@@ -15,8 +15,8 @@ constexpr std::uint64_t kSkinningFrames = 5;
 
 using Clock = std::chrono::steady_clock;
 
-/// How many frames to detect together: enough that threads seldom wait for each other, few enough that progress is
-/// seen and an interrupt answered. A thread alone takes them one by one.
+/// Chooses how many frames to detect together: enough that threads seldom wait for each other, and few enough that
+/// progress is visible and an interrupt is noticed. A single thread takes frames one by one.
 class BatchSize {
  public:
   explicit BatchSize(std::size_t threads) : alone_(threads == 1), size_(alone_ ? 1 : 4 * threads) {}
@@ -58,7 +58,8 @@ class RecordedRows {
     return row_;
   }
 
-  /// Contacts of frames or colliders that the trace does not have, those never asked for included.
+  /// Returns the number of contacts whose frame or collider the trace does not have. It includes contacts that were
+  /// never asked for.
   std::uint64_t strangers() const { return strangers_ + (contacts_.size() - next_); }
 
  private:

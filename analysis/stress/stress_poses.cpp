@@ -39,7 +39,7 @@ NodeLocal& any_joint(const Avatar& avatar, Pose& pose, Random& random) {
   }
 }
 
-/// Each collider passes a corner, an edge or the middle of a triangle of the skin, halfway, wherever that is finite.
+/// Lets each collider pass a corner, an edge or the middle of a triangle of the skin halfway, if that place is finite.
 void aim(const Avatar& avatar, Moments& moments, std::size_t count, Method method, Random& random) {
   std::vector<glm::dvec3> before;
   std::vector<glm::dvec3> now;
@@ -61,7 +61,8 @@ void aim(const Avatar& avatar, Moments& moments, std::size_t count, Method metho
   }
 }
 
-/// Frames as `FrameBuilder` makes them, each of two moments that `disturb` has changed; `spoil` may change colliders.
+/// Returns frames made by `FrameBuilder`, each from two moments that `disturb` has changed. `spoil` may change
+/// colliders.
 StressScene posed_scene(StressOrder order, const Disturb& disturb, const Disturb& spoil) {
   const Avatar& avatar = order.subject->avatar;
   Random random = order.random;
@@ -89,7 +90,7 @@ glm::quat turn(double angle_rad, const glm::dvec3& axis) {
   return glm::quat(glm::angleAxis(angle_rad, axis));
 }
 
-/// A joint that is shrunk and twisted by half a turn: linear blending draws the skin around it together, as the paper
+/// Shrinks a joint and twists it by half a turn. Linear blending pulls the skin around it together, like the paper
 /// around a sweet (the candy-wrapper effect).
 StressScene collapse(StressOrder order) {
   const auto disturb = [&](Moments& moments, Random& random) {
@@ -111,7 +112,7 @@ StressScene spin(StressOrder order) {
 
 StressScene mirrored(StressOrder order) {
   const auto disturb = [&](Moments& moments, Random& random) {
-    // Both moments: a bone that is mirrored stays so.
+    // At both moments: a mirrored bone stays mirrored.
     Random same = random;
     for (Pose* pose : {&moments.before.pose, &moments.now.pose}) {
       random = same;

@@ -19,7 +19,8 @@ constexpr std::size_t kInsidePoints = 256;
 constexpr std::size_t kMostTries = 100'000;
 
 enum class Aim { kVertex, kEdge };
-/// Where the offset enters: in the doubles of pose and colliders, which `FrameBuilder` takes away again, or in fp32.
+/// Where the offset is applied: to the doubles of pose and colliders, from which `FrameBuilder` subtracts it again, or
+/// to the fp32 values.
 enum class Where { kDoubleOrigin, kFloat };
 
 /// The skin of the resting avatar, in the coordinates that detectors get, and points inside of it.
@@ -41,7 +42,8 @@ class ClosedSkin {
     if (inside_.empty()) throw std::logic_error("the avatar has no inside");
   }
 
-  /// From a point inside to one outside, through a corner of the skin or the middle of an edge, as near as fp32 comes.
+  /// Returns a segment from a point inside to a point outside, through a corner of the skin or the middle of an edge,
+  /// as near as fp32 allows.
   Segment segment(std::uint32_t column, Aim aim, Random& random) const {
     const glm::uvec3& triangle = avatar_.triangles[random.index(avatar_.triangles.size())];
     const auto corner = static_cast<int>(random.index(3));
@@ -51,7 +53,7 @@ class ClosedSkin {
       const glm::vec3 start = inside_[random.index(inside_.size())];
       const glm::dvec3 way = target - glm::dvec3(start);
       if (glm::length(way) < kLeastWay_m) continue;
-      // By powers of two, so that the target stays on the way where fp32 has room for it.
+      // Scaled by powers of two, so that the target stays on the way if fp32 has room for it.
       for (double reach = 2; reach < kMostReach; reach *= 2) {
         const glm::vec3 end(glm::dvec3(start) + reach * way);
         if (is_outside(end)) return {column, start, end};
@@ -105,7 +107,7 @@ void add_world_frames(const StressOrder& order, Aim aim, Random& random, std::ve
   }
 }
 
-/// Frames whose fp32 coordinates are themselves far from the origin: the skin is coarser there, and still closed.
+/// Frames whose fp32 coordinates are themselves far from the origin. The skin is coarser there, but still closed.
 void add_float_frames(const StressOrder& order, Aim aim, Random& random, std::vector<Frame>& frames) {
   const Avatar& avatar = order.subject->avatar;
   Frame frame;
