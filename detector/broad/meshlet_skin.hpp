@@ -39,7 +39,7 @@ class MeshletSkin {
   struct Block {
     std::size_t first_number = 0;
     std::size_t first_entry = 0;
-    std::size_t entries = 0;  ///< 0 if the meshlet has too many palette entries for this
+    std::size_t entries = 0;  ///< 0: the meshlet is skinned vertex by vertex
   };
 
   const Avatar& avatar_;

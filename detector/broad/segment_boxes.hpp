@@ -16,7 +16,7 @@ namespace vestige {
 /// once.
 class SegmentBoxes {
  public:
-  /// Most boxes that `test` takes at once.
+  /// Largest number of boxes that `test` takes at once.
   static constexpr std::size_t kMostTested = 8;
 
   /// Removes all segments, and makes room for `capacity` of them.
