@@ -71,7 +71,7 @@ Decision decide_static(const Way& way, const Corners& triangle) {
   const Cross ab = cross_of(to_a, to_b);
   const Cross bc = cross_of(to_b, to_c);
   const Cross ca = cross_of(to_c, to_a);
-  const Bounded height_start = triple(to_a, bc);  // height of p below the plane, times |n|
+  const Bounded height_start = triple(to_a, bc);  // depth of p below the plane, times |n|
   const std::array<Bounded, 3> edges = {triple(moved, ab), triple(moved, bc), triple(moved, ca)};
   bool left = false;
   bool right = false;
@@ -90,7 +90,7 @@ Decision decide_static(const Way& way, const Corners& triangle) {
       (edges[0].error + edges[1].error + edges[2].error +
        (std::abs(edges[0].value) + std::abs(edges[1].value) + std::abs(edges[2].value)) * 2 * kUnit) *
       (1 + 8 * kUnit);
-  const Bounded closing = {sum, sum_error};  // the decrease of the height along d
+  const Bounded closing = {sum, sum_error};  // the decrease of the depth along d
   const Bounded height_end = height_start - closing;
   if (height_start.surely_positive() && height_end.surely_positive()) return {};
   if (height_start.surely_negative() && height_end.surely_negative()) return {};
