@@ -132,7 +132,7 @@ class SkippingGeometryDetector final : public Detector {
     return work;
   }
 
-  /// Those that the detector works with are skinned by the CPU.
+  /// Returns the vertices that the detector works with, which the CPU skins.
   void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
     skin_vertices(avatar_, frame.palette, out);
   }
@@ -145,7 +145,7 @@ class SkippingGeometryDetector final : public Detector {
         shaders::kConstantsH, static_cast<int>(method_), kBlockSlots, kBlockSegments, kMeshletTriangles);
   }
 
-  /// Three now, and where the method looks at them the same three before.
+  /// Three corners now, and the same three in the previous frame if the method uses it.
   std::size_t corners_per_triangle() const { return method_ == Method::kStatic ? 3 : 6; }
 
   void add_attribute(GLuint location, GLuint corner) const {
