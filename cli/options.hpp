@@ -48,9 +48,9 @@ void refuse_too_many_frames(double frames, const char* flag, const char* remedy)
 /// Warns of a number of frames that may come from a mistyped rate or duration. `way_out` says how to end early.
 void warn_of_many_frames(double frames, std::string_view way_out, Verbosity verbosity);
 
-/// Throws `UsageError`, before any work is done, for outputs that could not be written at the end, or that would
-/// destroy an input: existing files without --force, two results in one place, or a result in the place of an input.
-/// Empty paths are outputs that were not requested.
+/// Throws `Error`, before any work is done, for outputs that could not be written at the end, or that would destroy an
+/// input: existing files without --force, two results in one place, or a result in the place of an input. Empty paths
+/// are outputs that were not requested.
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    const CommonOptions& options);
 

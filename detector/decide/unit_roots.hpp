@@ -12,7 +12,7 @@ namespace vestige {
 /// takes a number of steps that does not depend on how close roots are to each other or to anything else.
 class UnitRoots {
  public:
-  /// `polynomial` is not zero.
+  /// `polynomial` must not be zero.
   explicit UnitRoots(const Polynomial& polynomial);
 
   std::size_t count() const { return cells_.size(); }
