@@ -10,20 +10,21 @@ namespace vestige {
 
 class GlContext;
 
-/// On the CPU: fp32 skinning by the contract, boxes reject, exact decisions.
+/// Runs on the CPU: fp32 skinning by the contract, boxes that reject pairs, exact decisions for the rest.
 std::unique_ptr<Detector> make_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
                                             const DetectorOptions& options);
 
-/// The slow truth: every pair in exact arithmetic.
+/// The slow reference: decides every pair in exact arithmetic.
 std::unique_ptr<Detector> make_exact_detector(const Avatar& avatar, const ActuatorMap& map,
                                               const DetectorOptions& options);
 
-/// The published method: HAVE 2010 §III. Needs OpenGL 4.5; throws `Error` with the driver's own words otherwise.
+/// The published method: HAVE 2010 §III. Needs OpenGL 4.5. Throws `Error` with the driver's own message
+/// otherwise.
 std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
                                               const ActuatorMap& map, const DetectorOptions& options);
 
-/// A geometry shader proves misses and captures what it cannot prove; the CPU decides that, exactly. Needs OpenGL 4.5;
-/// throws `Error` with the driver's own words otherwise.
+/// A geometry shader proves misses and captures the pairs that it cannot prove to miss. The CPU decides those pairs
+/// exactly. Needs OpenGL 4.5. Throws `Error` with the driver's own message otherwise.
 std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options);
 
