@@ -13,7 +13,7 @@ namespace vestige::mannequin {
 
 namespace {
 
-/// The chart's border, in order.
+/// Returns the chart's border vertices, in order.
 std::vector<std::uint32_t> border_of(const Surface& surface, const Chart& chart) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> edges;
   for (const std::uint32_t t : chart.triangles)
@@ -63,7 +63,7 @@ std::vector<glm::dvec2> flatten(const Surface& surface, const Chart& chart) {
     }
   flat = solve(entries, flat);
 
-  // Each triangle as it lies in space, and the matrix of the global step, which never changes.
+  // Each triangle's shape in space, and the matrix of the global step, which never changes.
   struct Flat {
     std::array<int, 3> corner;
     std::array<Eigen::Vector2d, 3> edge;  ///< from corner i to corner i + 1
@@ -99,7 +99,7 @@ std::vector<glm::dvec2> flatten(const Surface& surface, const Chart& chart) {
   for (int step = 0; step < kSteps; ++step) {
     Eigen::MatrixXd right = Eigen::MatrixXd::Zero(count, 2);
     for (const Flat& f : triangles) {
-      // The rotation nearest to the triangle's map: of a 2 x 2 matrix, its angle.
+      // The rotation closest to the triangle's map: for a 2 x 2 matrix, its angle.
       double c = 0;
       double s = 0;
       for (std::size_t i = 0; i < 3; ++i) {
