@@ -7,6 +7,7 @@
 #include <set>
 
 #include "tests/cli/files/exchange_fixture.hpp"
+#include "tests/support/long.hpp"
 #include "tests/support/npm.hpp"
 #include "traces/exchange/pose_csv.hpp"
 
@@ -331,8 +332,12 @@ TEST_F(Exchange, LongTracesPassThroughLittleMemory) {
 #ifdef VESTIGE_SANITIZED
   GTEST_SKIP() << "memory is not measured under sanitizers, which keep what is freed";
 #endif
-  ASSERT_EQ(run("vestige record --colliders swarm --count 100 --rate 1000 --duration 30 -o long.mcap").exit_code, 0);
-  const std::string limited = "ulimit -d 98304 && ";
+  ASSERT_EQ(run("vestige record --colliders swarm --count 100 --rate 1000 --duration " +
+                std::string(test::is_long() ? "30" : "10") + " -o long.mcap")
+                .exit_code,
+            0);
+  const int messages = test::is_long() ? 60000 : 20000;
+  const std::string limited = "ulimit -d 65536 && ";
   for (const char* command :
        {"vestige export long.mcap -o long.glb", "vestige export long.mcap -o long.h5",
         "vestige export long.mcap -o long", "vestige export long.mcap -o - --format ndjson | tail -1 | cut -c1-30",
@@ -340,8 +345,8 @@ TEST_F(Exchange, LongTracesPassThroughLittleMemory) {
     const test::Outcome outcome = run(limited + command);
     EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
   }
-  EXPECT_EQ(json_of("vestige inspect csv.mcap --json -")["messages"], 60000);
-  EXPECT_EQ(json_of("vestige inspect h5.mcap --json -")["messages"], 60000);
+  EXPECT_EQ(json_of("vestige inspect csv.mcap --json -")["messages"], messages);
+  EXPECT_EQ(json_of("vestige inspect h5.mcap --json -")["messages"], messages);
 }
 
 TEST_F(Exchange, FlagsThatWouldDoNothingAreRefused) {

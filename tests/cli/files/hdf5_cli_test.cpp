@@ -9,6 +9,7 @@
 
 #include "tests/cli/files/exchange_fixture.hpp"
 #include "tests/support/builtin_avatar.hpp"
+#include "tests/support/long.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/base/shared_library.hpp"
 #include "traces/exchange/hdf5_library.hpp"
@@ -183,9 +184,9 @@ TEST_F(Hdf5Exchange, NoChangedByteOfAFileCrashesOrChangesAFrame) {
   ASSERT_EQ(whole.size(), 3U);
   const std::string bytes = read_text_file(folder_ / "small.h5");
   const std::size_t avatar = bytes.find("glTF");
-  constexpr std::size_t kStep = 31;
+  const std::size_t step = test::is_long() ? 31 : 311;
   int refused = 0;
-  for (std::size_t at = 0; at < bytes.size(); at += kStep) {
+  for (std::size_t at = 0; at < bytes.size(); at += step) {
     // Most of the file, for whose bytes its SHA-256 vouches.
     if (at > avatar + 200 && at + 200 < avatar + builtin_avatar_glb().size()) continue;
     std::string changed = bytes;
@@ -200,7 +201,7 @@ TEST_F(Hdf5Exchange, NoChangedByteOfAFileCrashesOrChangesAFrame) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 50);
+  EXPECT_GT(refused, 5);
 }
 
 /// Every size at which something else of it cannot be written: attachments, tables, what HDF5 writes when it closes.

@@ -66,21 +66,16 @@ await() {
     sleep 0.02
   done
 }
-# The process of a shard's program; the shell around it has no such arguments.
-worker_of() {
-  local process
-  for process in /proc/[0-9]*; do
-    if tr '\0' ' ' 2>/dev/null <"$process/cmdline" | grep -q -- " --shard $1/2 "; then
-      basename "$process"
-      return 0
-    fi
-  done
-  return 1
-}
-# In the middle, when it has finished its first trace and works on its second.
+# Lets the program of shard 2 run in steps of 20 ms until it has finished its first trace, so that it is killed at work on
+# its second however busy the machine is. The shell around it has no such arguments.
 killed_in_the_middle() {
   local worker
-  ls out/shards/2/items/*.json >/dev/null 2>&1 && worker=$(worker_of 2) && kill -KILL "$worker" 2>/dev/null
+  worker=$(pgrep -f -- ' --shard 2/2 ') || return 1
+  kill -STOP "$worker" || return 1
+  while ! ls out/shards/2/items/*.json >/dev/null 2>&1; do
+    kill -CONT "$worker" && sleep 0.02 && kill -STOP "$worker" || return 1
+  done
+  kill -KILL "$worker"
 }
 queue_is_empty() { [ -z "$(squeue -h)" ]; }
 

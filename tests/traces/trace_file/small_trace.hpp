@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "tests/support/long.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/files/input_file.hpp"
@@ -20,11 +21,14 @@ namespace vestige::test {
 inline constexpr std::uint64_t kFrames = 16;
 inline constexpr std::uint64_t kFramesInAChunk = 4;
 
-/// Every byte of a trace is cut and flipped; under sanitizers, which take ten times as long, every thirteenth.
+/// Long tests cut and flip every byte of a trace, other tests every seventh. Under sanitizers, which take ten times as
+/// long, it is every thirteenth.
 #ifdef VESTIGE_SANITIZED
-inline constexpr std::size_t kByteStep = 13;
+inline const std::size_t kByteStep = 13;
+inline constexpr bool kMeasuresMemory = false;  ///< a sanitizer keeps what is freed
 #else
-inline constexpr std::size_t kByteStep = 1;
+inline const std::size_t kByteStep = test::is_long() ? 1 : 7;
+inline constexpr bool kMeasuresMemory = true;
 #endif
 
 /// A file that is never on disk: thousands of small ones would wait for it.
