@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +24,9 @@ void add_live_options(CLI::App& verb, LiveChoice& choice);
 /// Throws `UsageError` for what is no source, and for flags of `verb` that would say nothing beside it.
 void check_live_choice(const CLI::App& verb, const LiveChoice& choice);
 
-/// Records until the source or `duration_s` ends, the recorder is full, or the user stops it. What was lost is warned
-/// of. Does not finish the recorder. Throws `Error` where not one frame came in.
-LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, double rate_hz,
-                       std::optional<double> duration_s, const glm::dvec3& origin_m, Verbosity verbosity);
+/// Records until the source or the duration ends, the recorder is full, or the user stops it, whatever `settings.asked`
+/// is. What was lost is warned of. Does not finish the recorder. Throws `Error` where not one frame came in.
+LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, LiveSettings settings,
+                       const glm::dvec3& origin_m, Verbosity verbosity);
 
 }  // namespace vestige::cli

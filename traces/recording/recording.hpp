@@ -19,10 +19,16 @@ struct RecordingSettings {
 /// How many frames a recording has: rate times duration, rounded, at least 1.
 std::uint64_t frame_count(const RecordingSettings& settings);
 
-/// Pose and colliders at index / rate; the animation (null: the avatar rests) loops. Times asked of one `colliders`
-/// must not decrease.
-void sample_frame(const Avatar& avatar, const Animation* animation, ColliderSource& colliders, double rate_hz,
-                  std::uint64_t index, const glm::dvec3& origin_m, TraceFrame& out);
+/// What frames are sampled from. Times asked of one `colliders` must not decrease.
+struct SampledScene {
+  const Avatar& avatar;
+  const Animation* animation;  ///< loops; null: the avatar rests
+  ColliderSource& colliders;
+  glm::dvec3 origin_m = glm::dvec3(0);
+};
+
+/// Pose and colliders at index / rate.
+void sample_frame(const SampledScene& scene, double rate_hz, std::uint64_t index, TraceFrame& out);
 
 /// Where frames go; false: it takes no more.
 using FrameSink = std::function<bool(const TraceFrame&)>;
