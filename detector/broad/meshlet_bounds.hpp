@@ -20,6 +20,14 @@ struct alignas(16) BoundTransform {
   std::array<glm::vec4, 3> magnitude;
 };
 
+/// How the skin moves in a frame, as its bounds need it.
+struct BoundMotion {
+  const BoundTransform* now;    ///< of each palette entry
+  const BoundTransform* other;  ///< kCcd: before; kCarried: what changed since
+  Method method;
+  const glm::vec4& pad;  ///< how much larger the boxes must be than they are computed
+};
+
 /// Where the nodes of `Meshlets` may be within a frame, from the palette alone: nothing is skinned. A segment that
 /// misses a node's box surely misses all of its triangles, as the CPU computes them; meeting the box proves nothing.
 ///
