@@ -14,7 +14,7 @@
 
 namespace vestige::cli {
 
-/// One run of the program: what it was called with, and what it will answer.
+/// One run of the program: its arguments and its exit code.
 struct Invocation {
   std::vector<std::string> argv;
   int exit_code = kDone;
@@ -38,43 +38,46 @@ struct CommonOptions {
 /// Adds --json, -q, -v, --seed and --force.
 void add_common_options(CLI::App& verb, CommonOptions& options);
 
-/// Makes the folder `path` and those above it, unless they exist; what is still empty when the program ends goes again.
+/// Makes the folder `path` and its parents, unless they exist. When the program ends, the new folders that are still
+/// empty are removed.
 void make_output_folder(const std::string& path);
 
-/// Throws `UsageError` for more frames than a trace can hold.
+/// Throws `UsageError` if a trace cannot hold this many frames.
 void refuse_too_many_frames(double frames, const char* flag, const char* remedy);
 
-/// Warns of a number of frames that may be a mistyped rate or duration. `way_out`: how to end early.
+/// Warns of a number of frames that may come from a mistyped rate or duration. `way_out` says how to end early.
 void warn_of_many_frames(double frames, std::string_view way_out, Verbosity verbosity);
 
-/// Refuses, before any work is done, what could not be written at its end or would destroy what is read: existing files
-/// without --force, two results in one place, a result in the place of an input. Empty paths were not asked for.
+/// Throws `Error`, before any work is done, for outputs that could not be written at the end, or that would destroy an
+/// input: existing files without --force, two results in one place, or a result in the place of an input. Empty paths
+/// are outputs that were not requested.
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    const CommonOptions& options);
 
-/// Refuses a list of inputs in which "-" stands twice: standard input can be read once.
+/// Throws `UsageError` if "-" occurs twice in a list of inputs: standard input can be read once.
 void check_inputs(const std::vector<std::string>& inputs);
 
 /// Writes `json` to `path` ("-": standard output), unless `path` is empty.
 void write_json(const std::string& path, const nlohmann::ordered_json& json, const CommonOptions& options);
 
-/// Prints what a person wants to read: to standard output, or to standard error when --json - or another result has
-/// standard output for itself. With -q, nothing.
+/// Prints text for people to standard output. If --json - or another result uses standard output, prints it to standard
+/// error. With -q, prints nothing.
 void print_summary(std::string_view text, const std::vector<std::string>& output_paths, const CommonOptions& options);
 
-/// "X,Y,Z" in metres. Throws `UsageError` naming `flag`.
+/// Parses "X,Y,Z" in metres. Throws `UsageError` with the name of the flag.
 glm::dvec3 parse_vector(const std::string& text, const std::string& flag);
 
-/// "1:100", "1,10,40,100", "5:100:5", or any mix: ascending, without repetitions. Throws `UsageError` naming `flag`.
+/// Parses "1:100", "1,10,40,100", "5:100:5", or any mix. Returns the counts in ascending order, without repetitions.
+/// Throws `UsageError` with the name of the flag.
 std::vector<std::uint32_t> parse_counts(const std::string& text, const std::string& flag);
 
 /// Splits at commas.
 std::vector<std::string> parse_list(const std::string& text);
 
-/// The same, for a list in which each part stands once. Throws `UsageError` naming `flag`.
+/// Splits at commas. Throws `UsageError` with the name of the flag if a part occurs twice.
 std::vector<std::string> parse_distinct(const std::string& text, const std::string& flag);
 
-/// The same, for a list of at least one of `known`.
+/// As above. Throws also if a part is not in `known`, or if there is no part.
 std::vector<std::string> parse_names(const std::string& text, const std::vector<std::string>& known,
                                      const std::string& flag);
 

@@ -14,12 +14,12 @@ namespace vestige::cli {
 /// Writes `bytes` to `path`, unless `path` is empty.
 void write_bytes(const std::string& path, std::span<const std::byte> bytes, const CommonOptions& options);
 
-/// The same for several files, none of which takes its name before all are written.
+/// Writes several files. The files get their final names only when all are written.
 void write_together(std::initializer_list<std::pair<std::string, std::span<const std::byte>>> files,
                     const CommonOptions& options);
 
-/// Refuses an output that is named as what it is not: `path` ("-" and empty apart) must end in `extension`. `what` is
-/// what is written, for the error, which names `flag`.
+/// Throws `UsageError` if `path` does not end in `extension`, unless `path` is "-" or empty. The error names `flag`,
+/// and describes the output as `what`.
 void check_extension(const char* flag, const std::string& path, std::string_view extension, std::string_view what);
 
 }  // namespace vestige::cli

@@ -7,7 +7,7 @@
 
 namespace vestige::cli {
 
-/// Exit codes: what a script may rely on.
+/// Exit codes, which scripts may rely on.
 enum ExitCode {
   kDone = 0,
   kFailed = 1,
@@ -16,17 +16,17 @@ enum ExitCode {
   kCheckFailed = 4,  ///< --verify found a difference
 };
 
-/// A program's `main`: what `run` returns; where it throws, the message goes to standard error, and kWrongUsage
-/// (`UsageError`) or kFailed is returned.
+/// The body of a program's `main`: returns the result of `run`. If `run` throws, prints the message to standard error
+/// and returns kWrongUsage (for `UsageError`) or kFailed.
 int run_program(int (*run)(int argc, char** argv), int argc, char** argv);
 
 enum class Verbosity { kQuiet, kNormal, kVerbose };
 
-/// "vestige: warning: …" on standard error; with kQuiet, nothing.
+/// Prints "vestige: warning: …" to standard error; with kQuiet, prints nothing.
 void warn(std::string_view text, Verbosity verbosity);
 
-/// A progress bar with time left on standard error: only where that is a terminal, and never with kQuiet. Colour
-/// follows NO_COLOR (https://no-color.org).
+/// A progress bar with the remaining time on standard error. It is shown only if standard error is a terminal, and
+/// never with kQuiet. Colour follows NO_COLOR (https://no-color.org).
 class Progress {
  public:
   Progress(std::string label, Verbosity verbosity);
@@ -34,7 +34,8 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Share done, 0 … 1. Returns false when the user pressed Ctrl-C, so that it can be handed on as a callback.
+  /// Takes the finished share, 0 … 1. Returns false if the user pressed Ctrl-C, so that the function can serve as a
+  /// callback.
   bool update(double share);
 
  private:
@@ -45,8 +46,8 @@ class Progress {
   std::chrono::steady_clock::time_point last_;
 };
 
-/// From now on SIGINT, SIGTERM and SIGHUP only set a flag, so that files are finished properly. A second one kills.
-/// A SIGHUP that is ignored, as under nohup, stays so.
+/// From now on, SIGINT, SIGTERM and SIGHUP only set a flag, so that files are finished properly. A second signal, 0.5 s
+/// later or more, kills the program. A SIGHUP that is ignored, as under nohup, stays ignored.
 void catch_interrupts();
 bool interrupted();
 

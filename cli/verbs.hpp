@@ -6,7 +6,8 @@
 
 namespace vestige::cli {
 
-// One function a verb, in a file of its name: adds the verb to the program; parsing it runs it.
+// One function for each verb, in a file with the verb's name. The function adds the verb to the program. Parsing the
+// verb runs it.
 void add_record(CLI::App& program, Invocation& invocation);
 void add_replay(CLI::App& program, Invocation& invocation);
 void add_sweep(CLI::App& program, Invocation& invocation);
@@ -34,20 +35,21 @@ void add_claims(CLI::App& program, Invocation& invocation);
 void add_completion(CLI::App& program, Invocation& invocation);
 void add_man(CLI::App& program, Invocation& invocation);
 
-/// The group of the verbs that serve the shell.
+/// The help group of the verbs that serve the shell.
 inline constexpr const char* kShellVerbs = "For the shell";
 
-/// Makes a verb. `examples`, two that run as they are, open its help.
+/// Adds a verb. `examples` are two examples that run as they are; they open the verb's help.
 CLI::App* add_verb(CLI::App& program, const std::string& name, const std::string& summary, const std::string& examples);
 
-/// Prints what could complete the last of `words`, which follow the program's name, and returns the exit code.
+/// Prints the completions of the last of `words`, which follow the program's name. Returns the exit code.
 int complete(const CLI::App& program, const std::vector<std::string>& words);
 
-/// Runs `vestige-plot` with these arguments and returns its exit code; throws `Error` where it is not installed.
+/// Runs `vestige-plot` with these arguments and returns its exit code. Throws `Error` if it is not installed.
 int run_plot(const std::vector<std::string>& arguments);
 
-/// Draws what a verb has just written into `folder`, as 'vestige plot KIND' does. What fails is only a warning: the
-/// results are there. Where no figure is wanted, one that an earlier run left goes: NAME.png, NAME.svg.
+/// Draws the results that a verb has just written to `folder`, as 'vestige plot KIND' does. A failure is only a
+/// warning, because the results exist. If no figure is wanted, removes the one that an earlier run left: NAME.png,
+/// NAME.svg.
 void draw_or_remove_figure(const std::string& kind, const std::string& name, const std::string& folder, bool wanted,
                            const CommonOptions& options);
 

@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::uint32_t kMaxSide = 16384;  // texels; also what OpenGL offers
 constexpr std::size_t kManyActuators = 64;
-constexpr std::size_t kFewTexels = 4;  // an editor's soft edge leaves greys of this few
+constexpr std::size_t kFewTexels = 4;  // an editor's soft edge leaves greys with at most this many texels
 
 struct GreyImage {
   std::uint32_t width = 0;
@@ -38,7 +38,8 @@ struct PngSource {
   std::string failure;
 };
 
-/// libpng reports errors through a callback that must not return; the offset of the failure is kept for the message.
+/// libpng reports errors through a callback that must not return. The error message needs libpng's text, kept here, and
+/// the offset of the failure, which PngSource keeps.
 [[noreturn]] void on_png_error(png_structp png, png_const_charp message) {
   auto& source = *static_cast<PngSource*>(png_get_error_ptr(png));
   source.failure = message;
@@ -73,8 +74,8 @@ class PngReader {
   png_infop info_;
 };
 
-/// Reads header and pixels; false when libpng gave up (source.failure says why). Nothing with a destructor is made
-/// between setjmp and the calls that may jump.
+/// Reads the header. Returns false if libpng gave up (source.failure has the reason). Between setjmp and the calls that
+/// may jump, no object with a destructor is created.
 bool read_header(const PngReader& reader) {
   if (setjmp(png_jmpbuf(reader.png())) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's own way
   png_read_info(reader.png(), reader.info());
@@ -99,7 +100,7 @@ bool is_by_triangle(const PngReader& reader) {
                      [](const png_text& text) { return text.key == kMapKeyword && text.text == kTriangleMap; });
 }
 
-/// libpng would call it damaged.
+/// Refuses an image that is too large. libpng would report it as damaged.
 void refuse_too_large(std::span<const std::byte> png, std::string_view name) {
   constexpr std::size_t kWidth = 16;  // of IHDR, which comes first, in bytes from the file's beginning
   if (png.size() < kWidth + 8) return;
@@ -158,7 +159,7 @@ struct Sidecar {
   std::vector<std::optional<glm::dvec3>> position_m;
 };
 
-/// Three finite numbers, or nothing where there is none to read.
+/// Returns three finite numbers, or nothing if the entry has no position.
 std::optional<glm::dvec3> parse_position(const nlohmann::json& entry, const std::string& where) {
   if (!entry.contains("position_m")) return std::nullopt;
   const nlohmann::json& list = entry["position_m"];
@@ -172,7 +173,7 @@ std::optional<glm::dvec3> parse_position(const nlohmann::json& entry, const std:
   return glm::dvec3(list[0].get<double>(), list[1].get<double>(), list[2].get<double>());
 }
 
-/// Whatever is written about an actuator, a terminal, a CSV and an SVG can show.
+/// Returns the actuator's name, in a form that a terminal, a CSV and an SVG can show.
 std::string parse_name(const nlohmann::json& entry, std::size_t number, const std::string& where) {
   if (!entry.contains("name")) return fmt::format("actuator {}", number);
   constexpr const char* kRemedy = R"(write "name": "chest left", or leave it out)";
@@ -184,7 +185,7 @@ std::string parse_name(const nlohmann::json& entry, std::size_t number, const st
   return text;
 }
 
-/// A misspelt field says nothing, and would be missed by nobody.
+/// Warns of unknown fields: a misspelt field would otherwise have no effect, and nobody would notice.
 void warn_of_fields(const nlohmann::json& object, const std::vector<std::string>& known, const std::string& where,
                     std::vector<std::string>& warnings) {
   for (const auto& [key, value] : object.items())
@@ -268,7 +269,7 @@ double fraction(double value) {
 
 std::uint16_t ActuatorMap::at(const glm::dvec2& texture_coordinate) const {
   if (!std::isfinite(texture_coordinate.x) || !std::isfinite(texture_coordinate.y)) return 0;
-  // A tiny negative coordinate has a fraction that rounds to 1: the last texel.
+  // The fraction of a tiny negative coordinate rounds to 1, so this takes the last texel.
   const auto column = std::min(static_cast<std::uint32_t>(fraction(texture_coordinate.x) * width), width - 1);
   const auto row = std::min(static_cast<std::uint32_t>(fraction(texture_coordinate.y) * height), height - 1);
   return actuator[std::size_t{row} * width + column];
@@ -356,7 +357,7 @@ ActuatorMapFiles read_actuator_map_files(const std::string& map) {
   constexpr std::uint64_t kMostSidecarBytes = std::uint64_t{1} << 26;
   ActuatorMapFiles files = {read_file(map, kMostBytes), ""};
   if (files.png.empty()) throw Error(map, "is empty", "export the actuator map as a greyscale PNG");
-  std::error_code ignored;  // a link that leads nowhere is there, and cannot be read
+  std::error_code ignored;  // a dangling link exists but cannot be read
   if (!std::filesystem::exists(std::filesystem::symlink_status(sidecar, ignored))) return files;
   files.json = read_text_file(sidecar, kMostSidecarBytes);
   if (files.json.empty())

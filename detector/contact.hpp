@@ -10,27 +10,28 @@ namespace vestige {
 
 inline constexpr std::uint32_t kNoTriangle = 0xFFFFFFFFU;
 
-/// Where one collider's segment first meets the skin in one frame: one texel of the collision texture (HAVE 2010 §III).
-/// `triangle == kNoTriangle` means no contact; then nothing else in it means anything but t = +inf.
+/// The first contact of one collider's segment with the skin in one frame: one texel of the collision texture (HAVE
+/// 2010 §III). `triangle == kNoTriangle` means no contact. Then t is +inf and all other members have no meaning.
 struct Contact {
   std::uint32_t triangle = kNoTriangle;
   float t = std::numeric_limits<float>::infinity();  ///< 0 at the segment's start … 1 at its end
-  std::uint16_t actuator = 0;                        ///< 0: skin that no actuator covers
+  std::uint16_t actuator = 0;                        ///< 0 if no actuator covers the skin here
   std::int8_t side = 0;                           ///< +1 entering (from the triangle's front), -1 leaving, 0 coplanar
   glm::dvec2 barycentric = glm::dvec2(0);         ///< u, v: weights of the triangle's second and third vertex
   glm::dvec2 texture_coordinate = glm::dvec2(0);  ///< as in the file: not wrapped into [0, 1]
   glm::dvec3 position = glm::dvec3(0);            ///< metres, relative to the frame's origin
-  double speed_m_per_s = 0;                       ///< of the collider along the triangle's normal, not negative
+  double speed_m_per_s = 0;                       ///< speed of the collider along the triangle's normal, never negative
 
   bool hit() const { return triangle != kNoTriangle; }
 };
 
-/// One row of the collision texture: a texel for each collider of the trace, in order of their ids.
+/// One row of the collision texture: one texel for each collider of the trace, in the order of the collider ids.
 using ContactRow = std::vector<Contact>;
 
-/// What a row can carry. A detector may leave the fields of planes that nobody asked for at their defaults.
+/// The values that a row can carry. A detector may leave the members of planes that were not requested at their
+/// defaults.
 enum class Plane : unsigned {
-  kActuator = 1U << 0,  ///< the paper's texture; always there
+  kActuator = 1U << 0,  ///< the paper's texture; always present
   kTime = 1U << 1,
   kTriangle = 1U << 2,
   kBarycentric = 1U << 3,
@@ -38,7 +39,7 @@ enum class Plane : unsigned {
   kPosition = 1U << 5,
   kSpeed = 1U << 6,
   kSide = 1U << 7,
-  kPressure = 1U << 8,  ///< what a pneumatic cell is asked for, which follows from the speed (`pressure_of`)
+  kPressure = 1U << 8,  ///< pressure for a pneumatic cell, derived from the speed (`pressure_of`)
 };
 
 class PlaneSet {

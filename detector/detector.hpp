@@ -15,30 +15,30 @@
 
 namespace vestige {
 
-/// kAll: skin that no actuator covers occludes what lies behind it. kMapped: the winner is the first contact whose
-/// texel has an actuator.
+/// kAll: skin without an actuator hides what lies behind it. kMapped: the winner is the first contact whose texel has
+/// an actuator.
 enum class Surface { kAll, kMapped };
 
-/// kOn: meshlets and colliders that cannot meet are left out before anything is skinned or tested. Changes the work,
-/// never a bit of the result. Detectors that test all pairs by their nature ignore it.
+/// kOn: the detector discards meshlets and colliders that cannot meet before it skins or tests anything. This changes
+/// the work, but no bit of the result. Detectors that test all pairs by design ignore the option.
 enum class Skip { kOff, kOn };
 
 struct DetectorOptions {
   Surface surface = Surface::kAll;
-  PlaneSet planes;  ///< what the rows must carry
+  PlaneSet planes;  ///< the planes that the rows must carry
   Method method = Method::kStatic;
   Skip skip = Skip::kOff;
 };
 
-/// Work done by one call of `detect`, for reports; or by several, summed.
+/// Work done by one call of `detect`, or the sum over several calls; for reports.
 struct DetectorWork {
   std::uint64_t pairs_tested = 0;      ///< (segment, triangle) pairs
-  std::uint64_t triangles_tested = 0;  ///< triangles that met at least one test
+  std::uint64_t triangles_tested = 0;  ///< triangles that were tested at least once
   std::uint64_t pairs_captured = 0;    ///< pairs that the geometry shader could not reject
-  std::uint64_t pairs_meeting = 0;     ///< pairs of collider and triangle that truly meet (`geometry`, `cpu`)
-  std::uint64_t meshlets_skinned = 0;  ///< 0 where the whole mesh was
-  std::uint64_t frames_skipped = 0;    ///< 1 where bounds alone told that nothing can meet
-  std::uint64_t unsure = 0;            ///< pairs that no filter could tell: exact arithmetic decided
+  std::uint64_t pairs_meeting = 0;     ///< pairs that really meet (counted by `geometry` and `cpu`)
+  std::uint64_t meshlets_skinned = 0;  ///< 0 if the detector skinned the whole mesh
+  std::uint64_t frames_skipped = 0;    ///< 1 if the bounds alone proved that nothing can meet
+  std::uint64_t unsure = 0;            ///< pairs that the filter could not decide and exact arithmetic did
 
   DetectorWork& operator+=(const DetectorWork& other) {
     pairs_tested += other.pairs_tested;
@@ -52,19 +52,19 @@ struct DetectorWork {
   }
 };
 
-/// Where a detector runs, as the driver says it. Empty for a detector without GL.
+/// The OpenGL implementation that a detector runs on, as the driver reports it. Empty for a detector without OpenGL.
 struct GlInfo {
   std::string context;  ///< "egl-surfaceless", "egl-device-0", "osmesa"
   std::string renderer;
   std::string version;
   std::string vendor;
-  bool software = false;  ///< drawn by the processor
+  bool software = false;  ///< true if the renderer runs on the CPU
 };
 
 /// Finds, for every collider, where its segment first meets the avatar's skin.
 ///
-/// `paper` reproduces HAVE 2010; `geometry`, `cpu` and `exact` keep detector/CONTRACT.md to the last bit.
-/// A detector holds references to the avatar and map that it was made with, and belongs to the thread that made it.
+/// `paper` reproduces HAVE 2010. `geometry`, `cpu` and `exact` keep detector/CONTRACT.md to the last bit. A detector
+/// holds references to the avatar and the map that it was made with. Only the thread that made the detector may use it.
 class Detector {
  public:
   Detector() = default;
@@ -76,33 +76,16 @@ class Detector {
   /// Frames for `detect` must come from a FrameBuilder with this method.
   virtual Method method() const { return Method::kStatic; }
   virtual GlInfo gl_info() const { return {}; }
-  /// Of the avatar, those proven to fire nothing (`on_mapped_skin`).
+  /// The number of the avatar's triangles that are left out because they are proven to fire nothing (`on_mapped_skin`).
   virtual std::size_t triangles_left_out() const { return 0; }
 
-  /// Fills `row` (resized to frame.columns). The whole round trip is in here: skinning or upload, test, read-back.
+  /// Fills `row` (resized to frame.columns). This call contains the whole round trip: skinning or upload, test,
+  /// read-back.
   virtual DetectorWork detect(const Frame& frame, ContactRow& row) = 0;
 
-  /// This detector's own skinned vertices, relative to the frame's origin: to compare with the double reference.
+  /// Writes this detector's own skinned vertices to `out`, relative to the frame's origin, for comparison with the
+  /// double-precision reference.
   virtual void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) = 0;
 };
-
-/// On the CPU: fp32 skinning by the contract, boxes reject, exact decisions.
-std::unique_ptr<Detector> make_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
-                                            const DetectorOptions& options);
-
-/// The slow truth: every pair in exact arithmetic.
-std::unique_ptr<Detector> make_exact_detector(const Avatar& avatar, const ActuatorMap& map,
-                                              const DetectorOptions& options);
-
-class GlContext;
-
-/// The published method: HAVE 2010 §III. Needs OpenGL 4.5; throws `Error` with the driver's own words otherwise.
-std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
-                                              const ActuatorMap& map, const DetectorOptions& options);
-
-/// A geometry shader proves misses and captures what it cannot prove; the CPU decides that, exactly. Needs OpenGL 4.5;
-/// throws `Error` with the driver's own words otherwise.
-std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
-                                                 const ActuatorMap& map, const DetectorOptions& options);
 
 }  // namespace vestige

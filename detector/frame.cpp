@@ -10,10 +10,11 @@ namespace vestige {
 
 namespace {
 
-/// The avatar may stray this far from the origin before the origin follows (detector/CONTRACT.md, 2).
+/// The origin follows the avatar only if the avatar is more than this far away from it (detector/CONTRACT.md, 2).
 constexpr double kOriginReach_m = 2.0;
 
-/// Neither a skinned vertex (`skins_to_finite`) nor a segment's end carried with the skin can leave fp32.
+/// Within these limits, a skinned vertex (`skins_to_finite`) and a segment's end carried with the skin stay in fp32's
+/// range.
 constexpr double kLargestSkin_m = std::numeric_limits<float>::max() / 8;
 constexpr float kLargestCollider_m = std::numeric_limits<float>::max() / 2;
 
@@ -34,7 +35,7 @@ FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> 
 }
 
 const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
-  const double time_s = static_cast<double>(trace_frame.time_ns) / 1e9;
+  const double time_s = trace_frame.time_s();
   frame_.duration_s = started_ ? time_s - frame_.time_s : 0;
   frame_.time_s = time_s;
   frame_.index = trace_frame.index;
@@ -54,7 +55,7 @@ const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
     pose_origin_before_m_ = trace_frame.pose.origin_m;
   }
   build_segments(trace_frame);
-  // A pose that was in reach of its own origin may be out of reach of this frame's: then it is this frame's report.
+  // A pose in reach of its own origin can be out of reach of this frame's origin. Then this frame reports it.
   const bool in_reach = skins_to_finite(frame_.palette);
   const bool before_in_reach = method_ == Method::kStatic || skins_to_finite(frame_.palette_before);
   if (!in_reach || (!before_in_reach && before_was_in_reach_)) {
@@ -66,11 +67,12 @@ const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
   return frame_;
 }
 
-/// Whether no sum of a skinned vertex, over any influences, can leave fp32: weights sum to 1, rounding adds a little.
+/// Returns whether all sums of a skinned vertex, over any influences, stay in fp32's range. Weights sum to 1, and
+/// rounding adds a little.
 bool FrameBuilder::skins_to_finite(std::span<const SkinMatrix> palette) const {
   return std::ranges::all_of(palette, [this](const SkinMatrix& matrix) {
     glm::dvec3 reach = skin_reach_m(matrix, bind_extent_m_);
-    // A blended column must not overflow either where the bind pose is flat: infinity times 0 is no number.
+    // A blended column must not overflow even if the bind pose is flat: infinity times 0 is not a number.
     for (const auto& column : matrix.column) reach = glm::max(reach, glm::abs(glm::dvec3(column)));
     return reach.x < kLargestSkin_m && reach.y < kLargestSkin_m && reach.z < kLargestSkin_m;
   });
@@ -81,7 +83,8 @@ void FrameBuilder::note_non_finite() {
 }
 
 void FrameBuilder::follow_origin(const Pose& pose) {
-  // Whole metres and the rest are kept apart, so that a pose shifted by whole metres gets an origin shifted alike.
+  // Whole metres and the rest are kept apart. So a pose shifted by whole metres gets an origin shifted by the same
+  // amount.
   const glm::dvec3 root(world_[static_cast<std::size_t>(avatar_.root_node)][3]);
   const glm::dvec3 whole = glm::floor(pose.origin_m);
   const glm::dvec3 rest = (pose.origin_m - whole) + root;
@@ -96,7 +99,7 @@ void FrameBuilder::follow_origin(const Pose& pose) {
 
 void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
   frame_.segments.clear();
-  auto place = collider_ids_.begin();  // samples mostly come in ascending order: the next is tried first
+  auto place = collider_ids_.begin();  // samples mostly come in ascending order, so try the next one first
   for (const ColliderSample& sample : trace_frame.colliders) {
     if (place == collider_ids_.end() || *place != sample.id) {
       place = std::ranges::lower_bound(collider_ids_, sample.id);

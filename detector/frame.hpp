@@ -15,48 +15,49 @@
 
 namespace vestige {
 
-/// The way of one collider from the frame before to this one. Metres, relative to the frame's origin.
+/// The motion of one collider from the previous frame to this frame. Metres, relative to the frame's origin.
 struct Segment {
   std::uint32_t column = 0;  ///< of the collision texture
   glm::vec3 start = glm::vec3(0);
   glm::vec3 end = glm::vec3(0);
 };
 
-/// What a detector is given: detector/CONTRACT.md, 1 to 3. Everything is relative to `origin_m`.
+/// The input of a detector: detector/CONTRACT.md, 1 to 3. All positions are relative to `origin_m`.
 struct Frame {
   std::uint64_t index = 0;
   double time_s = 0;
-  double duration_s = 0;  ///< since the frame before; 0 in the first frame
+  double duration_s = 0;  ///< since the previous frame; 0 in the first frame
   glm::dvec3 origin_m = glm::dvec3(0);
   std::size_t columns = 0;  ///< of the collision texture
   std::vector<SkinMatrix> palette;
-  std::vector<SkinMatrix> palette_before;  ///< of the frame before, relative to this frame's origin
-  std::vector<Segment> segments;           ///< ascending columns; at most one each
+  std::vector<SkinMatrix> palette_before;  ///< of the previous frame, relative to this frame's origin
+  std::vector<Segment> segments;           ///< by ascending columns, at most one for each column
 };
 
-/// Turns the frames of a trace into what detectors are given: segments between consecutive frames, and a palette, both
-/// relative to a whole-metre origin that follows the avatar.
+/// Converts the frames of a trace to the input of a detector: the segments between consecutive frames, and a palette.
+/// Both are relative to a whole-metre origin that follows the avatar.
 class FrameBuilder {
  public:
-  /// `collider_ids`: ascending; a collider's rank in it is its column. Colliders that are not in it are ignored.
-  /// With a method that looks at the frame before, a pose that is not finite empties the next frame too.
+  /// `collider_ids` is ascending; the rank of an id is the column of the collider. Colliders with other ids are
+  /// ignored. With a method that uses the previous frame, a pose that is not finite also empties the next frame.
   FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method = Method::kStatic);
 
-  /// The frame after the one given before; where their indices leave a gap (a damaged trace), nothing is tested. The
-  /// reference stays good until the next call.
+  /// Takes the next frame of the trace. If the indices leave a gap (a damaged trace), the frame tests nothing. The
+  /// reference is valid until the next call.
   const Frame& next(const TraceFrame& trace_frame);
 
-  /// Frames whose pose, and segments of which an end, was not finite or near fp32's end: they test nothing.
+  /// Number of frames whose pose is not finite or is close to the end of fp32's range. They test nothing.
   std::uint64_t non_finite_frames() const { return non_finite_frames_; }
+  /// Number of segments with an end that is not finite or is close to the end of fp32's range. They test nothing.
   std::uint64_t non_finite_segments() const { return non_finite_segments_; }
-  /// Index of the first frame with any of either.
+  /// Index of the first frame that such a pose or such a segment is in.
   std::optional<std::uint64_t> first_non_finite() const { return first_non_finite_; }
   std::uint64_t origin_changes() const { return origin_changes_; }
 
  private:
   struct Column {
     glm::dvec3 position_m = glm::dvec3(0);
-    std::uint64_t seen_in = 0;  ///< 1 + index of the frame that had it last, 0: none did
+    std::uint64_t seen_in = 0;  ///< 1 + index of the last frame that had the collider; 0 if no frame had it
   };
 
   void follow_origin(const Pose& pose);

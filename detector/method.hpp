@@ -2,11 +2,11 @@
 
 namespace vestige {
 
-/// How a collider's way and the moving skin meet within a frame.
+/// How the detector combines a collider's motion and the motion of the skin within a frame.
 ///
-/// kStatic: the segment against the triangle as it is now, as HAVE 2010 §III.A does. kCarried: a heuristic; the
-/// segment's start is first moved by the mean of the triangle's vertex displacements; it promises no watertightness.
-/// kCcd: continuous collision detection; collider and triangle both move linearly from the frame before to this one.
+/// kStatic: the segment against the triangle as it is now, as in HAVE 2010 §III.A. kCarried: a heuristic that first
+/// moves the segment's start by the mean of the triangle's vertex displacements; it does not promise watertightness.
+/// kCcd: continuous collision detection; collider and triangle both move linearly from the previous frame to this one.
 enum class Method { kStatic, kCarried, kCcd };
 
 /// "static", "carried", "ccd".

@@ -12,8 +12,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A vertex at a time, as many of its blended matrix's 16 numbers at once as there are lanes: the order of operations
-/// on each number stays that of `skin_vertex`.
+/// Skins one vertex at a time. It computes as many of the 16 numbers of the blended matrix at once as there are lanes.
+/// The order of operations on each number is that of `skin_vertex`.
 void skin_all_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::span<glm::vec3> out) {
   const hn::CappedTag<float, 16> d;
   alignas(64) std::array<float, 16> blend;

@@ -1,16 +1,16 @@
-// One triangle of a touched meshlet against the segments that may meet this meshlet. It only proves misses, by the
-// bounds of candidates.vert, where the proof is; every other pair is captured, for the CPU to decide.
+// Tests one triangle of a touched meshlet against the segments that may meet this meshlet. The shader only proves
+// misses, by the bounds of candidates.vert, which has the proof. It captures every other pair, and the CPU decides it.
 //
-// For `static` these are a box and the signs of decide_static.cpp, seen from the segment's start: hardly a pair is
-// captured that does not meet. For the other methods no more than boxes and slabs, since llvmpipe runs whatever a branch
-// or a loop holds at least once, for all triangles: all the axes of geometry.geom would take longest of all there, and
-// spare the CPU two decisions of three.
+// For `static` the bounds are a box and the signs of decide_static.cpp, relative to the segment's start. So almost
+// every captured pair really meets. For the other methods the bounds are only boxes and slabs. llvmpipe runs the code
+// of a branch or a loop at least once for all triangles. So testing all the axes of geometry.geom would take most of
+// the time there, and would save the CPU two decisions of three.
 
 layout(points) in;
 layout(points, max_vertices = 1) out;
 
 in Bounds {
-  vec4 low;   // w: the slab at the end
+  vec4 low;   // w: the slab at the frame's end
   vec4 high;
 #if METHOD == VESTIGE_METHOD_STATIC
   vec3 a;
@@ -24,10 +24,10 @@ in Bounds {
 
 // A meshlet, or a part of its segments.
 struct Slot {
-  uint first;    // of its segments in this block
+  uint first;    // index of its first segment in this block
   uint count;    // at least one
-  uint touched;  // which of the touched meshlets it is
-  uint offset;   // of its segments in that meshlet's
+  uint touched;  // number of the touched meshlet
+  uint offset;   // number of its first segment among the meshlet's segments
 };
 struct GpuSegment {
   vec4 start;
@@ -38,9 +38,9 @@ layout(std140, binding = VESTIGE_BINDING_CANDIDATES) uniform Candidates {
   GpuSegment segments[BLOCK_SEGMENTS];
 };
 layout(std430, binding = VESTIGE_BINDING_CAPTURED) buffer Captured {
-  uint captured_count;  // counts on where there is no room
-  uint capacity;        // pairs that there is room for
-  uvec2 captured[];     // number of the segment among the meshlet's, MESHLET_TRIANGLES * touched + triangle
+  uint captured_count;  // continues to count if there is no room
+  uint capacity;        // number of pairs that fit
+  uvec2 captured[];     // number of the segment among the meshlet's segments, MESHLET_TRIANGLES * touched + triangle
 };
 
 const float kLargest = 67108864.0;                        // 2^26
@@ -59,12 +59,12 @@ bool one_sign(float x, float x_error, float y, float y_error) {
   return (x > x_error && y > y_error) || (-x > x_error && -y > y_error);
 }
 
-// Seen from the way's start: the volumes that the way spans with the triangle's edges, of which two of opposite signs
-// prove a miss, and that of the triangle itself, the start's height. What the way takes from it is the sum of the
-// others: a miss where both ends have heights of one sign. A volume has 6 terms, each at most the product of the largest
-// coordinates, and in each meet 8 roundings (detector/decide/bounded.hpp), fewer with fma; twice that covers the bound's own
-// rounding and those of adding volumes. Flushed denormals err by less than 2^-126 times two factors of at most 2^27,
-// fewer than 64 times.
+// All volumes are relative to the way's start. The way spans three volumes with the triangle's edges; two of opposite
+// signs prove a miss. The volume of the triangle itself is the height of the start. The way reduces this height by the
+// sum of the other volumes. If the heights of both ends have one sign, it is a miss. Error bound: a volume has 6 terms,
+// each at most the product of the largest coordinates. Each term meets 8 roundings (detector/decide/bounded.hpp), fewer
+// with fma. Twice that covers the rounding of the bound itself and of the sums of volumes. Flushed denormals err by
+// less than 2^-126 times two factors of at most 2^27, fewer than 64 times.
 bool proven_beside(vec3 start, vec3 end) {
   precise vec3 way = end - start;
   precise vec3 a = bounds[0].a - start;

@@ -1,24 +1,28 @@
-// One triangle of a touched meshlet, its corners skinned by the CPU to the bits that it will decide on: a box that holds
-// it within the frame, and, but for `static`, along its normal two slabs, one at the frame's start, where a segment starts, and one at its
-// end. What misses the box, or has its ends on the same side of both slabs, surely misses the triangle.
+// Bounds one triangle of a touched meshlet. The CPU skinned the corners, to the bits that it will decide on. The bounds
+// are a box that contains the triangle within the frame and, except for `static`, two slabs along its normal: one at
+// the frame's start, where a segment starts, and one at its end. A segment that misses the box, or whose ends are on
+// the same side of both slabs, surely misses the triangle.
 //
-// Boxes. Those of `static` and `ccd` are not rounded, and denormals flushed to zero keep their order. For `carried`, a
-// start carried by m and rounded to fp32 is at or above `low` only if it was at or above low - m. With M the largest
-// magnitude of the corners' coordinates and u = 2^-24, m, computed here in fp32 in whatever order, errs by less than 20
-// u M (differences of at most 2 M, their sums, a third), the carried start is rounded by 2 u M at most where it is near
-// the box, and the subtractions here err by 6 u M. The margin is 64 u M.
+// Boxes. Those of `static` and `ccd` are not rounded, and denormals flushed to zero keep their order. For `carried`,
+// the displacement m moves a start, which is then rounded to fp32. The moved start is at or above `low` only if the
+// start was at or above low - m. Let M be the largest magnitude of the corners' coordinates, and u = 2^-24. m is
+// computed here in fp32, in any order, and errs by less than 20 u M (differences of at most 2 M, their sums, a third).
+// Near the box, rounding the moved start errs by at most 2 u M. The subtractions here err by 6 u M. The margin is 64 u
+// M.
 //
-// Slabs. A segment whose ends, seen from the triangle's corners at their time, are all on one side along any axis n
-// misses it (shaders/geometry.geom). n need not be accurate, only the same for all. n . x errs by at most 4 u |n| . |x|,
-// with fma or without (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 3.1). For `carried`, the start's
-// n . (x + m) is compared as n . x with a slab moved by -n . m: m's errors above, its product's, 6 u |n| . M, the
-// subtraction's, 3 u |n| . M, and the start's rounding, u |n| . (|x| + 2 M). Together that is less than 48 u |n| . M on
-// the slab's side, and 8 u |n| . |x| on the segment's. Each side gets 64 u, its own rounding included.
+// Slabs. Take any axis n, and the segment's ends relative to the triangle's corners at the time of each end. If all lie
+// on one side along n, the segment misses the triangle (shaders/geometry.geom). n need not be accurate, but it must be
+// the same for all. n . x errs by at most 4 u |n| . |x|, with fma or without (Higham, Accuracy and Stability of
+// Numerical Algorithms, 2nd ed., 3.1). For `carried`, n . (x + m) of the start is compared as n . x with a slab moved
+// by -n . m. Four errors add up: those of m above; that of the product, 6 u |n| . M; that of the subtraction, 3 u |n| .
+// M; and that of rounding the start, u |n| . (|x| + 2 M). Together that is less than 48 u |n| . M on the slab's side,
+// and 8 u |n| . |x| on the segment's side. Each side gets 64 u, which also covers its own rounding.
 //
-// Flushed denormals. A coordinate, or what m is made of, errs by less than 2^-126 each time, fewer than 64 times; M
-// counts as 2^-90 at least, so that 64 u M covers it. A product that is flushed, or whose factor is, errs by less than
-// 2^-126 times the other factor, at most kLargest for a coordinate, or is among the margin's own: kTiny is more. Within
-// kLargest nothing overflows: n is below 2^56 and a product below 2^84. Beyond it nothing is proven.
+// Flushed denormals. A coordinate, or a term of m, errs by less than 2^-126 each time, fewer than 64 times. M is taken
+// as at least 2^-90, so that 64 u M covers this. A flushed product, or a product with a flushed factor, errs by less
+// than 2^-126 times the other factor. That factor is at most kLargest for a coordinate, or the product belongs to the
+// margin itself. kTiny is larger than this error. Within kLargest nothing overflows: n is below 2^56 and a product
+// below 2^84. Beyond kLargest the shader proves nothing.
 
 layout(location = VESTIGE_ATTRIBUTE_CORNERS) in vec3 corners[3];
 #if METHOD != VESTIGE_METHOD_STATIC
@@ -26,10 +30,10 @@ layout(location = VESTIGE_ATTRIBUTE_CORNERS_BEFORE) in vec3 corners_before[3];
 #endif
 
 out Bounds {
-  vec4 low;   // w: the slab at the end
+  vec4 low;   // w: the slab at the frame's end
   vec4 high;
 #if METHOD == VESTIGE_METHOD_STATIC
-  vec3 a;  // 0, as b and c, where nothing can be computed
+  vec3 a;  // 0, like b and c, if the bounds cannot be computed
   vec3 b;
   vec3 c;
 #else

@@ -1,13 +1,13 @@
-// Shared by C++ and GLSL: where the buffers, attributes and planes of the shaders are bound.
+// Shared by C++ and GLSL: the bindings of the shaders' buffers, attributes and planes.
 
 #define VESTIGE_BINDING_PALETTE 0   // mat4 columns, one SkinMatrix for each palette entry
 #define VESTIGE_BINDING_SEGMENTS 1  // one GpuSegment for each collider that has a segment
 
-#define VESTIGE_BINDING_CAPTURED 2  // a count, and the (segment, triangle) pairs that `geometry` could not reject
+#define VESTIGE_BINDING_CAPTURED 2    // a count, and the (segment, triangle) pairs that `geometry` could not reject
 #define VESTIGE_BINDING_CANDIDATES 3  // touched meshlets, and the segments that may meet each (candidates.geom)
 
 #define VESTIGE_ATTRIBUTE_CORNERS 0         // candidates.vert: vec3 a, b, c
-#define VESTIGE_ATTRIBUTE_CORNERS_BEFORE 3  // the same in the frame before
+#define VESTIGE_ATTRIBUTE_CORNERS_BEFORE 3  // the same in the previous frame
 
 #define VESTIGE_ATTRIBUTE_POSITION 0            // vec3, bind pose
 #define VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE 1  // vec2
@@ -23,22 +23,22 @@
 #define VESTIGE_UNIFORM_TEXTURE_ROWS 2     // int
 #define VESTIGE_UNIFORM_FRAMES_PER_S 3     // float, 1 / the frame's duration; 0 in the first frame
 #define VESTIGE_UNIFORM_FIRST_SEGMENT 4    // int, number of the first segment of the bound block
-#define VESTIGE_UNIFORM_PALETTE_SIZE 5     // uint, entries; those of the frame before follow them
-#define VESTIGE_UNIFORM_LEAST_RADIUS 6     // float, metres: what flushed denormals may do to a skinned vertex
-#define VESTIGE_UNIFORM_WORLD_TO_CLIP 7    // mat4, of the scene that is drawn
+#define VESTIGE_UNIFORM_PALETTE_SIZE 5     // uint, entries; those of the previous frame follow them
+#define VESTIGE_UNIFORM_LEAST_RADIUS 6     // float, metres: the error of a skinned vertex by flushed denormals
+#define VESTIGE_UNIFORM_WORLD_TO_CLIP 7    // mat4, for the drawn scene
 
-// How a collider's way and the moving skin meet (detector/method.hpp).
+// How a collider's motion and the moving skin meet (detector/method.hpp).
 #define VESTIGE_METHOD_STATIC 0
 #define VESTIGE_METHOD_CARRIED 1
 #define VESTIGE_METHOD_CCD 2
 
-// The planes of the collision texture. Only those asked for are compiled in, attached and read back. Each is its own
-// colour attachment, in this order.
-#define VESTIGE_PLANE_ACTUATOR 0            // R32F, the paper's: actuator number, +inf without contact
+// The planes of the collision texture. Only the requested planes are compiled in, attached and read back. Each plane is
+// its own colour attachment, in this order.
+#define VESTIGE_PLANE_ACTUATOR 0            // R32F, the paper's plane: actuator number, +inf without contact
 #define VESTIGE_PLANE_TIME 1                // R32F
 #define VESTIGE_PLANE_TRIANGLE 2            // R32UI
 #define VESTIGE_PLANE_BARYCENTRIC 3         // RG32F
 #define VESTIGE_PLANE_TEXTURE_COORDINATE 4  // RG32F
-#define VESTIGE_PLANE_POSITION 5            // RGBA32F, the last unused
+#define VESTIGE_PLANE_POSITION 5            // RGBA32F, the last component unused
 #define VESTIGE_PLANE_SPEED 6               // R32F
 #define VESTIGE_PLANE_SIDE 7                // R32F

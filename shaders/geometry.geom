@@ -1,21 +1,22 @@
-// One triangle against a block of segments. It only proves misses: every pair that it cannot prove to miss is captured,
-// for the CPU to decide. Whatever it proves holds for the vertices that the CPU computes, within `radius` of ours, and
-// for exact arithmetic on them.
+// Tests one triangle against a block of segments. The shader only proves misses. It captures every pair that it cannot
+// prove to miss, and the CPU decides it. Each proof holds for the vertices that the CPU computes, which are within
+// `radius` of ours, and for exact arithmetic on them.
 //
 // The proof. Let X_i be the triangle's corners relative to the collider: three at t = 0, three at t = 1. At every time
-// the corners relative to the collider lie in the convex hull of these six, and at a contact so does the origin (for
-// `static` and `carried`, segment against resting triangle, the hull is their Minkowski difference, and then it holds
-// both ways). So any axis m on which all six lie on one side of 0 proves a miss: the separating axis theorem. The axes
-// are those that suffice for a segment and a triangle, and for both in one plane. An axis need not be accurate: it only
-// has to be the same for all six, so its own rounding harms no proof.
+// the corners relative to the collider lie in the convex hull of these six, and at a contact the origin does too. (For
+// `static` and `carried`, segment against resting triangle, the hull is their Minkowski difference, and the converse
+// holds too.) So any axis m on which all six lie on one side of 0 proves a miss: the separating axis theorem. The axes
+// are those that suffice for a segment and a triangle, and for both in one plane. An axis need not be accurate. It only
+// has to be the same for all six, so its own rounding does not affect the proof.
 //
-// The bound, u = 2^-24 (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 3.1): a coordinate of X_i, the
-// difference of a vertex and an end of the segment, lies within radius + u |X_i| of the true one; m . X_i, in whatever
-// order and with fma or without, errs by at most gamma_3 |m| . |X_i|. So R_i = radius + 8 u |X_i| and m . X_i > 1.001
-// |m| . R_i + kTiny prove m . X_i > 0; the factor covers the rounding of the right side, kTiny what flushed denormals
-// do: to flush an operand or a result below 2^-126 errs by less than 2^-126 times the other factors. Where X_i is
-// flushed, `radius`, never less than 2^-116, covers it; elsewhere the other factors are at most kLargest, 2^26, and 64
-// such times err by less than 2^-94. Within kLargest nothing overflows; beyond it the pair is captured.
+// The bound. Let u = 2^-24 (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 3.1). A coordinate of X_i
+// is the difference of a vertex and an end of the segment. It lies within radius + u |X_i| of the true one. m . X_i, in
+// any order and with fma or without, errs by at most gamma_3 |m| . |X_i|. So R_i = radius + 8 u |X_i| and m . X_i >
+// 1.001 |m| . R_i + kTiny prove m . X_i > 0. The factor covers the rounding of the right side, and kTiny covers flushed
+// denormals. To flush an operand or a result below 2^-126 errs by less than 2^-126 times the other factors. If X_i is
+// flushed, `radius`, which is never less than 2^-116, covers it. Elsewhere the other factors are at most kLargest,
+// 2^26, and 64 such errors are less than 2^-94. Within kLargest nothing overflows. Beyond it the shader captures the
+// pair.
 
 layout(triangles) in;
 layout(points, max_vertices = 1) out;
@@ -39,9 +40,9 @@ layout(std140, binding = VESTIGE_BINDING_SEGMENTS) uniform Segments {
   GpuSegment segments[BLOCK_SEGMENTS];
 };
 layout(std430, binding = VESTIGE_BINDING_CAPTURED) buffer Captured {
-  uint captured_count;  // counts on where there is no room
-  uint capacity;        // pairs that there is room for
-  uvec2 captured[];  // number of the segment, number of the triangle
+  uint captured_count;  // continues to count if there is no room
+  uint capacity;        // number of pairs that fit
+  uvec2 captured[];     // number of the segment, number of the triangle
 };
 
 layout(location = VESTIGE_UNIFORM_SEGMENT_COUNT) uniform int segment_count;  // in this block
@@ -57,15 +58,15 @@ const float kThird = 1.0 / 3.0;
 precise vec3 relative[6];
 vec3 relative_radius[6];
 #if METHOD == VESTIGE_METHOD_CCD
-float together;  // what moves of two or three corners may do to a determinant
+float together;  // error of a determinant if two or three corners move
 #endif
 
 #if METHOD == VESTIGE_METHOD_CARRIED
 vec3 carried;         // the mean displacement, which moves the segment's start
-vec3 carried_radius;  // how far it may lie from the true one
+vec3 carried_radius;  // largest distance from the true displacement
 #endif
 
-// Whether all corners are proven to lie on one side of the origin along `axis`.
+// Returns whether all corners are proven to lie on one side of the origin along `axis`.
 bool apart_along(vec3 axis) {
   vec3 magnitude = abs(axis);
   bool above = true;
@@ -85,10 +86,11 @@ void set_relative(int i, vec3 vertex, vec3 vertex_radius, vec3 end, vec3 end_rad
 }
 
 #if METHOD == VESTIGE_METHOD_CCD
-// The determinant of three of the X_i, and how far it may lie from that of the true ones. To move each X within R
-// changes it by no more than the R . |cross product| of the other two, plus what two or three moves do together, 18 e^2 m
-// + 6 e^3 with e the largest R and m the largest |X|; its own rounding is at most gamma_5 times the sum of the
-// magnitudes of its six products, and that of the cross products gamma_2 of theirs.
+// Adds the determinant of three of the X_i, and its largest distance from the determinant of the true ones. To move
+// each X within R changes the determinant by no more than the R . |cross product| of the other two, plus the effect of
+// two or three moves together, 18 e^2 m + 6 e^3, with e the largest R and m the largest |X|. Its own rounding is at
+// most gamma_5 times the sum of the magnitudes of its six products. The rounding of the cross products is at most
+// gamma_2 times the sum of theirs.
 void add_determinant(int x, int y, int z, inout float sum, inout float error) {
   vec3 plus_yz = relative[y].yzx * relative[z].zxy;
   vec3 minus_yz = relative[y].zxy * relative[z].yzx;
@@ -106,9 +108,9 @@ void add_determinant(int x, int y, int z, inout float sum, inout float error) {
                      together + kFourUlps * dot(x_size, size_yz));
 }
 
-// Whether the three corners and the collider are proven never to lie in one plane: the cubic det(A(t), B(t), C(t)) has
-// no root in [0, 1] if its four Bernstein coefficients have one sign. Each is, times 1 or 3, a sum of determinants of
-// corners at t = 0 (numbers 0 to 2) and at t = 1 (3 to 5).
+// Returns whether the three corners and the collider are proven never to lie in one plane. The cubic det(A(t), B(t),
+// C(t)) has no root in [0, 1] if its four Bernstein coefficients have one sign. Each coefficient is, times 1 or 3, a
+// sum of determinants of corners at t = 0 (numbers 0 to 2) and at t = 1 (3 to 5).
 bool never_in_one_plane() {
   float e = 0.0;
   float m = 0.0;
@@ -171,7 +173,7 @@ void capture(int segment) {
 }
 
 void main() {
-  // A box around all that the triangle covers; its own rounding, u |corner|, is in the margin.
+  // A box around everything that the triangle covers. The margin includes the rounding of the box, u |corner|.
   vec3 low = vec3(3.402823466e38);
   vec3 high = -low;
   for (int i = 0; i < 3; ++i) {
@@ -185,7 +187,7 @@ void main() {
 #endif
   }
 #if METHOD == VESTIGE_METHOD_CARRIED
-  // As written: the sum of differences, whose error their own size bounds, not the difference of sums.
+  // This must stay the sum of differences, whose error their own size bounds, and not become the difference of sums.
   precise vec3 moved = vec3(0.0);
   vec3 moved_radius = vec3(0.0);
   for (int i = 0; i < 3; ++i) {
@@ -195,14 +197,14 @@ void main() {
   }
   carried = kThird * moved;
   carried_radius = kSlack * kThird * moved_radius;
-  // Where the start goes, the box goes the other way.
+  // The box moves in the opposite direction of the start.
   vec3 margin_carried = carried_radius + kFourUlps * abs(carried);
   low -= max(carried, vec3(0.0)) + margin_carried + kFourUlps * abs(low);
   high += max(-carried, vec3(0.0)) + margin_carried + kFourUlps * abs(high);
 #endif
 
-  // In two steps, 32 segments at a time: a processor that runs many triangles in step pays for whatever any of them
-  // does, and so for the second step only as often as one triangle has segments close by.
+  // Two steps, 32 segments at a time. A processor that runs many triangles in lockstep pays for the work of any of
+  // them. So it pays for the second step only as often as one triangle has segments close by.
   for (int first = 0; first < segment_count; first += 32) {
     int count = min(segment_count - first, 32);
     uint close = 0u;

@@ -1,18 +1,19 @@
-// Linear blend skinning in the order of detector/CONTRACT.md, 3, and how far, per coordinate, the result may lie from
-// the vertex that the CPU computes.
+// Linear blend skinning in the order of detector/CONTRACT.md, 3, and, for each coordinate, the largest distance between
+// the result and the vertex that the CPU computes.
 //
 // The bound. Let u = 2^-24. By the standard model (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 2.2
-// and 3.1) every rounded operation errs by at most u times its result, and a sum of products by at most u times the sum
-// of the magnitudes of all partial results; an fma only leaves roundings out. With n influences of weight w and
+// and 3.1) every rounded operation errs by at most u times its result. A sum of products errs by at most u times the
+// sum of the magnitudes of all partial results. An fma only removes roundings. With n influences of weight w and
 // matrices M, on a bind position x:
 //   blending      errs by n u S,  S = sum of |w| (|M_0 x| + |M_1 y| + |M_2 z| + |M_3|): 1 product, n - 1 sums. Padding
 //                 influences add exact zeros; one influence of weight 1 errs by nothing.
 //   its products  by x, y and z err by u (|b_0 x| + |b_1 y| + |b_2 z|), at most u (S - |b_3|)
 //   their sums    err by u (|s_1| + |s_2| + |position|), the three partial sums
-// The CPU errs by as much, so twice that bounds the difference. What is left out is of relative size 100 u (powers of
-// u, the rounding of the bound itself, the CPU's partial sums in place of ours): kTwoRoundings is larger by 2^-10.
-// Flushed denormals err absolutely, and least_radius covers them (`least_radius_m` in geometry_detector.cpp).
-// `precise` forbids reordering; that it forbids fma too is not relied upon.
+// The CPU errs by as much, so twice that bounds the difference. The omitted terms are of relative size 100 u (powers of
+// u, the rounding of the bound itself, the CPU's partial sums in place of ours). kTwoRoundings is larger by 2^-10 to
+// cover them. Flushed denormals err absolutely, and least_radius covers them (`least_radius_m` in
+// geometry_detector.cpp).
+// `precise` forbids reordering. The proof does not rely on it to forbid fma too.
 
 layout(location = VESTIGE_ATTRIBUTE_POSITION) in vec3 position_bind;
 layout(location = VESTIGE_ATTRIBUTE_PALETTE_0) in uvec4 palette_0;
@@ -22,7 +23,7 @@ layout(location = VESTIGE_ATTRIBUTE_PALETTE_1) in uvec4 palette_1;
 layout(location = VESTIGE_ATTRIBUTE_WEIGHT_1) in vec4 weight_1;
 #endif
 
-// A uniform block where the palette fits into one, since drivers read it faster. A mat4x3 is four columns of 16 bytes
+// A uniform block if the palette fits into one, because drivers read it faster. A mat4x3 is four columns of 16 bytes
 // either way.
 #if PALETTE_ENTRIES > 0
 layout(std140, binding = VESTIGE_BINDING_PALETTE) uniform Palette {
@@ -49,8 +50,8 @@ out Skinned {
 const float kTwoRoundings = 1.001 / 8388608.0;  // 2 u
 
 precise mat4x3 blend;
-mat4x3 size;     // the same of magnitudes
-float roundings; // of blending
+mat4x3 size;      // the same sum of magnitudes
+float roundings;  // roundings of blending
 
 void add_influence(float weight, uint entry) {
   mat4x3 matrix = palette[entry];

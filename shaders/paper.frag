@@ -1,4 +1,4 @@
-// Writes what the geometry shader found into the planes of the collision texture.
+// Writes the contact from the geometry shader into the planes of the collision texture.
 
 flat in float contact_actuator;
 layout(location = VESTIGE_PLANE_ACTUATOR) out float plane_actuator;

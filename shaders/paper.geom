@@ -1,6 +1,8 @@
-// One triangle against a block of segments; one point for each contact, to the collider's pixel of the collision
-// texture: HAVE 2010 §III.A. The test is Möller & Trumbore 1997, "Fast, Minimum Storage Ray/Triangle Intersection", in
-// fp32; `precise` gives the same bits whatever planes and however many segments the program is compiled for. Depth is t / 2, so the depth test keeps the earliest contact (the paper leaves open which is kept).
+// Tests one triangle against a block of segments. Emits one point for each contact, to the collider's pixel of the
+// collision texture: HAVE 2010 §III.A. The test is Möller & Trumbore 1997, "Fast, Minimum Storage Ray/Triangle
+// Intersection", in fp32. `precise` gives the same bits for all planes and for every number of segments that the
+// program is compiled for. Depth is t / 2, so the depth test keeps the earliest contact (the paper does not say which
+// contact is kept).
 
 layout(triangles) in;
 layout(points, max_vertices = BLOCK_SEGMENTS) out;
@@ -86,7 +88,8 @@ void main() {
 #if MAPPED_ONLY
     if (actuator == 0u) continue;
 #endif
-    // The collider's number in normalised device coordinates, at the pixel's centre; rows where one is not enough.
+    // The collider's number in normalised device coordinates, at the pixel's centre. The texture has several rows if
+    // one is not enough.
     int column = int(segments[i].column);
     vec2 pixel = vec2(column % texture_columns, column / texture_columns);
     vec2 device = (2.0 * pixel + 1.0) / vec2(texture_columns, texture_rows) - 1.0;

@@ -1,5 +1,5 @@
-// Linear blend skinning, HAVE 2010 §III.A, in the order of detector/CONTRACT.md, 3. `precise` keeps the
-// compiler from contracting or reordering it.
+// Linear blend skinning, HAVE 2010 §III.A, in the order of detector/CONTRACT.md, 3. `precise` keeps the compiler from
+// contracting or reordering it.
 
 layout(location = VESTIGE_ATTRIBUTE_POSITION) in vec3 position_bind;
 layout(location = VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE) in vec2 texture_coordinate;

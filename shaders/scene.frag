@@ -1,4 +1,4 @@
-// Skin lit by a lamp beside the viewer, each triangle by its own plane; colliders are plain dots.
+// Draws skin lit by a lamp beside the viewer, flat-shaded by triangle; colliders are plain dots.
 
 in vec3 position_world;
 layout(location = 0) out vec4 colour;

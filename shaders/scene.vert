@@ -1,4 +1,4 @@
-// The scene for people: the skinned avatar, or with COLLIDERS the colliders as points.
+// The scene for people: the skinned avatar, or, with COLLIDERS, the colliders as points.
 
 layout(location = VESTIGE_ATTRIBUTE_POSITION) in vec3 position_bind;
 layout(location = VESTIGE_UNIFORM_WORLD_TO_CLIP) uniform mat4 world_to_clip;

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// The GLSL sources, without their #version line and defines, which whoever compiles them puts first.
+/// The GLSL sources, without the #version line and the defines. The caller that compiles them puts those first.
 namespace vestige::shaders {
 
 extern const std::string_view kConstantsH;

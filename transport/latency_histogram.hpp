@@ -5,13 +5,15 @@
 
 namespace vestige {
 
-/// Latencies in bounded memory, for streams that run for days: counts in classes 1 % wide, from 1 µs to 16 minutes.
+/// Records latencies in bounded memory, for streams that run for days: counts in classes 1 % wide, from 1 µs to 16
+/// minutes.
 class LatencyHistogram {
  public:
   void add(double latency_s);
 
   std::uint64_t count() const { return count_; }
-  /// The value that `share` (0 … 1) of them do not exceed, in microseconds, 1 % high at most; 0 when there are none.
+  /// Returns the value, in microseconds, that a fraction `share` (0 … 1) of the latencies does not exceed. It is at
+  /// most 1 % too high; 0 if there are no latencies.
   double quantile_us(double share) const;
   double max_us() const { return max_us_; }
 

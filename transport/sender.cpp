@@ -19,9 +19,9 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr auto kIdle = 100ms;
-constexpr auto kLineBusy = 500us;  ///< looked at again after this
+constexpr auto kLineBusy = 500us;  ///< time until a busy line is checked again
 constexpr auto kBetweenTries = 250ms;
-constexpr auto kPatience = 250ms;     ///< for the last frames, and for the answer to a state
+constexpr auto kPatience = 250ms;     ///< for sending the last state, and for the answer to a state
 constexpr auto kPatienceForOff = 1s;  ///< for the answer of a board that has answered before
 
 double seconds(Sender::Clock::duration duration) {
@@ -43,7 +43,7 @@ Sender::~Sender() {
   try {
     if (thread_.joinable()) finish();
   } catch (const std::exception&) {
-    // Whatever is being handled already says more.
+    // The exception being handled, if any, tells more.
   }
   ::close(wake_descriptor_);
 }
@@ -81,7 +81,7 @@ SenderStatistics Sender::finish() {
   stopping_ = true;
   wake();
   thread_.join();
-  if (mailbox_) supersede();  // nothing but the off took its place
+  if (mailbox_) supersede();  // it was replaced by the switching off only
   if (failed_) std::rethrow_exception(failure_);
   statistics_.superseded = superseded_;
   statistics_.bytes = sink_.bytes_sent();
@@ -89,7 +89,7 @@ SenderStatistics Sender::finish() {
 }
 
 void Sender::wake() {
-  // Fails only when the counter is full, and then it wakes as well.
+  // Fails only if the counter is full; then the thread wakes as well.
   [[maybe_unused]] const int written = ::eventfd_write(wake_descriptor_, 1);
 }
 
@@ -102,7 +102,7 @@ void Sender::run() {
     try {
       sink_.send_off(next_sequence(nullptr));
     } catch (const std::exception&) {
-      // The failure already says more.
+      // The first failure tells more.
     }
     failed_ = true;
   }
@@ -136,7 +136,7 @@ void Sender::look_for_life(Clock::time_point now) {
   if (deserted && !deserted_ && linked_ && has_state_) {
     sink_.send_off(next_sequence(nullptr));
     note_sent();
-    // Last: a terminal that is stopped would hold it up, and the motors would run on.
+    // Called last, because a stopped terminal would block here while the motors keep running.
     on_event_(fmt::format("{}: the playback has stopped; switched off until it goes on", sink_.name()));
   }
   deserted_ = deserted;
@@ -188,7 +188,8 @@ void Sender::note_written() {
   in_flight_.reset();
 }
 
-/// What could not be written is sent when the link is back, unless there is something newer.
+/// Returns a state that could not be written to the mailbox, unless there is a newer one. It is sent when the link is
+/// back.
 void Sender::give_back() {
   const std::lock_guard lock(mutex_);
   if (!in_flight_) return;
@@ -231,7 +232,7 @@ void Sender::receive() {
     Outstanding& place = outstanding_[answer.sequence];
     if (!place.waiting) continue;
     place.waiting = false;
-    answered_ = answer.sequence;  // and with it all before it, since the line keeps their order
+    answered_ = answer.sequence;  // and all before it, because the line keeps their order
     heard_ = std::max<std::uint64_t>(heard_, place.number);
     ++statistics_.acknowledged;
     if (place.changed) statistics_.acknowledged_after.add(seconds(Clock::now() - place.since));
@@ -240,7 +241,7 @@ void Sender::receive() {
 
 void Sender::count_faults(const Acknowledgement& answer) {
   if (answer.overrun) ++statistics_.overruns;
-  // The link's first answer tells of the time before it.
+  // The first answer of a link reports the time before the link.
   if (receive_errors_before_) {
     const bool restarted = answer.was_in_fail_safe && answer.receive_errors < *receive_errors_before_;
     const int before = restarted ? 0 : *receive_errors_before_;
@@ -264,7 +265,7 @@ void Sender::try_reconnecting() {
   next_try_ = Clock::now() + kBetweenTries;
   if (!sink_.reconnect()) return;
   linked_ = true;
-  last_sent_ = {};  // the board knows nothing: tell it at once
+  last_sent_ = {};  // the board knows no state, so send it at once
   receive_errors_before_.reset();
   on_event_(fmt::format("{}: the link is back", sink_.name()));
 }
@@ -279,7 +280,7 @@ void Sender::wait_for_last_answer(Clock::duration patience) {
 }
 
 void Sender::switch_off() try {
-  if (!linked_ && !sink_.reconnect()) return;  // a board's ttl has switched it off
+  if (!linked_ && !sink_.reconnect()) return;  // the board's ttl has switched it off
   linked_ = true;
   const auto until = Clock::now() + kPatience;
   while (has_changed()) {
@@ -302,14 +303,14 @@ void Sender::switch_off() try {
   const std::uint8_t first_off = sequence_;
   wait_for_last_answer(patience);
   if (outstanding_[first_off].waiting) {
-    std::ranges::fill(state_.duty, std::uint8_t{0});  // which every board understands
+    std::ranges::fill(state_.duty, std::uint8_t{0});  // every board understands this frame
     sink_.send(state_, next_sequence(nullptr));
     note_sent();
     sink_.send_off(next_sequence(nullptr));
     note_sent();
     wait_for_last_answer(patience);
   }
-  // The first may have been answered late.
+  // The answer to the first frame may have come late.
   statistics_.off_acknowledged = !outstanding_[first_off].waiting || !outstanding_[sequence_].waiting;
 } catch (const LinkLost& lost) {
   lose_link(lost);

@@ -18,106 +18,107 @@
 namespace vestige {
 
 struct SenderOptions {
-  std::chrono::microseconds floor = std::chrono::milliseconds(5);     ///< between two frames, at least
+  std::chrono::microseconds floor = std::chrono::milliseconds(5);     ///< least time between two frames
   std::chrono::microseconds refresh = std::chrono::milliseconds(20);  ///< an unchanged state is sent again after this
-  /// When neither `post` nor `still_here` has been called for so long, nothing is refreshed any more.
+  /// If neither `post` nor `still_here` is called for this time, states are no longer refreshed.
   std::chrono::milliseconds deserted = std::chrono::seconds(1);
   bool keep_log = false;  ///< for `take_log`
 };
 
-/// What became of a changed state.
+/// The fate of a changed state.
 struct SentState {
   enum class Fate : std::uint8_t {
     kSent,
-    kSuperseded,  ///< a newer one, or the off at the end, took its place before it could be sent
+    kSuperseded,  ///< a newer state, or the final switching off, replaced it before it was sent
   };
   ActuatorFrame frame;
   Fate fate = Fate::kSent;
-  double written_s = 0;  ///< from `since` to its last byte written
+  double written_s = 0;  ///< from `since` until its last byte was written
 };
 
 struct SenderStatistics {
-  std::uint64_t sent = 0;        ///< frames handed to the system: changes, refreshes and the last, which switches off
-  std::uint64_t changes = 0;     ///< those of them that said something new
+  std::uint64_t sent = 0;     ///< frames passed to the system: changes, refreshes and the final frames that switch off
+  std::uint64_t changes = 0;  ///< frames with a changed state
   std::uint64_t superseded = 0;  ///< changes that were never sent
   std::uint64_t acknowledged = 0;
-  std::uint64_t fail_safes = 0;      ///< answers that the board had switched itself off before
-  std::uint64_t overruns = 0;        ///< answers that the board had lost bytes
-  std::uint64_t receive_errors = 0;  ///< damaged frames, as the board counted them
-  std::uint64_t links_lost = 0;      ///< times that the other end had gone
-  std::uint64_t bytes = 0;           ///< handed to the system
+  std::uint64_t fail_safes = 0;      ///< answers saying that the board had switched itself off before
+  std::uint64_t overruns = 0;        ///< answers saying that the board had lost bytes
+  std::uint64_t receive_errors = 0;  ///< damaged frames, by the board's count
+  std::uint64_t links_lost = 0;      ///< number of times that the link was lost
+  std::uint64_t bytes = 0;           ///< passed to the system
   std::uint64_t most_unanswered =
-      0;  ///< frames that were on their way at a time: there is no queue, so it never grows; 0: no answers
-  LatencyHistogram written;             ///< of changes: from `since` to the last byte written
-  LatencyHistogram acknowledged_after;  ///< of changes: from `since` to their answer
+      0;                     ///< most frames under way at once; never grows, as there is no queue; 0: no answers
+  LatencyHistogram written;  ///< of changes: from `since` until the last byte was written
+  LatencyHistogram acknowledged_after;  ///< of changes: from `since` until their answer
   bool off_sent = false;
-  bool off_acknowledged = false;  ///< the board answered that all is off; false where none ever answers
+  bool off_acknowledged = false;  ///< the board acknowledged that all is off; false if it never answers
 };
 
-/// Sends states to a sink from a thread of its own, at the sink's pace: a mailbox of one slot, in which the latest
-/// wins, so that no queue builds up and what the vest is told is never old. A changed state leaves at once, but not
-/// within the floor after the one before; an unchanged one is refreshed, so that the board's fail-safe sleeps.
+/// Sends states to a sink from its own thread, at the sink's pace. States go through a mailbox of one slot, in which
+/// the latest wins. So no queue builds up, and the vest never gets an old state. A changed state leaves at once, but
+/// not within `floor` after the frame before. An unchanged state is refreshed, so that the board's fail-safe does not
+/// trigger.
 class Sender {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// `on_event` is told, in the sender's thread, when the link is lost and when it is back.
+  /// Calls `on_event`, in the sender's thread, when the link is lost and when it is back.
   Sender(ActuatorSink& sink, const SenderOptions& options, std::function<void(const std::string&)> on_event);
-  /// As `finish`, without its errors.
+  /// Does the same as `finish`, but ignores errors.
   ~Sender();
   Sender(const Sender&) = delete;
   Sender& operator=(const Sender&) = delete;
 
-  /// Leaves a state to be sent, unless it says what the one before said. `since`: from when latencies count. Throws
-  /// what the sink threw.
+  /// Posts a state to be sent, unless it equals the one before. Latencies count from `since`. Throws the exception of
+  /// the sink, if it threw one.
   void post(const ActuatorFrame& frame, Clock::time_point since);
 
-  /// Whether the state that was left last has been acknowledged; where the sink never acknowledges, whether it was
-  /// sent.
+  /// Whether the state posted last was acknowledged, or was sent, if the sink never acknowledges.
   bool heard() const { return heard_ == posted_; }
 
-  /// Says that whoever leaves states is alive. When neither this nor `post` has been called for `deserted`, nothing is
-  /// refreshed any more, so that the board's ttl switches it off; what has no ttl is switched off.
+  /// Tells the sender that the posting program is alive. If neither this nor `post` is called for `deserted`, the
+  /// sender refreshes nothing and switches the actuators off. A board's ttl would also switch it off.
   void still_here() { alive_ = Clock::now().time_since_epoch().count(); }
 
-  /// With `keep_log`: what became of states, in their order, as far as it is known and was not told before.
+  /// With `keep_log`: returns the fates of states, in order, as far as they are known and were not returned before.
   std::vector<SentState> take_log();
 
-  /// Sends the last state, waits 0.25 s at most for its answer, switches everything off and waits for that one's
-  /// answer, 1 s at most (0.25 s where nothing was ever answered) and then once more. Throws what the sink threw.
+  /// Sends the last state and waits at most 0.25 s for its answer. Then switches everything off and waits at most 1 s
+  /// for that answer (0.25 s if nothing was ever answered). If no answer comes, does this once more. Throws the
+  /// exception of the sink, if it threw one.
   SenderStatistics finish();
 
  private:
   struct Posted {
     ActuatorFrame frame;
     Clock::time_point since;
-    std::uint64_t number = 0;  ///< counts states from 1
+    std::uint64_t number = 0;  ///< number of the state, from 1
   };
   /// A change that is being written.
   struct InFlight {
     Posted posted;
-    std::size_t place = 0;  ///< in the log
+    std::size_t place = 0;  ///< index in the log
   };
   struct Outstanding {
     bool waiting = false;
     bool changed = false;
     Clock::time_point since;
-    std::uint64_t number = 0;  ///< of the state that it carried; 0: none, or off
+    std::uint64_t number = 0;  ///< number of the state that the frame carried; 0: none, or off
   };
 
-  /// Empties the mailbox of what will not be sent.
+  /// Removes a state from the mailbox that will not be sent.
   void supersede();
   void run();
   void loop();
   void switch_off();
-  /// Waits until something is posted, an answer has come, or `until`.
+  /// Waits until a state is posted, an answer arrives, or the time `until`.
   void wait(Clock::time_point until);
   bool has_changed();
   void look_for_life(Clock::time_point now);
   bool may_send(Clock::time_point now);
   Clock::time_point next_chance(Clock::time_point now);
   void send_state();
-  /// Takes what is in the mailbox; null: nothing.
+  /// Takes the state out of the mailbox. Returns null if the mailbox is empty.
   const Posted* take_posted();
   void note_written();
   void give_back();
@@ -141,29 +142,29 @@ class Sender {
   std::vector<SentState> log_;
   std::uint64_t superseded_ = 0;
   std::atomic<Clock::rep> alive_ = Clock::now().time_since_epoch().count();
-  std::atomic<std::uint64_t> posted_ = 0;  ///< how many states
-  std::atomic<std::uint64_t> heard_ = 0;   ///< the newest that is known to have arrived
+  std::atomic<std::uint64_t> posted_ = 0;  ///< number of states posted
+  std::atomic<std::uint64_t> heard_ = 0;   ///< number of the newest state known to have arrived
   std::atomic<bool> stopping_ = false;
   std::atomic<bool> failed_ = false;
   std::exception_ptr failure_;
 
-  // The posting thread's.
+  // Used by the posting thread.
   std::optional<std::vector<std::uint8_t>> posted_before_;
-  // The sender thread's.
+  // Used by the sender's thread.
   ActuatorFrame state_;
   std::uint64_t state_number_ = 0;
   bool has_state_ = false;
   bool linked_ = true;
-  bool deserted_ = false;  ///< nobody has been there for a second
+  bool deserted_ = false;  ///< neither `post` nor `still_here` was called for `SenderOptions::deserted`
   Clock::time_point last_sent_;
   Clock::time_point next_try_;
   std::uint8_t sequence_ = 0;
   std::array<Outstanding, 256> outstanding_;
-  std::uint8_t answered_ = 0;  ///< the newest
+  std::uint8_t answered_ = 0;  ///< sequence of the newest answer
   std::optional<std::uint8_t> receive_errors_before_;
   SenderStatistics statistics_;
 
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // declared last, because it uses all other members
 };
 
 }  // namespace vestige

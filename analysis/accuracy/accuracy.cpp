@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "analysis/run/detection_run.hpp"
 #include "detector/frame.hpp"
 
 namespace vestige {
@@ -17,13 +18,12 @@ constexpr std::size_t kTurnFrames = 32;
 constexpr std::uint64_t kSkinningFrames = 5;
 constexpr int kWarmUpFrames = 2;
 
-/// What a contestant carries from turn to turn at one rate.
+/// The state that a contestant keeps from turn to turn at one rate.
 struct Run {
   Run(const MovingScene& scene, const AccuracyContestant& contestant)
-      : builder(scene.avatar, scene.collider_ids, contestant.method) {}
-  FrameBuilder builder;
+      : detection(scene.avatar, scene.collider_ids, *contestant.instance) {}
+  DetectionRun detection;
   ContactEventFinder finder;
-  ContactRow row;
 };
 
 class RateMeasurement {
@@ -40,7 +40,7 @@ class RateMeasurement {
     for (std::size_t i = 0; i < contestants.size(); ++i) {
       warm_up(contestants[i], rate_hz);
       runs_.emplace_back(scene, contestants[i]);
-      runs_[i].builder.next(first);
+      runs_[i].detection.begin(first);
       points_[i].contestant = i;
       points_[i].rate_hz = rate_hz;
       points_[i].frame_us.reserve(last_);
@@ -50,7 +50,7 @@ class RateMeasurement {
   bool is_done() const { return done_ == last_; }
   std::uint64_t frames_done() const { return done_; }
 
-  /// The next frames, by one contestant after the other.
+  /// Runs the next frames through one contestant after the other.
   void take_turns(std::mt19937_64& random) {
     std::vector<TraceFrame> frames;
     frames.reserve(kTurnFrames);
@@ -73,26 +73,24 @@ class RateMeasurement {
   }
 
  private:
-  /// Where a driver makes its programs when they are first needed, that is not a frame's time.
+  /// A driver may compile programs when they are first needed. This time must not count as a frame's time.
   void warm_up(const AccuracyContestant& contestant, double rate_hz) const {
     SceneSampler sampler(scene_, rate_hz);
-    FrameBuilder builder(scene_.avatar, scene_.collider_ids, contestant.method);
-    ContactRow row;
-    builder.next(sampler.next());
-    for (int i = 0; i < kWarmUpFrames; ++i) contestant.instance->detect(builder.next(sampler.next()), row);
+    DetectionRun detection(scene_.avatar, scene_.collider_ids, *contestant.instance);
+    detection.begin(sampler.next());
+    for (int i = 0; i < kWarmUpFrames; ++i) detection.step(sampler.next());
   }
 
   void measure(std::size_t contestant, const TraceFrame& trace_frame) {
     Run& run = runs_[contestant];
     AccuracyPoint& point = points_[contestant];
-    Detector& detector = *contestants_[contestant].instance;
     const auto start = std::chrono::steady_clock::now();
-    const Frame& frame = run.builder.next(trace_frame);
-    detector.detect(frame, run.row);
+    run.detection.step(trace_frame);
     const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - start;
     point.frame_us.push_back(elapsed.count());
-    run.finder.add(frame, run.row);
-    if (point.frames % skinning_step_ == 0) point.skinning.add(scene_.avatar, trace_frame, frame, detector);
+    run.finder.add(run.detection.frame(), run.detection.row());
+    if (point.frames % skinning_step_ == 0)
+      point.skinning.add(scene_.avatar, trace_frame, run.detection.frame(), *contestants_[contestant].instance);
     ++point.frames;
   }
 

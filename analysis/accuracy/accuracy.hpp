@@ -14,7 +14,7 @@
 
 namespace vestige {
 
-/// One of those whose error is measured.
+/// A detector, with a method, whose error is measured.
 struct AccuracyContestant {
   std::string detector;
   Method method = Method::kStatic;
@@ -36,20 +36,20 @@ struct AccuracyPoint {
 
 /// What was measured on one scene.
 struct AccuracyScene {
-  std::string colliders;  ///< as they were asked for
+  std::string colliders;  ///< as the user asked for them
   std::size_t collider_count = 0;
   TrueContacts truth;
-  TrueContacts half;  ///< the same at half the rate
+  TrueContacts half;  ///< true contacts found at half the rate
   std::vector<AccuracyPoint> points;
 };
 
-/// Runs every contestant over the scene sampled at each rate, and scores the events that it finds against the true
-/// ones. Timed is the whole round trip from a pose and collider positions to a row of contacts, as in a sweep. The
-/// contestants take turns, a few frames each, in an order shuffled anew, so that whatever else the machine does hits
-/// all alike.
+/// Samples the scene at each rate, runs every contestant over the frames, and scores the events that the contestant
+/// finds against the true events. A timing covers the whole round trip from a pose and collider positions to a row of
+/// contacts, as in a sweep. The contestants take turns of a few frames each. Each turn shuffles their order anew, so
+/// that other load on the machine affects all contestants alike.
 ///
-/// Points by rate, then contestant. `progress` is told the share done and returns false to stop: then only rates that
-/// were finished are returned.
+/// Returns the points by rate, then by contestant. `progress` receives the share done and returns false to stop the
+/// run. A stopped run returns only the points of the rates that are finished.
 std::vector<AccuracyPoint> run_accuracy(const MovingScene& scene, const TrueContacts& truth,
                                         const std::vector<AccuracyContestant>& contestants,
                                         const std::vector<double>& rates_hz, std::uint64_t seed,

@@ -17,7 +17,7 @@ double quantile_ms(const std::vector<double>& seconds, double p) {
   return quantile(seconds, p) * 1e3;
 }
 
-/// Milliseconds; null where there is nothing to measure.
+/// Milliseconds, or null if there is nothing to measure.
 nlohmann::ordered_json quantiles_ms(const std::vector<double>& seconds) {
   if (seconds.empty()) return nullptr;
   return {{"median", quantile_ms(seconds, 0.5)}, {"p99", quantile_ms(seconds, 0.99)}, {"max", quantile_ms(seconds, 1)}};

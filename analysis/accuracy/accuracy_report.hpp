@@ -9,18 +9,19 @@
 
 namespace vestige {
 
-/// Results only, the same bytes for the same work: a list of {colliders, count, truth{…, halved{…}}, series[{detector,
-/// method, points[{rate_hz, frames, contacts, true_events, found, mistaken, missed, …}]}]}. `halved` says how much the
-/// truth changes with half its rate: scored as if that were a detector.
+/// Returns only results, without timings: the same work gives the same bytes. The result is a list of {colliders,
+/// count, truth{…, halved{…}}, series[{detector, method, points[{rate_hz, frames, contacts, true_events, found,
+/// mistaken, missed, …}]}]}. `halved` tells how much the truth changes at half its rate: the half-rate events are
+/// scored as if a detector had found them.
 nlohmann::ordered_json errors_json(std::span<const AccuracyScene> scenes,
                                    const std::vector<AccuracyContestant>& contestants, const std::string& truth);
 
-/// A list alike of what another run measures anew: {colliders, series[{detector, method, gl, points[{rate_hz, hz,
-/// us_median, …}]}]}.
+/// Returns the values that every run measures anew, as a similar list: {colliders, series[{detector, method, gl,
+/// points[{rate_hz, hz, us_median, …}]}]}.
 nlohmann::ordered_json times_json(std::span<const AccuracyScene> scenes,
                                   const std::vector<AccuracyContestant>& contestants);
 
-/// For each scene, a line for each contestant and rate.
+/// Returns a table for each scene, with a line for each contestant and rate.
 std::string accuracy_table(std::span<const AccuracyScene> scenes, const std::vector<AccuracyContestant>& contestants);
 
 }  // namespace vestige

@@ -7,7 +7,7 @@ namespace vestige {
 
 namespace {
 
-/// Frame times are rounded to nanoseconds: what lies a test frame apart may be so much farther.
+/// Frame times are rounded to nanoseconds, so events one test frame apart may seem this much farther apart.
 constexpr double kTimeRounding_s = 1e-9;
 
 using Events = std::span<const ContactEvent>;
@@ -17,8 +17,8 @@ Events of_column(Events events, std::uint32_t column) {
           std::ranges::upper_bound(events, column, {}, &ContactEvent::column)};
 }
 
-/// The events of one collider that meet `event`. They follow each other without overlapping, since a frame has one
-/// contact at most, so both ends ascend.
+/// Returns the events of one collider that meet `event`. They do not overlap, since a frame has at most one contact of
+/// a collider. So their beginnings and their ends both ascend.
 Events meeting(Events of_collider, const ContactEvent& event, double reach_s) {
   const auto first = std::ranges::lower_bound(of_collider, event.impact_s - reach_s, {}, &ContactEvent::last_s);
   const auto last = std::ranges::upper_bound(of_collider, event.last_s + reach_s, {}, &ContactEvent::impact_s);

@@ -12,7 +12,8 @@ const TraceFrame& SceneSampler::next() {
 }
 
 std::uint64_t last_frame_within(const MovingScene& scene, double rate_hz) {
-  constexpr double kSlack = 1e-6;  // 0.1 s at 90 Hz are 9 frames, whatever the product is rounded to
+  // 0.1 s at 90 Hz must give 9 frames, however the product is rounded.
+  constexpr double kSlack = 1e-6;
   return static_cast<std::uint64_t>(std::floor(scene.duration_s * rate_hz + kSlack));
 }
 

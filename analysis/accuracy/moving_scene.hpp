@@ -11,22 +11,23 @@
 
 namespace vestige {
 
-/// An avatar and colliders as functions of time, to be sampled at any rate.
+/// An avatar and colliders as functions of time. They can be sampled at any rate.
 struct MovingScene {
   const Avatar& avatar;
-  const Animation* animation = nullptr;                             ///< loops; null: the avatar rests
-  std::function<std::unique_ptr<ColliderSource>()> make_colliders;  ///< each the same; called from several threads
-  std::vector<std::uint32_t> collider_ids;                          ///< ascending
+  const Animation* animation = nullptr;  ///< loops; null: the avatar stays in its rest pose
+  /// Each call returns the same colliders. Several threads call it at a time.
+  std::function<std::unique_ptr<ColliderSource>()> make_colliders;
+  std::vector<std::uint32_t> collider_ids;  ///< ascending
   double duration_s = 0;
 };
 
-/// Frames of a scene at a rate, from frame `first` on.
+/// Samples a scene at a rate, beginning with frame `first`.
 class SceneSampler {
  public:
   SceneSampler(const MovingScene& scene, double rate_hz, std::uint64_t first = 0)
       : scene_(scene), colliders_(scene.make_colliders()), rate_hz_(rate_hz), next_(first) {}
 
-  /// Good until the next call.
+  /// Returns the next frame. The reference is valid until the next call.
   const TraceFrame& next();
 
  private:
@@ -37,7 +38,7 @@ class SceneSampler {
   TraceFrame frame_;
 };
 
-/// The last frame of a scene at a rate: the last within its duration.
+/// Returns the index of the last frame that lies within the scene's duration, sampled at `rate_hz`.
 std::uint64_t last_frame_within(const MovingScene& scene, double rate_hz);
 
 }  // namespace vestige

@@ -6,13 +6,14 @@
 #include <future>
 #include <thread>
 
+#include "analysis/run/detection_run.hpp"
 #include "detector/frame.hpp"
 
 namespace vestige {
 
 namespace {
 
-/// Always as many, so that the origin of a part (detector/CONTRACT.md, 2) does not depend on the machine.
+/// The number of parts is fixed, so that the origin of a part (detector/CONTRACT.md, 2) does not depend on the machine.
 constexpr std::uint64_t kParts = 16;
 
 struct Part {
@@ -27,18 +28,16 @@ struct Work {
   std::atomic<bool> stopped = false;
 };
 
-/// Frames first + 1 … last; `first` only gives them their start.
+/// Finds contacts in the frames first + 1 … last. Frame `first` only gives the start of the first segments.
 Part find_in_part(const MovingScene& scene, double rate_hz, Detector& detector, std::uint64_t first, std::uint64_t last,
                   Work& work) {
   SceneSampler sampler(scene, rate_hz, first);
-  FrameBuilder builder(scene.avatar, scene.collider_ids, detector.method());
+  DetectionRun detection(scene.avatar, scene.collider_ids, detector);
   ContactEventFinder finder;
-  ContactRow row;
-  builder.next(sampler.next());
+  detection.begin(sampler.next());
   for (std::uint64_t index = first + 1; index <= last && !work.stopped; ++index) {
-    const Frame& frame = builder.next(sampler.next());
-    detector.detect(frame, row);
-    finder.add(frame, row);
+    detection.step(sampler.next());
+    finder.add(detection.frame(), detection.row());
     ++work.frames_done;
   }
   const std::uint64_t contacts = finder.contacts();

@@ -11,17 +11,17 @@
 
 namespace vestige {
 
-/// The contacts of continuous motion, as far as a rate of sampling shows them: between its samples `ccd` takes skin and
-/// colliders to move linearly.
+/// The contacts of continuous motion, as far as a sampling rate shows them. Between two samples, `ccd` assumes that
+/// skin and colliders move linearly.
 struct TrueContacts {
   double rate_hz = 0;
-  std::uint64_t contacts = 0;  ///< rows' contacts; a collider that slides has one in every frame
+  std::uint64_t contacts = 0;  ///< contacts in all rows; a sliding collider has one in every frame
   std::vector<ContactEvent> events;
 };
 
-/// Finds them with detectors that `make` makes, one for each of several threads; their rows must carry `Plane::kTime`.
-/// The number of threads changes nothing. `progress` is told the share done and returns false to stop, which leaves the
-/// result empty.
+/// Finds the true contacts on several threads. `make` returns a detector for each thread, and the detectors' rows must
+/// carry `Plane::kTime`. The result does not depend on the number of threads. `progress` receives the share done and
+/// returns false to stop the search. The result is then empty.
 TrueContacts find_true_contacts(const MovingScene& scene, double rate_hz,
                                 const std::function<std::unique_ptr<Detector>()>& make,
                                 const std::function<bool(double)>& progress);

@@ -8,7 +8,7 @@ inline double seconds(std::chrono::steady_clock::duration duration) {
   return std::chrono::duration<double>(duration).count();
 }
 
-/// That the calling thread has computed for, however many run beside it.
+/// Returns the CPU time of the calling thread. Other threads and processes do not count.
 double thread_cpu_s();
 
 }  // namespace vestige

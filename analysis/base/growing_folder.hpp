@@ -7,11 +7,11 @@
 
 namespace vestige::plot {
 
-/// A folder that is complete or absent: files grow in a hidden folder beside it, and `commit` moves them. Destroyed
-/// without `commit`, it leaves nothing behind. With `Overwrite::kAllow` an existing folder stays, and files in it are
-/// replaced by those of the same name.
+/// A folder that is either complete or absent. Files are written into a hidden folder beside it, and `commit` moves
+/// them into place. Without `commit`, the destructor removes the hidden folder. With `Overwrite::kAllow`, an existing
+/// folder stays, and new files replace old files of the same name.
 ///
-/// Every function throws `Error`: the folder has files (and `Overwrite::kRefuse`), no such folder, permission.
+/// Throws `Error` if the folder has files (with `Overwrite::kRefuse`), is not a folder, or cannot be made or written.
 class GrowingFolder {
  public:
   GrowingFolder(std::filesystem::path folder, Overwrite overwrite);
@@ -19,9 +19,10 @@ class GrowingFolder {
   GrowingFolder(const GrowingFolder&) = delete;
   GrowingFolder& operator=(const GrowingFolder&) = delete;
 
-  /// Where to write.
+  /// Returns the hidden folder, into which files are written.
   const std::filesystem::path& path() const { return growing_; }
-  /// `is_stale`: which files of an existing folder are of an earlier run, and go.
+  /// Moves the files into place. `is_stale` says which files of an existing folder come from an earlier run and are
+  /// removed.
   void commit(const std::function<bool(const std::filesystem::path&)>& is_stale);
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPixelsPerPt = 96.0 / 72;
 
-/// The value of the root's attribute, "468pt".
+/// Returns the number in an attribute of the root such as "468pt", or 0.
 double points_of(std::string_view root, std::string_view attribute) {
   const std::string begin = fmt::format(" {}=\"", attribute);
   const std::size_t at = root.find(begin);
@@ -20,7 +20,7 @@ double points_of(std::string_view root, std::string_view attribute) {
                                       : std::strtod(std::string(root.substr(at + begin.size(), 12)).c_str(), nullptr);
 }
 
-/// Inside tags, what names an id or refers to one.
+/// Puts `prefix` in front of ids and references to ids inside tags.
 std::string with_prefixed_ids(std::string_view svg, std::string_view prefix) {
   constexpr std::array<std::string_view, 3> kBefore = {" id=\"", "href=\"#", "url(#"};
   std::string result;
@@ -79,7 +79,7 @@ std::string inline_svg(std::string_view svg, std::string_view prefix, std::strin
   const std::string_view root = svg.substr(root_begin, root_end - root_begin);
   const double width_pt = points_of(root, "width");
   const double height_pt = points_of(root, "height");
-  // What it draws is described by `label`.
+  // Drops the description: `label` replaces it.
   std::size_t inside = root_end + 1;
   if (svg.substr(inside).starts_with("<desc>")) inside = svg.find("</desc>", inside) + 7;
   const std::size_t view = root.find("viewBox=\"");

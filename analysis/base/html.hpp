@@ -5,12 +5,13 @@
 
 namespace vestige::plot {
 
-/// `text` as HTML shows it, in an element or an attribute's quotes: nothing in it is markup. Control characters become
-/// U+FFFD.
+/// Escapes `text` for use in an HTML element or in an attribute's quotes: nothing in the result is markup. Control
+/// characters become U+FFFD, except \n and \t.
 std::string html_text(std::string_view text);
 
-/// An SVG document of `svg_of` as part of an HTML page: as wide as there is room, up to its own size; its ids begin
-/// with `prefix`, since several pictures share a page's ids. `label` is what is read out instead.
+/// Turns an SVG document of `svg_of` into a part of an HTML page. Its width and height are its own size; the page's
+/// style may shrink it. Its ids get `prefix` in front, since several pictures share one page's ids. Screen readers read
+/// `label` instead of the picture.
 std::string inline_svg(std::string_view svg, std::string_view prefix, std::string_view label);
 
 }  // namespace vestige::plot

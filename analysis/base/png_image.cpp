@@ -14,7 +14,7 @@ namespace vestige {
 
 namespace {
 
-/// What libpng's calls share; freed whether or not they throw.
+/// The objects that libpng's calls share. They are freed whether or not a call throws.
 struct Writer {
   std::string failure;
   std::vector<std::byte> bytes;
@@ -37,7 +37,7 @@ void take_bytes(png_structp png, png_bytep bytes, png_size_t count) {
   writer.bytes.insert(writer.bytes.end(), first, first + count);
 }
 
-/// As libpng takes it, rows from the top down.
+/// An image as libpng takes it, with rows from the top down.
 struct Image {
   std::span<const std::byte> pixels;
   std::uint32_t width;
@@ -46,7 +46,7 @@ struct Image {
   int colour;
 };
 
-/// Nothing with a destructor is made between setjmp and the calls that may jump.
+/// Objects with a destructor must not be made between setjmp and the calls that may jump.
 bool write_rows(Writer& writer, const Image& image, std::size_t row_bytes, const png_text* text) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;  // NOLINT(cert-err52-cpp): libpng's own way
   png_set_IHDR(writer.png, writer.info, image.width, image.height, image.depth, image.colour, PNG_INTERLACE_NONE,

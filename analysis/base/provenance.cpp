@@ -16,7 +16,7 @@ namespace vestige {
 
 namespace {
 
-/// The value behind `key` in a file of "key<separator>value" lines, quotes removed; empty when it is not there.
+/// Returns the value of `key` in a file of "key<separator>value" lines, without quotes; empty if the key is missing.
 std::string value_in(const char* path, std::string_view key, char separator) {
   std::ifstream file(path);
   for (std::string line; std::getline(file, line);) {

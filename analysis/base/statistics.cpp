@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kResamples = 1000;
 
-/// More than for frequencies: the levels of few units lie far out.
+/// More resamples than for frequencies, since the levels for few units lie far out.
 constexpr std::size_t kPairedResamples = 4000;
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();

@@ -26,9 +26,9 @@ namespace {
 constexpr const char* kFolders[] = {"items", "times", "contacts", "traces", "maps"};
 constexpr const char* kLockName = ".lock";
 constexpr const char* kPage = "report.html";
-constexpr const char* kFigures = "figures";  // the page's
+constexpr const char* kFigures = "figures";  // figures of the page
 constexpr const char* kResults[] = {"scores.csv", "scores.json", "ranking.csv", "ranking.json"};
-constexpr const char* kShards = "shards";  // of a Slurm run that is merged into this folder, with their logs
+constexpr const char* kShards = "shards";  // shards of a Slurm run that is merged into this folder
 constexpr const char* kLogs = "logs";
 constexpr std::string_view kOtherFolder = "choose another -o, or add --force to replace it";
 
@@ -47,7 +47,7 @@ bool same_command(const nlohmann::ordered_json& run, const nlohmann::ordered_jso
   }
 }
 
-/// Whether a file is named as `OutputFile` names one of `written` until it is complete: .NAME.XXXXXX.
+/// Returns whether a file has the name .NAME.XXXXXX, which `OutputFile` gives to one of `written` until it is complete.
 bool is_half_written(const std::string& file, const std::set<std::string>& written) {
   constexpr std::size_t kEnd = 7;
   if (file.size() < kEnd + 2 || file.front() != '.' || file[file.size() - kEnd] != '.') return false;
@@ -56,13 +56,13 @@ bool is_half_written(const std::string& file, const std::set<std::string>& writt
          written.contains(file.substr(1, file.size() - kEnd - 1));
 }
 
-/// Names of `list` in what run.json says under "batch", each with `extension` behind it.
+/// Adds the names of `list`, a list under "batch" in run.json, each followed by `extension`.
 void add_names(std::set<std::string>& names, const nlohmann::ordered_json& list, std::string_view extension) {
   for (const nlohmann::ordered_json& one : list)
     names.insert(fmt::format("{}{}", one.at("name").get<std::string>(), extension));
 }
 
-/// Name and bytes of each trace that a run.json has a result of.
+/// Returns the name and SHA-256 of each trace that a run.json has a result of.
 std::vector<std::string> traces_of_run(const nlohmann::ordered_json& run) {
   std::vector<std::string> traces;
   for (const nlohmann::ordered_json& trace : run.at("traces"))
@@ -70,7 +70,7 @@ std::vector<std::string> traces_of_run(const nlohmann::ordered_json& run) {
   return traces;
 }
 
-/// Whether a finished run has the results that `run` will have, as far as it can be said.
+/// Returns whether a finished run has the results that `run` will have, as far as `run` tells.
 bool has_results_of(const nlohmann::ordered_json& finished, const nlohmann::ordered_json& run) {
   try {
     if (!finished.at("complete").get<bool>()) return false;
@@ -102,7 +102,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
   }
   const std::string holder = this_process();
   if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, holder.data(), holder.size(), 0) < 0) {
-    // Who holds the lock is a courtesy: a full disk is said by whoever writes results.
+    // The holder's name is only a courtesy. A full disk is reported by the code that writes results.
   }
 }
 
@@ -151,7 +151,7 @@ void BatchFolder::remove_leftovers(const nlohmann::ordered_json& batch) const {
     std::error_code ignored;
     for (const auto& path : leftovers) std::filesystem::remove(path, ignored);
   };
-  // Without a run.json these may be somebody else's.
+  // Without a run.json, these files may not come from a batch.
   if (!earlier_run_.is_null()) {
     std::set<std::string> top = {"run.json", "avatar.glb", "actuator.json"};
     top.insert(std::begin(kResults), std::end(kResults));
@@ -168,7 +168,7 @@ void BatchFolder::remove_leftovers(const nlohmann::ordered_json& batch) const {
   add_names(recorded, traces, ".mcap");
   for (const std::string& name : recorded) {
     growing.insert("." + name);
-    growing.insert("." + name + ".partial");  // of a full disk
+    growing.insert("." + name + ".partial");  // left by a full disk
   }
   recorded.insert(growing.begin(), growing.end());
   add_names(maps, batch.at("maps"), ".png");
@@ -180,12 +180,13 @@ void BatchFolder::remove_leftovers(const nlohmann::ordered_json& batch) const {
   remove(folder_ / "maps", maps, {});
 }
 
-/// What an earlier batch, which this one replaces, wrote for maps and traces that this one does not have.
+/// Removes what an earlier batch, which this batch replaces, wrote for maps and traces that this batch does not have.
 void BatchFolder::remove_replaced(const nlohmann::ordered_json& batch) const {
   const auto names_in = [](const nlohmann::ordered_json& of, const char* list) {
     std::set<std::string> found;
     add_names(found, of.at(list), "");
-    std::erase_if(found, [](const std::string& name) { return name.find('/') != std::string::npos; });  // none of ours
+    // Not from a batch.
+    std::erase_if(found, [](const std::string& name) { return name.find('/') != std::string::npos; });
     return found;
   };
   std::vector<std::string> replaced;
@@ -198,7 +199,7 @@ void BatchFolder::remove_replaced(const nlohmann::ordered_json& batch) const {
     for (const std::string& name : names_in(earlier_run_.at("batch"), "maps"))
       if (!maps.contains(name)) replaced.insert(replaced.end(), {map_png(name), map_json(name)});
   } catch (const nlohmann::json::exception&) {
-    return;  // there was no batch, or none that says what it wrote
+    return;  // there was no batch, or its run.json is not valid
   }
   std::error_code ignored;
   for (const std::string& path : replaced) std::filesystem::remove(path, ignored);
@@ -212,7 +213,7 @@ void BatchFolder::remove_page() const {
     if (const auto extension = entry.path().extension(); extension == ".svg" || extension == ".png")
       figures.push_back(entry.path());
   for (const auto& path : figures) std::filesystem::remove(path, ignored);
-  std::filesystem::remove(folder_ / kFigures, ignored);  // unless somebody else's files are there
+  std::filesystem::remove(folder_ / kFigures, ignored);  // fails if the folder has other files
 }
 
 void BatchFolder::remove_results(const nlohmann::ordered_json& run) const {

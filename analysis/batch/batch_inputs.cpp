@@ -23,7 +23,7 @@ namespace vestige {
 
 namespace {
 
-/// The bytes of the avatar that the traces are of; `given` becomes where it is from.
+/// Returns the bytes of the traces' avatar. Sets `given` to where the avatar comes from.
 std::vector<std::byte> avatar_of(const std::vector<BatchTrace>& traces, std::string& given) {
   std::exception_ptr first;
   for (const BatchTrace& trace : traces) {
@@ -36,7 +36,7 @@ std::vector<std::byte> avatar_of(const std::vector<BatchTrace>& traces, std::str
       given = trace.given;
       return {reader.avatar_glb().begin(), reader.avatar_glb().end()};
     } catch (const Error&) {
-      // It will be reported with the other traces, if any of them can be read.
+      // If another trace can be read, this error is reported later, with the other traces.
       if (!first) first = std::current_exception();
     }
   }
@@ -57,7 +57,7 @@ ActuatorMapFiles map_files(const std::string& given, const Avatar& avatar, bool 
   return read_map_files(avatar, given);
 }
 
-/// What 'vestige map check' says makes results wrong.
+/// Adds the problems that 'vestige map check' finds as warnings.
 void add_problems(BatchMap& map, const ActuatorMap& parsed, const BatchPlan& plan) {
   constexpr std::size_t kMostTold = 3;
   std::size_t problems = 0;
@@ -73,14 +73,14 @@ void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
   ActuatorMap parsed = parse_actuator_map(map.files, plan.avatar, map.given);
   if (parsed.actuator_count == 0)
     throw Error(map.given, "has no actuator", "paint regions other than black, or list actuators in the sidecar");
-  if (plan.actuators.model) static_cast<void>(plan.actuators.model->motors(parsed));  // throws what they lack
+  if (plan.actuators.model) static_cast<void>(plan.actuators.model->motors(parsed));  // throws if they lack something
   map.warnings = parsed.warnings;
   if (map.given != "builtin" && !is_layout(map.given)) add_problems(map, parsed, plan);
   map.layout = std::make_shared<const ActuatorLayout>(plan.avatar, std::move(parsed));
   map.sha256 = sha256_of(map.files);
 }
 
-/// Calls `work` for each of 0 … count - 1. Throws what it throws, once all threads have ended.
+/// Calls `work` for each of 0 … count - 1. After all threads have ended, rethrows an exception of `work`, if any.
 template <typename Work>
 void in_threads(std::size_t threads, std::size_t count, const Work& work) {
   std::atomic<std::size_t> next = 0;

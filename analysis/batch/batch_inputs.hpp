@@ -8,17 +8,19 @@
 
 namespace vestige {
 
-/// Reads a batch's avatar and maps into `plan`, whose traces are named already. `avatar`: "builtin", a file, or empty:
-/// the first trace's that can be read, the built-in one for a scenario. `maps`: "builtin", a layout's name
-/// (`layout_names`), or a PNG file with or without a sidecar. `actuator`: file of an `ActuatorModel`, or empty. A map
-/// that cannot be used, alone or with these motors, stays in the plan without a SHA-256, and its reason is returned.
-/// Measures each map on the avatar, `jobs` maps at a time; asks `go_on` before each. Throws `Error` where no avatar or
-/// no motors can be read, and where it is not to go on.
+/// Reads a batch's avatar, maps and motors into `plan`. The traces of `plan` must already be named. `avatar` is
+/// "builtin", a file, or empty. If it is empty, the avatar is that of the first readable trace, and the built-in one
+/// for a scenario. `maps` holds "builtin", names of layouts (`layout_names`), or PNG files with or without a sidecar.
+/// `actuator` is the file of an `ActuatorModel`, or empty. Measures each map on the avatar, `jobs` maps at a time, and
+/// asks `go_on` before each. A map that cannot be used, alone or with these motors, stays in the plan without a
+/// SHA-256. Returns the reasons of such maps. Throws `Error` if avatar or motors cannot be read, or if `go_on` returns
+/// false.
 std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar, const std::vector<std::string>& maps,
                                       const std::string& actuator, std::size_t jobs,
                                       const std::function<bool()>& go_on);
 
-/// Traces as given on the command line: a scenario by its name, else a file. Names are theirs.
+/// Returns named traces from the command line's words. A word is a scenario's name, otherwise a file. The name of the
+/// trace is made of the word.
 std::vector<BatchTrace> name_traces(const std::vector<std::string>& given);
 
 }  // namespace vestige

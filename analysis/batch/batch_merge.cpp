@@ -50,7 +50,7 @@ ShardFolder read_shard(const std::string& folder) {
   return shard;
 }
 
-/// What two batches differ in.
+/// Returns the fields in which two batches differ.
 std::string difference(const nlohmann::ordered_json& a, const nlohmann::ordered_json& b) {
   std::vector<std::string> names;
   for (const auto& [name, value] : a.items())
@@ -99,7 +99,8 @@ bool failed(const ShardFolder& shard, const std::string& trace) {
   });
 }
 
-/// The item of a trace in a folder that must have it, unless it failed there.
+/// Returns the item of a trace in its folder, or nothing if the trace failed there. Throws `Error` if the item is
+/// missing.
 std::optional<nlohmann::ordered_json> item_in(const ShardFolder& shard, const std::string& trace) {
   const std::string path = shard.path("items/" + trace + ".json");
   if (!std::filesystem::exists(path)) {
@@ -119,7 +120,8 @@ std::optional<nlohmann::ordered_json> item_in(const ShardFolder& shard, const st
   return item;
 }
 
-/// What is copied from one folder for all of them (avatar, motors, maps) must still be what it judged.
+/// Avatar, motors and maps are copied from one folder for all shards. Checks that they are still what that shard
+/// judged.
 void check_inputs(const ShardFolder& shard) {
   const auto check = [&](const char* what, const std::vector<std::string>& files, const nlohmann::ordered_json& of) {
     if (!of.is_object() || of.at("sha256").is_null()) return;  // ideal motors, or a map that could not be used

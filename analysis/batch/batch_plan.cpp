@@ -18,14 +18,14 @@ namespace vestige {
 
 namespace {
 
-constexpr std::size_t kLongestName = 100;  // file systems end at 255 bytes, and extensions come behind
+constexpr std::size_t kLongestName = 100;  // file systems allow 255 bytes, and extensions follow
 
 bool may_stand_in_a_name(char letter) {
   const auto byte = static_cast<unsigned char>(letter);
   return byte >= 0x80 || std::isalnum(byte) != 0 || letter == '.' || letter == '_' || letter == '-';
 }
 
-/// At most `most_bytes` of whole letters; '_' for each byte that belongs to none.
+/// Returns at most `most_bytes` of whole letters. A byte that belongs to no letter becomes '_'.
 std::string shortened_utf8(std::string_view text, std::size_t most_bytes) {
   std::string letters;
   while (!text.empty()) {
@@ -38,7 +38,7 @@ std::string shortened_utf8(std::string_view text, std::size_t most_bytes) {
   return letters;
 }
 
-/// As it will be read back: a file's name may be of bytes that are no text, which JSON has no place for.
+/// Returns the JSON as it reads back. A file's name may have bytes that are not text, which JSON cannot hold.
 nlohmann::ordered_json as_read_back(const nlohmann::ordered_json& json) {
   return nlohmann::ordered_json::parse(json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
@@ -114,7 +114,7 @@ nlohmann::json command_of(const nlohmann::ordered_json& batch) {
   command["avatar"].erase("sha256");
   for (nlohmann::json& map : command["maps"]) map.erase("sha256");
   nlohmann::json& options = command["options"];
-  // What batches of earlier versions do not say was as it is without these options.
+  // A batch of an earlier version lacks these options. It ran as with the defaults.
   options.emplace("full_speed_m_per_s", LawOptions().full_speed_m_per_s);
   options.emplace("sigma_mm", nullptr);
   options.emplace("actuator", nullptr);

@@ -31,36 +31,36 @@ struct Shard {
 };
 
 struct BatchMap {
-  std::string name;    ///< unique; a file's name and a CSV field
-  std::string given;   ///< on the command line
-  std::string sha256;  ///< of the PNG, then the sidecar; empty: it cannot be used
+  std::string name;    ///< unique; usable as a file's name and as a CSV field
+  std::string given;   ///< the word on the command line
+  std::string sha256;  ///< of the PNG and then the sidecar; empty: the map cannot be used
   ActuatorMapFiles files;
-  std::shared_ptr<const ActuatorLayout> layout;  ///< on the avatar; null: it cannot be used
+  std::shared_ptr<const ActuatorLayout> layout;  ///< on the avatar; null: the map cannot be used
   std::vector<std::string> warnings;             ///< one sentence each
 };
 
-/// The motors of all maps; none: ideal ones, that do at once what they are told.
+/// The motors of all maps. Without a model, motors are ideal and follow at once.
 struct BatchActuators {
-  std::string given;  ///< the model's file
-  std::string json;   ///< its text
+  std::string given;  ///< the model's file on the command line
+  std::string json;   ///< the file's text
   std::string sha256;
   std::shared_ptr<const ActuatorModel> model;
 };
 
 struct BatchTrace {
   std::string name;                    ///< unique, as for maps
-  std::string given;                   ///< a file, or the scenario's name
-  const Scenario* scenario = nullptr;  ///< to be recorded
+  std::string given;                   ///< a file or a scenario's name
+  const Scenario* scenario = nullptr;  ///< the scenario to record; null for a file
 };
 
 /// How scenarios among the traces are recorded.
 struct ScenarioRecording {
   double rate_hz = 1000;
   double duration_s = 2;
-  std::optional<std::uint32_t> count;  ///< none: each scenario's own
+  std::optional<std::uint32_t> count;  ///< none: each scenario's own count
 };
 
-/// An input that could not be used; the rest goes on.
+/// An input that could not be used. The batch continues without it.
 struct BatchFailure {
   std::string what;  ///< "map" or "trace"
   std::string name;
@@ -70,13 +70,13 @@ struct BatchFailure {
 };
 BatchFailure failure_of(std::string_view what, std::string_view name, std::string_view given, const Error& error);
 
-/// Everything that a batch's results follow from, apart from the bytes of its traces.
+/// Everything that determines a batch's results, except the bytes of its traces.
 struct BatchPlan {
   std::string avatar_given;
   std::vector<std::byte> avatar_glb;
   std::string avatar_sha256;
   Avatar avatar;
-  std::vector<BatchMap> maps;  ///< those that cannot be used included
+  std::vector<BatchMap> maps;  ///< includes maps that cannot be used
   std::vector<BatchTrace> traces;
   std::vector<std::string> laws;
   LawOptions law_options;
@@ -90,25 +90,26 @@ struct BatchPlan {
   bool has_scenario() const;
 };
 
-/// "man", "man-2", …: one name for each path, made of its last part without extension, unique, of letters, digits, '.',
-/// '_', '-' and whatever of UTF-8 is not ASCII, so that it can be a file's name and a CSV field.
+/// Returns a unique name for each path, for example "man", "man-2". It is made of the path's last part without
+/// extension. It has only letters, digits, '.', '_', '-' and UTF-8 letters outside ASCII, so that it can be a file's
+/// name and a CSV field.
 std::vector<std::string> unique_names(std::span<const std::string> given);
 
-/// What run.json says under "batch": avatar, maps, laws, options, traces, program.
+/// Returns the content of "batch" in run.json: avatar, maps, laws, options, traces, program.
 nlohmann::ordered_json to_json(const BatchPlan& plan);
 
-/// The part of it that was typed: a folder belongs to one such command and is gone on with by the same only.
-/// Of an earlier version's batch too. Throws nlohmann's exceptions where `batch` is none.
+/// Returns the part of `batch` that the user typed. A folder belongs to one such command, and only the same command may
+/// continue it. Also accepts a batch of an earlier version. Throws nlohmann's exceptions if `batch` is not a batch.
 nlohmann::json command_of(const nlohmann::ordered_json& batch);
 
-/// A SHA-256 of what a trace's result follows from, apart from the trace: program, avatar, usable maps with their
-/// bytes, laws, options.
+/// Returns a SHA-256 of everything that a trace's result depends on, except the trace: program, avatar, usable maps
+/// with their bytes, laws, options.
 std::string item_key(const nlohmann::ordered_json& batch);
 
-/// Version and commit of this program.
+/// Returns the version and commit of this program.
 std::string program_version();
 
-/// Of a file's bytes. Throws `Error` naming it.
+/// Returns the SHA-256 of a file's bytes. Throws `Error` with the file's name.
 std::string sha256_of_file(const std::string& path);
 
 }  // namespace vestige

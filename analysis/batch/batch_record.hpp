@@ -10,20 +10,22 @@
 
 namespace vestige {
 
-/// One finished trace, for run.json: its input, what it holds and what it took. `earlier`: an earlier run finished it.
+/// Returns the record of a finished trace for run.json: its input, its contents and its durations. `earlier` says that
+/// an earlier run finished the trace.
 nlohmann::ordered_json trace_record(const BatchTrace& trace, const nlohmann::ordered_json& item,
                                     const BatchFolder& folder, bool earlier);
 
-/// The warnings about avatar and maps, for run.json: {"avatar": {"warnings": […]}, "maps": [{"name", "warnings"}, …]}.
+/// Returns the warnings about avatar and maps for run.json: {"avatar": {"warnings": […]}, "maps": [{"name",
+/// "warnings"}, …]}.
 nlohmann::ordered_json input_warnings(const BatchPlan& plan);
 
-/// Sums of what finished traces took, and how many scores there are.
+/// Returns the sums of the durations of finished traces, and the number of scores.
 nlohmann::ordered_json totals(const nlohmann::ordered_json& traces, std::size_t scores_per_trace);
 
 nlohmann::ordered_json to_json(const BatchFailure& failure);
 
-/// Whether an item was made of less than its whole trace: damaged chunks, poses or colliders that are not finite. Says
-/// so, one sentence each.
+/// Returns why an item was made of less than its whole trace, one sentence each: damaged chunks, poses or colliders
+/// that are not finite. Empty if nothing was lost.
 std::vector<std::string> losses_of(const nlohmann::ordered_json& item);
 
 }  // namespace vestige

@@ -30,7 +30,7 @@ std::string field(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
-/// Whether it can be said at all how a candidate compares with the best: not so with one trace.
+/// Returns whether a candidate can be compared with the best at all. With one trace, it cannot.
 bool is_compared(const RankedCandidate& ranked) {
   return std::isfinite(ranked.difference_from_best.interval.low);
 }

@@ -18,6 +18,7 @@
 
 #include "analysis/base/clocks.hpp"
 #include "analysis/base/provenance.hpp"
+#include "analysis/run/detection_run.hpp"
 #include "analysis/scoring/contact_recording.hpp"
 #include "analysis/scoring/contact_recording_file.hpp"
 #include "analysis/scoring/scores.hpp"
@@ -52,7 +53,7 @@ nlohmann::ordered_json to_json(const ItemTimes& times) {
           {"scoring_s", times.scoring_s}};
 }
 
-/// Thrown where the user stopped; not an error.
+/// Thrown if the user stops the run; not an error.
 struct Stopped {};
 
 /// One batch under way.
@@ -101,7 +102,7 @@ class BatchRun {
       for (std::size_t i = 0; i < count; ++i) threads.emplace_back([this] { run_thread(); });
     } catch (const std::system_error&) {
       const std::lock_guard lock(mutex_);
-      running_ -= count - threads.size();  // those that there are do all the work
+      running_ -= count - threads.size();  // the threads that exist do all the work
       if (threads.empty()) throw Error("--jobs", "the system starts no thread", "try again later");
     }
     for (std::unique_lock lock(mutex_); running_ != 0; lock.lock()) {
@@ -116,7 +117,7 @@ class BatchRun {
     try {
       work();
     } catch (const Stopped&) {
-      // What was under way is dropped.
+      // Unfinished work is dropped.
     } catch (...) {
       note_failure();
     }
@@ -183,7 +184,7 @@ class BatchRun {
     const auto colliders = trace.scenario->make(plan_.avatar, animation, {count, plan_.seed});
     TraceWriterOptions writing;
     writing.overwrite = Overwrite::kAllow;
-    writing.chunk_s = std::numeric_limits<double>::infinity();  // the same bytes however long it takes
+    writing.chunk_s = std::numeric_limits<double>::infinity();  // gives the same bytes, however long recording takes
     const std::string growing = folder_.growing_trace(trace.name);
     {
       TraceWriter writer(growing,
@@ -240,17 +241,15 @@ class BatchRun {
     RecordedTrace recorded;
     recorded.collider_ids = ids;
     ContactRecording& recording = recorded.contacts;
-    FrameBuilder builder(plan_.avatar, ids, detector.method());
+    DetectionRun detection(plan_.avatar, ids, detector);
     TraceFrame trace_frame;
-    ContactRow row;
     std::uint64_t frames = 0;
     std::uint64_t contacts = 0;
     for (bool more = reader.next(trace_frame); more; more = reader.next(trace_frame)) {
       times.reading_s += lap_s();
-      const Frame& frame = builder.next(trace_frame);
-      detector.detect(frame, row);
-      contacts += static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
-      recording.add(frame.time_s, row);
+      detection.step(trace_frame);
+      contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(), &Contact::hit));
+      recording.add(detection.frame().time_s, detection.row());
       times.detection_s += lap_s();
       ++frames;
       if (stop_) throw Stopped();
@@ -261,9 +260,9 @@ class BatchRun {
     item["frames"] = frames;
     item["colliders"] = ids.size();
     item["contacts"] = contacts;
-    item["origin_changes"] = builder.origin_changes();
-    item["non_finite_frames"] = builder.non_finite_frames();
-    item["non_finite_segments"] = builder.non_finite_segments();
+    item["origin_changes"] = detection.builder().origin_changes();
+    item["non_finite_frames"] = detection.builder().non_finite_frames();
+    item["non_finite_segments"] = detection.builder().non_finite_segments();
     item["damage"] = damage_of(reader, plan_.traces[mine_[i]].given);
     return recorded;
   }
@@ -288,7 +287,7 @@ class BatchRun {
     write_contact_recording(folder_.contacts(trace.name), *computed.recording);
     computed.item["contacts_sha256"] = sha256_of_file(folder_.contacts(trace.name));
     write_json_file(folder_.item_times(trace.name), to_json(times));
-    write_json_file(folder_.item(trace.name), computed.item);  // last: it says that all is there
+    write_json_file(folder_.item(trace.name), computed.item);  // last, since this file means that all others exist
   }
 
   const BatchPlan& plan_;
@@ -297,7 +296,7 @@ class BatchRun {
   std::string key_;
   std::vector<std::size_t> mine_;  ///< positions of the shard's traces
   std::vector<double> weights_;
-  std::vector<std::atomic<double>> shares_;            ///< done of each
+  std::vector<std::atomic<double>> shares_;            ///< share done of each trace
   std::vector<std::optional<BatchItem>> items_;        ///< each is written by one thread
   std::vector<std::optional<BatchFailure>> failures_;  ///< likewise
   std::vector<LawChoice> laws_;

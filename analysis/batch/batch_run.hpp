@@ -14,30 +14,30 @@
 
 namespace vestige {
 
-/// What came of one trace of the batch.
+/// The result of one trace of the batch.
 struct BatchItem {
   std::size_t trace = 0;  ///< its position in the plan
-  bool earlier = false;   ///< finished by an earlier run
+  bool earlier = false;   ///< an earlier run finished it
   nlohmann::ordered_json result;
 };
 
 struct BatchOutcome {
-  std::vector<BatchItem> items;  ///< finished, in the order of the traces
+  std::vector<BatchItem> items;  ///< finished items, in the order of the traces
   std::vector<BatchFailure> failures;
   bool interrupted = false;
 };
 
 struct BatchProgress {
-  double share = 0;  ///< done, by bytes of traces
+  double share = 0;  ///< share done, by bytes of traces
   std::size_t finished = 0;
   std::size_t traces = 0;
 };
 
-/// Detects each trace of the shard once and scores all maps with all laws on its contacts, `jobs` traces at a time;
-/// what an earlier run finished is left as it is. Writes items, contacts and scenarios' traces. `make_detector` is
-/// called by several threads at a time. `progress` is called about ten times a second, and returns false to stop; then
-/// finished items stay. A trace that cannot be used becomes a failure; what concerns all of them (a full disk, a
-/// detector that cannot be made) throws `Error`, and finished items stay.
+/// Runs the detector once on each trace of the shard, and scores all maps with all laws on the trace's contacts. Runs
+/// `jobs` traces at a time. Skips traces that an earlier run finished. Writes items, contacts and scenarios' traces.
+/// `make_detector` is called by several threads at a time. `progress` is called about ten times a second, and returns
+/// false to stop. A trace that cannot be used becomes a failure. Throws `Error` for a problem that concerns all traces
+/// (a full disk, a detector that cannot be made). Finished items stay in the folder after a stop or an error.
 BatchOutcome run_batch(const BatchPlan& plan, const Shard& shard, const BatchFolder& folder, std::size_t jobs,
                        const std::function<std::unique_ptr<Detector>()>& make_detector,
                        const std::function<bool(const BatchProgress&)>& progress);

@@ -5,11 +5,11 @@
 
 namespace vestige {
 
-/// What candidates are put in order by, unless told otherwise.
+/// Returns the metric that candidates are ranked by unless the user names another.
 const char* default_metric_to_rank_by();
 
-/// Of `metrics()`, the one of that name. Throws `UsageError` naming --rank-by and listing them, those that no value is
-/// better of left out.
+/// Returns the index in `metrics()` of the metric `name`. Throws `UsageError` about --rank-by that lists the metrics,
+/// except those without a better direction.
 std::size_t metric_to_rank_by(const std::string& name);
 
 }  // namespace vestige

@@ -10,26 +10,29 @@
 
 namespace vestige {
 
-/// Over fewer, intervals are rough.
+/// With fewer traces than this, intervals are rough.
 constexpr std::size_t kFewTraces = 10;
 
-/// One candidate's values of each metric: [metric][trace]. NaN: the metric has no value there (nothing was felt, …).
+/// One candidate's values of each metric: [metric][trace]. NaN: the metric has no value on that trace (nothing was
+/// felt, …).
 using CandidateValues = std::vector<std::vector<double>>;
 
 enum class RankDirection { kHigherIsBetter, kLowerIsBetter };
 
-/// Where a candidate stands among the others.
+/// The place of a candidate among the others.
 struct RankedCandidate {
-  std::size_t candidate = 0;               ///< as given
-  std::optional<std::size_t> rank;         ///< from 1; equal headlines share one; none: it has no value on any trace
-  std::vector<MeanInterval> metrics;       ///< over the traces, of each metric
-  MeanInterval difference_from_best;       ///< headline minus that of the first, over the traces that both have
-  bool distinguishable_from_best = false;  ///< the 95 % interval of that difference leaves out 0
+  std::size_t candidate = 0;  ///< index in the given order
+  /// From 1. Equal headlines share a rank. None: the candidate has no headline value on any trace.
+  std::optional<std::size_t> rank;
+  std::vector<MeanInterval> metrics;       ///< mean over the traces, for each metric
+  MeanInterval difference_from_best;       ///< headline minus the headline of the first, over the traces that both have
+  bool distinguishable_from_best = false;  ///< the 95 % interval of that difference does not include 0
 };
 
-/// Ranks candidates by the mean of metric `headline` over the traces, best first, ties in the order given. Intervals:
-/// `PairedBootstrap` over the traces, since all candidates saw the same ones; each comparison stands at 95 % for
-/// itself, not corrected for how many there are. With fewer than two common traces nothing is distinguishable.
+/// Ranks candidates by the mean of metric `headline` over the traces, best first. Ties keep the given order. Intervals
+/// come from `PairedBootstrap` over the traces, since all candidates saw the same traces. Each comparison has 95 % by
+/// itself, without correction for the number of comparisons. With fewer than two common traces, no candidate is
+/// distinguishable.
 std::vector<RankedCandidate> rank_candidates(std::span<const CandidateValues> candidates, std::size_t headline,
                                              RankDirection direction, std::uint64_t seed);
 

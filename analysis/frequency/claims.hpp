@@ -6,7 +6,7 @@
 
 namespace vestige {
 
-/// One row of the table in results/README.md: something that a result file shows, with all it takes to check it.
+/// One row of the table in results/README.md: something that a result file shows, with everything needed to check it.
 struct Claim {
   std::string claim;
   std::string command;
@@ -16,14 +16,14 @@ struct Claim {
   std::string file;
 };
 
-/// What the JSON of a recording, replay, sweep, query, accuracy, stress, agreement or decision benchmark shows; nothing
-/// for any other JSON. `file` is how the table names it.
+/// Returns the claims that a JSON shows: a recording, replay, sweep, query, accuracy, stress, agreement or decision
+/// benchmark. Returns no claims for any other JSON. `file` is the file's name in the table.
 std::vector<Claim> claims_of(const nlohmann::json& result, const std::string& file);
 
-/// A file that holds results only, with what its run.json says of where they come from.
+/// Returns a results-only file combined with its run.json, which says where the results come from.
 nlohmann::json with_run(nlohmann::json result, const nlohmann::json& run);
 
-/// The claims as a Markdown table.
+/// Returns the claims as a Markdown table.
 std::string claims_table(const std::vector<Claim>& claims);
 
 }  // namespace vestige

@@ -22,7 +22,7 @@ SweepSettings settings_for(const GrowthSettings& settings, const Avatar& avatar,
   return sweep;
 }
 
-/// For the avatar that traces/scene/subdivision.hpp makes.
+/// Returns the map for the avatar that traces/scene/subdivision.hpp makes.
 ActuatorMap subdivided(const ActuatorMap& map) {
   ActuatorMap fine = map;
   if (map.triangle_count == 0) return fine;
@@ -34,7 +34,7 @@ ActuatorMap subdivided(const ActuatorMap& map) {
   return fine;
 }
 
-/// Puts the one point of each series of `more` behind those of `all`.
+/// Appends the single point of each series of `more` to the series of `all`.
 void append(std::vector<SweepSeries>& all, std::vector<SweepSeries> more) {
   if (all.empty()) {
     all = std::move(more);
@@ -85,7 +85,7 @@ std::vector<double> mean_us(const SweepSeries& series) {
   return us;
 }
 
-/// Of a logarithm: two per cent.
+/// Difference of logarithms: two per cent.
 constexpr double kSameCost = 0.02;
 
 std::vector<Crossover> crossovers(std::span<const double> sizes, std::span<const CostLine> lines) {
@@ -93,10 +93,10 @@ std::vector<Crossover> crossovers(std::span<const double> sizes, std::span<const
   for (std::size_t a = 0; a < lines.size(); ++a)
     for (std::size_t b = a + 1; b < lines.size(); ++b)
       for (std::size_t i = 1; i < sizes.size(); ++i) {
-        // By how much a costs more than b, before and after.
+        // The logarithm of a's cost over b's, before and after.
         const double before = std::log(lines[a].us[i - 1] / lines[b].us[i - 1]);
         const double after = std::log(lines[a].us[i] / lines[b].us[i]);
-        // As long as they cost the same within their noise, neither is faster.
+        // If both lines cost the same within their noise, neither is faster.
         if (!(before * after < 0) || std::abs(before) < kSameCost) continue;
         const double part = before / (before - after);
         const double at = std::exp(std::lerp(std::log(sizes[i - 1]), std::log(sizes[i]), part));

@@ -9,11 +9,11 @@
 
 namespace vestige {
 
-/// `by_colliders{series}`, `by_triangles[{triangles, vertices, frames, series}]`, `crossovers{colliders, triangles}`
-/// and `ablation[…]`, the fields of `series` as in a sweep's JSON.
+/// Returns `by_colliders{series}`, `by_triangles[{triangles, vertices, frames, series}]`, `crossovers{colliders,
+/// triangles}` and `ablation[…]`. The fields of `series` are as in a sweep's JSON.
 nlohmann::ordered_json to_json(const Growth& growth, std::uint64_t seed);
 
-/// The tables for people: microseconds a frame against colliders and against triangles, where lines cross, and what
+/// Returns tables for people: microseconds of a frame against colliders and against triangles, the crossings, and what
 /// skipping saves.
 std::string growth_table(const Growth& growth, std::uint32_t colliders);
 

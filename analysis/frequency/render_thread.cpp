@@ -30,7 +30,7 @@ RenderThread::RenderThread(MakeContext make_context, const Avatar& avatar, std::
   if (failure_ != nullptr) std::rethrow_exception(failure_);
 }
 
-RenderThread::~RenderThread() = default;  // the thread is told to stop, and waited for
+RenderThread::~RenderThread() = default;  // jthread asks the thread to stop and joins it
 
 void RenderThread::resume() {
   const std::scoped_lock lock(mutex_);

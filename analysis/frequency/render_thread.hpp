@@ -16,29 +16,30 @@
 
 namespace vestige {
 
-/// Draws a scene at 90 Hz in a thread and an OpenGL context of its own, as an application does beside detection (HAVE
-/// 2010 §IV). A frame that comes late delays those after it; none are made up for.
+/// Draws a scene at 90 Hz in its own thread and its own OpenGL context, as an application does beside detection (HAVE
+/// 2010 §IV). A late frame delays the frames after it. Lost frames are not made up for.
 class RenderThread {
  public:
   static constexpr double kRate_hz = 90;
 
   using MakeContext = std::function<std::unique_ptr<GlContext>()>;
 
-  /// Shows `frames` one after the other, again and again; references to them and the avatar are kept. Returns paused,
-  /// once a first frame has been drawn. `make_context` is called in the thread. Throws `Error` where that or the
-  /// drawing fails.
+  /// Draws `frames` in a loop. Keeps references to the frames and to the avatar. The constructor returns paused, after
+  /// the first frame has been drawn. `make_context` is called in the new thread. Throws `Error` if making the context
+  /// or drawing fails.
   RenderThread(MakeContext make_context, const Avatar& avatar, std::vector<const TraceFrame*> frames);
-  /// Stops after the frame in hand.
+  /// Stops after the current frame.
   ~RenderThread();
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
 
   const GlInfo& gl_info() const { return gl_info_; }
 
-  /// Frames are due half a period after `resume`, and then once a period.
+  /// Starts drawing. The first frame is due half a period after `resume`, and then one each period.
   void resume();
 
-  /// Returns once nothing is drawn any more: the frames begun since `resume`. Throws what the thread failed with.
+  /// Pauses, and returns once drawing has stopped. Returns the number of frames begun since `resume`. Throws the
+  /// failure of the thread, if any.
   std::uint64_t pause();
 
  private:
@@ -53,12 +54,12 @@ class RenderThread {
 
   std::mutex mutex_;
   std::condition_variable_any changed_;
-  State state_ = State::kRunning;  // the first frame
+  State state_ = State::kRunning;  // while the first frame is drawn
   bool drawing_ = true;
   std::uint64_t begun_ = 0;
   std::exception_ptr failure_;
 
-  std::jthread thread_;  // last: it uses all of the above
+  std::jthread thread_;  // last, since it uses all members above
 };
 
 }  // namespace vestige

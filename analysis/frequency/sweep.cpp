@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "analysis/frequency/render_thread.hpp"
+#include "analysis/run/detection_run.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "traces/base/error.hpp"
 
@@ -18,10 +19,10 @@ namespace vestige {
 namespace {
 
 constexpr std::size_t kWarmUpFrames = 2;
-/// What is measured at a time beside a renderer: 18 of its frames.
+/// Length of one stretch beside a renderer: 18 of the renderer's frames.
 constexpr double kRenderedStretch_s = 0.2;
 
-/// Consecutive frames of the trace; the first only gives the segments of the second their start.
+/// Consecutive frames of the trace. The first frame only gives the start of the second frame's segments.
 using Place = std::vector<TraceFrame>;
 
 std::uint64_t place_length(std::uint64_t trace_frames, const SweepSettings& settings) {
@@ -47,8 +48,8 @@ std::vector<Place> read_places(TraceReader& trace, const SweepSettings& settings
   return places;
 }
 
-/// The rows of one contestant with every collider: those of fewer colliders are their beginnings, since a collider's
-/// contact does not depend on the others.
+/// The rows of one contestant with all colliders. Rows with fewer colliders are prefixes of these, since a collider's
+/// contact does not depend on the other colliders.
 struct Reference {
   std::vector<std::vector<ContactRow>> rows;  // by place, then frame
 };
@@ -135,10 +136,13 @@ class Sweep {
     const std::uint32_t most = std::ranges::max(settings_.counts);
     Reference reference;
     for (const Place& place : places_) {
-      FrameBuilder builder(avatar_, first_ids(most), detector->method());
-      builder.next(place.front());
-      auto& rows = reference.rows.emplace_back(place.size() - 1);
-      for (std::size_t i = 1; i < place.size(); ++i) detector->detect(builder.next(place[i]), rows[i - 1]);
+      DetectionRun detection(avatar_, first_ids(most), *detector);
+      detection.begin(place.front());
+      auto& rows = reference.rows.emplace_back();
+      for (std::size_t i = 1; i < place.size(); ++i) {
+        detection.step(place[i]);
+        rows.push_back(detection.row());
+      }
     }
     return reference;
   }
@@ -154,13 +158,11 @@ class Sweep {
     point.texture_hash = hash.hex();
   }
 
-  /// Everywhere, since a place with another number of segments may need another program.
+  /// Runs at every place, since a place with another number of segments may need another program.
   void warm_up(std::size_t series, const SweepPoint& point) {
-    ContactRow row;
     for (const Place& place : places_) {
-      FrameBuilder builder(avatar_, first_ids(point.colliders), detectors_[series]->method());
-      for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i)
-        detectors_[series]->detect(builder.next(place[i]), row);
+      DetectionRun detection(avatar_, first_ids(point.colliders), *detectors_[series]);
+      for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i) detection.step(place[i]);
     }
   }
 
@@ -172,7 +174,7 @@ class Sweep {
     return std::make_unique<RenderThread>(contestant.make_renderer_context, avatar_, std::move(frames));
   }
 
-  /// One stretch beside the renderer, as many places as it takes. Returns the seconds timed.
+  /// Measures as many places as fit into one stretch beside the renderer. Returns the seconds timed.
   double measure_rendered(std::size_t series, SweepPoint& point) {
     const auto start = std::chrono::steady_clock::now();
     std::chrono::duration<double> elapsed = {};
@@ -187,18 +189,17 @@ class Sweep {
     return seconds;
   }
 
-  /// The place whose turn it is. Returns the seconds timed.
+  /// Measures the place whose turn it is. Returns the seconds timed.
   double measure(std::size_t series, SweepPoint& point) {
     const std::size_t place_number = point.repetitions.size() % places_.size();
     const Place& place = places_[place_number];
-    FrameBuilder builder(avatar_, first_ids(point.colliders), detectors_[series]->method());
-    builder.next(place.front());
-    ContactRow row;
+    DetectionRun detection(avatar_, first_ids(point.colliders), *detectors_[series]);
+    detection.begin(place.front());
     Repetition repetition;
     DetectorWork work;
     for (std::size_t i = 1; i < place.size(); ++i) {
       const auto start = std::chrono::steady_clock::now();
-      const DetectorWork done = detectors_[series]->detect(builder.next(place[i]), row);
+      const DetectorWork done = detection.step(place[i]);
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       point.frame_us.push_back(elapsed.count() * 1e6);
       repetition.seconds += elapsed.count();
@@ -209,7 +210,7 @@ class Sweep {
       }
       work += done;
       const ContactRow& expected = references_[series].rows[place_number][i - 1];
-      if (!std::equal(row.begin(), row.end(), expected.begin(), same))
+      if (!std::equal(detection.row().begin(), detection.row().end(), expected.begin(), same))
         throw Error(series_[series].detector,
                     fmt::format("frame {} gave other contacts with {} colliders than with {}", place[i].index,
                                 point.colliders, expected.size()),

@@ -15,7 +15,7 @@ namespace vestige {
 namespace {
 
 constexpr double kNoisy = 0.05;
-/// From fewer repetitions no interval can be told.
+/// The fewest repetitions that give an interval.
 constexpr std::size_t kFewestForInterval = 2;
 
 /// HAVE 2010, Fig. 2 and §IV: a GeForce GTX 285 under Windows 7.
@@ -39,7 +39,7 @@ struct Rival {
 constexpr std::array<Rival, 2> kRivals = {
     {{"paper", "the fastest paper", "times_paper"}, {"embree", "the fastest Embree", "times_embree"}}};
 
-/// At the p-th count; 0 where none was measured.
+/// Returns the highest frequency of a rival at the p-th count, or 0 if none was measured.
 double fastest_hz(std::span<const SweepSeries> series, const Rival& rival, std::size_t p) {
   double fastest = 0;
   for (const SweepSeries& one : series)
@@ -48,7 +48,7 @@ double fastest_hz(std::span<const SweepSeries> series, const Rival& rival, std::
   return fastest;
 }
 
-/// Empty where the rival was not measured, or nothing else was.
+/// Returns the table of ratios to a rival. Empty if the rival, or everything else, was not measured.
 std::string ratio_table(std::span<const SweepSeries> series, const Rival& rival) {
   const auto is_rival = [&](const SweepSeries& one) { return one.detector.starts_with(rival.prefix); };
   const auto rivals = std::ranges::count_if(series, is_rival);
@@ -197,7 +197,7 @@ std::vector<std::string> disagreements(std::span<const SweepSeries> series) {
     for (std::size_t p = 0; p < one.points.size(); ++p) {
       const std::string& expected = first->points[p].texture_hash;
       const std::string& hash = one.points[p].texture_hash;
-      // Empty: stopped before it was computed.
+      // Empty: the run was stopped before the hash was computed.
       if (!hash.empty() && !expected.empty() && hash != expected)
         found.push_back(fmt::format("with {} colliders, '{}' and '{}' gave different contacts, and promise the same",
                                     one.points[p].colliders, name_of(*first), name_of(one)));

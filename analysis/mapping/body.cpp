@@ -14,7 +14,7 @@ namespace {
 constexpr double kVestLow = 0.045;
 constexpr double kVestHigh = 0.955;
 
-/// A grown person's, in shares of the height: soles, knees, crotch, neck, chin.
+/// An adult's heights as shares of the body's height: ankles, knees, crotch, neck, chin.
 constexpr double kAnkles = 0.05;
 constexpr double kKnees = 0.28;
 constexpr double kCrotch = 0.48;
@@ -23,7 +23,7 @@ constexpr double kChin = 0.87;
 constexpr double kShoulder = 0.115;  // from the middle outwards; elbow and wrist:
 constexpr double kElbow = 0.27;
 constexpr double kWrist = 0.40;
-/// One that is wider holds its arms out.
+/// A body that is 1.3 times wider than this share of its height holds its arms out.
 constexpr double kArmsHang = 0.35;
 
 struct Reach {
@@ -55,17 +55,17 @@ void Body::weigh_parts() {
     auto& weights = part_weights_.emplace_back();
     for (std::size_t k = 0; k < kMaxInfluences && influences.weight[k] > 0; ++k) {
       const auto node = static_cast<std::size_t>(avatar().palette[influences.palette[k]].node);
-      // What has no part, and none above it, such as a root, is the trunk on which the rest hangs.
+      // A node without a part, such as a root, counts as the trunk on which the rest hangs.
       const SkinPart part = parts_of_nodes_[node].value_or(SkinPart::kTorso);
       weights[static_cast<std::size_t>(part)] += influences.weight[k];
     }
   }
 }
 
-/// An island is smaller than a fifth of its part's largest piece: the other hand is none.
+/// An island is smaller than a fifth of its part's largest piece, so that the other hand is not an island.
 constexpr std::size_t kIslandsInLargest = 5;
 
-/// Vertices in one place count once: they have the same weights.
+/// Vertices at one place count once, since they have the same weights.
 void Body::settle_islands() {
   const auto strongest = [](const std::array<float, kSkinParts>& weights) {
     return static_cast<std::size_t>(std::ranges::max_element(weights) - weights.begin());
@@ -102,7 +102,7 @@ void Body::settle_islands() {
       for (const std::uint32_t next : beside[place])
         if (part[next] != part[place]) ++around[part[next]];
     const auto most = std::ranges::max_element(around);
-    // What touches nothing, such as a sword, stays what its joint says.
+    // A piece that touches no other part, such as a sword, keeps its joint's part.
     if (*most == 0) continue;
     for (const std::uint32_t place : piece) settled[place] = static_cast<std::size_t>(most - around.begin());
   }
@@ -115,7 +115,7 @@ void Body::settle_islands() {
       }
 }
 
-/// A torso, and at least two of: head or neck, arms, legs.
+/// Returns whether the joints name a torso and at least two of: head or neck, arms, legs.
 bool Body::is_understood() const {
   std::array<bool, kSkinParts> named = {};
   for (const PaletteEntry& entry : avatar().palette)
@@ -185,7 +185,7 @@ int Body::node_at(const SkinPoint& point) const {
       found->weight += point.weight[corner] * double{influences.weight[k]};
     }
   }
-  // Of equal ones, the first by number: corners may come in any order.
+  // Among equal weights, the lowest node number wins, since corners may come in any order.
   const auto better = [](const Weighed& a, const Weighed& b) {
     return a.weight != b.weight ? a.weight < b.weight : a.node > b.node;
   };
@@ -204,7 +204,7 @@ void Body::find_middle() {
 }
 
 void Body::find_vest() {
-  // The joint nearest to the trunk of each limb, by what is above it.
+  // Uses the joint nearest to the trunk of each limb: its parent belongs to another part.
   std::vector<glm::dmat4> world;
   const Pose rest = rest_pose(avatar());
   world_matrices(avatar(), rest, world);

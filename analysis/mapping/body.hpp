@@ -10,32 +10,34 @@
 
 namespace vestige {
 
-/// How an avatar's parts were told apart.
+/// How the parts of an avatar were told apart.
 enum class Understanding {
-  kJoints,      ///< by the names of its joints
-  kProportions  ///< by a grown person's proportions, since its joints' names say too little
+  kJoints,      ///< by the names of the avatar's joints
+  kProportions  ///< by an adult's proportions, since the joints' names say too little
 };
 
-/// An avatar's skin with what a region may ask of it: which part of a body, and which joint, a point belongs to.
+/// An avatar's skin, with the part of the body and the joint that each point belongs to.
 class Body {
  public:
-  /// `avatar` has triangles, and must stay.
+  /// `avatar` must have triangles and must outlive this object.
   explicit Body(const Avatar& avatar);
 
   const BodySurface& surface() const { return surface_; }
   const Avatar& avatar() const { return surface_.avatar(); }
   Understanding understanding() const { return understanding_; }
 
-  /// The part whose joints weigh most. Islands of a part that lie within another (a kneecap whose weights stray to the
-  /// foot) belong to what surrounds them.
+  /// Returns the part whose joints weigh most. A small island of one part that lies within another part (for example a
+  /// kneecap whose weights stray to the foot) belongs to the part around it. Under `kProportions`, returns the part by
+  /// position instead.
   SkinPart part_at(const SkinPoint& point) const;
-  /// The node that weighs most: a joint, or the node of a mesh without joints.
+  /// Returns the node that weighs most: a joint, or the node of a mesh without joints.
   int node_at(const SkinPoint& point) const;
 
-  /// The plane between left (+x) and right.
+  /// The x of the plane between left (+x) and right.
   double middle_x_m() const { return middle_x_m_; }
-  /// The heights that a vest covers: of the way from the hip joints up to the neck's, 4.5 % to 95.5 %, which on the
-  /// built-in avatar are the 0.94 m and 1.45 m of its own map. Where these joints are not known, of the torso's skin.
+  /// The heights between which a vest lies: 4.5 % and 95.5 % of the way from the hip joints up to the neck joint. On
+  /// the built-in avatar these are 0.94 m and 1.45 m, as in the avatar's own map. Where a joint is not known, the end
+  /// of the torso's skin takes its place.
   double vest_low_m() const { return vest_low_m_; }
   double vest_high_m() const { return vest_high_m_; }
 
@@ -49,7 +51,7 @@ class Body {
 
   BodySurface surface_;
   std::vector<std::optional<SkinPart>> parts_of_nodes_;
-  std::vector<std::array<float, kSkinParts>> part_weights_;  ///< of every vertex
+  std::vector<std::array<float, kSkinParts>> part_weights_;  ///< for each vertex
   Understanding understanding_ = Understanding::kJoints;
   double middle_x_m_ = 0;
   double vest_low_m_ = 0;

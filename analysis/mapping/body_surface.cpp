@@ -37,7 +37,7 @@ glm::dvec3 BodySurface::position_m(const SkinPoint& point) const {
 }
 
 glm::dvec2 BodySurface::texture_coordinate(const SkinPoint& point) const {
-  // The order of the sums is describe_contact's, so that a point and a contact there have the same texel.
+  // The sums have the same order as in describe_contact, so that a point and a contact there have the same texel.
   const glm::uvec3& corner = avatar_.triangles[point.triangle];
   const glm::dvec2 a(avatar_.texture_coordinate[corner.x]);
   const glm::dvec2 b(avatar_.texture_coordinate[corner.y]);

@@ -13,43 +13,43 @@
 
 namespace vestige {
 
-/// An avatar's skin in its rest pose (glTF: metres, y up, facing +z, so that its left is +x), as one surface: vertices
-/// that only a seam of the texture splits are one place.
+/// An avatar's skin in its rest pose as one surface (glTF: metres, y up, facing +z, so that its left is +x). Vertices
+/// that only a texture seam splits count as one place.
 class BodySurface {
  public:
-  /// `avatar` has triangles, and must stay.
+  /// `avatar` must have triangles and must outlive this object.
   explicit BodySurface(const Avatar& avatar);
 
   const Avatar& avatar() const { return avatar_; }
-  /// Of what the triangles lie between.
+  /// The bounds of all triangles, metres. Vertices without a triangle do not count.
   const Box& bounds() const { return bounds_; }
   double height_m() const { return bounds_.extent().y; }
 
-  /// Of every vertex, metres.
+  /// The rest position of each vertex, metres.
   const std::vector<glm::dvec3>& rest_m() const { return rest_m_; }
   glm::dvec3 position_m(const SkinPoint& point) const;
   glm::dvec2 texture_coordinate(const SkinPoint& point) const;
-  /// A triangle's corners in texels of a map of this size, not wrapped.
+  /// Returns a triangle's corners in texels of a map of this size, not wrapped.
   std::array<glm::dvec2, 3> texels(std::uint32_t triangle, const glm::dvec2& map_size) const;
   std::array<glm::dvec3, 3> corners_m(std::uint32_t triangle) const;
   double area_m2(std::uint32_t triangle) const;
   double longest_edge_m(std::uint32_t triangle) const;
-  /// A triangle's corners, by the place that they share with others.
+  /// Returns the places of a triangle's corners. Corners of other triangles at the same position share a place.
   glm::uvec3 places(std::uint32_t triangle) const;
   std::size_t place_count() const { return place_count_; }
 
  private:
   const Avatar& avatar_;
   std::vector<glm::dvec3> rest_m_;
-  std::vector<std::uint32_t> place_;  ///< of every vertex
+  std::vector<std::uint32_t> place_;  ///< the place of each vertex
   std::size_t place_count_ = 0;
   Box bounds_;
 };
 
-/// Whether texture coordinates tell any two points of the skin apart.
+/// Returns whether any two vertices differ in their texture coordinates.
 bool has_texture_coordinates(const Avatar& avatar);
 
-/// Throws `Error` unless they do; `name` is the avatar's.
+/// Throws `Error` if the avatar has no texture coordinates. `name` is the avatar's name in the error.
 void require_texture_coordinates(const Avatar& avatar, std::string_view name);
 
 }  // namespace vestige

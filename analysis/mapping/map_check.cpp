@@ -16,7 +16,8 @@ namespace vestige {
 
 namespace {
 
-/// Of an actuator's skin: what is smaller is a speck of a border's steps, or of charts that meet within a texel.
+/// Share of an actuator's skin. A smaller piece is a speck: from the steps of a border, or from charts that meet within
+/// a texel.
 constexpr double kSpeck = 0.01;
 constexpr double kSpeckTexels = 4;
 constexpr double kSpeckOfTriangles = 0.05;  ///< borders step by triangles there
@@ -122,7 +123,7 @@ class Checker {
     return glm::distance(image, glm::dvec3(b)) < far_m_;
   }
 
-  /// Each texel's first patch stands for it; others far from it share it.
+  /// The first patch of each texel represents it. Patches far from the first share the texel.
   void find_shared() {
     constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint32_t> first(map_.actuator.size(), kNone);
@@ -214,7 +215,7 @@ class Checker {
     }
   }
 
-  /// Greys that nowhere have a texel with all four neighbours alike.
+  /// Finds greys without any texel whose four neighbours have the same grey.
   void find_soft_edges() {
     std::vector<bool> is_solid(map_.actuator_count + 1, false);
     for (std::uint32_t row = 0; row < map_.height; ++row)
@@ -237,7 +238,7 @@ class Checker {
       one = actuator;
       texels += of(actuator).texels;
     }
-    // A map as coarse as a chessboard has no edges.
+    // A map as coarse as a chessboard has no soft edges.
     if (soft == 0 || (soft == map_.actuator_count && map_.width * map_.height < 64 * 64)) return;
     add(Severity::kProblem, "soft_edges", soft == 1 ? one : std::uint16_t{0},
         fmt::format("{} of {} grey levels are nowhere more than two texels wide ({} texels): soft edges of an editor, "

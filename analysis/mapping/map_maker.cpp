@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostInEightBits = 240;
 
-/// Skin by actuator: [0] is that of none.
+/// The skin of an actuator. Entry [0] is skin without an actuator.
 struct SkinOfActuator {
   double area_m2 = 0;
   glm::dvec3 sum = glm::dvec3(0);  ///< of the positions, by area
@@ -36,11 +36,11 @@ void for_each_patch(const BodySurface& surface, const Visit& visit) {
   }
 }
 
-/// Of the body's longest side: a region whose middle is so near to the body's has its actuator there.
+/// Share of the body's longest side. A region whose middle is this near to the body's middle has its actuator there.
 constexpr double kCentral = 0.01;
 
-/// For each triangle, the actuator that has most of it, among equals the first; but each actuator with any skin gets a
-/// triangle: the one that it has most of.
+/// Returns for each triangle the actuator that has most of it; the first one if several have the same share. But each
+/// actuator with skin gets at least one triangle: the one of which it has most area.
 std::vector<std::uint16_t> actuator_of_triangle(const BodySurface& surface, const ActuatorAt& actuator_at,
                                                 std::size_t actuator_count) {
   struct Most {
@@ -69,7 +69,7 @@ std::vector<std::uint16_t> actuator_of_triangle(const BodySurface& surface, cons
   return actuators;
 }
 
-/// Of the skin that should fire or does: how much does not fire its own actuator.
+/// Returns the share of skin that does not fire its own actuator, of all skin that should fire or does.
 double misplaced_share(const BodySurface& surface, const MapRaster& raster, const ActuatorAt& actuator_at) {
   ActuatorMap map;
   map.width = map.height = raster.side;
@@ -107,7 +107,7 @@ std::vector<SkinOfActuator> measure(const Body& body, const ActuatorAt& actuator
     const glm::dvec3 middle_m = of.sum / of.area_m2;
     const glm::dvec3 off = patch.position_m - middle_m;
     double distance_squared = glm::dot(off, off);
-    // All around a head, the skin is as far from its middle; that on the body's own middle goes first.
+    // All skin around a head is equally far from its middle. Skin on the body's own middle takes precedence.
     if (is_central(middle_m.x) && !is_central(patch.position_m.x))
       distance_squared += surface.height_m() * surface.height_m();
     if (distance_squared >= of.distance_squared) continue;
@@ -117,12 +117,12 @@ std::vector<SkinOfActuator> measure(const Body& body, const ActuatorAt& actuator
   return skin;
 }
 
-/// To a tenth of a millimetre, as a researcher would write it.
+/// Rounds to a tenth of a millimetre, as a researcher would write it.
 double rounded(double metres) {
   return std::round(metres * 1e4) / 1e4 + 0.0;
 }
 
-/// `avatar`: whose triangles the texels are; null where they are its texture.
+/// `avatar` is the avatar whose triangles the texels are, or null if they are its texture.
 std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar* avatar) {
   std::string text = "{\n";
   if (avatar != nullptr)

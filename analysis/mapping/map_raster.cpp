@@ -20,7 +20,7 @@ struct Nearest {
   double distance_squared = std::numeric_limits<double>::infinity();
 };
 
-/// The point of a triangle, flat or not, that is nearest to `p`.
+/// Returns the point of a triangle that is nearest to `p`. The triangle may have no area.
 Nearest nearest_in(const Corners2& corners, const glm::dvec2& p) {
   const auto cross = [](const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; };
   const glm::dvec2 ab = corners[1] - corners[0];
@@ -99,10 +99,10 @@ class Painter {
     map_.actuator[texel] = actuator;
   }
 
-  /// Whether what a texel shows already is far from `point`.
+  /// Returns whether the skin that a texel already shows is far from `point`.
   bool is_far(std::size_t texel, std::int64_t column, std::int64_t row, const SkinPoint& point) const {
     const Corners2 corners = surface_.texels(owner_[texel], glm::dvec2(map_.side));
-    // The owner may lie another turn around the texture.
+    // The owner may lie a whole turn of the texture away.
     const double side = map_.side;
     const glm::dvec2 middle(static_cast<double>(column) + 0.5, static_cast<double>(row) + 0.5);
     const glm::dvec2 turns = glm::round((middle - corners[0]) / side);

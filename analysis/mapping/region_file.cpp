@@ -28,7 +28,7 @@ std::string list_of(std::vector<std::string> names) {
   return text;
 }
 
-/// Reads the fields of one JSON object, and complains in its place's name.
+/// Reads the fields of one JSON object. Errors name the object's place.
 class Fields {
  public:
   Fields(const json& object, std::string where) : object_(object), where_(std::move(where)) {
@@ -57,7 +57,7 @@ class Fields {
     return text;
   }
 
-  /// One text or a list of them; empty where there is none.
+  /// Returns one text, or a list of texts; empty if there is none.
   std::vector<std::string> texts(const char* key, const char* example) const {
     if (!has(key)) return {};
     const json& value = at(key);

@@ -16,9 +16,9 @@ namespace vestige {
 
 namespace {
 
-/// Of the body's height: how finely skin is looked at to find its extent and its middle.
+/// Sampling step on the skin for a region's extent and middle, as a share of the body's longest side.
 constexpr double kPlanStep = 0.005;
-/// How many heights the axis between front and back is found at.
+/// The number of heights at which the axis between front and back is computed.
 constexpr std::size_t kAxisPoints = 24;
 
 /// "*" in the pattern stands for any letters.
@@ -44,7 +44,7 @@ bool matches(std::string_view pattern, std::string_view text) {
   return pattern.substr(p).find_first_not_of('*') == std::string_view::npos;
 }
 
-/// Whether an angle lies in an interval, both up to whole turns.
+/// Returns whether an angle lies in an interval, up to whole turns of either.
 bool is_within(double degrees, const Extent& interval) {
   const double beyond = degrees - interval.low;
   return beyond - 360 * std::floor(beyond / 360) < interval.high - interval.low;
@@ -57,7 +57,7 @@ Extent angles_of(const std::string& side) {
   return {-180, 0};
 }
 
-/// Over which angles a grid's columns go: those asked for, or what the sides leave.
+/// Returns the angles of a grid's columns: those asked for, otherwise those that the sides leave.
 Extent column_angles(const RegionSpec& spec, const std::string& where) {
   if (spec.angle_degrees) return *spec.angle_degrees;
   const auto has = [&](const char* side) { return std::ranges::find(spec.sides, side) != spec.sides.end(); };
@@ -72,7 +72,7 @@ Extent column_angles(const RegionSpec& spec, const std::string& where) {
   return {0, 360};
 }
 
-/// Which of `count` equal pieces of the interval a value lies in.
+/// Returns which of `count` equal pieces of the interval has the value.
 std::size_t piece(double value, const Extent& interval, std::size_t count) {
   const double share = (value - interval.low) / (interval.high - interval.low);
   const double number = std::floor(share * static_cast<double>(count));
@@ -100,15 +100,14 @@ RegionPlan::RegionPlan(const Body& body, const std::vector<RegionSpec>& regions,
     choose_skin(spec, where, region);
     region.columns = column_angles(spec, where);
     number_actuators(spec, where, region);
-    if (!fit_frame(region))
-      continue;  // its actuators have no skin, and whoever makes a map knows what to do about that
+    if (!fit_frame(region)) continue;  // its actuators have no skin, and the map maker decides what to do about that
     const Frame& frame = region.frame;
     region.rows_m = {frame.low_m, frame.high_m};
     if (spec.height_m) region.rows_m = *spec.height_m;
     if (spec.height) {
       const double size_m = frame.high_m - frame.low_m;
       region.rows_m = {frame.low_m + spec.height->low * size_m, frame.low_m + spec.height->high * size_m};
-      // The highest point belongs to what goes up to it.
+      // The lowest and the highest point belong to intervals that reach 0 and 1.
       if (spec.height->low <= 0) region.rows_m.low = -std::numeric_limits<double>::infinity();
       if (spec.height->high >= 1) region.rows_m.high = std::numeric_limits<double>::infinity();
     }
@@ -244,7 +243,7 @@ bool RegionPlan::fit_frame(Region& region) const {
   });
   if (samples.empty()) return false;
   if (!(frame.low_m < frame.high_m)) frame.high_m = frame.low_m + 1e-6;
-  // A vest's skin ends where it is cut, which samples only come near.
+  // A vest's skin ends exactly at the cut. Samples only come near to the cut.
   if (!region.parts.empty() && std::ranges::all_of(region.parts, &PartChoice::vest))
     if (frame.low_m - body_.vest_low_m() < 0.02 * body_.surface().height_m() &&
         body_.vest_high_m() - frame.high_m < 0.02 * body_.surface().height_m()) {
@@ -253,7 +252,8 @@ bool RegionPlan::fit_frame(Region& region) const {
     }
   const double middle_m = body_.middle_x_m();
   frame.middle_x_m = low_x < middle_m && high_x > middle_m ? middle_m : (low_x + high_x) / 2;
-  // Between the foremost and the hindmost skin of every height; where there is none, what was below goes on.
+  // The middle between the foremost and the hindmost skin at every height. Without skin at a height, the middle of the
+  // height below is used.
   constexpr double kNone = std::numeric_limits<double>::infinity();
   std::vector<std::array<double, 2>> ends(kAxisPoints, {kNone, -kNone});
   for (const glm::dvec3& p : samples) {

@@ -12,18 +12,20 @@
 
 namespace vestige {
 
-/// Regions as they lie on one avatar: which actuator any point of its skin belongs to.
+/// Regions on one avatar: maps each point of the skin to an actuator.
 class RegionPlan {
  public:
-  /// `body` must stay. `name` stands in errors: a part or joint that the avatar does not have (`UnknownName`), two
-  /// actuators of one name in a region's list. A region that selects no skin is no error: its actuators are nowhere.
+  /// `body` must outlive this object. `name` appears in errors. Throws `UnknownName` if the avatar does not have a part
+  /// or joint. Throws `Error` if a region asks for two opposite sides, if its list has two actuators of one name, if
+  /// its criteria leave no skin for the list, or if there are more than 65534 actuators. A region that selects no skin
+  /// is not an error: its actuators have no skin.
   RegionPlan(const Body& body, const std::vector<RegionSpec>& regions, std::string_view name);
 
-  /// 1 … actuator_count, or 0 for none.
+  /// Returns the actuator's number, 1 … actuator_count, or 0 if the point belongs to no actuator.
   std::uint16_t at(const SkinPoint& point) const;
   std::size_t actuator_count() const { return names_.size(); }
   const std::vector<std::string>& names() const { return names_; }
-  /// Where an actuator was asked to be, if it was.
+  /// Returns the position that an actuator of a region's list has on the skin. Other actuators have none.
   const std::optional<glm::dvec3>& given_position_m(std::size_t actuator) const { return given_position_m_[actuator]; }
 
  private:
@@ -34,12 +36,12 @@ class RegionPlan {
     Half half = Half::kBoth;
   };
 
-  /// Where "height" and "angle" of a selection are counted from. The axis follows the middle between front and back.
+  /// The frame that "height" and "angle" of a selection refer to. Its axis follows the middle between front and back.
   struct Frame {
     double low_m = 0;
     double high_m = 1;
     double middle_x_m = 0;
-    std::vector<double> middle_z_m;  ///< from low to high, at even heights
+    std::vector<double> middle_z_m;  ///< from low to high, at equally spaced heights
 
     double height(double y_m) const { return (y_m - low_m) / (high_m - low_m); }
     double angle_degrees(const glm::dvec3& position_m) const;
@@ -48,15 +50,15 @@ class RegionPlan {
 
   struct Site {
     glm::dvec3 position_m;
-    std::vector<double> detour_m;  ///< of every vertex: distance along the surface, less the straight line
+    std::vector<double> detour_m;  ///< for each vertex: distance along the surface minus the straight-line distance
   };
 
   struct Region {
     std::vector<PartChoice> parts;
-    std::vector<bool> nodes;  ///< by node; empty: any
+    std::vector<bool> nodes;  ///< whether the region has each node; empty: any node
     Frame frame;
     std::optional<Extent> height_m;
-    std::vector<Extent> angles;  ///< each of these
+    std::vector<Extent> angles;  ///< all of these must hold
     Extent rows_m;
     Extent columns;
     std::size_t row_count = 1;
@@ -66,7 +68,7 @@ class RegionPlan {
     std::vector<std::uint16_t> actuators;  ///< numbers from 1, by row and column, or by site
   };
 
-  /// A point of the skin with what every region asks of it.
+  /// A point of the skin, with the values that every region looks at.
   struct Asked {
     SkinPoint point;
     glm::dvec3 position_m;
@@ -78,7 +80,7 @@ class RegionPlan {
   PartChoice part_choice(const std::string& text, const std::string& where) const;
   bool selects(const Region& region, const Asked& asked) const;
   bool holds(const Region& region, const Asked& asked) const;
-  /// False: the region selects no skin at all.
+  /// Returns false if the region selects no skin.
   bool fit_frame(Region& region) const;
   void place_sites(const RegionSpec& spec, const std::string& where, Region& region) const;
   void number_actuators(const RegionSpec& spec, const std::string& where, Region& region);

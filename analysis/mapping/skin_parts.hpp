@@ -8,7 +8,7 @@
 
 namespace vestige {
 
-/// What an avatar's skin is divided into. Left and right follow from where it is.
+/// The parts of an avatar's skin. Left and right follow from the position.
 enum class SkinPart { kTorso, kNeck, kHead, kUpperArm, kForearm, kHand, kThigh, kShin, kFoot };
 inline constexpr std::size_t kSkinParts = 9;
 
@@ -16,8 +16,9 @@ inline constexpr std::size_t kSkinParts = 9;
 std::string_view to_string(SkinPart part);
 std::optional<SkinPart> skin_part_named(std::string_view name);
 
-/// The part that each node's skin belongs to, by its role in the body (traces/motion/body_roles.hpp), else its
-/// parent's. None for nodes without a role above them.
+/// Returns the part that each node's skin belongs to. The node's role in the body decides
+/// (traces/motion/body_roles.hpp). A node without a role takes its parent's part. A node without a role above it has no
+/// part.
 std::vector<std::optional<SkinPart>> parts_of_nodes(const Avatar& avatar);
 
 }  // namespace vestige

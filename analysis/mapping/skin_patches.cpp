@@ -8,7 +8,7 @@ namespace vestige {
 
 namespace {
 
-/// 1 … most; most for what is not a number.
+/// Returns 1 … most, and `most` for NaN.
 std::uint32_t pieces(double length_in_steps, double most) {
   const double wanted = std::ceil(length_in_steps);
   if (!(wanted < most)) return static_cast<std::uint32_t>(most);

@@ -7,16 +7,17 @@
 
 namespace vestige {
 
-/// A triangle cut into n x n equal ones. Patch (i, j) of those that point up like the triangle itself has its first
-/// corner where the triangle's second and third weigh i / n and j / n, with i + j < n; one that points down lies over
-/// the long side of the upward one of the same numbers, with i + j < n - 1.
+/// A triangle cut into n x n equal patches. An upward patch (i, j) points up like the triangle itself, with i + j < n.
+/// Its first corner is where the triangle's second and third corners weigh i / n and j / n. A downward patch (i, j)
+/// lies across the long side of the upward patch (i, j), with i + j < n - 1.
 struct SkinPatches {
   std::uint32_t triangle = 0;
   std::uint32_t n = 1;
 
   std::size_t count() const { return std::size_t{n} * n; }
 
-  /// Calls `visit` with the middle of every patch: row i by row, upward ones and downward ones alternating.
+  /// Calls `visit` with the middle of every patch. Goes through the rows i in order. Within a row, upward and downward
+  /// patches alternate.
   template <typename Visit>
   void for_each(const Visit& visit) const {
     for (std::uint32_t i = 0; i < n; ++i)
@@ -28,20 +29,21 @@ struct SkinPatches {
 
   SkinPoint point(double u, double v) const { return {triangle, {1 - u - v, u, v}}; }
 
-  /// Where `for_each` comes to the upward patch (i, j); the downward one follows it.
+  /// Returns the index at which `for_each` visits the upward patch (i, j). The downward patch (i, j) follows it.
   std::size_t upward(std::uint32_t i, std::uint32_t j) const {
     // Row r has 2 (n - r) - 1 patches.
     return std::size_t{i} * (2 * std::size_t{n} - i) + 2 * std::size_t{j};
   }
 };
 
-/// So fine that no patch is longer than `step_m`, to 64 x 64.
+/// Cuts so finely that no patch is longer than `step_m`, but into at most 64 x 64 patches.
 SkinPatches patches_of_length(const BodySurface& surface, std::uint32_t triangle, double step_m);
 
-/// So fine that no patch is longer than 0.4 % of the body's longest side, times `step`: 7 mm of a grown person.
+/// Cuts so finely that no patch is longer than 0.4 % of the body's longest side times `step`, but into at most 64 x 64
+/// patches. 0.4 % is 7 mm on an adult.
 SkinPatches patches_of_body(const BodySurface& surface, std::uint32_t triangle, double step = 1);
 
-/// So fine that no patch is longer than `step` texels of a map of this size, to 512 x 512.
+/// Cuts so finely that no patch is longer than `step` texels of a map of this size, but into at most 512 x 512 patches.
 SkinPatches patches_of_texels(const BodySurface& surface, std::uint32_t triangle, const glm::dvec2& map_size,
                               double step);
 

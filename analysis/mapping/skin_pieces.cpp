@@ -32,7 +32,7 @@ class Pieces {
   }
 
  private:
-  /// A triangle at an edge that others may share.
+  /// A triangle's side at an edge that other triangles may share.
   struct Side {
     std::uint32_t triangle;
     int edge;
@@ -103,7 +103,8 @@ class Pieces {
       }
   }
 
-  /// The patch that is the `number`-th of a triangle's edge, counted in the direction that all its sides agree on.
+  /// Returns the `number`-th patch along a triangle's edge, counted in the direction that is common to all sides of the
+  /// edge.
   std::size_t along(const Side& side, std::uint32_t number) const {
     const SkinPatches& cut = cuts_[side.triangle];
     const std::uint32_t k = side.is_backward ? cut.n - 1 - number : number;

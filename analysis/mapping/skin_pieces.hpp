@@ -10,18 +10,19 @@
 
 namespace vestige {
 
-/// A bit of skin of about a texel (about 7 mm of a grown person where the map is per triangle), as a contact there
-/// would see it.
+/// A patch of skin about one texel large, as a contact there would see it. In a map per triangle, a patch is about 7 mm
+/// long on an adult.
 struct SkinPatch {
   glm::vec3 position_m = glm::vec3(0);
   float area_m2 = 0;
-  std::uint32_t texel = 0;     ///< where the map is looked up
-  std::uint16_t actuator = 0;  ///< what it says
-  std::uint32_t piece = 0;     ///< one of the actuator's pieces: connected on the body, also across seams
+  std::uint32_t texel = 0;     ///< the texel (or triangle) at which the map is looked up
+  std::uint16_t actuator = 0;  ///< the map's actuator there
+  /// A connected piece of the actuator's skin. Pieces connect on the body, also across texture seams.
+  std::uint32_t piece = 0;
 };
 
-/// The whole skin under a map, in patches about a texel large (coarser where there would be more than 2^23 of them).
-/// Patches are neighbours where triangles share an edge on the body, whatever the texture does there.
+/// Returns the whole skin under a map in patches about a texel large. The patches are coarser if there would be more
+/// than 2^23. Patches are neighbours if their triangles share an edge on the body, whatever the texture does there.
 std::vector<SkinPatch> skin_pieces(const BodySurface& surface, const ActuatorMap& map);
 
 }  // namespace vestige

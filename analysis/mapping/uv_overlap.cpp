@@ -11,9 +11,9 @@ namespace vestige {
 
 namespace {
 
-class Painter {
+class CoveragePainter {
  public:
-  Painter(const Avatar& avatar, UvCoverage& coverage)
+  CoveragePainter(const Avatar& avatar, UvCoverage& coverage)
       : avatar_(avatar), coverage_(coverage), last_(coverage.layers.size(), kNone), full_(coverage.side, 0) {}
 
   void paint(std::uint32_t number) {
@@ -36,7 +36,7 @@ class Painter {
     for (std::uint32_t i = 0; i < count; ++i) {
       const std::size_t texel = row + column;
       column = column + 1 == coverage_.side ? 0 : column + 1;
-      // A triangle that wraps around may come by again: it is still one.
+      // A triangle that wraps around may cover a texel twice. It still counts once.
       if (last_[texel] == number) continue;
       last_[texel] = number;
       if (coverage_.layers[texel] < 255 && ++coverage_.layers[texel] == 255) ++full_[line];
@@ -55,7 +55,7 @@ UvCoverage uv_coverage(const Avatar& avatar, std::uint32_t side) {
   UvCoverage coverage;
   coverage.side = side;
   coverage.layers.assign(std::size_t{side} * side, 0);
-  Painter painter(avatar, coverage);
+  CoveragePainter painter(avatar, coverage);
   for (std::uint32_t number = 0; number < avatar.triangles.size(); ++number) painter.paint(number);
   coverage.covered_texels =
       static_cast<std::size_t>(std::ranges::count_if(coverage.layers, [](std::uint8_t n) { return n >= 1; }));

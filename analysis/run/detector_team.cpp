@@ -26,7 +26,8 @@ DetectorTeam::DetectorTeam(std::size_t threads, Make make)
   try {
     for (std::size_t i = 1; i < threads; ++i) helpers_.emplace_back([this] { help(); });
   } catch (const std::system_error&) {
-    // For the calling thread and those that there are not; those that there are go home, since there is no batch.
+    // Arrives for the calling thread and for the threads that were not started. The started threads then return, since
+    // there is no batch.
     static_cast<void>(begin_.arrive(static_cast<std::ptrdiff_t>(threads - helpers_.size())));
     for (std::thread& helper : helpers_) helper.join();
     throw Error("--threads", "the system starts no more threads", "use fewer");
@@ -78,7 +79,7 @@ void DetectorTeam::work_through(Detector& detector) try {
 
 void DetectorTeam::note_failure() {
   const std::lock_guard lock(failure_mutex_);
-  next_ = batch_->count;  // nobody need go on
+  next_ = batch_->count;  // no thread needs to continue
   if (!failure_) failure_ = std::current_exception();
 }
 

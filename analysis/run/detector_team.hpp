@@ -14,9 +14,9 @@
 
 namespace vestige {
 
-/// Frames that are detected together, and what came of them. Memory is used again.
+/// Frames that are detected together, and their results. Memory is reused.
 struct FrameBatch {
-  std::vector<Frame> frames;  ///< the first `count` of them mean something
+  std::vector<Frame> frames;  ///< only the first `count` are valid
   std::vector<ContactRow> rows;
   std::vector<DetectorWork> work;
   std::size_t count = 0;
@@ -25,14 +25,15 @@ struct FrameBatch {
   void add(const Frame& frame);
 };
 
-/// One detector for each thread, all alike: each is made and used by its own thread. Frames of a batch go to whichever
-/// thread is free; rows stand in the frames' order, so that their number changes no bit of the result.
+/// A team of equal detectors, one for each thread. Each detector is made and used by its own thread. A free thread
+/// takes the next frame of a batch. The rows are in the order of the frames, so the number of threads does not change a
+/// bit of the result.
 class DetectorTeam {
  public:
-  using Make = std::function<std::unique_ptr<Detector>()>;  ///< is called by several threads at a time
+  using Make = std::function<std::unique_ptr<Detector>()>;  ///< called by several threads at a time
 
-  /// Makes the first detector, for the calling thread; the others are made while the first batch is under way.
-  /// `threads`: at least 1, the calling one included.
+  /// Makes the first detector, for the calling thread. The other threads make theirs while the first batch is under
+  /// way. `threads` is at least 1 and includes the calling thread.
   DetectorTeam(std::size_t threads, Make make);
   ~DetectorTeam();
   DetectorTeam(const DetectorTeam&) = delete;
@@ -42,9 +43,9 @@ class DetectorTeam {
   const Detector& first() const { return *first_; }
   std::size_t threads() const { return helpers_.size() + 1; }
 
-  /// The other threads begin with `batch`, which must stay untouched until `finish` has returned.
+  /// Starts the other threads on `batch`. The batch must stay untouched until `finish` has returned.
   void start(FrameBatch& batch);
-  /// The calling thread helps, and waits for the last frame. Throws what a detector threw.
+  /// Lets the calling thread help, and waits for the last frame. Throws what a detector threw.
   void finish();
 
  private:
@@ -54,7 +55,8 @@ class DetectorTeam {
 
   Make make_;
   std::unique_ptr<Detector> first_;
-  FrameBatch* batch_ = nullptr;  ///< null but between start and finish; so to begin tells the helpers to go home
+  /// Null except between `start` and `finish`. To begin with null tells the helpers to return.
+  FrameBatch* batch_ = nullptr;
   std::atomic<std::size_t> next_ = 0;
   std::mutex failure_mutex_;
   std::exception_ptr failure_;

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "analysis/base/clocks.hpp"
-#include "detector/frame.hpp"
+#include "analysis/run/detection_run.hpp"
 
 namespace vestige {
 
@@ -15,7 +15,7 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = PlaybackCalls::Clock;
 
-constexpr auto kSlice = 50ms;  ///< of waiting, so that an interrupt is answered
+constexpr auto kSlice = 50ms;  ///< longest wait, so that an interrupt is noticed
 constexpr double kGap_s = 0.2;
 
 Clock::duration to_duration(double duration_s) {
@@ -26,7 +26,7 @@ Clock::duration to_duration(double duration_s) {
 /// One run through the trace.
 class Run {
  public:
-  /// `offset_s`: added to the trace's times in what is handed on.
+  /// `offset_s` is added to the trace's times that are handed on.
   Run(double rate, const PlaybackCalls& calls, double first_s, double offset_s, Clock::time_point begin,
       std::size_t columns)
       : rate_(rate),
@@ -40,7 +40,7 @@ class Run {
 
   Clock::time_point due(double time_s) const { return begin_ + to_duration((time_s - first_s_) / rate_); }
 
-  /// False: the playback is to end.
+  /// Waits until a frame is due. Returns false if the playback must end.
   bool wait_for(double time_s, double share) {
     const auto until = due(time_s);
     for (auto now = Clock::now(); now < until; now = Clock::now()) {
@@ -59,7 +59,8 @@ class Run {
   }
 
   std::uint64_t frames() const { return frames_; }
-  /// From the first frame to the first of the next run: the step between runs is as long as the others are.
+  /// Returns the time from the first frame to the first frame of the next run. The step between the runs is the mean
+  /// step.
   double length_s() const {
     const double length_s = last_s_ - first_s_;
     return frames_ > 1 ? length_s + length_s / static_cast<double>(frames_ - 1) : kGap_s;
@@ -88,31 +89,30 @@ PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector
   auto begin = start;
   double offset_s = 0;
   TraceFrame trace_frame;
-  ContactRow row;
   bool going = frame_count > 0;
   while (going) {
     trace.rewind();
-    FrameBuilder builder(avatar, ids, detector.method());
+    DetectionRun detection(avatar, ids, detector);
     std::optional<Run> run;
     while (going && trace.next(trace_frame)) {
-      const Frame& frame = builder.next(trace_frame);
+      const double time_s = trace_frame.time_s();
       if (!run) {
-        run.emplace(options.rate, calls, frame.time_s, offset_s, begin, ids.size());
-      } else if (Clock::now() > run->due(frame.time_s)) {
+        run.emplace(options.rate, calls, time_s, offset_s, begin, ids.size());
+      } else if (Clock::now() > run->due(time_s)) {
         ++result.missed_deadlines;
       }
-      going = run->wait_for(frame.time_s, static_cast<double>(run->frames()) / frame_count);
+      going = run->wait_for(time_s, static_cast<double>(run->frames()) / frame_count);
       if (!going) break;
       const bool was_behind = result.fell_behind();
-      result.most_late_s = std::max(result.most_late_s, seconds(Clock::now() - run->due(frame.time_s)));
+      result.most_late_s = std::max(result.most_late_s, seconds(Clock::now() - run->due(time_s)));
       if (result.fell_behind() && !was_behind) calls.fell_behind();
-      detector.detect(frame, row);
-      run->take(frame.time_s, row);
+      detection.step(trace_frame);
+      run->take(time_s, detection.row());
       ++result.frames;
-      result.contacts += static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
+      result.contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(), &Contact::hit));
     }
-    result.non_finite_frames += builder.non_finite_frames();
-    result.non_finite_segments += builder.non_finite_segments();
+    result.non_finite_frames += detection.builder().non_finite_frames();
+    result.non_finite_segments += detection.builder().non_finite_segments();
     if (going) ++result.loops;
     going = going && options.loop && run;
     if (!going) break;

@@ -19,37 +19,38 @@ struct PlaybackResult {
   std::uint64_t frames = 0;
   std::uint64_t contacts = 0;
   std::uint64_t loops = 0;              ///< complete runs through the trace
-  std::uint64_t missed_deadlines = 0;   ///< frames that were not done when the next one was due
-  std::uint64_t non_finite_frames = 0;  ///< as `FrameBuilder` counts them
+  std::uint64_t missed_deadlines = 0;   ///< frames that were not done when the next frame was due
+  std::uint64_t non_finite_frames = 0;  ///< counted by `FrameBuilder`
   std::uint64_t non_finite_segments = 0;
-  double most_late_s = 0;  ///< between when a frame was due and when it was begun
-  double duration_s = 0;   ///< by the clock on the wall
+  double most_late_s = 0;  ///< largest delay between a frame's due time and its start
+  double duration_s = 0;   ///< wall-clock time
 
-  /// Whether a frame began a second too late: the detector cannot keep up, or the process was stopped.
+  /// Returns whether a frame began more than a second late: the detector is too slow, or the process was stopped.
   bool fell_behind() const { return most_late_s > 1; }
 };
 
-/// What a playback tells and asks, in its own thread.
+/// The calls that a playback makes, all in the thread that runs `play`.
 struct PlaybackCalls {
   using Clock = std::chrono::steady_clock;
 
-  /// What the contacts of a frame mean to the vest. The reference stays good until the next call.
+  /// Turns the contacts of a frame into what the vest is told. The reference is valid until the next call.
   using Law = std::function<const ActuatorFrame&(double time_s, const ContactRow& row)>;
 
   /// Makes the law for one run through the trace.
   std::function<Law()> make_law;
-  /// Before each frame: false ends the playback. May exchange the actuator map.
+  /// Called before each frame, and repeatedly while the playback waits for one. Returns false to end the playback. May
+  /// exchange the actuator map.
   std::function<bool(double share)> go_on;
-  /// Once, as soon as `PlaybackResult::fell_behind`.
+  /// Called once, as soon as `PlaybackResult::fell_behind` is true.
   std::function<void()> fell_behind;
-  /// After each frame: what the vest is to be told, and when the frame was due.
+  /// Called after each frame, and during gaps, with what to tell the vest and when that was due.
   std::function<void(const ActuatorFrame&, Clock::time_point due)> take;
 };
 
-/// Replays `trace` through `detector` at the trace's own pace, on absolute deadlines: a late frame delays none of those
-/// that follow. The first is due at once. No frame is left out, however late, since contacts depend on the one before.
-/// Where the trace leaves a gap, the law goes on without contacts, so that nothing is held on. Where it begins anew,
-/// the times of what is handed on go on.
+/// Replays `trace` through `detector` at the trace's own pace. The first frame is due at once. Deadlines are absolute,
+/// so a late frame does not delay the frames that follow. All frames are replayed, however late, since contacts depend
+/// on the frame before. In a gap of the trace, the law continues without contacts, so that no actuator is held on. When
+/// the playback loops, the times that are handed on continue to rise.
 PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector, const PlaybackOptions& options,
                     const PlaybackCalls& calls);
 

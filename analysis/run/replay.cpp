@@ -15,8 +15,8 @@ constexpr std::uint64_t kSkinningFrames = 5;
 
 using Clock = std::chrono::steady_clock;
 
-/// How many frames to detect together: enough that threads seldom wait for each other, few enough that progress is
-/// seen and an interrupt answered. A thread alone takes them one by one.
+/// Chooses how many frames to detect together: enough that threads seldom wait for each other, and few enough that
+/// progress is visible and an interrupt is noticed. A single thread takes frames one by one.
 class BatchSize {
  public:
   explicit BatchSize(std::size_t threads) : alone_(threads == 1), size_(alone_ ? 1 : 4 * threads) {}
@@ -58,7 +58,8 @@ class RecordedRows {
     return row_;
   }
 
-  /// Contacts of frames or colliders that the trace does not have, those never asked for included.
+  /// Returns the number of contacts whose frame or collider the trace does not have. It includes contacts that were
+  /// never asked for.
   std::uint64_t strangers() const { return strangers_ + (contacts_.size() - next_); }
 
  private:
@@ -79,113 +80,151 @@ void look_up_anew(const ActuatorMap& map, ContactRow& row) {
     if (contact.hit()) contact.actuator = map.at(contact.triangle, contact.texture_coordinate);
 }
 
-}  // namespace
+/// One run through a trace. While the team detects in one batch of frames, the next one is read.
+class Replay {
+ public:
+  Replay(TraceReader& trace, DetectorTeam& detectors, const ReplayPlan& plan)
+      : trace_(trace),
+        detectors_(detectors),
+        plan_(plan),
+        frame_count_(trace.frame_count()),
+        recorded_(plan.expectation.contacts != nullptr ? std::span(*plan.expectation.contacts)
+                                                       : std::span<const RecordedContact>(),
+                  trace.collider_ids()),
+        builder_(plan.avatar, trace.collider_ids(), detectors.first().method()) {
+    result_.contacts_of_actuator.resize(plan.actuator_count + 1);
+    if (plan.expectation.detectors != nullptr || plan.expectation.contacts != nullptr) result_.comparison.emplace();
+  }
 
-ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
-                    const ReplayOutputs& outputs, const ReplayExpectation& expectation,
-                    std::span<const MapChange> changes, const std::function<bool(double)>& progress) {
-  const std::vector<std::uint32_t>& ids = trace.collider_ids();
-  const std::uint64_t frame_count = trace.frame_count();
-  const std::uint64_t skinning_step = std::max<std::uint64_t>(1, frame_count / kSkinningFrames);
+  ReplayResult run(const std::function<bool(double)>& progress) {
+    trace_.rewind();
+    BatchSize size(detectors_.threads());
+    FrameBatch batch;
+    FrameBatch next_batch;
+    read(batch, size.now());
+    while (batch.count != 0 && !result_.interrupted) {
+      size.took(detect(batch, next_batch, size.now()));
+      take(batch, progress);
+      std::swap(batch, next_batch);
+    }
+    finish();
+    return std::move(result_);
+  }
 
-  ReplayResult result;
-  result.contacts_of_actuator.resize(actuator_count + 1);
-  if (expectation.detectors != nullptr || expectation.contacts != nullptr) result.comparison.emplace();
-  RecordedRows recorded(
-      expectation.contacts != nullptr ? std::span(*expectation.contacts) : std::span<const RecordedContact>(), ids);
-  FrameBuilder builder(avatar, ids, detectors.first().method());
-  TextureHash hash;
-  TraceFrame trace_frame;
-  std::uint64_t frames_read = 0;
-  double building_s = 0;
-  double checking_s = 0;
-  const auto read_batch = [&](FrameBatch& batch, std::size_t size) {
+ private:
+  void read(FrameBatch& batch, std::size_t size) {
     batch.clear();
     while (batch.count < size) {
       const auto start = Clock::now();
-      const bool more = trace.next(trace_frame);
+      const bool more = trace_.next(trace_frame_);
       const auto read = Clock::now();
-      result.reading_s += seconds(read - start);
+      result_.reading_s += seconds(read - start);
       if (!more) return;
-      const Frame& frame = builder.next(trace_frame);
+      const Frame& frame = builder_.next(trace_frame_);
       batch.add(frame);
-      building_s += seconds(Clock::now() - read);
-      if (frames_read % skinning_step == 0) {
+      building_s_ += seconds(Clock::now() - read);
+      if (frames_read_ % std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames) == 0) {
         const auto check = Clock::now();
-        result.skinning.add(avatar, trace_frame, frame, detectors.first());
-        checking_s += seconds(Clock::now() - check);
+        result_.skinning.add(plan_.avatar, trace_frame_, frame, detectors_.first());
+        checking_s_ += seconds(Clock::now() - check);
       }
-      ++frames_read;
+      ++frames_read_;
     }
-  };
-  const ActuatorMap* changed_map = nullptr;
-  std::size_t next_change = 0;
-  const auto follow_changes = [&](double time_s) {
-    for (; next_change < changes.size() && changes[next_change].time_s <= time_s; ++next_change) {
-      changed_map = &changes[next_change].map;
-      if (outputs.drive != nullptr) outputs.drive->law().change_layout(changes[next_change].layout);
+  }
+
+  /// Detects in `batch` and reads `next_batch` beside it. Returns the seconds that detection took.
+  double detect(FrameBatch& batch, FrameBatch& next_batch, std::size_t next_size) {
+    const auto start = Clock::now();
+    const double checked_before_s = checking_s_;
+    detectors_.start(batch);
+    read(next_batch, next_size);
+    const auto finish = Clock::now();
+    detectors_.finish();
+    const auto end = Clock::now();
+    const double spent_s = is_alone() ? seconds(end - finish) : seconds(end - start) - (checking_s_ - checked_before_s);
+    result_.detection_s += spent_s;
+    if (plan_.expectation.detectors != nullptr) {
+      expected_ = batch;
+      plan_.expectation.detectors->start(expected_);
+      plan_.expectation.detectors->finish();
     }
-  };
-  const auto take = [&](const Frame& frame, const ContactRow& row, const DetectorWork& work) {
-    result.work += work;
+    return spent_s;
+  }
+
+  void take(FrameBatch& batch, const std::function<bool(double)>& progress) {
+    for (std::size_t i = 0; i < batch.count && !result_.interrupted; ++i) {
+      follow_map_changes(batch.frames[i].time_s);
+      if (changed_map_ != nullptr) look_up_anew(*changed_map_, batch.rows[i]);
+      if (plan_.expectation.detectors != nullptr) {
+        if (changed_map_ != nullptr) look_up_anew(*changed_map_, expected_.rows[i]);
+        result_.comparison->add(batch.rows[i], expected_.rows[i]);
+      }
+      take(batch.frames[i], batch.rows[i], batch.work[i]);
+      result_.interrupted = !progress(static_cast<double>(result_.frames) / static_cast<double>(frame_count_));
+    }
+  }
+
+  void take(const Frame& frame, const ContactRow& row, const DetectorWork& work) {
+    result_.work += work;
     for (const Contact& contact : row) {
       if (!contact.hit()) continue;
-      ++result.contacts;
-      ++result.contacts_of_actuator[contact.actuator];
+      ++result_.contacts;
+      ++result_.contacts_of_actuator[contact.actuator];
     }
-    hash.add(row);
-    if (outputs.contacts != nullptr) outputs.contacts->write(frame, row, ids);
+    hash_.add(row);
+    const ReplayOutputs& outputs = plan_.outputs;
+    if (outputs.contacts != nullptr) outputs.contacts->write(frame, row, trace_.collider_ids());
     if (outputs.textures != nullptr) outputs.textures->add(frame, row);
     if (outputs.timeline != nullptr) outputs.timeline->write(outputs.drive->next(frame.time_s, row));
-    if (expectation.contacts != nullptr) result.comparison->add(row, recorded.row_of(frame.index));
-    ++result.frames;
-    return progress(static_cast<double>(result.frames) / static_cast<double>(frame_count));
-  };
+    if (plan_.expectation.contacts != nullptr) result_.comparison->add(row, recorded_.row_of(frame.index));
+    ++result_.frames;
+  }
 
-  trace.rewind();
-  BatchSize size(detectors.threads());
-  FrameBatch batch;
-  FrameBatch next_batch;
-  FrameBatch expected;
-  read_batch(batch, size.now());
-  while (batch.count != 0 && !result.interrupted) {
-    const auto start = Clock::now();
-    const double checked_before_s = checking_s;
-    detectors.start(batch);
-    read_batch(next_batch, size.now());
-    const auto finish = Clock::now();
-    detectors.finish();
-    const auto end = Clock::now();
-    const bool alone = detectors.threads() == 1;
-    const double spent_s = alone ? seconds(end - finish) : seconds(end - start) - (checking_s - checked_before_s);
-    result.detection_s += spent_s;
-    size.took(spent_s);
-    if (expectation.detectors != nullptr) {
-      expected = batch;
-      expectation.detectors->start(expected);
-      expectation.detectors->finish();
+  void follow_map_changes(double time_s) {
+    for (; result_.map_changes < plan_.changes.size(); ++result_.map_changes) {
+      const MapChange& change = plan_.changes[result_.map_changes];
+      if (change.time_s > time_s) return;
+      changed_map_ = &change.map;
+      if (plan_.outputs.drive != nullptr) plan_.outputs.drive->law().change_layout(change.layout);
     }
-    for (std::size_t i = 0; i < batch.count && !result.interrupted; ++i) {
-      follow_changes(batch.frames[i].time_s);
-      if (changed_map != nullptr) look_up_anew(*changed_map, batch.rows[i]);
-      if (changed_map != nullptr && expectation.detectors != nullptr) look_up_anew(*changed_map, expected.rows[i]);
-      if (expectation.detectors != nullptr) result.comparison->add(batch.rows[i], expected.rows[i]);
-      result.interrupted = !take(batch.frames[i], batch.rows[i], batch.work[i]);
+  }
+
+  void finish() {
+    if (is_alone()) result_.detection_s += building_s_;  // several threads had it within their time
+    if (plan_.expectation.contacts != nullptr && !result_.interrupted) {
+      result_.comparison->missing += recorded_.strangers();
+      result_.comparison->expected += recorded_.strangers();
     }
-    std::swap(batch, next_batch);
+    result_.texture_hash = hash_.hex();
+    result_.origin_changes = builder_.origin_changes();
+    result_.non_finite_frames = builder_.non_finite_frames();
+    result_.non_finite_segments = builder_.non_finite_segments();
+    result_.first_non_finite = builder_.first_non_finite();
   }
-  if (detectors.threads() == 1) result.detection_s += building_s;  // several had it within their time
-  if (expectation.contacts != nullptr && !result.interrupted) {
-    result.comparison->missing += recorded.strangers();
-    result.comparison->expected += recorded.strangers();
-  }
-  result.texture_hash = hash.hex();
-  result.origin_changes = builder.origin_changes();
-  result.map_changes = next_change;
-  result.non_finite_frames = builder.non_finite_frames();
-  result.non_finite_segments = builder.non_finite_segments();
-  result.first_non_finite = builder.first_non_finite();
-  return result;
+
+  bool is_alone() const { return detectors_.threads() == 1; }
+
+  TraceReader& trace_;
+  DetectorTeam& detectors_;
+  const ReplayPlan& plan_;
+  std::uint64_t frame_count_;
+  RecordedRows recorded_;
+  FrameBuilder builder_;
+  TraceFrame trace_frame_;
+  std::uint64_t frames_read_ = 0;
+  FrameBatch expected_;
+  TextureHash hash_;
+  const ActuatorMap* changed_map_ = nullptr;
+  double building_s_ = 0;
+  double checking_s_ = 0;
+  ReplayResult result_;
+};
+
+}  // namespace
+
+ReplayResult replay(TraceReader& trace, DetectorTeam& detectors, const ReplayPlan& plan,
+                    const std::function<bool(double)>& progress) {
+  return Replay(trace, detectors, plan).run(progress);
 }
 
 }  // namespace vestige

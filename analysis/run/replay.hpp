@@ -20,25 +20,34 @@
 
 namespace vestige {
 
-/// Where a replay's results go; what is null goes nowhere.
+/// Where a replay's results go. A null output is left out.
 struct ReplayOutputs {
   ContactsCsv* contacts = nullptr;
   TextureExr* textures = nullptr;
   TimelineFile* timeline = nullptr;
-  ActuatorDrive* drive = nullptr;  ///< what the timeline holds; null only without one
+  ActuatorDrive* drive = nullptr;  ///< makes the timeline's content; may be null only without a timeline
 };
 
-/// What a replay is compared with, at most one of the two.
+/// What a replay is compared with. At most one of the two is set.
 struct ReplayExpectation {
-  DetectorTeam* detectors = nullptr;                       ///< run beside, on the same frames
-  const std::vector<RecordedContact>* contacts = nullptr;  ///< of an earlier run, ascending frames
+  DetectorTeam* detectors = nullptr;                       ///< run on the same frames for comparison
+  const std::vector<RecordedContact>* contacts = nullptr;  ///< contacts of an earlier run, frames ascend
 };
 
-/// Another actuator map from a time of the trace on.
+/// Another actuator map, valid from a time of the trace on.
 struct MapChange {
   double time_s = 0;
-  ActuatorMap map;                               ///< of as many actuators as the trace's
-  std::shared_ptr<const ActuatorLayout> layout;  ///< what the drive's law goes on with; null for one that needs none
+  ActuatorMap map;                               ///< has as many actuators as the trace's map
+  std::shared_ptr<const ActuatorLayout> layout;  ///< the layout for the drive's law; null if the law needs none
+};
+
+/// What to do with every frame of a trace.
+struct ReplayPlan {
+  const Avatar& avatar;
+  std::size_t actuator_count;
+  ReplayOutputs outputs;
+  ReplayExpectation expectation;
+  std::span<const MapChange> changes;  ///< ascending times; each says anew what actuator every contact has
 };
 
 struct ReplayResult {
@@ -46,24 +55,23 @@ struct ReplayResult {
   std::uint64_t contacts = 0;
   DetectorWork work;
   std::uint64_t origin_changes = 0;
-  std::size_t map_changes = 0;  ///< of those asked for, how many were reached
+  std::size_t map_changes = 0;  ///< how many of the changes asked for were reached
   std::uint64_t non_finite_frames = 0;
   std::uint64_t non_finite_segments = 0;
-  std::optional<std::uint64_t> first_non_finite;    ///< index of the first frame with any of either
-  std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: on skin that no actuator covers
+  std::optional<std::uint64_t> first_non_finite;    ///< index of the first frame with a non-finite pose or segment
+  std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: contacts on skin that no actuator covers
   std::string texture_hash;
-  double reading_s = 0;    ///< decoding the trace
-  double detection_s = 0;  ///< whole round trips; decoding is apart, but beside it where there are several threads
-  SkinningError skinning;  ///< of a few frames, evenly spread
+  double reading_s = 0;  ///< decoding the trace
+  /// Whole round trips; excludes decoding, which runs in parallel if there are several threads.
+  double detection_s = 0;
+  SkinningError skinning;  ///< of a few evenly spaced frames
   std::optional<Comparison> comparison;
   bool interrupted = false;
 };
 
-/// Runs all frames of `trace` through `detectors`, whose rows must carry what the outputs need and `kHashedPlanes`;
-/// with `changes` (ascending times), which say anew what actuator every contact has, texture coordinates too.
-/// `progress` is told the share done and returns false to stop early.
-ReplayResult replay(TraceReader& trace, const Avatar& avatar, std::size_t actuator_count, DetectorTeam& detectors,
-                    const ReplayOutputs& outputs, const ReplayExpectation& expectation,
-                    std::span<const MapChange> changes, const std::function<bool(double)>& progress);
+/// Runs all frames of `trace` through `detectors`. Their rows must carry what the outputs need and `kHashedPlanes`; if
+/// `plan` has map changes, texture coordinates too. `progress` is told the share done and returns false to stop early.
+ReplayResult replay(TraceReader& trace, DetectorTeam& detectors, const ReplayPlan& plan,
+                    const std::function<bool(double)>& progress);
 
 }  // namespace vestige

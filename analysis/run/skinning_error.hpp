@@ -8,15 +8,16 @@
 
 namespace vestige {
 
-/// How far a detector's own skinned vertices lie from the double-precision reference, and from the fp32 skinning that
-/// the contract fixes (detector/CONTRACT.md, 3).
+/// How far a detector's own skinned vertices lie from the double-precision reference, and how many are identical to the
+/// fp32 skinning that the contract fixes (detector/CONTRACT.md, 3).
 struct SkinningError {
   std::uint64_t frames = 0;
-  std::uint64_t vertices = 0;   ///< compared, over all frames
-  std::uint64_t identical = 0;  ///< of those, in all bits, with the contract's fp32 skinning
-  double largest_m = 0;         ///< distance to the double reference
-  double largest_cpu_m = 0;     ///< distance of the contract's fp32 skinning to it
-  double height_m = 0;          ///< longest side of the avatar's box, in the double reference
+  std::uint64_t vertices = 0;  ///< vertices compared, over all frames
+  /// Vertices whose position equals the contract's fp32 skinning.
+  std::uint64_t identical = 0;
+  double largest_m = 0;      ///< largest distance to the double reference
+  double largest_cpu_m = 0;  ///< largest distance of the contract's fp32 skinning to the double reference
+  double height_m = 0;       ///< longest side of the avatar's box, in the double reference
 
   void add(const Avatar& avatar, const TraceFrame& trace_frame, const Frame& frame, Detector& detector);
 };

@@ -9,11 +9,11 @@
 
 namespace vestige {
 
-/// All contacts of one trace, and nothing else of it: what is computed once and judged under every map and law.
+/// All contacts of one trace, and nothing else of the trace. They are computed once and judged under every map and law.
 struct ContactRecording {
   std::vector<double> time_s;         ///< one for each frame, ascending
   std::vector<std::size_t> first;     ///< frames + 1: the contacts of frame k are [first[k], first[k + 1])
-  std::vector<std::uint32_t> column;  ///< for each contact, ascending within a frame: its collider's rank
+  std::vector<std::uint32_t> column;  ///< for each contact, its collider's rank; ascending within a frame
   std::vector<Contact> contacts;      ///< with `kRecordedPlanes`; `actuator` is looked up under each map
 
   std::size_t frames() const { return time_s.size(); }
@@ -22,7 +22,7 @@ struct ContactRecording {
   void add(double frame_time_s, std::span<const Contact> row);
 };
 
-/// What the rows must carry.
+/// The planes that the rows must carry.
 inline constexpr PlaneSet kRecordedPlanes =
     kHashedPlanes | Plane::kBarycentric | Plane::kTextureCoordinate | Plane::kSpeed | Plane::kSide;
 

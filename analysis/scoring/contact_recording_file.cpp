@@ -20,7 +20,7 @@ constexpr std::string_view kRemedy = "it is written by 'vestige batch', into con
 constexpr std::size_t kFieldsOfContact = 9;
 static_assert(kNoContact.size() == kFieldsOfContact);
 
-/// Reads the fields behind the time; false for a frame without contacts.
+/// Reads the fields after the time. Returns false for a frame without contacts.
 bool take_contact(CsvLines& lines, std::uint32_t& collider, Contact& contact) {
   std::string_view first;
   if (!lines.take_text(first)) throw lines.error("is no row of contacts");

@@ -8,20 +8,20 @@
 
 namespace vestige {
 
-/// A trace's contacts, and whose they are.
+/// A trace's contacts and colliders.
 struct RecordedTrace {
   ContactRecording contacts;
-  std::vector<std::uint32_t> collider_ids;  ///< ascending; a contact's column is the rank of its collider in it
+  std::vector<std::uint32_t> collider_ids;  ///< ascending; a contact's column is the rank of its collider in this list
 };
 
-/// Writes `frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,side,speed_m_per_s`: a row for each contact, and
-/// one for each frame without any, whose fields from `collider` on are empty, so that all times are there. Frames count
-/// from 0 as they stand in the recording; floats in the shortest form that reads back to the same bits. An existing
-/// file is replaced.
+/// Writes `frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,side,speed_m_per_s`, a row for each contact. A
+/// frame without contacts also gets a row, so that all times are in the file. The row's fields from `collider` on are
+/// empty. Frames count from 0 in the order of the recording. Floats have the shortest form that reads back to the same
+/// bits. An existing file is replaced.
 void write_contact_recording(const std::string& path, const RecordedTrace& trace);
 
-/// Reads it back: equal contacts and times; `collider_ids` are those that touched something. Throws `Error` naming file
-/// and line.
+/// Reads the file back with equal contacts and times. `collider_ids` holds only the colliders that touched something.
+/// Throws `Error` with file and line.
 RecordedTrace read_contact_recording(const std::string& path);
 
 }  // namespace vestige

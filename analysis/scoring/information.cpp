@@ -12,9 +12,9 @@ namespace vestige {
 namespace {
 
 constexpr double kNoise_m = 0.0125;
-constexpr double kHopeless = 25;  // named with e^-12.5 of the nearest one's probability, if at all
+constexpr double kHopeless = 25;  // farther ones would have under e^-12.5 of the nearest one's probability
 
-/// What the observer names for each actuator that fires alone: rows add up to 1.
+/// Returns the probabilities of what the observer names for each actuator that fires alone. Each row adds up to 1.
 std::vector<double> confusions(const ActuatorLayout& layout) {
   const std::size_t n = layout.actuator_count();
   std::vector<double> named(n * n, 0);
@@ -51,7 +51,7 @@ double transmitted_bits(std::span<const double> counts, std::size_t columns) {
         bits += count / all *
                 (portable_log2(count) - portable_log2(of_row[i]) + portable_log2(all) -
                  portable_log2(of_column[j]));  // one by one: quotients of tiny counts overflow
-  return std::max(bits, 0.0);                   // below it only by rounding
+  return std::max(bits, 0.0);                   // negative only by rounding
 }
 
 RegionObserver::RegionObserver(std::size_t actuator_count)
@@ -66,7 +66,7 @@ void RegionObserver::add(std::size_t region, const ActuatorLayout& layout, const
     const glm::dvec2 away = layout.towards_m(contact, actuator) - offset_m;
     return glm::dot(away, away);
   };
-  // Only what is not hopelessly farther away than the region's own actuator can be named.
+  // Only actuators that are not hopelessly farther away than the region's own actuator can be named.
   const double reach_squared = away_squared(region) + kHopeless * kNoise_m * kNoise_m;
   const double reach_m = std::sqrt(reach_squared) + glm::length(offset_m);
   const std::span<const float> distance_m = contact.distance_m();

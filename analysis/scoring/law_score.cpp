@@ -18,12 +18,12 @@ namespace {
 constexpr double kMillimetres = 1e3;
 constexpr double kMilliseconds = 1e3;
 
-/// For laws, which share what they refer to; the caller keeps it alive.
+/// Returns a shared pointer for laws that does not own the layout. The caller keeps the layout alive.
 std::shared_ptr<const ActuatorLayout> borrow(const ActuatorLayout& layout) {
   return {std::shared_ptr<const ActuatorLayout>(), &layout};
 }
 
-/// When a motor that goes from `amplitude` to `settled` comes to `threshold`, seconds from now.
+/// Returns the time in seconds after which a motor that goes from `amplitude` to `settled` reaches `threshold`.
 double crossing_s(const Motor& motor, double amplitude, double settled, double threshold) {
   const double tau_s = settled > amplitude ? motor.rise_s : motor.fall_s;
   return tau_s * portable_log2((amplitude - settled) / (threshold - settled)) * 0x1.62e42fefa39efp-1;

@@ -13,36 +13,37 @@
 
 namespace vestige {
 
-/// A contact, and what every law may ask of it.
+/// A contact, and the values that every law may need.
 struct JudgedContact {
   std::uint32_t column = 0;
   std::uint64_t frame = 0;
   double instant_s = 0;
-  std::size_t region = 0;  ///< its actuator, else the nearest, from 0
+  std::size_t region = 0;  ///< its actuator, otherwise the nearest one; from 0
   double acuity_m = 0;
   LocatedContact located;
 };
 
-/// Gathers what one law makes of one recording. For each frame: `begin_frame`, its contacts, `end_frame`.
+/// Collects the scores of one law on one recording. For each frame, call `begin_frame`, add the frame's contacts, and
+/// call `end_frame`.
 class LawScore {
  public:
-  /// `layout` stays. `frame_s`: the recording's usual step.
+  /// `layout` must outlive this object. `frame_s` is the recording's usual step.
   LawScore(const ActuatorLayout& layout, const LawChoice& choice, double frame_s);
 
   void begin_frame(std::uint64_t frame, double time_s);
-  /// Returns the localisation error, metres; NaN where nothing fires.
+  /// Adds a contact. Returns the localisation error in metres, or NaN if no actuator is felt.
   double add(const JudgedContact& contact);
-  /// After `add`: what it means for the slide that the collider is on.
+  /// Adds the contact to the slide of its collider. Call it after `add`.
   void add_to_slide(const JudgedContact& contact, const SlideFinder& slides, SlideFinder::Step step);
-  /// The chain of contacts of `column` ends; `slides` still knows of it.
+  /// Ends the chain of contacts of `column`. Call it while `slides` still holds the chain.
   void end_chain(std::uint32_t column, const SlideFinder& slides);
   void end_frame(std::uint64_t frame, double time_s);
 
-  /// Of the whole recording, at its end.
+  /// Returns the scores of the whole recording. Call it at the end.
   Scores scores(double duration_s, std::size_t frames);
 
  private:
-  /// One actuator's motor, from what it is told to what is felt.
+  /// The response of one actuator's motor: what the actuator is told and what is felt.
   struct Response {
     Motor motor;
     double felt = 0;
@@ -54,13 +55,13 @@ class LawScore {
 
   const ActuatorLayout& layout_;
   LawChoice choice_;
-  double contact_lasts_s_;  ///< alone
+  double contact_lasts_s_;  ///< how long a contact alone drives a motor
   std::unique_ptr<IntensityLaw> law_;
   HeldAmplitudes held_;
-  std::vector<Response> responses_;  ///< empty: ideal motors
-  std::vector<Share> shares_;        ///< what the last contact asks for
-  std::vector<Share> felt_;          ///< and what it gets
-  std::vector<double> amplitude_;    ///< told in the frame before
+  std::vector<Response> responses_;  ///< empty: motors are ideal
+  std::vector<Share> shares_;        ///< shares that the last contact asks for
+  std::vector<Share> felt_;          ///< shares that are felt of it
+  std::vector<double> amplitude_;    ///< amplitudes of the previous frame
   std::vector<std::uint8_t> duty_;
   std::vector<double> use_;
   double last_time_s_ = 0;
@@ -76,7 +77,7 @@ class LawScore {
   RegionObserver observer_;
   TimingScore timing_;
   LinkLoad link_;
-  std::vector<SlideSmoothness> smoothness_;  ///< by column: of the chain that goes on
+  std::vector<SlideSmoothness> smoothness_;  ///< by column: the smoothness of the current chain
   SlideScore slide_score_;
 };
 

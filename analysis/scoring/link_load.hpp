@@ -5,23 +5,24 @@
 
 namespace vestige {
 
-/// Bytes of one state on the serial line: letter, sequence, ttl, count and a level for each actuator; two of CRC-16;
-/// COBS, one in 254; and the zero at the end (README, the vest's frames).
+/// Returns the bytes of one state on the serial line: letter, sequence, ttl, count and a level for each actuator; two
+/// bytes of CRC-16; COBS overhead of one byte in 254; and the zero at the end (README, the vest's frames).
 std::size_t state_bytes(std::size_t actuator_count);
 
-/// A line to the vest, as a model: a mailbox of one slot, in which the latest state wins. A changed state leaves when
-/// the one before is out and 5 ms have passed since that began; an unchanged one is sent again every 20 ms.
+/// A model of the line to the vest. The line has a mailbox of one slot, in which the latest state replaces the one
+/// before. A changed state leaves once the previous state is out and 5 ms have passed since the previous one began. An
+/// unchanged state is sent again every 20 ms.
 class LinkLoad {
  public:
   LinkLoad(std::size_t frame_bytes, double line_bytes_per_s);
 
-  /// A changed state. Times ascend.
+  /// Posts a changed state. Times must ascend.
   void post(double time_s);
-  /// Up to the end of the trace: what the line was used for since `start`.
+  /// Runs the line up to the end of the trace.
   void finish(double end_s) { run_to(end_s); }
 
   std::uint64_t changes() const { return changes_; }
-  /// Changes whose place a newer one took before they could leave.
+  /// Changes that a newer change replaced before they could leave.
   std::uint64_t superseded() const { return superseded_; }
   double bytes_sent() const { return static_cast<double>(sent_) * frame_bytes_; }
 
@@ -30,8 +31,8 @@ class LinkLoad {
   void send(double time_s);
 
   double frame_bytes_;
-  double pause_s_;    ///< from the beginning of one frame to that of the next, at least
-  double refresh_s_;  ///< the same for an unchanged state
+  double pause_s_;    ///< least time from the beginning of one frame to that of the next
+  double refresh_s_;  ///< least time before an unchanged state is sent again
   bool linked_ = false;
   bool waiting_ = false;
   double last_sent_s_ = 0;

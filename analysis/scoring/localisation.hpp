@@ -9,22 +9,24 @@
 
 namespace vestige {
 
-/// Where several actuators together are felt, a model: ways from the contact, metres along the body.
+/// A model of where several actuators together are felt, as ways from the contact, metres along the body.
 struct FeltOffset {
-  /// Σ A_i v_i / Σ A_i. Between two actuators a distance L apart, over all places between them, its root mean square
-  /// is 0.289 L under `binary` and 0.107 L under `phantom`.
+  /// Σ A_i v_i / Σ A_i. For contacts at all places between two actuators a distance L apart, its root mean square is
+  /// 0.289 L under `binary` and 0.107 L under `phantom`.
   glm::dvec2 amplitude_m = glm::dvec2(0);
-  /// Σ A_i² v_i / Σ A_i²: what `phantom` assumes, so it is 0 between actuators under that, by construction.
+  /// Σ A_i² v_i / Σ A_i². `phantom` assumes this formula, so the value is 0 between actuators under `phantom` by
+  /// construction.
   glm::dvec2 energy_m = glm::dvec2(0);
 };
 
-/// v_i is the way along the surface to actuator i as the contact sees it (`ActuatorLayout::towards_m`): so this is the
-/// first step towards the middle on a curved surface (Karcher 1977), and the middle itself on a flat one. `shares` is
-/// not empty.
+/// Returns the felt offset of a contact. v_i is the way along the surface to actuator i as the contact sees it
+/// (`ActuatorLayout::towards_m`). On a flat surface, the result is the exact middle. On a curved surface, it is the
+/// first step towards the middle (Karcher 1977). `shares` must not be empty.
 FeltOffset felt_offset(const ActuatorLayout& layout, const LocatedContact& contact, std::span<const Share> shares);
 
-/// The spatial acuity of the torso for vibration, metres: 25 mm, the middle of what was found, but 10 mm within 25 mm
-/// of the body's midline (van Erp 2005, "Vibrotactile spatial acuity on the torso"). `middle_x_m`: of the body at rest.
+/// Returns the spatial acuity of the torso for vibration, in metres: 10 mm within 25 mm of the body's midline,
+/// otherwise 25 mm, the middle of the measured values (van Erp 2005, "Vibrotactile spatial acuity on the torso").
+/// `middle_x_m` is the midline of the body at rest.
 double acuity_m(const glm::dvec3& position_m, double middle_x_m);
 
 }  // namespace vestige

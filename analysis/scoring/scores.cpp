@@ -62,7 +62,7 @@ constexpr Metric kMetrics[] = {
     {"line_load", "", Better::kLower, true, "bytes sent / bytes that the line takes in that time", "Vestige"},
 };
 
-/// The median step between frames; 0 for fewer than two.
+/// Returns the median step between frames, or 0 for fewer than two frames.
 double usual_step_s(const ContactRecording& recording) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < recording.frames(); ++k) steps.push_back(recording.time_s[k] - recording.time_s[k - 1]);
@@ -78,7 +78,7 @@ double middle_x_m(const SurfaceDistance& surface) {
   return 0.5 * (box.low.x + box.high.x);
 }
 
-/// Goes through the recording once. `told(law, contact, error in metres)` for every contact under every law.
+/// Goes through the recording once. Calls `told(law, contact, error in metres)` for every contact under every law.
 template <typename Told>
 void judge(const ContactRecording& recording, const ActuatorLayout& layout, std::deque<LawScore>& laws, Told&& told) {
   const double midline_x_m = middle_x_m(layout.surface());

@@ -9,22 +9,24 @@
 
 namespace vestige {
 
-/// Which contacts follow each other in a slide: those of one collider, each within 0.1 s and 50 mm of the one before.
-/// The whole is a slide where it gets 50 mm away from its beginning, in five contacts or more.
+/// Finds slides. Contacts of one collider form a chain if each is within 0.1 s and 50 mm of the one before. A chain is
+/// a slide once it reaches 50 mm from its beginning with five contacts or more.
 class SlideFinder {
  public:
   enum class Step : std::uint8_t { kBegins, kGoesOn };
 
-  /// Whether a contact does not go on with those before, if there were any.
+  /// Returns whether a contact breaks the chain of its collider. A collider without contacts so far has no chain to
+  /// break.
   bool breaks(std::uint32_t column, double time_s, const glm::dvec3& position_m) const;
-  /// The next contact of a collider, at an instant, on the body at rest. Times ascend for each collider.
+  /// Adds the next contact of a collider, with its instant and its position on the body at rest. Times must ascend for
+  /// each collider.
   Step add(std::uint32_t column, double time_s, const glm::dvec3& position_m);
-  /// Whether what has been going on for a collider is a slide by now.
+  /// Returns whether the collider's current chain is a slide by now.
   bool is_slide(std::uint32_t column) const;
   std::size_t columns() const { return chains_.size(); }
-  /// How far it went so far.
+  /// Returns the length of the collider's path in the current chain so far.
   double way_m(std::uint32_t column) const { return chains_[column].way_m; }
-  /// From the contact before to the last one.
+  /// Returns the step from the previous contact to the last one.
   const glm::dvec3& step_m(std::uint32_t column) const { return chains_[column].step_m; }
 
  private:
@@ -34,7 +36,7 @@ class SlideFinder {
     glm::dvec3 step_m = glm::dvec3(0);
     double last_s = 0;
     double way_m = 0;
-    double reach_m = 0;  ///< farthest from the start
+    double reach_m = 0;  ///< largest distance from the start
     std::size_t contacts = 0;
   };
   std::vector<Chain> chains_;  // by column
@@ -43,17 +45,17 @@ class SlideFinder {
 /// How evenly one slide is felt.
 class SlideSmoothness {
  public:
-  /// The next contact: Σ A_i² of what it fires; where it is felt (Σ A_i x_i / Σ A_i; nothing where nothing fires); and
-  /// the collider's step since the contact before.
+  /// Adds the next contact of the slide. `energy` is Σ A_i² of the actuators that it fires. `felt_at_m` is where it is
+  /// felt, Σ A_i x_i / Σ A_i, or null if no actuator fires. `step_m` is the collider's step since the previous contact.
   void add(double energy, const glm::dvec3* felt_at_m, const glm::dvec3& step_m);
 
   std::size_t contacts() const { return contacts_; }
-  /// (max - min) / mean of the energies: 0 for a phantom of even energy; 0.75 for a linear one that goes evenly from
-  /// one actuator to the next, whose least energy is 0.5. NaN where nothing was ever felt.
+  /// Returns (max - min) / mean of the energies. It is 0 for a phantom of even energy. It is 0.75 for a linear phantom
+  /// that moves evenly from one actuator to the next, whose least energy is 0.5. Returns NaN if nothing was ever felt.
   double ripple() const;
-  /// The longest way that the felt place went between two contacts, in a straight line.
+  /// Returns the longest straight-line distance that the felt place moved between two contacts.
   double largest_jump_m() const { return largest_jump_m_; }
-  /// How often it went against the collider.
+  /// Returns how often the felt place moved against the collider.
   std::size_t reversals() const { return reversals_; }
 
  private:
@@ -67,20 +69,20 @@ class SlideSmoothness {
   std::size_t reversals_ = 0;
 };
 
-/// Slides of one law, taken together.
+/// The slides of one law, taken together.
 class SlideScore {
  public:
-  /// A slide that has ended, and how far its collider went.
+  /// Adds a slide that has ended. `way_m` is the length of its collider's path.
   void add(const SlideSmoothness& slide, double way_m);
 
   std::size_t slides() const { return slides_; }
-  double ripple() const;           ///< mean over slides that were felt; NaN for none
-  double largest_jump_m() const;   ///< likewise
-  double reversals_per_m() const;  ///< of those together, over their way
+  double ripple() const;           ///< mean over felt slides; NaN if there are none
+  double largest_jump_m() const;   ///< mean over felt slides; NaN if there are none
+  double reversals_per_m() const;  ///< reversals of all felt slides over their path length
 
  private:
   std::size_t slides_ = 0;
-  std::size_t felt_ = 0;  ///< slides, of which alone the rest tells
+  std::size_t felt_ = 0;  ///< felt slides; the members below cover only these
   double ripple_sum_ = 0;
   double jump_sum_m_ = 0;
   double way_m_ = 0;

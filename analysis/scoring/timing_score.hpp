@@ -7,22 +7,24 @@
 
 namespace vestige {
 
-/// When actuators vibrate, against when contacts ask them to.
+/// Compares when actuators vibrate with when contacts ask them to.
 ///
-/// The truth is the contacts' own instants, within their frames, and which actuators a contact asks for under the law.
-/// F1 counts frames (Mesaros, Heittola & Virtanen 2016, "Metrics for polyphonic sound event detection", segment-based):
-/// an actuator that is asked for by contacts of a frame and vibrates is right; one that vibrates unasked is a false
-/// alarm, so a hold has its price; one that is asked for and does not, and a contact that asks for nothing, such as one
-/// on skin without an actuator, are missed.
+/// The truth is the instant of each contact within its frame, and the actuators that the contact asks for under the
+/// law. F1 counts frames (Mesaros, Heittola & Virtanen 2016, "Metrics for polyphonic sound event detection",
+/// segment-based):
+/// - an actuator that vibrates in a frame whose contacts ask for it is right;
+/// - an actuator that vibrates without being asked for is a false alarm, so holding an actuator has a cost;
+/// - an actuator that is asked for and does not vibrate is missed;
+/// - a contact that asks for nothing, such as a contact on skin without an actuator, is missed too.
 ///
-/// The onset error is how long after the first contact an actuator begins to vibrate, the offset error how long after
-/// the last one it ends. Delays beyond 15, 45 and 50 ms are counted: what people notice between touch seen and felt
-/// (Di Luca & Mahnan 2019; Vogels 2004).
+/// The onset error is the time from the first contact to the start of the vibration. The offset error is the time from
+/// the last contact to its end. Onset delays beyond 15, 45 and 50 ms are counted, since people notice such delays
+/// between seen and felt touch (Di Luca & Mahnan 2019; Vogels 2004).
 class TimingScore {
  public:
   explicit TimingScore(std::size_t actuator_count);
 
-  /// A contact of frame `frame` asks for an actuator.
+  /// A contact in `frame` asks for an actuator.
   void ask(std::size_t actuator, std::uint64_t frame, double instant_s) {
     Asked& asked = asked_[actuator];
     if (asked.frame != frame) {
@@ -45,22 +47,22 @@ class TimingScore {
     ++on_pairs_;
     if (asked_[actuator].frame == frame) ++right_pairs_;
   }
-  /// An actuator begins or ends to vibrate.
+  /// An actuator begins or ends to vibrate. `begins` counts an onset only if a contact asked for the actuator.
   void begins(std::size_t actuator, double time_s);
   void ends(std::size_t actuator, double time_s);
-  /// What was asked is over, and it never began.
+  /// What was asked for is over, and the actuator never began to vibrate.
   void gives_up(std::size_t actuator) { asked_[actuator].is_pending = false; }
   bool is_on(std::size_t actuator) const { return asked_[actuator].is_on; }
 
-  double f1() const;                               ///< NaN where nothing was asked and nothing vibrated
-  double mean_onset_s() const;                     ///< NaN where nothing began
-  double mean_offset_s() const;                    ///< NaN where nothing ended
-  double late_share(std::size_t threshold) const;  ///< of onsets: over 15, 45, 50 ms for 0, 1, 2
+  double f1() const;                               ///< NaN if nothing was asked for and nothing vibrated
+  double mean_onset_s() const;                     ///< NaN if there was no onset
+  double mean_offset_s() const;                    ///< NaN if no vibration ended
+  double late_share(std::size_t threshold) const;  ///< share of onsets later than 15, 45, 50 ms for `threshold` 0, 1, 2
   std::uint64_t onsets() const { return onsets_; }
 
  private:
   struct Asked {
-    std::uint64_t frame = ~std::uint64_t{0};  ///< the last that asked
+    std::uint64_t frame = ~std::uint64_t{0};  ///< the last frame that asked for it
     double since_s = 0;
     double last_s = -1e300;
     bool is_pending = false;

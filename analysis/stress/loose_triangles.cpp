@@ -9,7 +9,7 @@ namespace vestige {
 
 namespace {
 
-/// Only their translations move a vertex whose bind position is 0.
+/// The matrices have translations only: nothing else moves a vertex whose bind position is 0.
 std::vector<SkinMatrix> palette_of(std::span<const LooseTriangle> triangles) {
   std::vector<SkinMatrix> palette;
   palette.reserve(3 * triangles.size());

@@ -28,7 +28,7 @@ LooseTriangle as_loose(const Corners& corners) {
   return {glm::vec3(corners.a), glm::vec3(corners.b), glm::vec3(corners.c)};
 }
 
-/// Everything that one query after another is asked of; the detector refers to the rest.
+/// Everything needed to answer queries one after another. The detector refers to the other members.
 struct Kernel {
   Avatar avatar = loose_triangles(1);
   ActuatorMap map;

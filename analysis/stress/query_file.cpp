@@ -27,7 +27,7 @@ constexpr std::string_view kHexadecimalRemedy =
     "0x1.8p+1";
 constexpr std::string_view kNotSeven = "is not seven whole numbers";
 constexpr std::size_t kRowsPerQuery = 8;
-constexpr std::size_t kMostDigits = 2000;  ///< the least double has 324 behind its "1/"
+constexpr std::size_t kMostDigits = 2000;  ///< the least double has 324 digits after its "1/"
 
 /// "-12" or "+12".
 cpp_int take_whole(CsvLines& lines) {

@@ -11,42 +11,44 @@
 
 namespace vestige {
 
-/// Does the moving point meet the triangle, moving or not?
+/// The question whether a moving point meets a triangle, which may move or be at rest.
 struct Query {
   Way way;
   Corners before;
   Corners after;
-  bool truth = false;    ///< what the file says
-  std::size_t line = 0;  ///< where the file has it
+  bool truth = false;    ///< the file's answer
+  std::size_t line = 0;  ///< line in the file
 };
 
-/// kPointTriangle: the triangle moves, so the file's truth is that of `ccd`. kSegmentTriangle: it is at rest.
+/// kPointTriangle: the triangle moves, so the file's truth is that of `ccd`. kSegmentTriangle: the triangle is at rest.
 enum class QueryKind { kPointTriangle, kSegmentTriangle };
 
 struct QueryFile {
   std::string name;
   QueryKind kind = QueryKind::kPointTriangle;
   std::vector<Query> queries;
-  bool ends_in_newline = true;  ///< false: its last number may have been cut
+  bool ends_in_newline = true;  ///< false: the last number of the file may be cut off
 };
 
-/// What to do with coordinates that no double equals: the file's truth is not about what a detector would then see.
+/// What to do with coordinates that no double equals. After rounding, a detector sees other coordinates than the file's
+/// truth is about.
 enum class Inexact { kRefuse, kRound };
 
-/// Reads one of two formats.
+/// Reads a file in one of two formats.
 ///
-/// Without a header, eight rows a query: the point and the triangle's three corners at t = 0, then at t = 1. Each row
-/// is seven whole numbers: x, y, z as numerator and denominator, and the truth, 0 or 1 (the format of the public sets
-/// of Wang et al. 2021, A Large Scale Benchmark and an Inclusion-Based Algorithm for Continuous Collision Detection).
+/// Without a header, a query has eight rows: the point and the triangle's three corners at t = 0, then the same at t =
+/// 1. Each row has seven whole numbers: x, y, z as numerator and denominator, and the truth, 0 or 1. This is the format
+/// of the public sets of Wang et al. 2021, A Large Scale Benchmark and an Inclusion-Based Algorithm for Continuous
+/// Collision Detection.
 ///
-/// With the header "source,query,gt,float_exact,px,...,cz", a row a query: a segment from p to q, a triangle a, b, c,
-/// in hexadecimal doubles, and the truth in `gt`.
+/// With the header "source,query,gt,float_exact,px,...,cz", a query is one row: a segment from p to q and a triangle a,
+/// b, c in hexadecimal doubles, with the truth in `gt`.
 ///
-/// Throws `Error` naming file and line: a malformed row, a denominator of zero, a number that is not finite or, with
-/// kRefuse, no double, a query cut off or with two truths, no query at all.
+/// Throws `Error` with file and line for a malformed row, a denominator of zero, a number that is not finite, a number
+/// that no double equals (with kRefuse), a query that is cut off, a query with two truths, or a file without queries.
 QueryFile read_query_file(const std::filesystem::path& path, Inexact inexact);
 
-/// `read_query_file` of `text`; `name` stands in errors.
+/// As `read_query_file`, but reads `text`. `name` is the file's name in errors.
 QueryFile parse_queries(std::string_view text, const std::string& name, Inexact inexact);
 
 }  // namespace vestige

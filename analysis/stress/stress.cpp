@@ -16,8 +16,9 @@ namespace vestige {
 
 namespace {
 
-/// Whether, along some axis, the point is beyond the same side of the triangle at t = 0 and at t = 1: since all move
-/// linearly, it is so in between, and they never meet. Coordinates are compared, so nothing is rounded.
+/// Returns whether the point is beyond the same side of the triangle along some axis, both at t = 0 and at t = 1. All
+/// motion is linear, so the point is then beyond that side in between too, and the two never meet. Coordinates are only
+/// compared, so nothing is rounded.
 bool always_apart(const Way& way, const Corners& before, const Corners& now) {
   const auto low = [](const Corners& corners) { return glm::min(glm::min(corners.a, corners.b), corners.c); };
   const auto high = [](const Corners& corners) { return glm::max(glm::max(corners.a, corners.b), corners.c); };
@@ -89,13 +90,13 @@ void count_misses(const Frame& frame, const ContactRow& row, StressCount& count)
     if (!given.hit()) ++count.false_negatives;
 }
 
-/// The contestants, each with a detector for the body that it was last asked about.
+/// The contestants, with a detector for each contestant and body.
 class Stress {
  public:
   Stress(const std::vector<StressContestant>& contestants, const StressSettings& settings)
       : contestants_(contestants), settings_(settings) {}
 
-  /// Appends the counts of all contestants; or none, and returns false, when `keep_going` does.
+  /// Appends the counts of all contestants. If `keep_going` returns false, appends no counts and returns false.
   bool run(const StressFamily& family, std::size_t magnitude_number, const std::function<bool()>& keep_going,
            std::vector<StressCount>& counts) {
     const std::size_t complete = counts.size();
@@ -123,7 +124,7 @@ class Stress {
   }
 
  private:
-  /// A number that stays the same whichever families run: from the letters of the name.
+  /// Returns a number made of the letters of the name, so that it does not depend on which families run.
   static std::uint64_t name_number(const StressFamily& family) {
     std::uint64_t number = 0;
     for (const std::string_view text : {family.name, family.variant})

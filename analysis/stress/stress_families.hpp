@@ -10,15 +10,15 @@ namespace vestige {
 /// A family of hostile cases.
 struct StressFamily {
   std::string_view name;
-  std::string_view variant;    ///< tells families of one name apart; mostly empty
+  std::string_view variant;    ///< distinguishes families of one name; mostly empty
   std::string_view meaning;    ///< one sentence
-  std::string_view magnitude;  ///< what its magnitudes are, and their unit
+  std::string_view magnitude;  ///< what the magnitudes are, and their unit
   std::span<const double> magnitudes;
   StressBody body;
   StressScene (*make)(StressOrder order);
 };
 
-/// All of them, in the order in which they are run: of loose triangles (stress_triangles.cpp), of a posed avatar
+/// All families, in the order in which they run: loose triangles (stress_triangles.cpp), a posed avatar
 /// (stress_poses.cpp), and the ladder (watertight.cpp).
 std::span<const StressFamily> triangle_families();
 std::span<const StressFamily> pose_families();

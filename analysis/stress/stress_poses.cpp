@@ -5,7 +5,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <vector>
 
 #include "analysis/stress/stress_families.hpp"
@@ -40,7 +39,7 @@ NodeLocal& any_joint(const Avatar& avatar, Pose& pose, Random& random) {
   }
 }
 
-/// Each collider passes a corner, an edge or the middle of a triangle of the skin, halfway, wherever that is finite.
+/// Lets each collider pass a corner, an edge or the middle of a triangle of the skin halfway, if that place is finite.
 void aim(const Avatar& avatar, Moments& moments, std::size_t count, Method method, Random& random) {
   std::vector<glm::dvec3> before;
   std::vector<glm::dvec3> now;
@@ -62,7 +61,8 @@ void aim(const Avatar& avatar, Moments& moments, std::size_t count, Method metho
   }
 }
 
-/// Frames as `FrameBuilder` makes them, each of two moments that `disturb` has changed; `spoil` may change colliders.
+/// Returns frames made by `FrameBuilder`, each from two moments that `disturb` has changed. `spoil` may change
+/// colliders.
 StressScene posed_scene(StressOrder order, const Disturb& disturb, const Disturb& spoil) {
   const Avatar& avatar = order.subject->avatar;
   Random random = order.random;
@@ -78,11 +78,7 @@ StressScene posed_scene(StressOrder order, const Disturb& disturb, const Disturb
     disturb(moments, random);
     aim(avatar, moments, count, order.method, random);
     spoil(moments, random);
-    std::vector<std::uint32_t> ids(count);
-    std::iota(ids.begin(), ids.end(), 0U);
-    FrameBuilder builder(avatar, ids, order.method);
-    builder.next(moments.before);
-    scene.frames.push_back(builder.next(moments.now));
+    scene.frames.push_back(frame_after(moments.before, moments.now, avatar, count, order.method));
     done += count;
   }
   return scene;
@@ -94,7 +90,7 @@ glm::quat turn(double angle_rad, const glm::dvec3& axis) {
   return glm::quat(glm::angleAxis(angle_rad, axis));
 }
 
-/// A joint that is shrunk and twisted by half a turn: linear blending draws the skin around it together, as the paper
+/// Shrinks a joint and twists it by half a turn. Linear blending pulls the skin around it together, like the paper
 /// around a sweet (the candy-wrapper effect).
 StressScene collapse(StressOrder order) {
   const auto disturb = [&](Moments& moments, Random& random) {
@@ -116,7 +112,7 @@ StressScene spin(StressOrder order) {
 
 StressScene mirrored(StressOrder order) {
   const auto disturb = [&](Moments& moments, Random& random) {
-    // Both moments: a bone that is mirrored stays so.
+    // At both moments: a mirrored bone stays mirrored.
     Random same = random;
     for (Pose* pose : {&moments.before.pose, &moments.now.pose}) {
       random = same;

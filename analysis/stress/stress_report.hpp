@@ -8,13 +8,13 @@
 
 namespace vestige {
 
-/// `families[…]` of a stress run: name, variant, magnitude, detector, method and the counts of `StressCount`.
+/// Returns `families[…]` of a stress run: name, variant, magnitude, detector, method and the counts of `StressCount`.
 nlohmann::ordered_json to_json(std::span<const StressCount> counts);
 
-/// The table for people: a row for each family and magnitude, a column for each detector and method.
+/// Returns a table for people, with a row for each family and magnitude, and a column for each detector and method.
 std::string stress_table(std::span<const StressCount> counts);
 
-/// One line a family: what it is, and what its magnitudes are.
+/// Returns one line for each family that says what the family is and what its magnitudes are.
 std::string family_definitions();
 
 }  // namespace vestige

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kSegmentsPerFrame = 64;
 
-/// A closed fan of triangles around corner 0; the others are its rim. In metres; all coordinates are floats.
+/// A closed fan of triangles around corner 0. The other corners are its rim. In metres; all coordinates are floats.
 using FanCorners = std::array<glm::dvec3, kFanTriangles + 1>;
 
 struct Fan {
@@ -51,8 +51,8 @@ glm::dvec3 on_grid(const glm::dvec3& v, double step) {
   return {on_grid(v.x, step), on_grid(v.y, step), on_grid(v.z, step)};
 }
 
-/// Where the scene stands and how large it is. Half of the fans lie on a grid so coarse that sums and halves of their
-/// coordinates are floats too: what is aimed at is then hit exactly.
+/// The place and the size of the scene. Half of the fans lie on a grid so coarse that sums and halves of their
+/// coordinates are floats too, so that aims are hit exactly.
 struct Stage {
   double size_m = 1;
   double offset_m = 0;
@@ -79,7 +79,7 @@ Plane lattice_plane(Random& random) {
   }
 }
 
-/// What the bodies of a family are like, and how its segments run.
+/// The properties of a family's bodies, and how its segments run.
 class TriangleScene {
  public:
   explicit TriangleScene(StressOrder order, Stage stage = {}) : order_(order), random_(order_.random), stage_(stage) {}
@@ -192,14 +192,14 @@ class TriangleScene {
     return order_.method == Method::kCcd ? (target.before + target.now) / 2.0 : target.now;
   }
 
-  /// A way that is at the target halfway.
+  /// Returns a way that is at the target halfway.
   Line through(const Target& target, const glm::dvec3& half_way) {
     const glm::dvec3 half = snapped_ ? on_grid(half_way, 2 * stage_.grid_m()) : half_way;
     return {place_of(target) - half, place_of(target) + half};
   }
   Line through(const Target& target) { return through(target, stage_.size_m * reach(random_, 0.05, 1)); }
 
-  /// One that begins or ends there.
+  /// Returns a way that begins or ends at the target.
   Line ending_at(const Target& target) {
     const glm::dvec3 way = stage_.size_m * reach(random_, 0.05, 1);
     if (random_.index(2) == 0) return {as_floats(target.before), as_floats(target.before) + way};
@@ -227,7 +227,7 @@ class TriangleScene {
   static constexpr float kInfinity = std::numeric_limits<float>::infinity();
   static constexpr double kSteps = 64;
 
-  /// Of lattices: flat fans stay within the numbers that are floats.
+  /// For lattices: flat fans stay within the numbers that are floats.
   double step_m() const { return std::max(stage_.grid_m() * 4, std::exp2(std::floor(std::log2(stage_.size_m))) / 512); }
 
   glm::dvec3 snap(const glm::dvec3& v) const { return as_floats(snapped_ ? on_grid(v, 4 * stage_.grid_m()) : v); }
@@ -283,7 +283,7 @@ StressScene grazing(StressOrder order) {
                      });
 }
 
-/// Needles share the corner where they are thin; caps have it almost on the edge that faces it.
+/// Needles share the corner at their thin end. Caps have that corner almost on the edge that faces it.
 StressScene needle(StressOrder order) {
   TriangleScene scene(order);
   const auto make_fan = [&] {
@@ -367,7 +367,8 @@ StressScene degenerate(StressOrder order) {
   return scene.build(make_fan, [&](const Fan& fan) { return mixture(scene, fan); });
 }
 
-/// Exactly on the borders between texels, which are lines within each triangle, or as many ulps beside them.
+/// Aims exactly at the borders between texels, which are lines within each triangle, or at places a few ulps beside
+/// them.
 StressScene texel_border(StressOrder order) {
   TriangleScene scene(order);
   const auto make_line = [&](const Fan& fan) {

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numeric>
 #include <stdexcept>
 #include <vector>
 
@@ -20,7 +19,8 @@ constexpr std::size_t kInsidePoints = 256;
 constexpr std::size_t kMostTries = 100'000;
 
 enum class Aim { kVertex, kEdge };
-/// Where the offset enters: in the doubles of pose and colliders, which `FrameBuilder` takes away again, or in fp32.
+/// Where the offset is applied: to the doubles of pose and colliders, from which `FrameBuilder` subtracts it again, or
+/// to the fp32 values.
 enum class Where { kDoubleOrigin, kFloat };
 
 /// The skin of the resting avatar, in the coordinates that detectors get, and points inside of it.
@@ -42,7 +42,8 @@ class ClosedSkin {
     if (inside_.empty()) throw std::logic_error("the avatar has no inside");
   }
 
-  /// From a point inside to one outside, through a corner of the skin or the middle of an edge, as near as fp32 comes.
+  /// Returns a segment from a point inside to a point outside, through a corner of the skin or the middle of an edge,
+  /// as near as fp32 allows.
   Segment segment(std::uint32_t column, Aim aim, Random& random) const {
     const glm::uvec3& triangle = avatar_.triangles[random.index(avatar_.triangles.size())];
     const auto corner = static_cast<int>(random.index(3));
@@ -52,7 +53,7 @@ class ClosedSkin {
       const glm::vec3 start = inside_[random.index(inside_.size())];
       const glm::dvec3 way = target - glm::dvec3(start);
       if (glm::length(way) < kLeastWay_m) continue;
-      // By powers of two, so that the target stays on the way where fp32 has room for it.
+      // Scaled by powers of two, so that the target stays on the way if fp32 has room for it.
       for (double reach = 2; reach < kMostReach; reach *= 2) {
         const glm::vec3 end(glm::dvec3(start) + reach * way);
         if (is_outside(end)) return {column, start, end};
@@ -102,15 +103,11 @@ void add_world_frames(const StressOrder& order, Aim aim, Random& random, std::ve
       before.colliders.push_back({segment.column, first.origin_m + glm::dvec3(segment.start)});
       now.colliders.push_back({segment.column, first.origin_m + glm::dvec3(segment.end)});
     }
-    std::vector<std::uint32_t> ids(count);
-    std::iota(ids.begin(), ids.end(), 0U);
-    FrameBuilder builder(avatar, ids, order.method);
-    builder.next(before);
-    frames.push_back(builder.next(now));
+    frames.push_back(frame_after(before, now, avatar, count, order.method));
   }
 }
 
-/// Frames whose fp32 coordinates are themselves far from the origin: the skin is coarser there, and still closed.
+/// Frames whose fp32 coordinates are themselves far from the origin. The skin is coarser there, but still closed.
 void add_float_frames(const StressOrder& order, Aim aim, Random& random, std::vector<Frame>& frames) {
   const Avatar& avatar = order.subject->avatar;
   Frame frame;

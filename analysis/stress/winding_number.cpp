@@ -11,7 +11,7 @@ namespace {
 
 using Whole = std::array<Integer, 3>;
 
-/// Four points as whole numbers in one unit.
+/// Returns four points as whole numbers in one common unit.
 std::array<Whole, 4> whole(const std::array<glm::dvec3, 4>& points) {
   std::array<double, 12> values = {};
   for (std::size_t i = 0; i < 12; ++i) values[i] = points[i / 3][static_cast<int>(i % 3)];
@@ -25,7 +25,7 @@ Whole minus(const Whole& a, const Whole& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-/// Around a point, of the projection along x of an edge: both ends relative to that point.
+/// Returns the crossing of an edge's projection along x around a point. Both ends are relative to that point.
 int crossing(const Whole& from, const Whole& to) {
   const Integer turn = from[1] * to[2] - from[2] * to[1];
   if (from[1] <= 0 && to[1] > 0) return turn > 0 ? 1 : 0;

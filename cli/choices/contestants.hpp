@@ -10,25 +10,25 @@
 
 namespace vestige::cli {
 
-/// The flags of verbs that measure detectors against each other: lists, where a single one is chosen elsewhere.
+/// The flags of verbs that compare detectors: lists, where other verbs choose a single detector.
 struct ContestantChoice {
-  DetectorChoice choice;  ///< what all have in common; its detector, context and skip are not looked at
+  DetectorChoice choice;  ///< the common options; its detector, context and skip are not used
   std::string detectors;
   std::string contexts;
   std::string skips;
   std::string renderer = "off";
 };
 
-/// Adds --detector, --context and what `add_detector_options` adds, --skip as a list.
+/// Adds --detector, --context and the flags of `add_detector_options`, with --skip as a list.
 void add_contestant_options(CLI::App& verb, ContestantChoice& choice);
 
-/// Throws `UsageError` for a list that names what there is not, or something twice.
+/// Throws `UsageError` if a list has an unknown entry, or the same entry twice.
 void check_contestant_choice(const ContestantChoice& choice);
 
-/// Every detector asked for, those of OpenGL once in every context that this machine has, those that can skip with
-/// every setting of it, and all once more beside a renderer where one is asked for. A context or a library that the
-/// machine lacks is said, with `verbosity`; throws `Error` where nothing remains. They keep references to avatar and
-/// map.
+/// Returns every requested detector: those of OpenGL once in every requested context that this machine has, and those
+/// that can skip with every requested setting of --skip. If a renderer is requested, each detector runs a second time
+/// beside it. Reports a context or a library that the machine lacks, by `verbosity`. Throws `Error` if no detector
+/// remains, or if a requested device cannot be used. The contestants keep references to avatar and map.
 std::vector<Contestant> make_contestants(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                          Verbosity verbosity);
 

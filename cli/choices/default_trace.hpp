@@ -7,8 +7,8 @@
 
 namespace vestige::cli {
 
-/// What verbs measure on where no trace is given: the built-in avatar in a swarm of so many colliders, written to
-/// `path`.
+/// Records the trace that verbs measure on if none is given: the built-in avatar in a swarm of this many colliders,
+/// written to `path`.
 void record_default_trace(const std::string& path, std::uint32_t colliders, const CommonOptions& options,
                           const Invocation& invocation);
 

@@ -7,6 +7,7 @@
 #include "cli/help/validators.hpp"
 #include "detector/actuators/mapped_skin.hpp"
 #include "detector/detectors/embree_detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {

@@ -10,13 +10,13 @@
 
 namespace vestige::cli {
 
-/// What --method takes.
+/// The values of --method.
 inline const std::vector<std::string> kMethodNames = {"static", "carried", "ccd"};
 
-/// One of `kMethodNames`.
+/// Returns the method of this name; it must be one of `kMethodNames`.
 Method method_named(const std::string& name);
 
-/// The flags that choose a detector and where it runs.
+/// The flags for the detector and the place where it runs.
 struct DetectorChoice {
   std::string detector = "auto";
   std::string context = "auto";
@@ -30,7 +30,7 @@ struct DetectorChoice {
   Skip skip_kind() const { return skip == "on" ? Skip::kOn : Skip::kOff; }
 };
 
-/// The group of help that they stand in, with --detector and --context.
+/// The help group of these flags, together with --detector and --context.
 inline constexpr const char* kDetectorGroup = "Detector";
 
 /// Adds --detector and --context, for a verb that runs one detector.
@@ -39,23 +39,23 @@ void add_detector_and_context(CLI::App& verb, DetectorChoice& choice);
 /// Adds --device, --method, --skip and --surface, which mean the same in every verb.
 void add_detector_options(CLI::App& verb, DetectorChoice& choice);
 
-/// The same, for a verb that measures several settings of --skip against each other: `skips` is their list.
+/// As above, for a verb that compares several settings of --skip: `skips` is their list.
 void add_detector_options(CLI::App& verb, DetectorChoice& choice, std::string& skips);
 
-/// What --skip takes, or lists.
+/// The values of --skip, or of its list.
 inline const std::vector<std::string> kSkipNames = {"on", "off"};
 
-/// Whether --skip makes a difference to the detector of this name.
+/// Returns whether --skip affects the detector of this name.
 bool knows_skip(const std::string& detector);
 
-/// "auto", "egl" or "osmesa".
+/// `context` is "auto", "egl" or "osmesa".
 ContextKind context_kind(const std::string& context);
 
-/// What `make_detector` knows, "auto" apart.
+/// The names that `make_detector` knows, except "auto".
 const std::vector<std::string>& detector_names();
 bool is_detector(const std::string& name);
 
-/// Makes a detector: "cpu" (also "auto"), "exact", "geometry", "embree", "embree_default" or "paper". `context`:
+/// Makes a detector: "cpu" (also "auto"), "exact", "geometry", "embree", "embree_default" or "paper". `context` is
 /// "auto", "egl" or "osmesa".
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,

@@ -7,9 +7,9 @@
 
 namespace vestige::cli {
 
-/// Adds --full-speed, --sigma, --actuator and --hold to a group of help.
+/// Adds --full-speed, --sigma, --actuator and --hold to a help group.
 void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_description);
-/// Adds --law, and these.
+/// Adds --law and the flags of `add_law_parameters`.
 void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_description);
 
 }  // namespace vestige::cli

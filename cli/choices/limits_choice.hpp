@@ -9,7 +9,7 @@
 
 namespace vestige::cli {
 
-/// The flags that say how a recording ends, goes on in another file, or forgets.
+/// The flags for how a recording ends, continues in another file, or forgets old data.
 struct LimitsChoice {
   std::optional<double> ring_s;
   std::string max_size;
@@ -20,10 +20,11 @@ struct LimitsChoice {
 /// Adds --ring, --max-size, --split and --sync.
 void add_limits_options(CLI::App& verb, LimitsChoice& choice);
 
-/// Throws `UsageError` naming the flag: values that are none, flags that contradict each other or `output`.
+/// Throws `UsageError` with the name of the flag for invalid values, and for flags that contradict each other or
+/// `output`.
 RecordingLimits limits_of(const LimitsChoice& choice, const std::string& output);
 
-/// "1000", "64MiB", "1.5GB": bytes, at least 1. Throws `UsageError` naming `flag`.
+/// Parses "1000", "64MiB", "1.5GB" to bytes, at least 1. Throws `UsageError` with the name of the flag.
 std::uint64_t parse_size(const std::string& text, const std::string& flag);
 
 }  // namespace vestige::cli

@@ -11,9 +11,9 @@
 
 namespace vestige::cli {
 
-/// Where live input comes from.
+/// The source of live input.
 struct LiveChoice {
-  std::string source;  ///< "-", or vmc://HOST:PORT; empty: nothing is live
+  std::string source;  ///< "-", or vmc://HOST:PORT; empty if nothing is live
   bool is_live() const { return !source.empty(); }
   bool is_lines() const { return source == "-"; }
 };
@@ -21,11 +21,11 @@ struct LiveChoice {
 /// Adds --live.
 void add_live_options(CLI::App& verb, LiveChoice& choice);
 
-/// Throws `UsageError` for what is no source, and for flags of `verb` that would say nothing beside it.
+/// Throws `UsageError` if the source is not valid, or for flags of `verb` that would have no effect beside it.
 void check_live_choice(const CLI::App& verb, const LiveChoice& choice);
 
-/// Records until the source or the duration ends, the recorder is full, or the user stops it, whatever `settings.asked`
-/// is. What was lost is warned of. Does not finish the recorder. Throws `Error` where not one frame came in.
+/// Records until the source ends, the duration ends, the recorder is full, or the user stops it. Ignores
+/// `settings.asked`. Warns of lost data. Does not finish the recorder. Throws `Error` if no frame arrived.
 LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, LiveSettings settings,
                        const glm::dvec3& origin_m, Verbosity verbosity);
 

@@ -13,22 +13,22 @@
 
 namespace vestige::cli {
 
-/// Whether an --animation is a file of motion capture, and no name.
+/// Returns whether an --animation is a motion capture file and not a name.
 inline bool is_motion_file(const std::string& animation) {
   return animation.ends_with(".bvh") || animation.ends_with(".BVH");
 }
 
-/// A warning about joints or nodes of the file at `path`; nothing where there are none.
+/// Warns about joints or nodes of the file at `path`. Prints nothing if `names` is empty.
 void warn_of_names(const std::string& path, std::string_view what, const std::vector<std::string>& names,
                    Verbosity verbosity);
 
-/// The flag --unit, of a motion.
+/// Adds the flag --unit, of a motion.
 void add_unit_option(CLI::App& verb, std::string& unit);
 
-/// "cm", "m", …: how many metres it has; nothing for "auto".
+/// Returns how many metres the unit "cm", "m", … has; nothing for "auto".
 std::optional<double> metres_of_unit(const std::string& unit);
 
-/// A motion, and what became of it on an avatar.
+/// A motion, and the result of its retargeting to an avatar.
 struct LoadedMotion {
   double frame_time_s = 0;
   std::size_t frame_count = 0;
@@ -36,10 +36,11 @@ struct LoadedMotion {
   RetargetReport report;
 };
 
-/// Reads a BVH file and adds it, retargeted, to the avatar's animations, under the file's own name. Says what matched.
+/// Reads a BVH file, retargets it to the avatar and adds it to the avatar's animations, under the path of the file.
+/// Reports which joints matched.
 LoadedMotion add_motion(Avatar& avatar, const std::string& path, const std::string& unit, Verbosity verbosity);
 
-/// Frames, joints and units in a few lines.
+/// Describes joints and units in one line.
 std::string describe(const LoadedMotion& motion);
 
 nlohmann::ordered_json to_json(const LoadedMotion& motion);

@@ -8,17 +8,17 @@
 
 namespace vestige::cli {
 
-/// --from and --to, as they were given.
+/// The values of --from and --to.
 struct RangeChoice {
   std::optional<double> from_s;
   std::optional<double> to_s;
 };
 
-/// Adds --from, which says what it does beyond the obvious, and --to; `verb` is "Keep" or "Print".
+/// Adds --from and --to. `from_remark` explains what --from does beyond the obvious. `verb` is "Keep" or "Print".
 void add_range_options(CLI::App& command, RangeChoice& choice, const std::string& verb,
                        const std::string& from_remark = "");
 
-/// Throws `UsageError`: no times of a trace, or --to not after --from.
+/// Throws `UsageError` if a value is not a time of a trace, or if --to is not after --from.
 mcap::TimeRange range_of(const RangeChoice& choice);
 
 }  // namespace vestige::cli

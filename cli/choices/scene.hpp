@@ -13,7 +13,7 @@
 
 namespace vestige::cli {
 
-/// What is recorded: an avatar and its map, as files and as what they mean.
+/// The input of a recording: an avatar and its map, as files and in parsed form.
 struct Scene {
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> map_png;
@@ -24,18 +24,18 @@ struct Scene {
   TraceAttachments attachments() const { return {avatar_glb, map_png, map_json}; }
 };
 
-/// `avatar`: "builtin" or a file. `map`: "builtin", "none", a layout's name, or a PNG file, whose sidecar is the .json
-/// of the same name, if there is one; empty: "builtin" for the built-in avatar, else "none". Warnings go to standard
-/// error.
+/// `avatar` is "builtin" or a file. `map` is "builtin", "none", a layout's name, or a PNG file, whose sidecar is the
+/// .json of the same name, if it exists. If `map` is empty, it is "builtin" for the built-in avatar, otherwise "none".
+/// Warnings go to standard error.
 Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity);
 
-/// What errors and warnings call them.
+/// The names for avatar and map in errors and warnings.
 struct SceneNames {
   std::string avatar;
   std::string map;
 };
 
-/// The same of files that are read already.
+/// As above, from files that are already read.
 Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const SceneNames& names, Verbosity verbosity);
 
 /// A trace, with the avatar and map that it carries.
@@ -46,7 +46,7 @@ struct OpenTrace {
   ActuatorMap map;
 };
 
-/// What was wrong with a trace, to standard error. Returns kDataLost if anything was, else kDone.
+/// Prints what was wrong with a trace to standard error. Returns kDataLost if anything was, otherwise kDone.
 int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity);
 
 }  // namespace vestige::cli

@@ -4,10 +4,10 @@ namespace vestige::cli {
 
 enum class Snapshots { kWanted, kIgnored };
 
-/// From now on SIGUSR1 asks for a snapshot, or does nothing; by itself it would end the program.
+/// From now on, SIGUSR1 requests a snapshot or does nothing. Without this call it would end the program.
 void catch_snapshots(Snapshots snapshots);
 
-/// Whether one was asked for since the last call.
+/// Returns whether a snapshot was requested since the last call.
 bool snapshot_wanted();
 
 }  // namespace vestige::cli

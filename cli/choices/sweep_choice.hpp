@@ -12,7 +12,7 @@
 
 namespace vestige::cli {
 
-/// The flags of `sweep` and of `growth`, which is sweeps: they mean the same in both.
+/// The flags of `sweep` and of `growth`, which runs sweeps. They mean the same in both.
 struct SweepChoice {
   ContestantChoice contestants;
   std::string counts;
@@ -25,19 +25,19 @@ struct SweepChoice {
 /// Adds TRACE and --counts.
 void add_swept_options(CLI::App& verb, SweepChoice& choice);
 
-/// Adds --runs, --run-frames, --min-time, --no-figure, -o and the common ones.
+/// Adds --runs, --run-frames, --min-time, --no-figure, -o and the common flags.
 void add_measuring_options(CLI::App& verb, SweepChoice& choice, SweepSettings& settings,
                            const std::string& run_frames_help, const std::string& output_help);
 
-/// Puts counts and seed into `settings`. Throws `UsageError` for what cannot be measured.
+/// Copies counts and seed to `settings`. Throws `UsageError` for values that cannot be measured.
 void check_sweep_choice(const SweepChoice& choice, SweepSettings& settings);
 
-/// Makes the folder of the results, and refuses (`check_outputs`) before any work is done. Returns the trace to measure
-/// on: TRACE, or else trace.mcap in that folder, now recorded with so many colliders.
+/// Makes the folder of the results, and checks the outputs (`check_outputs`) before any work is done. Returns the trace
+/// to measure on: TRACE, if given. Otherwise it records trace.mcap in that folder with this many colliders.
 std::string prepare_sweep(const SweepChoice& choice, std::vector<std::string> results, std::uint32_t colliders,
                           const Invocation& invocation);
 
-/// Throws `Error` where the user stopped before there was anything to write.
+/// Throws `Error` if the user stopped before there was anything to write.
 void check_measured(const std::string& verb, std::span<const SweepSeries> series);
 
 }  // namespace vestige::cli

@@ -13,7 +13,7 @@ namespace vestige::cli {
 void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Verbosity verbosity) {
   constexpr std::size_t kMostTold = 20;
   const std::size_t told = std::min(damages.kept().size(), kMostTold);
-  for (std::size_t i = 0; i < told; ++i) warn(describe(damages.kept()[i], file), verbosity);
+  for (std::size_t i = 0; i < told; ++i) warn(vestige::describe(damages.kept()[i], file), verbosity);
   if (damages.count() > told) warn(fmt::format("{}: and {} more", file, damages.count() - told), verbosity);
   if (!damages.empty()) warn(fmt::format("{}: 'vestige recover' may keep more of it", file), verbosity);
 }

@@ -8,10 +8,11 @@
 
 namespace vestige::cli {
 
-/// Says, as warnings, what of `file` could not be read and is not in what was made of it.
+/// Warns of the parts of `file` that could not be read and are missing from the result.
 void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Verbosity verbosity);
 
-/// Writes `file` anew as `output`, complete or not at all, and says so; `doing` is the progress bar's label.
+/// Rewrites `file` as `output`, completely or not at all, and prints a summary. `doing` is the label of the progress
+/// bar.
 void run_rewrite(const std::string& file, const std::string& output, const RewriteOptions& how,
                  const std::string& doing, const CommonOptions& common, Invocation& invocation);
 

@@ -7,11 +7,11 @@
 
 namespace vestige::help {
 
-/// What could stand in the place of the last of `words` (which follow the program's name; the last may be empty), one
-/// a line: the word, a tab, what it means. A line ":" says that names of files fit too.
+/// Returns the possible completions of the last of `words` (which follow the program's name; the last may be empty),
+/// one on each line: the word, a tab, its meaning. A line ":" means that file names fit too.
 std::string completions(const CommandTable& program, const std::vector<std::string>& words);
 
-/// The script that makes a shell ask `vestige complete WORDS...`. `shell`: "bash", "zsh" or "fish".
+/// Returns the script that makes a shell call `vestige complete WORDS...`. `shell` is "bash", "zsh" or "fish".
 std::string completion_script(const std::string& shell);
 
 }  // namespace vestige::help

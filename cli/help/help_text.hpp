@@ -6,10 +6,10 @@
 
 namespace vestige::help {
 
-/// The group of the flags that every verb has; it comes last.
+/// The help group of the flags that every verb has; it comes last.
 inline constexpr const char* kCommonGroup = "Common to all verbs";
 
-/// What stands behind --help: two examples that run as they are, then usage, arguments and flags with every default,
+/// Formats the text of --help: two examples that run as they are, then usage, arguments and flags with every default,
 /// in 100 columns.
 class HelpFormatter : public CLI::FormatterBase {
  public:
@@ -27,16 +27,16 @@ struct CommandTable;
 /// "-o, --output OUT.csv|-"
 std::string spelling(const FlagTable& flag);
 
-/// "vestige sweep [OPTIONS] -o DIR [TRACE]": whatever cannot be left out stands there.
+/// "vestige sweep [OPTIONS] -o DIR [TRACE]": names every required flag and all positional arguments.
 std::string usage(const CommandTable& command);
 
-/// The description with range, default and needed flag behind it, in brackets.
+/// Returns the description, followed by range, default and needed flag in brackets.
 std::string full_description(const FlagTable& flag);
 
-/// Groups in the order of their first flag, the common one last.
+/// Returns the groups of the flags in the order of their first flag, with the common group last.
 std::vector<std::string> groups_of(const CommandTable& command);
 
-/// The same for the groups of verbs.
+/// As above, for the groups of verbs.
 std::vector<std::string> verb_groups_of(const CommandTable& command);
 
 }  // namespace vestige::help

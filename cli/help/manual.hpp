@@ -8,7 +8,7 @@
 
 namespace vestige::help {
 
-/// What a script may rely on.
+/// The exit codes, which scripts may rely on.
 inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {{
     {0, "done"},
     {1, "failed"},
@@ -19,13 +19,13 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {{
     {4, "a check failed"},
 }};
 
-/// A man page of section 1 (roff with the man macros). Verbs of `command` that have no page of their own stand on it.
-/// `version`: "0.1.0"; `date`: "2026-11-21", or empty.
+/// Returns a man page of section 1 (roff with the man macros). Verbs of `command` without a page of their own are
+/// described on it. `version` is as "0.1.0"; `date` is as "2026-11-21", or empty.
 enum class VerbPages { kOwn, kNone };
 std::string manual_page(const CommandTable& command, VerbPages verb_pages, const std::string& version,
                         const std::string& date);
 
-/// "vestige record" has the page "vestige-record".
+/// Returns the page of a command: "vestige-record" for "vestige record".
 std::string page_name(const CommandTable& command);
 
 }  // namespace vestige::help

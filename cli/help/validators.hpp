@@ -5,10 +5,10 @@
 
 namespace vestige::help {
 
-// CLI11 validators of numbers, which must be finite: CLI11's own let nan through.
+// CLI11 validators of finite numbers. CLI11's own validators accept nan.
 extern const CLI::Validator kFinite;
-/// Of a scenario's frames. Below, it has to live through thousands of seconds from one to the next; above, times in
-/// nanoseconds coincide.
+/// The range of a scenario's frame rate. Below it, a scenario has to simulate thousands of seconds from one frame to
+/// the next. Above it, times in nanoseconds coincide.
 inline constexpr double kLeastRate_hz = 1e-3;
 inline constexpr double kMostRate_hz = 1e9;
 

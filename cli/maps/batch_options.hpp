@@ -12,14 +12,14 @@
 
 namespace vestige::cli {
 
-/// What 'vestige batch' and 'vestige batch slurm' are told alike.
+/// The options that 'vestige batch' and 'vestige batch slurm' share.
 struct BatchOptions {
   CommonOptions common;
   DetectorChoice choice;
   std::vector<std::string> maps;
   std::vector<std::string> traces;
   std::string laws;
-  LawFlags law_parameters;  ///< of all laws alike
+  LawFlags law_parameters;  ///< for all laws
   std::string avatar;
   std::string rank_by;
   std::optional<double> rate_hz;
@@ -28,22 +28,22 @@ struct BatchOptions {
   std::string output;
 };
 
-/// Lines of the ranking that are printed; its file has them all.
+/// Number of lines of the ranking that are printed; its file has all lines.
 inline constexpr std::size_t kRowsShown = 20;
 
-/// Adds all of them but --jobs and --shard.
+/// Adds all of these flags. --jobs and --shard are not among them.
 void add_batch_options(CLI::App& verb, BatchOptions& options);
 
-/// The plan that they make, but for what must be read from files (`load_inputs`). Throws `UsageError`.
+/// Returns the plan for the options, without what must be read from files (`load_inputs`). Throws `UsageError`.
 BatchPlan plan_of(const BatchOptions& options);
 
-/// The same flags again, as words for a shell: without -o, and without those that change no result.
+/// Returns the flags as words for a shell, without -o, --json, -q and -v.
 std::vector<std::string> arguments_of(const BatchOptions& options);
 
 void add_batch_merge(CLI::App& batch, Invocation& invocation);
 void add_batch_slurm(CLI::App& batch, Invocation& invocation);
 
-/// Warns of what run.json says about avatar and maps (`input_warnings`).
+/// Prints the warnings about avatar and maps in run.json (`input_warnings`).
 void warn_of_inputs(const nlohmann::ordered_json& run, Verbosity verbosity);
 
 /// Adds --rank-by.

@@ -353,9 +353,10 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   ReplayResult result;
   {
     Progress progress("Replaying", verbosity);
-    result = replay(trace.reader, trace.avatar, trace.map.actuator_count, detectors,
-                    {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get(), drive.get()},
-                    verification.expectation(), changes, [&](double share) { return progress.update(share); });
+    const ReplayOutputs sinks = {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get(),
+                                 drive.get()};
+    const ReplayPlan plan = {trace.avatar, trace.map.actuator_count, sinks, verification.expectation(), changes};
+    result = replay(trace.reader, detectors, plan, [&](double share) { return progress.update(share); });
   }
   if (result.frames == 0) require_frames(trace.reader, options.trace);
   if (textures) textures->write(*texture_file);

@@ -15,7 +15,7 @@
 
 namespace vestige::plot {
 
-/// What the command line says, of every kind of figure.
+/// The options of the command line, for every kind of figure.
 struct Options {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
@@ -40,18 +40,18 @@ inline Overwrite overwrite_of(const Options& options) {
   return options.force ? Overwrite::kAllow : Overwrite::kRefuse;
 }
 
-/// "vestige: warning: …" on standard error; with -q, nothing.
+/// Prints "vestige: warning: …" to standard error; with -q, prints nothing.
 void warn(const Options& options, std::string_view text);
 void warn(const Options& options, const std::vector<std::string>& texts);
 
-/// Writes a file and says so.
+/// Writes a file and prints its path, unless -q is given.
 void write_file(const Options& options, const std::filesystem::path& path, std::string_view bytes);
 
-/// Writes STEM.svg and STEM.png. Without OpenGL the second is left out, which is `cli::kDataLost`.
+/// Writes STEM.svg and STEM.png. Without OpenGL, it leaves out the PNG and returns `cli::kDataLost`.
 int write_figure(const Options& options, const std::filesystem::path& stem,
                  const std::function<std::unique_ptr<Figure>()>& make_figure);
 
-/// OUT of `-o OUT`, without .svg or .png; else the input's name without its extension.
+/// Returns OUT of `-o OUT`, without .svg or .png. Without -o, returns the input's name without its extension.
 std::filesystem::path stem_of(const Options& options);
 
 }  // namespace vestige::plot

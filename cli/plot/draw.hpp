@@ -4,8 +4,8 @@
 
 namespace vestige::plot {
 
-// One for each kind of figure: reads what `options` names, draws it, writes SVG and PNG. Each returns the exit code and
-// throws `Error`.
+// One function for each kind of figure. It reads the files that `options` names, draws the figure, and writes SVG and
+// PNG. It returns the exit code and throws `Error`.
 int draw_accuracy(const Options& options);
 int draw_sweep(const Options& options);
 int draw_growth(const Options& options);
@@ -16,10 +16,10 @@ int draw_avatar(Options options);
 int draw_body(Options options);
 int draw_scene(Options options);
 
-/// The page and the figures of what 'vestige batch' wrote.
+/// Draws the page and the figures of the results of 'vestige batch'.
 int draw_report(const Options& options);
 
-/// A trace as a time series for ParaView: a list and a folder of files instead of a figure.
+/// Writes a trace as a time series for ParaView: a list and a folder of files instead of a figure.
 int draw_paraview(const Options& options);
 
 }  // namespace vestige::plot

@@ -19,7 +19,7 @@ class SerialSink;
 
 namespace vestige::cli {
 
-/// The flags that say where frames go: they mean the same in every verb that drives a vest.
+/// The flags for the destination of frames. They mean the same in every verb that drives a vest.
 struct SinkChoice {
   std::string port;
   std::uint32_t baud = 0;
@@ -35,7 +35,7 @@ struct SinkChoice {
   Quantity quantity() const { return levels == "pressure" ? Quantity::kPressure : Quantity::kDuty; }
   bool is_osc() const { return port.starts_with(kOscPrefix); }
   bool is_file() const { return port == "-" || port.starts_with(kFilePrefix); }
-  /// The file that frames go to, "-", or empty.
+  /// Returns the path of the file that receives frames, "-" for standard output, or empty.
   std::string output_path() const;
 
   static constexpr std::string_view kOscPrefix = "osc:";
@@ -46,13 +46,14 @@ struct SinkChoice {
 /// --osc-value.
 void add_sink_options(CLI::App& verb, SinkChoice& choice);
 
-/// Which actuators a frame is for, where a board says how many it has.
+/// The actuators that a frame addresses, if a board reports how many it has.
 enum class Driven { kThoseNamed, kAllOfTheBoard };
 
-/// A sink that is open, and what is known of the other end.
+/// An open sink, and what is known of the other end.
 class OpenSink {
  public:
-  /// Opens it and, on a serial line, asks who is there: what a person should know of the answer goes to standard error.
+  /// Opens the sink. On a serial line, asks the board to identify itself, and warns on standard error if there is a
+  /// problem.
   OpenSink(const SinkChoice& choice, const std::vector<std::string>& actuator_names, const CommonOptions& options,
            Driven driven = Driven::kThoseNamed);
   ~OpenSink();
@@ -60,21 +61,21 @@ class OpenSink {
   OpenSink& operator=(const OpenSink&) = delete;
 
   ActuatorSink& sink() const { return *sink_; }
-  /// What the board said; nothing where none answered, or none was asked.
+  /// The board's answer; empty if no board answered, or if none was asked.
   const std::optional<Greeting>& greeting() const { return greeting_; }
-  /// Warns where the board that answered drives fewer than these.
+  /// Warns if the board drives fewer actuators than `actuators`.
   void warn_of_actuators_beyond(std::size_t actuators, Verbosity verbosity) const;
-  /// Finishes a file.
+  /// Finishes the output file, if there is one.
   void commit();
 
-  /// What an XBee in API mode says of packets that it could not deliver; empty: nothing.
+  /// Returns what an XBee in API mode reports about packets that it could not deliver; empty if all were delivered.
   std::string radio_failure() const;
   nlohmann::ordered_json link_json() const;
-  /// A line or two for people, given the bytes that were sent.
+  /// Describes the link for people in a line or two. `bytes` is the number of bytes sent.
   std::string describe_link(std::uint64_t bytes) const;
 
  private:
-  /// A frame's time on the line, as 10 bits a byte.
+  /// Returns a frame's time on the line, at 10 bits a byte.
   double line_time_s() const;
 
   SinkChoice choice_;
@@ -82,7 +83,7 @@ class OpenSink {
   FrameFileSink* file_ = nullptr;
   SerialSink* serial_ = nullptr;
   std::optional<Greeting> greeting_;
-  std::size_t frame_bytes_ = 0;  ///< of a state, on the line
+  std::size_t frame_bytes_ = 0;  ///< size of a state frame on the line
 };
 
 }  // namespace vestige::cli

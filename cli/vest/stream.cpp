@@ -33,7 +33,7 @@ struct StreamOptions {
   LawFlags law;
   std::string log;
 
-  /// Whether the map is a file that may be edited while it is felt.
+  /// Returns whether the map is a file that may change during the playback.
   bool is_map_watched() const { return !map.empty() && map != "builtin" && !is_layout(map); }
 };
 
@@ -173,7 +173,7 @@ void check_flags(const StreamOptions& options) {
                      "choose another detector");
 }
 
-/// Of the trace, or of --map.
+/// Puts the map of --map in the place of the trace's own, if one is named. Throws `Error` if there is no actuator.
 void choose_map(OpenTrace& trace, const StreamOptions& options) {
   if (!options.map.empty()) {
     trace.map = parse_actuator_map(read_map_files(trace.avatar, options.map), trace.avatar, options.map);
@@ -183,7 +183,7 @@ void choose_map(OpenTrace& trace, const StreamOptions& options) {
     throw Error(options.trace, "holds no actuator map, so that nothing would be felt", "name one: --map FILE.png");
 }
 
-/// Pressures where the sink asks for them, else what --law says.
+/// Returns laws for pressures if the sink asks for them, else those of --law.
 LawMaker make_laws(const StreamOptions& options, const OpenTrace& trace) {
   const double rate = options.playback.rate;
   if (options.sink.quantity() == Quantity::kPressure)

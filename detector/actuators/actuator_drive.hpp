@@ -10,13 +10,14 @@
 
 namespace vestige {
 
-/// Contacts in, what the vest is told out: a law's amplitudes, each through its motor's curve and kick-start.
+/// Converts contacts to the duty cycles of a vest: a law's amplitudes, each passed through its motor's curve and
+/// kick-start.
 class ActuatorDrive {
  public:
-  /// Without motors, a duty is 255 times the amplitude, rounded. Else one for each actuator.
+  /// Without motors, a duty is 255 times the amplitude, rounded. Otherwise `motors` has one motor for each actuator.
   explicit ActuatorDrive(std::unique_ptr<IntensityLaw> law, std::vector<Motor> motors = {});
 
-  /// As `IntensityLaw::next`. The reference stays good until the next call.
+  /// Arguments as for `IntensityLaw::next`. The reference is valid until the next call.
   const ActuatorFrame& next(double time_s, std::span<const Contact> row);
 
   IntensityLaw& law() { return *law_; }
@@ -28,8 +29,8 @@ class ActuatorDrive {
   ActuatorFrame frame_;
 };
 
-/// Turns amplitudes into duties: for one motor, what it is told at `time_s`. `kick_until_s` is the motor's own, and
-/// `duty_before` what it was told before.
+/// Returns the duty of one motor at `time_s`. `duty_before` is the motor's previous duty. `kick_until_s` is state that
+/// belongs to the motor.
 std::uint8_t drive(const Motor& motor, double amplitude, double time_s, std::uint8_t duty_before, double& kick_until_s);
 
 }  // namespace vestige

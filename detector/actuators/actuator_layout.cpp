@@ -16,11 +16,12 @@ namespace vestige {
 
 namespace {
 
-constexpr std::uint32_t kMostTexels = 2048;  // a side: a finer map is sampled
+constexpr std::uint32_t kMostTexels = 2048;  // along a side; a finer map is sampled
 constexpr std::size_t kLane = 8;             // actuators are padded to whole lanes
-constexpr float kBeyond_m = 1e9F;            // stands for infinitely far, where infinite - infinite would be no number
-constexpr double kFar_m = 0.050;             // apart: skin that is not one place
-/// Neighbours are looked for on a grid of points this much finer than the actuators are apart, within each triangle.
+constexpr float kBeyond_m = 1e9F;            // represents an infinite distance, where infinite - infinite would be NaN
+constexpr double kFar_m = 0.050;             // skin farther apart than this is not one place
+/// The search for neighbours uses a grid of points in each triangle. The grid is this much finer than the actuators'
+/// spacing.
 constexpr double kPointsASpacing = 8;
 constexpr int kMostPoints = 32;
 
@@ -30,8 +31,8 @@ std::vector<glm::dvec3> at_rest(const Avatar& avatar) {
   return position_m;
 }
 
-/// The weights of the corners in the triangle's point nearest to `p` (Ericson 2005, Real-Time Collision Detection,
-/// 5.1.5).
+/// Returns the weights of the corners for the triangle's point nearest to `p` (Ericson 2005, Real-Time Collision
+/// Detection, 5.1.5).
 glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const glm::dvec3 ab = b - a;
   const glm::dvec3 ac = c - a;
@@ -95,11 +96,12 @@ struct Piece {
   SkinPoint point;         // its middle
   std::uint16_t actuator;  // the map's number
   double area_m2;
-  std::size_t texel;  // or kNoTexel: a whole triangle, between the texels' centres, too large, or with its own actuator
+  std::size_t
+      texel;  // or kNoTexel for a whole triangle: between the texels' centres, too large, or with its own actuator
 };
 constexpr std::size_t kNoTexel = ~std::size_t{0};
 
-/// Goes through the skin in pieces; `texels`: how many there are.
+/// Visits the skin in pieces; each piece is one texel's share of a triangle, or a whole triangle.
 template <typename Take>
 void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const SurfaceDistance& surface, Take&& take) {
   const Size size = sampled_size(map);
@@ -120,7 +122,7 @@ void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const Surf
     if (!std::isfinite(a.x + a.y + b.x + b.y + c.x + c.y)) continue;
     const std::array<glm::dvec2, 3> corners = {a * scale, b * scale, c * scale};
     std::size_t texels = 0;
-    // One that covers the texture more than once over would go through each texel as often.
+    // A triangle that covers the texture more than once would visit each texel as often.
     if (fits_texture(corners, scale))
       for_texels_of(corners, width, height,
                     [&](std::uint32_t, std::uint32_t, std::uint32_t count) { texels += count; });
@@ -136,7 +138,7 @@ void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const Surf
         glm::dvec2 at(column + i, row);
         if (at.x >= width) at.x -= width;
         at += 0.5;
-        // Where the triangle lies, whole turns away.
+        // The texel's position next to the triangle, whole turns away.
         const glm::dvec2 middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         const glm::dvec2 turned = at + scale * glm::round((middle - at) / scale);
         const glm::dvec2 from = turned - corners[0];
@@ -150,7 +152,7 @@ void for_pieces_of_skin(const Avatar& avatar, const ActuatorMap& map, const Surf
   }
 }
 
-/// Finds skin whose texels other skin far away has too.
+/// Finds skin that shares texels with other skin far away.
 class SharedTexels {
  public:
   SharedTexels(const SurfaceDistance& surface, const ActuatorMap& map) : surface_(surface) {
@@ -242,7 +244,8 @@ void ActuatorLayout::place_actuators(const Avatar& avatar) {
     if (place_[i]) position_m_[i] = surface_.position_of(*place_[i]);
 }
 
-/// Regions that are touched, though no texel's centre of theirs lies on skin, have no piece of it.
+/// Places actuators whose regions are touched although no centre of their texels lies on skin. They have no piece of
+/// skin.
 void ActuatorLayout::place_specks(const Avatar& avatar) {
   constexpr int kSteps = 8;
   if (map_.triangle_count != 0) return;
@@ -288,7 +291,7 @@ void ActuatorLayout::measure_distances() {
     for (std::size_t b = 0; b < n; ++b)
       if (place_[b]) between_m_[a * n + b] = a == b ? 0 : static_cast<double>(located.distance_[b]);
   }
-  // Each was measured from both ends.
+  // Each distance was measured from both ends.
   std::vector<double> nearest_m;
   for (std::size_t a = 0; a < n; ++a) {
     double least_m = kUnreached_m;
@@ -389,7 +392,8 @@ void ActuatorLayout::locate(const SkinPoint& point, LocatedContact& located) con
   located.position_m = a + point.weight.y * ab + point.weight.z * ac;
   for (std::size_t i = 0; i < 3; ++i) located.detour_[i] = detour_.data() + corner[static_cast<int>(i)] * stride_;
 
-  // The triangle's plane, and how the corners' weights grow along its axes. A triangle without area has none.
+  // The axes of the triangle's plane, and the gradients of the corners' weights along them. A triangle without area has
+  // none.
   located.axis_ = {glm::dvec3(0), glm::dvec3(0)};
   located.gradient_ = {glm::dvec2(0), glm::dvec2(0), glm::dvec2(0)};
   const double length = glm::length(ab);

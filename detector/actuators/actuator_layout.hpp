@@ -18,12 +18,12 @@
 
 namespace vestige {
 
-/// A contact as a layout of actuators sees it: where on the body it is, and how far from each actuator.
+/// A contact relative to a layout of actuators: its place on the body, and its distance to each actuator.
 struct LocatedContact {
-  std::uint16_t actuator = 0;  ///< by the layout's map; 0: skin that none covers
+  std::uint16_t actuator = 0;  ///< by the layout's map; 0 if no actuator covers the skin
   double speed_m_per_s = 0;
   glm::dvec3 position_m = glm::dvec3(0);  ///< on the body at rest, wherever the body was in the trace
-  /// Along the surface, metres, from actuator 0 on.
+  /// Distances along the surface to the actuators, in metres, from actuator 0 on.
   std::span<const float> distance_m() const { return {distance_.data(), count_}; }
 
  private:
@@ -35,12 +35,12 @@ struct LocatedContact {
   std::array<glm::dvec2, 3> gradient_ = {};  // of the corners' weights, in those axes
 };
 
-/// An actuator map on a body: where its actuators are on the skin, how much of it each covers, and how far it is along
-/// the skin from any point to each. The body is the avatar at rest, as its file's nodes place it, in metres.
+/// An actuator map on a body: the place of each actuator on the skin, the skin area that it covers, and the distance
+/// along the skin from any point to it. The body is the avatar at rest, as the nodes of its file place it, in metres.
 ///
-/// Actuators count from 0 here (the map's own numbers less 1). Distances are those of `SurfaceDistance` with bridges,
-/// computed once for every vertex. Within a triangle the detour, distance less straight line, is interpolated, so that
-/// a point next to an actuator is as near to it as it is.
+/// Actuators count from 0 here (the map's own numbers minus 1). Distances are those of `SurfaceDistance` with bridges,
+/// computed once for every vertex. Within a triangle, the detour (distance minus straight line) is interpolated. So the
+/// computed distance of a point next to an actuator is as small as the real one.
 class ActuatorLayout {
  public:
   ActuatorLayout(const Avatar& avatar, ActuatorMap map);
@@ -49,43 +49,45 @@ class ActuatorLayout {
   const SurfaceDistance& surface() const { return surface_; }
   std::size_t actuator_count() const { return map_.actuator_count; }
 
-  /// Where an actuator is: the skin's nearest point to the map's `position_m`; where the map gives none, the point of
-  /// its region nearest to the region's middle (by area). None for an actuator without a region and a position, which
-  /// can never fire.
+  /// Returns the place of an actuator: the skin's nearest point to the map's `position_m`. If the map gives no
+  /// position, the place is the point of the actuator's region nearest to the region's middle (by area). Returns
+  /// nothing for an actuator with neither a region nor a position; such an actuator can never fire.
   const std::optional<SkinPoint>& place(std::size_t actuator) const { return place_[actuator]; }
-  /// Metres, on the body at rest. (0, 0, 0) for one without a place.
+  /// The place in metres, on the body at rest; (0, 0, 0) for an actuator without a place.
   const glm::dvec3& position_m(std::size_t actuator) const { return position_m_[actuator]; }
-  /// Of the skin that fires it, square metres; and of all actuators, and of the whole skin.
+  /// Area of the skin that fires one actuator, that fires any actuator, and of the whole skin, in square metres.
   double area_m2(std::size_t actuator) const { return area_m2_[actuator]; }
   double mapped_area_m2() const;
   double skin_area_m2() const { return skin_area_m2_; }
-  /// The share of the mapped skin whose texels other skin has too that is far from it (more than 50 mm, not touching):
-  /// contact there fires an actuator that may be meant for the other. 0 where nothing is mapped.
+  /// The share of the mapped skin whose texels belong also to other skin that is more than 50 mm away. A contact there
+  /// fires an actuator that may be meant for the other skin. 0 if nothing is mapped.
   double ambiguous_share() const { return ambiguous_share_; }
 
-  /// Along the surface between two actuators; +inf where one has no place.
+  /// Distance along the surface between two actuators; +inf if one has no place.
   double between_m(std::size_t a, std::size_t b) const { return between_m_[a * actuator_count() + b]; }
-  /// The median over actuators of the distance to the nearest other one; +inf for fewer than two.
+  /// The median, over all actuators, of the distance to the nearest other actuator; +inf for fewer than two.
   double spacing_m() const { return spacing_m_; }
-  /// Actuators that are neighbours on the surface three by three: the dual of the cells of points that are nearest to
-  /// each (Delaunay's triangles, along the surface). What lies between actuators lies in one of these.
+  /// Triples of actuators that are neighbours on the surface. A cell is the set of points nearest to one actuator; the
+  /// triples are the dual of the cells (Delaunay's triangles, along the surface). A point between actuators lies in one
+  /// of these triangles.
   const std::vector<std::array<std::uint16_t, 3>>& neighbours() const { return neighbours_; }
-  /// Those of them that an actuator belongs to, as indices into `neighbours`.
+  /// The triples that an actuator belongs to, as indices into `neighbours`.
   std::span<const std::uint32_t> neighbours_of(std::size_t actuator) const;
-  /// The actuators that share a border with an actuator's cell, ascending.
+  /// The actuators whose cells share a border with an actuator's cell, ascending.
   std::span<const std::uint16_t> beside(std::size_t actuator) const;
 
-  /// Finds a contact's actuator by the map, and where it is. `contact` must carry triangle, barycentric and texture
-  /// coordinate; `located` is filled anew, its memory used again.
+  /// Finds a contact's actuator by the map, and the contact's place. `contact` must carry triangle, barycentric and
+  /// texture coordinate. The function replaces `located` and reuses its memory.
   void locate(const Contact& contact, LocatedContact& located) const;
-  /// A point of the skin by itself, with no actuator and no speed.
+  /// Locates a point of the skin, with no actuator and no speed.
   void locate(const SkinPoint& point, LocatedContact& located) const;
 
-  /// Which way it is to an actuator, and how far: a vector of that length in the plane of the contact's triangle, in
-  /// axes of its own, along which the distance shrinks fastest.
+  /// Returns the direction and the distance to an actuator: a vector of that length, in two axes of the plane of the
+  /// contact's triangle. The distance shrinks fastest along the vector.
   glm::dvec2 towards_m(const LocatedContact& located, std::size_t actuator) const;
 
-  /// Along the surface between two points of the skin: computed anew, in milliseconds.
+  /// Returns the distance along the surface between two points of the skin. Each call computes it anew, in
+  /// milliseconds.
   double distance_m(const SkinPoint& a, const SkinPoint& b) const;
 
  private:

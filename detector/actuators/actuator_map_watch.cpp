@@ -64,7 +64,7 @@ void ActuatorMapWatch::run(const std::stop_token& stop) {
 }
 
 void ActuatorMapWatch::read() try {
-  // A pipe might never end.
+  // Reading a pipe might never end.
   for (const auto& file : {std::filesystem::path(file_), sidecar_path(file_)})
     if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
       throw Error(file.string(), "is no regular file any more", "write it anew under its name");

@@ -14,32 +14,32 @@
 
 namespace vestige {
 
-/// A map as it was read, and where its actuators are on the body, if that was asked for.
+/// A map as it was read, and its layout on the body, if requested.
 struct WatchedMap {
   ActuatorMap map;
   std::shared_ptr<const ActuatorLayout> layout;
 };
 
-/// Reads an actuator map again when its PNG or its sidecar changes on disk, in a thread of its own, so that a map can
-/// be edited while it is felt (HAVE 2010 §III.B). A file is read once it has been left alone for 0.1 s.
+/// Reads an actuator map again, in its own thread, when its PNG or its sidecar changes on disk. So a user can edit a
+/// map and feel the result at once (HAVE 2010 §III.B). The watch reads a file once the file has not changed for 0.1 s.
 class ActuatorMapWatch {
  public:
-  enum class Layouts { kNone, kMeasured };  ///< measuring takes its time
+  enum class Layouts { kNone, kMeasured };  ///< measuring a layout takes time
 
-  /// What tells one state of a map's two files from another.
+  /// Returns a text that differs between two states of a map's two files.
   static std::string stamp(const std::string& file);
 
-  /// `file`: a PNG; `read_stamp`: its stamp from before it was read. Maps with another number of actuators than
-  /// `actuator_count` are not taken, nor is what cannot be read: `warn` is told, in the watch's thread, and the old one
-  /// stays. `avatar` stays in use.
+  /// `file` is a PNG, and `read_stamp` is the stamp that it had before it was read. The watch rejects a map that it
+  /// cannot read, or whose number of actuators is not `actuator_count`. Then it calls `warn`, in the watch's thread,
+  /// and the old map stays. The watch keeps a reference to `avatar`.
   ActuatorMapWatch(std::string file, std::string read_stamp, std::size_t actuator_count, const Avatar& avatar,
                    Layouts layouts, std::function<void(const std::string&)> warn);
-  /// Waits for the thread.
+  /// Waits for the thread to end.
   ~ActuatorMapWatch();
   ActuatorMapWatch(const ActuatorMapWatch&) = delete;
   ActuatorMapWatch& operator=(const ActuatorMapWatch&) = delete;
 
-  /// The newest map that has been read since the last call, whole.
+  /// Returns the newest map that was completely read since the last call.
   std::optional<WatchedMap> take();
 
  private:

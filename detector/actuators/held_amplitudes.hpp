@@ -7,7 +7,7 @@
 
 namespace vestige {
 
-/// What a contact asks of one actuator.
+/// The amplitude that a contact requests from one actuator.
 struct Share {
   std::uint32_t actuator = 0;  ///< from 0
   double amplitude = 0;        ///< more than 0, at most 1
@@ -15,21 +15,23 @@ struct Share {
   friend bool operator==(const Share&, const Share&) = default;
 };
 
-/// What contacts asked for, held for a while after: the largest amplitude for each actuator.
+/// Holds the amplitudes that contacts request for a while: the largest amplitude for each actuator.
 class HeldAmplitudes {
  public:
   enum class Rule {
     kEveryContact,      ///< each contact is held
-    kLatestOfCollider,  ///< a collider's next contact takes the place of the one before: it is in one place at a time
+    kLatestOfCollider,  ///< a collider's next contact replaces its previous one, because a collider is in one place at
+                        ///< a time
   };
 
   HeldAmplitudes(std::size_t actuator_count, double hold_s, Rule rule);
 
-  /// Goes on to `time_s`, which must not decrease, and drops what was asked for `hold_s` or longer ago.
+  /// Advances to `time_s`, which must not decrease. Drops requests that are `hold_s` old or older.
   void begin(double time_s);
-  /// A contact of now. `column`: of its collider. No shares: a contact that asks for nothing, which is no contact.
+  /// Adds a contact at the current time. `column` is the column of its collider. A contact without shares requests
+  /// nothing and is ignored.
   void add(std::uint32_t column, std::span<const Share> shares);
-  /// 0 … 1 for each actuator, now. The reference stays good until the next `begin`.
+  /// Returns the current amplitude 0 … 1 of each actuator. The reference is valid until the next `begin`.
   const std::vector<double>& now();
 
  private:
@@ -47,7 +49,8 @@ class HeldAmplitudes {
   double hold_s_;
   double time_s_ = 0;
   std::vector<double> amplitude_;
-  // kEveryContact: for each actuator, what amplitude_ lasts until, and behind it weaker ones that outlast it.
+  // kEveryContact: for each actuator, the time until which amplitude_ lasts, and then weaker amplitudes that outlast
+  // it.
   std::vector<double> until_s_;
   std::vector<std::vector<Held>> weaker_;
   // kLatestOfCollider

@@ -19,12 +19,12 @@ namespace {
 using Layout = std::shared_ptr<const ActuatorLayout>;
 using Rule = HeldAmplitudes::Rule;
 
-/// Half of a duty's step: rounds to nothing.
+/// Half of a duty's step; it rounds to zero.
 constexpr double kNothing = 0.5 / 255;
 
-/// Laws whose contacts ask for their own actuator alone, which a row's contacts name.
+/// Laws whose contacts request only their own actuator, which the row's contacts carry.
 constexpr PlaneSet kOwnActuator = Plane::kActuator;
-/// Laws that ask where a contact is.
+/// Laws that need the place of a contact.
 constexpr PlaneSet kPlace = Plane::kTriangle | Plane::kBarycentric | Plane::kTextureCoordinate;
 
 class Binary final : public IntensityLaw {
@@ -56,7 +56,7 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
   return a.x * b.y - a.y * b.x;
 }
 
-/// The actuators that a contact lies between, and their weights, which add up to 1.
+/// The actuators around a contact, and their weights, which add up to 1.
 class Between {
  public:
   Between(const ActuatorLayout& layout, const LocatedContact& contact) : layout_(layout), contact_(contact) {
@@ -69,8 +69,8 @@ class Between {
 
  private:
   bool find_triangle() {
-    // Of several that hold the contact (two ways to cut a square, or one on the body's other side), the one whose
-    // corners are nearest: the farthest of them, then all.
+    // Several triangles can contain the contact (two ways to cut a square, or one on the body's other side). Choose the
+    // one with the nearest corners: first compare the farthest corner, then the sum of all.
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     std::pair<float, float> best_m = {kInfinity, kInfinity};
     for (const std::uint32_t number : layout_.neighbours_of(nearest_)) {
@@ -113,7 +113,7 @@ class Between {
     }
   }
 
-  /// Triangles share corners: each is looked up once.
+  /// Triangles share corners, so look up each corner once.
   glm::dvec2 towards(std::uint16_t actuator) {
     for (std::size_t i = 0; i < known_count_; ++i)
       if (known_[i].first == actuator) return known_[i].second;
@@ -161,7 +161,7 @@ class Gaussian final : public IntensityLaw {
     out.clear();
     if (contact.actuator == 0) return;
     const double sigma_m = sigma_of(layout(), options());
-    // One actuator alone has no spacing: it is on.
+    // A single actuator has no spacing, so it is on.
     const double scale = std::isfinite(sigma_m) ? 0.5 / (sigma_m * sigma_m) : 0;
     const auto reach_m = static_cast<float>(std::sqrt(kLogOfSteps / scale));
     const std::span<const float> distance_m = contact.distance_m();

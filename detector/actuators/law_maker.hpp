@@ -14,35 +14,35 @@
 
 namespace vestige {
 
-/// The flags that say what contacts mean to the actuators: they mean the same in every verb that drives some.
+/// The flags for what contacts mean to the actuators. They mean the same in every verb that drives actuators.
 struct LawFlags {
   std::string law = "binary";
   std::optional<double> full_speed_m_per_s;
   std::optional<double> sigma_mm;
-  std::string actuator;  ///< file of an `ActuatorModel`; empty: ideal ones
+  std::string actuator;  ///< file of an `ActuatorModel`; empty for ideal motors
   double hold_ms = 60;
 
-  /// As the laws take them; `hold_rate`: trace seconds per second of the vest.
+  /// Returns the options that the laws take. `hold_rate` is the number of trace seconds per second of the vest.
   LawOptions options(double hold_rate = 1) const;
-  /// Throws `UsageError` for a flag that the law does not know.
+  /// Throws `UsageError` for a flag that the law does not use.
   void check() const;
-  /// Whether any is other than its default, --hold apart.
+  /// Returns whether any flag, except --hold, differs from its default.
   bool any() const { return law != "binary" || !actuator.empty() || full_speed_m_per_s || sigma_mm; }
 };
 
-/// What contacts drive: a law over a map, and the motors.
+/// Makes `ActuatorDrive`s: a law over a map, and the motors.
 class DriveMaker {
  public:
-  /// Checks the flags, reads --actuator, and measures the layout where the law needs one. The avatar stays in use.
+  /// Checks the flags, reads --actuator, and measures the layout if the law needs one. Keeps a reference to the avatar.
   DriveMaker(const LawFlags& flags, const Avatar& avatar, const ActuatorMap& map, double hold_rate = 1);
 
-  /// What rows must carry.
+  /// The planes that rows must carry.
   PlaneSet planes() const { return planes_; }
   bool has_layout() const { return layout_ != nullptr; }
   std::unique_ptr<ActuatorDrive> make() const;
-  /// For another map of as many actuators; null where the law needs none.
+  /// Returns the layout for another map with equally many actuators; null if the law needs no layout.
   std::shared_ptr<const ActuatorLayout> layout_of(const ActuatorMap& map) const;
-  /// What drives are made with from now on.
+  /// Sets the layout for the drives made from now on.
   void use(std::shared_ptr<const ActuatorLayout> layout) { layout_ = std::move(layout); }
   nlohmann::ordered_json to_json() const;
 
@@ -56,21 +56,21 @@ class DriveMaker {
   PlaneSet planes_;
 };
 
-/// What a trace's contacts become, run by run: what drives are told, or pressures.
+/// Makes a law for each run through a trace: its contacts become duties of motors, or pressures.
 class LawMaker {
  public:
-  /// Of one run. The reference stays good until the next call.
+  /// A law of one run. The reference it returns stays good until the next call.
   using Law = std::function<const ActuatorFrame&(double time_s, const ContactRow& row)>;
 
   explicit LawMaker(DriveMaker drives) : drives_(std::move(drives)) {}
-  /// Pressures, each held for `hold_s`.
+  /// For pressures, each held for `hold_s`.
   LawMaker(std::size_t actuator_count, double hold_s) : actuator_count_(actuator_count), hold_s_(hold_s) {}
 
   PlaneSet planes() const { return drives_ ? drives_->planes() : kHashedPlanes | Plane::kPressure; }
   bool needs_layout() const { return drives_ && drives_->has_layout(); }
   nlohmann::ordered_json to_json() const { return drives_ ? drives_->to_json() : nlohmann::ordered_json("pressure"); }
   Law make();
-  /// Goes on with another map's layout, in this run and those that follow.
+  /// Uses another map's layout from now on, in this run and those that follow.
   void use(const std::shared_ptr<const ActuatorLayout>& layout);
 
  private:

@@ -12,12 +12,12 @@ namespace vestige {
 
 namespace {
 
-/// Around what a triangle covers: room for the rounding of texture coordinates, in fp64 and on a GPU in fp32.
+/// Margin around the texels of a triangle, for the rounding of texture coordinates, in fp64 and on a GPU in fp32.
 constexpr double kMarginTexels = 1;
-/// Up to here a texture coordinate in fp32, after a few operations, errs by less than the margin.
+/// Up to here, a texture coordinate in fp32 errs by less than the margin after a few operations.
 constexpr double kFarthestTexel = 1 << 20;
 
-/// Where a map has actuators: runs of texels by row, so that a question about a stretch of a row is a binary search.
+/// The texels with actuators as runs by row. So a query for an interval of a row is a binary search.
 class MappedTexels {
  public:
   explicit MappedTexels(const ActuatorMap& map) : width_(map.width), height_(map.height), rows_(map.height) {
@@ -36,7 +36,7 @@ class MappedTexels {
   double width() const { return width_; }
   double height() const { return height_; }
 
-  /// Whether a texel of the columns first … last of a row has an actuator; both wrap around.
+  /// Returns whether a texel in the columns first … last of a row has an actuator; both row and columns wrap around.
   bool any(std::int64_t row, std::int64_t first, std::int64_t last) const {
     const std::vector<Run>& runs = rows_[static_cast<std::size_t>(wrapped(row, height_))];
     if (last - first + 1 >= width_) return !runs.empty();
@@ -63,8 +63,8 @@ class MappedTexels {
   std::vector<std::vector<Run>> rows_;
 };
 
-/// Conservative rasterisation (Akenine-Möller & Aila 2005), row by row: whether any texel within the margin of the
-/// triangle has an actuator. Corners in texels.
+/// Returns whether any texel within the margin of the triangle has an actuator: conservative rasterisation
+/// (Akenine-Möller & Aila 2005), row by row. Corners are in texels.
 bool covers_mapped(const MappedTexels& texels, const std::array<glm::dvec2, 3>& corners) {
   const glm::dvec2 low = glm::min(glm::min(corners[0], corners[1]), corners[2]);
   const glm::dvec2 high = glm::max(glm::max(corners[0], corners[1]), corners[2]);
@@ -94,11 +94,11 @@ Avatar with_triangles(const Avatar& avatar, const std::vector<std::uint32_t>& nu
   return part;
 }
 
-/// Nothing where the map needs no other numbers.
+/// Returns nothing if the map needs no other numbers.
 std::optional<ActuatorMap> with_triangles(const ActuatorMap& map, const std::vector<std::uint32_t>& numbers) {
   if (map.triangle_count == 0) return std::nullopt;
   ActuatorMap part = map;
-  // No larger than the whole map, which a GPU's texture has room for.
+  // The texture keeps the size of the whole map, which fits into a GPU's texture.
   for (std::size_t i = 0; i < numbers.size(); ++i) part.actuator[i] = map.actuator[numbers[i]];
   part.triangle_count = numbers.size();
   return part;
@@ -132,9 +132,10 @@ class MappedSkinDetector final : public Detector {
 
  private:
   std::size_t left_out_;
-  std::vector<std::uint32_t> numbers_;  ///< in the whole avatar, of the triangles of `part_`; ascending, as ties need
-  Avatar part_;                         ///< with all vertices
-  std::optional<ActuatorMap> map_;      ///< of `part_`
+  std::vector<std::uint32_t>
+      numbers_;  ///< numbers, in the whole avatar, of the triangles of `part_`; ascending, as ties need
+  Avatar part_;  ///< with all vertices
+  std::optional<ActuatorMap> map_;  ///< of `part_`
   std::unique_ptr<Detector> detector_;
 };
 
@@ -159,7 +160,7 @@ std::vector<std::uint32_t> mapped_triangles(const Avatar& avatar, const Actuator
 
 std::unique_ptr<Detector> on_mapped_skin(const Avatar& avatar, const ActuatorMap& map, const DetectorMaker& make) {
   std::vector<std::uint32_t> numbers = mapped_triangles(avatar, map);
-  // Nobody needs a detector of no triangle at all: one is kept, which fires nothing either.
+  // Avoid a detector without triangles: keep one triangle, which fires nothing either.
   if (numbers.empty() && !avatar.triangles.empty()) numbers.push_back(0);
   if (numbers.size() == avatar.triangles.size()) return make(avatar, map);
   return std::make_unique<MappedSkinDetector>(avatar, map, std::move(numbers), make);

@@ -9,8 +9,8 @@
 
 namespace vestige {
 
-// Functions that give the same bits on every machine, which a C library's need not: theirs differ between processors
-// with and without fma. Both are within 1e-15 of the true value, relative to it (log2: or absolute).
+// These functions return the same bits on every machine. A C library's functions need not: theirs differ between
+// processors with and without fma. The relative error of both is within 1e-15 (log2: or the absolute error).
 
 /// e^x.
 inline double portable_exp(double x) {
@@ -33,7 +33,7 @@ inline double portable_exp(double x) {
   return sum * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + 1023) << 52);
 }
 
-/// The logarithm to base 2; -inf for 0, not a number below. Exact for powers of two.
+/// Returns the logarithm to base 2: -inf for 0, and NaN below 0. Exact for powers of two.
 inline double portable_log2(double x) {
   if (!(x > 0)) return x == 0 ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
   if (std::isinf(x)) return x;

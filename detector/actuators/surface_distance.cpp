@@ -17,18 +17,20 @@ namespace vestige {
 
 namespace {
 
-constexpr double kNear = 0.01;  // of the box's longest side: parts so close lie on each other
-/// A vertex is marched on from at most so often: rounding, or a mesh made for it, must not keep the front moving.
+constexpr double kNear = 0.01;  // share of the box's longest side: parts this close lie on each other
+/// A vertex is marched on from at most this often. Otherwise rounding, or a mesh made for it, could keep the front
+/// moving forever.
 constexpr int kMostVisits = 32;
-/// What is shorter by less than this share is not marched on from again.
+/// A distance that is shorter by less than this share does not restart the march.
 constexpr double kGain = 1e-12;
 
 bool is_finite(const glm::dvec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
 
-/// The distance at C from those at A and B, as from a point in the plane of the triangle, on the other side of A B
-/// (Novotni & Klein 2002, §3.1). +inf where there is no such point, or its straight line to C does not cross A B.
+/// Returns the distance at C from the distances at A and B, as from a point in the plane of the triangle, on the other
+/// side of A B (Novotni & Klein 2002, §3.1). Returns +inf if there is no such point, or if its straight line to C does
+/// not cross A B.
 double unfold(double at_a_m, double at_b_m, double ab_m, double ac_m, double bc_m) {
   if (!(ab_m > 0)) return kUnreached_m;
   const double cx = (ac_m * ac_m - bc_m * bc_m + ab_m * ab_m) / (2 * ab_m);
@@ -48,7 +50,7 @@ std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   return i;
 }
 
-/// The smaller number stands for both.
+/// Unites two groups; the smaller number represents both.
 void unite(std::vector<std::uint32_t>& parent, std::uint32_t a, std::uint32_t b) {
   a = root_of(parent, a);
   b = root_of(parent, b);
@@ -59,7 +61,7 @@ void unite(std::vector<std::uint32_t>& parent, std::uint32_t a, std::uint32_t b)
 
 SurfaceDistance::SurfaceDistance(std::vector<glm::dvec3> position_m, std::span<const glm::uvec3> triangles, Gaps gaps)
     : position_m_(std::move(position_m)), triangles_(triangles.begin(), triangles.end()) {
-  // Whatever is not finite stands for itself.
+  // A vertex that is not finite represents itself.
   weld_ = weld(position_m_.size(), [&](std::uint32_t i) {
     const glm::dvec3& p = position_m_[i];
     return is_finite(p) ? std::tuple(p.x, p.y, p.z, 0U) : std::tuple(0.0, 0.0, 0.0, i + 1);
@@ -117,7 +119,7 @@ void SurfaceDistance::build_bridges(std::vector<std::uint32_t> part) {
     bridges_[b].push_back({a, length_m});
   };
 
-  // Parts that lie on each other, by cells as wide as the reach.
+  // Find parts that lie on each other, by cells as wide as the reach.
   const Box box = box_around(points);
   const double reach_m = kNear * box.longest_side();
   const auto cell_of = [&](const glm::dvec3& p) {
@@ -148,7 +150,7 @@ void SurfaceDistance::build_bridges(std::vector<std::uint32_t> part) {
     unite(group, i, nearest);
   }
 
-  // What is still apart, nearest first (Prim): from the group of the first vertex outwards.
+  // Join what is still apart, nearest first (Prim), from the group of the first vertex outwards.
   for (const std::uint32_t i : vertices) group[i] = root_of(group, i);
   std::vector<std::uint32_t> nearest(position_m_.size(), 0);
   std::vector<double> nearest_m(position_m_.size(), kUnreached_m);

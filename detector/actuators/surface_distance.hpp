@@ -12,43 +12,44 @@
 
 namespace vestige {
 
-/// How far it is where no way leads.
+/// The distance of a point that cannot be reached.
 inline constexpr double kUnreached_m = std::numeric_limits<double>::infinity();
 
-/// How far it is along a surface from a point of it to every vertex: fast marching (Kimmel & Sethian 1998, "Computing
-/// geodesic paths on manifolds"), where a triangle hands distances on as from a point source unfolded into its plane
-/// (Novotni & Klein 2002, "Computing geodesic distances on triangular meshes"): exact on a plane; where edges are a
-/// fifth of the radius of curvature, as on a coarse torso, too short by 0.6 % a quarter turn away and 1.4 % half a turn
-/// away, and less in proportion on finer meshes. A vertex whose distance turns out shorter is marched on from again, so
-/// obtuse triangles need no splitting.
+/// Computes the distance along a surface from a point of it to every vertex by fast marching (Kimmel & Sethian 1998,
+/// "Computing geodesic paths on manifolds"). A triangle passes distances on as if from a point source unfolded into its
+/// plane (Novotni & Klein 2002, "Computing geodesic distances on triangular meshes"). This is exact on a plane. If
+/// edges are a fifth of the radius of curvature, as on a coarse torso, the distance is too short by 0.6 % a quarter
+/// turn away and by 1.4 % half a turn away. On finer meshes the error is smaller in proportion. A vertex whose distance
+/// turns out shorter is marched on from again, so obtuse triangles need no splitting.
 ///
-/// Never longer than the shortest way along edges, never shorter than the straight line. Vertices in the same place
-/// are one; edges may have any number of triangles. Triangles without area are passed along their edges. The same bits
-/// on every machine.
+/// The distance is never longer than the shortest way along edges, and never shorter than the straight line. Vertices
+/// in the same place count as one. Edges may have any number of triangles. Triangles without area pass distances along
+/// their edges. The result has the same bits on every machine.
 class SurfaceDistance {
  public:
-  /// What lies between parts of the surface that share no vertex, such as skin and clothes.
+  /// How to treat gaps between parts of the surface that share no vertex, such as skin and clothes.
   enum class Gaps {
-    kOpen,  ///< nothing: one cannot be reached from the other
-    /// Every vertex is joined by a straight line to the nearest one of another part within 1 % of the longest side of
-    /// the box around all; parts that are still apart are joined where they come nearest.
+    kOpen,  ///< no connection: one part cannot be reached from another
+    /// A straight line joins every vertex to the nearest vertex of another part, if that is within 1 % of the longest
+    /// side of the box around all. Parts that are still apart are then joined at their closest vertices.
     kBridged,
   };
 
-  /// `position_m`: a vertex each; `triangles`: indices into it.
+  /// `position_m` has the vertices, and `triangles` has indices into it.
   SurfaceDistance(std::vector<glm::dvec3> position_m, std::span<const glm::uvec3> triangles, Gaps gaps);
 
-  /// Metres, for every vertex; kUnreached_m for one that is not reached, or not finite.
+  /// Returns the distance in metres for every vertex. The value is kUnreached_m for a vertex that cannot be reached or
+  /// is not finite.
   std::vector<double> from(const SkinPoint& source) const;
 
   const std::vector<glm::dvec3>& position_m() const { return position_m_; }
   const std::vector<glm::uvec3>& triangles() const { return triangles_; }
   glm::dvec3 position_of(const SkinPoint& point) const;
-  /// Parts that share no vertex, before bridges; vertices without a triangle do not count.
+  /// The number of parts that share no vertex, without bridges. Vertices without a triangle do not count.
   std::size_t parts() const { return parts_; }
 
  private:
-  /// A triangle as its corner 0 sees it: two other vertices and the lengths of the sides.
+  /// A triangle relative to its corner 0: the two other vertices and the lengths of the sides.
   struct Fan {
     std::array<std::uint32_t, 2> other;
     std::array<double, 2> side_m;  ///< to each of the two
@@ -65,10 +66,10 @@ class SurfaceDistance {
 
   std::vector<glm::dvec3> position_m_;
   std::vector<glm::uvec3> triangles_;
-  std::vector<std::uint32_t> weld_;  ///< of each vertex: the one that stands for all in its place
+  std::vector<std::uint32_t> weld_;  ///< for each vertex: the vertex that represents all vertices in its place
   std::vector<std::uint32_t> first_fan_;
   std::vector<Fan> fans_;
-  std::vector<std::vector<Bridge>> bridges_;  ///< of each vertex; empty where there is none at all
+  std::vector<std::vector<Bridge>> bridges_;  ///< for each vertex; empty if the surface has no bridge
   std::size_t parts_ = 0;
 };
 

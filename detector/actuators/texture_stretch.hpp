@@ -10,7 +10,7 @@
 
 namespace vestige {
 
-/// A stretch of x; nothing while low > high.
+/// An interval of x; empty if low > high.
 struct Stretch {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -21,8 +21,9 @@ struct Stretch {
   }
 };
 
-/// The part of a triangle with low <= y <= high, along x: of its corners there and of its edges where they leave. Of a
-/// row of texels, those are touched that the stretch touches (conservative rasterisation: Akenine-Möller & Aila 2005).
+/// Returns the x interval of the part of a triangle with low <= y <= high: of the corners in that range, and of the
+/// edges where they leave it. In a row of texels, the triangle touches the texels that this interval touches
+/// (conservative rasterisation: Akenine-Möller & Aila 2005).
 inline Stretch stretch_within(const std::array<glm::dvec2, 3>& corners, double low, double high) {
   Stretch stretch;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -36,8 +37,8 @@ inline Stretch stretch_within(const std::array<glm::dvec2, 3>& corners, double l
   return stretch;
 }
 
-/// Calls `visit(column, row)` for every texel that a triangle touches, its edges included; not wrapped. `corners`: in
-/// texels, finite and not far apart.
+/// Calls `visit(column, row)` for every texel that a triangle touches, including its edges, without wrapping. `corners`
+/// are in texels, finite and not far apart.
 template <typename Visit>
 void for_touched_texels(const std::array<glm::dvec2, 3>& corners, const Visit& visit) {
   const auto texel_of = [](double value) { return static_cast<std::int64_t>(std::floor(value)); };
@@ -50,8 +51,8 @@ void for_touched_texels(const std::array<glm::dvec2, 3>& corners, const Visit& v
   }
 }
 
-/// Whether a triangle's texture coordinates are finite and cover a texture of this size once at most, so that its
-/// texels may be gone through.
+/// Returns whether a triangle's texture coordinates are finite and cover a texture of this size at most once. Then its
+/// texels can be enumerated.
 inline bool fits_texture(const std::array<glm::dvec2, 3>& corners, const glm::dvec2& size) {
   constexpr double kFarthest = 1 << 30;
   const glm::dvec2 low = glm::min(glm::min(corners[0], corners[1]), corners[2]);

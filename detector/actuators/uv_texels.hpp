@@ -9,15 +9,16 @@
 
 namespace vestige {
 
-/// Goes through the texels of a texture of width x height whose centres lie in a triangle, row by row, wrapped as an
-/// actuator map wraps (detector/CONTRACT.md, 8): `run(row, column, count)` for each stretch of texels, which goes on at
-/// column 0 where it comes to the width. `corners`: in texels, any finite values. A texel on a common edge belongs to
-/// one of its triangles; of a triangle wider or higher than the texture, one turn around it counts.
+/// Visits the texels of a texture of width x height whose centres lie in a triangle, row by row. Texels wrap as in an
+/// actuator map (detector/CONTRACT.md, 8). The function calls `run(row, column, count)` for each run of texels; a run
+/// that reaches the width continues at column 0. `corners` are in texels and may have any finite values. A texel on a
+/// common edge belongs to only one of the two triangles. For a triangle wider or higher than the texture, only one turn
+/// around the texture counts.
 template <typename Run>
 void for_texels_of(const std::array<glm::dvec2, 3>& corners, std::uint32_t width, std::uint32_t height, Run&& run) {
   const auto wrap = [](double texel, std::uint32_t side) {
     const double turn = side;
-    // Coordinates beyond 2^53 texels all fall on the first or last.
+    // Coordinates beyond 2^53 texels all fall on the first or the last texel.
     return std::min(static_cast<std::uint32_t>(texel - turn * std::floor(texel / turn)), side - 1);
   };
   const auto [low, high] = std::minmax({corners[0].y, corners[1].y, corners[2].y});
@@ -25,8 +26,8 @@ void for_texels_of(const std::array<glm::dvec2, 3>& corners, std::uint32_t width
   const double first_row = std::ceil(low - 0.5);
   const double rows = std::min<double>(std::ceil(high - 0.5) - first_row, height);
   for (int k = 0; k < static_cast<int>(rows); ++k) {
-    // Where the outline crosses the row's middle: from `begin` up to, but not with, `end`. Two triangles with a common
-    // edge compute the same crossing.
+    // The outline crosses the row's middle at `begin` (included) and `end` (excluded). Two triangles with a common edge
+    // compute the same crossing.
     const double y = first_row + k + 0.5;
     double begin = std::numeric_limits<double>::infinity();
     double end = -std::numeric_limits<double>::infinity();

@@ -1,4 +1,5 @@
-// Included once for each instruction set, after hwy/highway.h; so its guard is Highway's.
+// This file is included once for each instruction set, after hwy/highway.h. So the include guard follows Highway's
+// pattern.
 #if defined(VESTIGE_MASK_BITS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef VESTIGE_MASK_BITS_INL
 #undef VESTIGE_MASK_BITS_INL
@@ -13,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace vestige {
 namespace HWY_NAMESPACE {
 
-/// One bit for each lane, of which there are at most 16; the others are 0.
+/// Returns one bit for each lane, of which there are at most 16. All other bits are 0.
 template <typename D>
 inline std::uint32_t mask_bits(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
   static_assert(hwy::HWY_NAMESPACE::MaxLanes(D()) <= 16);

@@ -7,18 +7,20 @@
 
 namespace vestige {
 
-/// A box that surely holds what it is of; w means nothing.
+/// A box that surely contains its object. The w components are unused.
 struct alignas(16) SkinBox {
   glm::vec4 low;
   glm::vec4 high;
 };
 
-/// Boxes tested at once: one bit each.
+/// Number of boxes that one call tests, one bit each.
 inline constexpr std::size_t kBoxBlock = 32;
 
-/// Bit i of meets[k] says whether box i, of `count` up to kBoxBlock, meets boxes[k]; touching is meeting, and what is
-/// no number may meet anything. `ends`: low x of all boxes i, then low y, z, high x, y, z, each `stride` after the
-/// last; kBoxBlock floats of each may be read.
+/// Tests `count` boxes, at most kBoxBlock, against `boxes`. Bit i of meets[k] says whether box i meets boxes[k]. Boxes
+/// that touch meet. A coordinate that is not a number separates nothing.
+///
+/// `ends` holds low x of all boxes i, then low y, z, high x, y, z. Each group begins `stride` floats after the previous
+/// one. The function may read kBoxBlock floats of each group.
 void meet_boxes(std::span<const SkinBox> boxes, const float* ends, std::size_t stride, std::size_t count,
                 std::uint32_t* meets);
 

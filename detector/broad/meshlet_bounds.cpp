@@ -10,21 +10,25 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include <hwy/highway.h>
 
-// How much a computed box is widened, `pad`. Let u = 2^-24, and R the reach of the palette along an axis: the largest
-// |M_0 x| + |M_1 y| + |M_2 z| + |M_3| of any entry, with |x|, |y|, |z| the largest of the vertices that it moves. No
-// intermediate result is larger than R, but for factors near 1. By the standard model (Higham, Accuracy and Stability
-// of Numerical Algorithms, 2nd ed., 2.2 and Lemma 3.1) a sum of products each of which meets k rounded operations errs
-// by at most k u / (1 - k u) times the sum of the products' magnitudes:
+// The margin `pad` of a computed box. Let u = 2^-24. Let R be the reach of the palette along an axis: the largest |M_0
+// x| + |M_1 y| + |M_2 z| + |M_3| of any entry, where |x|, |y|, |z| are the largest values over the vertices that the
+// entry moves. No intermediate result is larger than R, apart from factors near 1. Consider a sum of products in which
+// each product meets k rounded operations. By the standard model (Higham, Accuracy and Stability of Numerical
+// Algorithms, 2nd ed., 2.2 and Lemma 3.1) the sum errs by at most k u / (1 - k u) times the sum of the products'
+// magnitudes:
 //   skin_vertex        a term meets 2 products, at most 7 sums over influences and 3 over columns: k = 12
 //   a box's centre     1 product, 3 sums: k = 4
 //   its half extent    1 product, 2 sums: k = 3
 //   its ends           1 sum, and 1 for the pad: k = 2 on up to 2 R
-// Together less than 32 u R. The rest boxes are rounded outwards. `pad` has 64 u R, which covers its own rounding too.
-// Weights: where those of a vertex sum to s, and lie between low and high times s, |s - 1| R more are needed; `pad` has
-// twice the largest |s - 1| of the avatar. A weight below 0 would be no convex combination: then nothing is bounded.
-// Underflow: a product below 2^-126 errs by at most 2^-150, times |x|, |y| or |z| if it is of a weight and a matrix.
-// With fewer than 64 products, 2^-116 (1 + |x| + |y| + |z|) is more than enough.
-// A rest box under a matrix: centre M c, half extent |M| h.
+// Together this is less than 32 u R. The rest boxes are rounded outwards. `pad` contains 64 u R, which also covers the
+// rounding of `pad`.
+// Weights: if a vertex's weights sum to s, the vertex lies between s times the low end and s times the high end of the
+// box. So the box needs |s - 1| R more. `pad` contains twice the largest |s - 1| of the avatar, times R. With a weight
+// below 0, the vertex is not a convex combination. Then no node has bounds.
+// Underflow: a product below 2^-126 errs by at most 2^-150. If the product is one of a weight and a matrix, the error
+// is multiplied by |x|, |y| or |z|. There are fewer than 64 products, so 2^-116 (1 + |x| + |y| + |z|) is more than
+// enough.
+// A rest box under a matrix has the centre M c and the half extent |M| h.
 HWY_BEFORE_NAMESPACE();
 namespace vestige {
 namespace HWY_NAMESPACE {
@@ -38,7 +42,7 @@ struct Ends {
   V high;
 };
 
-/// Of the axes `first` and following, as many as there are lanes.
+/// Returns the ends along the axes `first` and following, as many as there are lanes.
 inline Ends transformed(std::span<const RestBox> boxes, const BoundTransform* transforms, int first) {
   const D d;
   Ends ends = {hn::Set(d, std::numeric_limits<float>::infinity()), hn::Set(d, -std::numeric_limits<float>::infinity())};
@@ -56,7 +60,7 @@ inline Ends transformed(std::span<const RestBox> boxes, const BoundTransform* tr
   return ends;
 }
 
-/// The box of one node, which has rest boxes; `other` as in MeshletBounds.
+/// Bounds one node, which must have rest boxes; `other` as in MeshletBounds.
 inline void bound_node(std::span<const RestBox> boxes, const BoundTransform* now, const BoundTransform* other,
                        Method method, const glm::vec4& pad, SkinBox& out) {
   const D d;
@@ -77,10 +81,10 @@ inline void bound_node(std::span<const RestBox> boxes, const BoundTransform* now
   }
 }
 
-/// Boxes of nodes `first` and following.
 void bound_nodes(const Meshlets& meshlets, std::size_t level, std::size_t first, const BoundMotion& motion,
                  std::span<SkinBox> out) {
-  const auto [now, other, method, pad] = motion;  // else they are read anew after each box written
+  // A copy: otherwise the compiler reads the members again after each box that is written.
+  const auto [now, other, method, pad] = motion;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::span<const RestBox> rest = meshlets.rest_boxes(level, first + i);
     if (rest.empty()) {
@@ -103,14 +107,15 @@ namespace {
 HWY_EXPORT(bound_nodes);
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-/// Within this reach nothing overflows.
+/// Within this reach no computation overflows.
 constexpr float kLargestReach_m = std::numeric_limits<float>::max() / 64;
 
 glm::vec4 magnitude(const glm::vec4& v) {
   return {std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(v.w)};
 }
 
-/// The largest |s - 1| of the avatar, s the sum of a vertex's weights; infinity where one is no weight.
+/// Returns the largest |s - 1| of the avatar, where s is the sum of a vertex's weights. Returns infinity if a weight is
+/// negative or not a number.
 double weight_excess(const Avatar& avatar) {
   double excess = 0;
   for (const Influences& influences : avatar.influences) {
@@ -124,7 +129,7 @@ double weight_excess(const Avatar& avatar) {
   return excess;
 }
 
-/// Fills `out`; returns the palette's reach.
+/// Fills `out` and returns the palette's reach.
 glm::vec4 prepare(std::span<const SkinMatrix> palette, const std::vector<RestBox>& extents,
                   std::vector<BoundTransform>& out) {
   out.resize(palette.size());
@@ -138,7 +143,7 @@ glm::vec4 prepare(std::span<const SkinMatrix> palette, const std::vector<RestBox
     const glm::vec4 of_entry = t.magnitude[0] * extent.half_extent.x + t.magnitude[1] * extent.half_extent.y +
                                t.magnitude[2] * extent.half_extent.z + magnitude(t.column[3]);
     for (int axis = 0; axis < 3; ++axis)
-      if (!(of_entry[axis] <= reach[axis])) reach[axis] = of_entry[axis];  // what is no number stays
+      if (!(of_entry[axis] <= reach[axis])) reach[axis] = of_entry[axis];  // once NaN, it stays NaN
   }
   return reach;
 }
@@ -179,7 +184,8 @@ void MeshletBounds::begin(const Frame& frame, Method method) {
     for (std::size_t column = 0; column < 3; ++column)
       other_[i].magnitude[column] = magnitude(other_[i].column[column]);
   }
-  // The box, the matrices' difference and its box, the vertices' displacement, and the start rounded to fp32.
+  // Four errors add up: the box, the matrices' difference and its box, the vertices' displacement, and the start
+  // rounded to fp32.
   pad_ *= 4;
 }
 

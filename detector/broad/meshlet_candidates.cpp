@@ -22,7 +22,7 @@ void MeshletCandidates::find(const Frame& frame, Method method) {
   descend(levels, 0);
 }
 
-/// Looks into the children of a node of `level`; the one above the tree has the whole avatar as its only child.
+/// Tests the children of a node of `level`. The node above the tree has the whole avatar as its only child.
 void MeshletCandidates::descend(std::size_t level, std::size_t node) {
   const std::size_t below = level - 1;
   const std::size_t first = node * kMeshletFanout;

@@ -14,14 +14,15 @@
 
 namespace vestige {
 
-/// A meshlet that some segments may meet: numbers `first` and following of MeshletCandidates::segments().
+/// A meshlet that some segments may meet. They are the numbers `first` and following of MeshletCandidates::segments().
 struct TouchedMeshlet {
   std::uint32_t meshlet = 0;
   std::uint32_t first = 0;
   std::uint32_t count = 0;
 };
 
-/// Which segments may meet which meshlets. What is not listed surely misses, bit for bit: no contact is lost.
+/// The broad phase: finds which segments may meet which meshlets. A pair that is not listed surely misses, bit for bit,
+/// so no contact is lost.
 class MeshletCandidates {
  public:
   /// Keeps a reference to `meshlets`.
@@ -29,7 +30,7 @@ class MeshletCandidates {
 
   void find(const Frame& frame, Method method);
 
-  /// Of the last `find`, by ascending meshlets; each with at least one segment.
+  /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
   std::span<const TouchedMeshlet> touched() const { return touched_; }
 
   /// Numbers in Frame::segments, ascending.
@@ -42,7 +43,8 @@ class MeshletCandidates {
 
   const Meshlets& meshlets_;
   MeshletBounds bounds_;
-  std::vector<SegmentBoxes> segments_of_level_;  ///< that may meet the node of this level that is being looked into
+  std::vector<SegmentBoxes>
+      segments_of_level_;  ///< for each level: the segments that may meet the node that `descend` is in
   std::vector<TouchedMeshlet> touched_;
   std::vector<std::uint32_t> segments_;
 };

@@ -38,8 +38,8 @@ HWY_INLINE hn::Vec<D> times_bind(const BlendedRow& blend, hn::Vec<D> x, hn::Vec<
   return hn::Add(hn::Add(hn::Add(hn::Mul(blend.x, x), hn::Mul(blend.y, y)), hn::Mul(blend.z, z)), blend.offset);
 }
 
-/// `skin_vertex` for all corners of a meshlet. Every vertex is given every entry of the meshlet, by ascending entries:
-/// a weight of 0 adds a zero, which changes no bit of a sum that starts at +0.
+/// Computes `skin_vertex` for all corners of a meshlet. Every vertex is blended over all entries of the meshlet, in
+/// ascending order. A weight of 0 adds a zero, which changes no bit of a sum that starts at +0.
 void skin_corners(const float* numbers, std::span<const std::uint32_t> entries, const SkinMatrix* palette,
                   MeshletCorners& out) {
   const D d;
@@ -78,7 +78,7 @@ namespace {
 
 HWY_EXPORT(skin_corners);
 
-/// A meshlet that more palette entries move is skinned vertex by vertex: hardly any weight would not be 0.
+/// A meshlet with more palette entries is skinned vertex by vertex, because almost all of its weights would be 0.
 constexpr std::size_t kMostEntries = 24;
 
 }  // namespace

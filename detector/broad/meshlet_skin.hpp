@@ -26,26 +26,26 @@ struct MeshletCorners {
   }
 };
 
-/// Skins the triangles of one meshlet at once, to the bits of `skin_vertex`.
+/// Skins all triangles of one meshlet at once, with the same bits as `skin_vertex`.
 class MeshletSkin {
  public:
-  /// Keeps references to both.
+  /// Keeps references to `avatar` and `meshlets`.
   MeshletSkin(const Avatar& avatar, const Meshlets& meshlets);
 
-  /// Places beyond the meshlet's last triangle repeat its first. Every number of the palette is finite.
+  /// Slots after the meshlet's last triangle repeat its first triangle. All numbers of the palette must be finite.
   void skin(std::size_t meshlet, std::span<const SkinMatrix> palette, MeshletCorners& out) const;
 
  private:
   struct Block {
     std::size_t first_number = 0;
     std::size_t first_entry = 0;
-    std::size_t entries = 0;  ///< 0: too many to be worth it
+    std::size_t entries = 0;  ///< 0: the meshlet is skinned vertex by vertex
   };
 
   const Avatar& avatar_;
   const Meshlets& meshlets_;
   std::vector<Block> blocks_;
-  std::vector<float> numbers_;  ///< of each block: bind x, y, z of all corners, then each entry's weights
+  std::vector<float> numbers_;  ///< for each block: bind x, y, z of all corners, then the weights of each entry
   std::vector<std::uint32_t> entries_;
 };
 

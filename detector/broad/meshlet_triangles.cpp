@@ -11,19 +11,20 @@
 
 #include "detector/broad/mask_bits-inl.hpp"
 
-// Boxes. Those of `static` and `ccd` are not rounded. For `carried`, a start carried by m and rounded to fp32 is at or
-// above `low` only if it was at or above low - m. With M the largest magnitude of the six coordinates and u = 2^-24, m,
-// computed here in fp32, errs by less than 10 u M (differences of at most 2 M, their sums, a third), the carried start
-// is rounded by 2 u M at most where it is near the box, and the subtractions here err by 6 u M. The margin is 64 u M,
-// and 2^-120 for underflow.
+// Boxes. Those of `static` and `ccd` are not rounded. For `carried`, the displacement m moves a start, which is then
+// rounded to fp32. The moved start is at or above `low` only if the start was at or above low - m. Let M be the largest
+// magnitude of the six coordinates, and u = 2^-24. m is computed here in fp32 and errs by less than 10 u M (differences
+// of at most 2 M, their sums, a third). Near the box, rounding the moved start errs by at most 2 u M. The subtractions
+// here err by 6 u M. The margin is 64 u M, and 2^-120 for underflow.
 //
-// Slabs. A segment whose ends, seen from the triangle's corners at their time, are all on one side along any axis n
-// misses it (the separating axis theorem; for `ccd` as in shaders/geometry.geom). n need not be accurate, only the same
-// for all. n . x is computed with an error of at most 4 u |n| . |x| (Higham, Accuracy and Stability of Numerical
-// Algorithms, 2nd ed., 3.1). For `carried`, the start's n . (x + m) is compared as n . x with a slab moved by -n . m:
-// m's errors above, its product's, 6 u |n| . M, the subtraction's, 3 u |n| . M, and the start's rounding, u |n| . (|x|
-// + 2 M). Together that is less than 32 u |n| . M on the slab's side, and 8 u |n| . |x| on the segment's. Each side
-// gets 64 u, its own rounding included, and 2^-120 for underflow: where it overflows it is infinite or no number, which
+// Slabs. Take any axis n, and the segment's ends relative to the triangle's corners at the time of each end. If all lie
+// on one side along n, the segment misses the triangle (the separating axis theorem; for `ccd` as in
+// shaders/geometry.geom). n need not be accurate, but it must be the same for all. The computed n . x errs by at most 4
+// u |n| . |x| (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 3.1). For `carried`, n . (x + m) of the
+// start is compared as n . x with a slab moved by -n . m. Four errors add up: those of m above; that of the product, 6
+// u |n| . M; that of the subtraction, 3 u |n| . M; and that of rounding the start, u |n| . (|x| + 2 M). Together that
+// is less than 32 u |n| . M on the slab's side, and 8 u |n| . |x| on the segment's side. Each side gets 64 u, which
+// also covers its own rounding, and 2^-120 for underflow. A margin that overflows is infinite or not a number, and then
 // proves nothing.
 HWY_BEFORE_NAMESPACE();
 namespace vestige {
@@ -84,7 +85,7 @@ inline Vector cross(const Vector& a, const Vector& b) {
   return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
-/// 64 u of it, and what underflow needs.
+/// Returns 64 u of `size`, plus the margin for underflow.
 inline V margin_of(V size) {
   const D d;
   return hn::Add(hn::Mul(size, hn::Set(d, kMargin)), hn::Set(d, kTiny));
@@ -138,7 +139,8 @@ void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Me
         slab_high_start = hn::Sub(slab_high_start, along_moved);
       }
     }
-    // For `carried`, larger than whatever is added above, so that where that overflows, so does the margin.
+    // For `carried`, the margin is computed from a larger value than any that is added above. So if one of those
+    // overflows, the margin overflows too.
     const V margin = margin_of(dot(magnitude(normal), method == Method::kCarried ? largest * 4.0F : largest));
     store(low, out.low, i);
     store(high, out.high, i);
@@ -150,7 +152,7 @@ void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Me
   }
 }
 
-/// Bit k of the result: whether triangle i + k may meet the segment.
+/// Returns a word whose bit k says whether triangle i + k may meet the segment.
 inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Segment& segment, std::size_t i) {
   const D d;
   const auto number = [&](const MeshletTriangles::Numbers& numbers) { return hn::Load(d, &numbers[i]); };

@@ -12,13 +12,14 @@
 
 namespace vestige {
 
-/// What surely holds each triangle of a meshlet within a frame: a box, and along the triangle's normal a slab. What
-/// misses one of them surely misses the triangle, as the CPU computes it; the rest has to be decided.
+/// Bounds that surely contain each triangle of a meshlet within a frame: a box, and a slab along the triangle's normal.
+/// A segment that misses one of the two surely misses the triangle, as the CPU computes it. All other pairs remain to
+/// be decided.
 class MeshletTriangles {
  public:
   using Numbers = std::array<float, kMeshletTriangles>;
 
-  /// One for each triangle; slabs at the frame's start, where a segment starts, and at its end.
+  /// One entry for each triangle. The slabs are those at the frame's start, where a segment starts, and at its end.
   struct Bounds {
     alignas(64) std::array<Numbers, 3> low;
     std::array<Numbers, 3> high;
@@ -27,11 +28,11 @@ class MeshletTriangles {
     std::array<Numbers, 2> slab_high;
   };
 
-  /// `before` is not read for `kStatic`.
+  /// `kStatic` does not read `before`.
   void bound(const MeshletCorners& now, const MeshletCorners& before, Method method);
 
-  /// Bit i of meets[k] says whether triangle i may meet segments[numbers[k]]. Places beyond the meshlet's last triangle
-  /// mean nothing.
+  /// Bit i of meets[k] says whether triangle i may meet segments[numbers[k]]. Bits after the meshlet's last triangle
+  /// have no meaning.
   void meet(std::span<const Segment> segments, std::span<const std::uint32_t> numbers, std::uint32_t* meets) const;
 
  private:

@@ -14,14 +14,16 @@ namespace vestige {
 
 namespace {
 
-/// A node that more palette entries move has no boxes: a hostile file's would take more memory than its mesh.
+/// A node with more palette entries has no boxes. Otherwise a hostile file could make the boxes take more memory than
+/// its mesh.
 constexpr std::size_t kMostBoxes = 256;
 
 double finite_or_zero(double x) {
   return std::isfinite(x) ? x : 0.0;
 }
 
-/// About where each triangle is in the rest pose: parts that share a place in the bind pose need not in the world.
+/// Returns the approximate position of each triangle in the rest pose. Parts that share a place in the bind pose can be
+/// apart in the world.
 std::vector<glm::dvec3> rest_centres(const Avatar& avatar) {
   std::vector<glm::dmat4> world;
   std::vector<SkinMatrix> palette;
@@ -39,9 +41,9 @@ std::vector<glm::dvec3> rest_centres(const Avatar& avatar) {
   return centres;
 }
 
-/// Puts triangles that are close to each other into the same meshlet: halves along the longest side, where the first
-/// half gets as many whole meshlets as the largest power of two that leaves a second. So a node of the tree is one part
-/// of that bisection.
+/// Puts triangles that are close to each other into the same meshlet. It halves the list along the longest side. The
+/// first half gets as many whole meshlets as the largest power of two that leaves a second half. So each node of the
+/// tree is one part of the bisection.
 void bisect(std::span<std::uint32_t> triangles, const std::vector<glm::dvec3>& centres) {
   if (triangles.size() <= kMeshletTriangles) {
     std::ranges::sort(triangles);
@@ -69,7 +71,7 @@ void bisect(std::span<std::uint32_t> triangles, const std::vector<glm::dvec3>& c
   bisect(triangles.subspan(middle), centres);
 }
 
-/// The smallest box in fp32 that surely holds what is between.
+/// Returns the smallest box in fp32 that surely contains everything between `low` and `high`.
 RestBox rest_box(std::uint32_t entry, const glm::vec3& low, const glm::vec3& high) {
   RestBox box = {glm::vec3(0), entry, glm::vec3(0), 0};
   for (int axis = 0; axis < 3; ++axis) {
@@ -100,7 +102,7 @@ Meshlets::Level Meshlets::box_level(const Avatar& avatar, std::size_t triangles_
   struct Bounds {
     glm::vec3 low;
     glm::vec3 high;
-    std::size_t node;  ///< 1 + the node that these are of
+    std::size_t node;  ///< number of the node that the bounds belong to, plus 1
   };
   std::vector<Bounds> of_entry(avatar.palette.size(), {{}, {}, 0});
   std::vector<std::uint32_t> entries;

@@ -11,13 +11,14 @@
 
 namespace vestige {
 
-/// Triangles of a meshlet; only the last has fewer. With 16, bounding twice as many costs what it saves.
+/// Triangles of a meshlet; only the last meshlet has fewer. With 16 triangles, the cost of bounding twice as many
+/// meshlets equals the savings.
 inline constexpr std::size_t kMeshletTriangles = 32;
 static_assert(kMeshletTriangles % 16 == 0 && kMeshletTriangles <= 32);  // a bit each, and whole vectors
-/// Nodes of one level that make a node of the next.
+/// Number of child nodes of a node.
 inline constexpr std::size_t kMeshletFanout = 8;
 
-/// Where, in the bind pose, all vertices are that one palette entry moves: a box, in the units of `position_bind`.
+/// A box around all vertices that one palette entry moves, in the bind pose and in the units of `position_bind`.
 struct RestBox {
   glm::vec3 centre;
   std::uint32_t entry;
@@ -25,10 +26,11 @@ struct RestBox {
   float padding;
 };
 
-/// An avatar's triangles in small patches, and a tree over them, by bisection of the rest pose: around the built-in
-/// avatar, colliders meet half as many boxes of these as of meshopt_buildMeshlets' patches. Level 0 are the meshlets;
-/// node i of a level holds the nodes kMeshletFanout * i and following of the level below; the last level is one node,
-/// the whole avatar. It depends on nothing but the avatar.
+/// An avatar's triangles in small patches (meshlets), and a tree over them, built by bisection of the rest pose. Around
+/// the built-in avatar, colliders meet half as many boxes of these meshlets as of meshopt_buildMeshlets' patches.
+///
+/// Level 0 has the meshlets. Node i of a level has the nodes kMeshletFanout * i and following of the level below as its
+/// children. The last level is one node, the whole avatar. The tree depends only on the avatar.
 class Meshlets {
  public:
   explicit Meshlets(const Avatar& avatar);
@@ -42,12 +44,12 @@ class Meshlets {
                  std::min(kMeshletTriangles, triangles_.size() - meshlet * kMeshletTriangles));
   }
 
-  /// 0 for an avatar without triangles.
+  /// Number of levels; 0 for an avatar without triangles.
   std::size_t levels() const { return levels_.size(); }
   std::size_t nodes(std::size_t level) const { return levels_[level].first_box.size() - 1; }
 
-  /// One for each palette entry that moves any of the node's vertices, by ascending entries. Empty where they would be
-  /// more than bounding the node is worth: then nothing is known of it.
+  /// Returns one box for each palette entry that moves any of the node's vertices, by ascending entries. The list is
+  /// empty if it would be too long to be worth its cost. Then the node has no bounds.
   std::span<const RestBox> rest_boxes(std::size_t level, std::size_t node) const {
     const Level& l = levels_[level];
     return std::span(l.boxes).subspan(l.first_box[node], l.first_box[node + 1] - l.first_box[node]);
@@ -55,7 +57,7 @@ class Meshlets {
 
  private:
   struct Level {
-    std::vector<std::size_t> first_box = {0};  ///< of each node, and the end
+    std::vector<std::size_t> first_box = {0};  ///< index of the first box of each node, and the end
     std::vector<RestBox> boxes;
   };
 

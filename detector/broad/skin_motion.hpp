@@ -11,8 +11,8 @@
 
 namespace vestige {
 
-/// The skin of one frame as the contract has it (detector/CONTRACT.md, 3), and what it was in the frame before, both
-/// relative to the frame's origin.
+/// The skinned vertices of one frame by the contract (detector/CONTRACT.md, 3), and those of the previous frame. Both
+/// are relative to this frame's origin.
 struct SkinMotion {
   std::vector<glm::vec3> before;  ///< stays empty for `kStatic`
   std::vector<glm::vec3> now;
@@ -20,8 +20,8 @@ struct SkinMotion {
   void skin(const Avatar& avatar, const Frame& frame, Method method);
 };
 
-/// The corners of one triangle of that skin, in the frame before and now. `kStatic` looks at no frame before: both are
-/// the same then.
+/// The corners of one triangle of the skin, in the previous frame and now. With `kStatic`, which does not use the
+/// previous frame, both are the corners now.
 struct MovingCorners {
   Corners before;
   Corners now;
@@ -29,19 +29,19 @@ struct MovingCorners {
 
 Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices, std::uint32_t triangle);
 
-/// `skin` as `SkinMotion::skin` made it with the same method.
+/// `skin` must come from `SkinMotion::skin` with the same method.
 MovingCorners moving_corners(const Avatar& avatar, const SkinMotion& skin, Method method, std::uint32_t triangle);
 
-/// The same bits, where nothing but this triangle is skinned.
+/// Skins only this triangle. Returns the same bits as `moving_corners`.
 MovingCorners skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle);
 
-/// The triangle at time t of a frame in which its corners move linearly; in fp64.
+/// Returns the triangle at time t of a frame in which its corners move linearly, in fp64.
 Corners corners_at(const Corners& before, const Corners& now, float t);
 
-/// The mean of the corners' displacements, in fp64.
+/// Returns the mean of the corners' displacements, in fp64.
 glm::dvec3 carried_displacement(const Corners& before, const Corners& now);
 
-/// Where a `kCarried` segment starts: `start` moved by `carried_displacement`, rounded once to fp32.
+/// Returns the start of a `kCarried` segment: `start` moved by `carried_displacement`, rounded once to fp32.
 glm::vec3 carried_start(const glm::vec3& start, const Corners& before, const Corners& now);
 
 }  // namespace vestige

@@ -10,8 +10,9 @@ namespace {
 
 constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 
-/// The lower end of a box, grown so that `start + moved` rounded to fp32 lies at or above `low` only if `start` lies at
-/// or above the result, whatever `start` is: rounding is monotonic, so start + moved >= the float below `low`.
+/// Returns the lower end of a box after growth. If `start + moved`, rounded to fp32, lies at or above `low`, then
+/// `start` lies at or above the result. This holds for every `start`: rounding is monotonic, so start + moved >= the
+/// float below `low`.
 float grown_down(float low, double moved) {
   const double grown = static_cast<double>(std::nextafter(low, -kUnbounded)) - std::max(moved, 0.0);
   return std::nextafter(static_cast<float>(grown), -kUnbounded);

@@ -13,11 +13,12 @@
 
 namespace vestige {
 
-/// Boxes around what each triangle covers within a frame, so that most pairs cost a comparison. A box never proves a
-/// contact; a segment that meets no box is proven to miss, exactly: nothing is rounded but outwards.
+/// Boxes around the region that each triangle covers within a frame. They reject most pairs at the cost of a
+/// comparison. A box never proves a contact. A segment that meets no box is proven to miss, exactly: all rounding is
+/// outwards.
 class TriangleBoxes {
  public:
-  /// For `kCarried` a box is grown by the way that it may carry a segment's start.
+  /// For `kCarried`, a box grows by the displacement that may move a segment's start.
   void build(const Avatar& avatar, const SkinMotion& skin, Method method);
 
   /// Calls `found(triangle)` for every triangle whose box meets the segment's, in ascending order.
@@ -44,7 +45,7 @@ class TriangleBoxes {
                    std::array<std::uint32_t, kBlock>& meets) const;
 
   std::size_t count_ = 0;
-  std::array<std::vector<float>, 3> low_;  ///< by axis; padded to whole blocks with boxes that nothing meets
+  std::array<std::vector<float>, 3> low_;  ///< by axis, padded to whole blocks with boxes that meet nothing
   std::array<std::vector<float>, 3> high_;
 };
 

@@ -10,10 +10,10 @@ static_assert(FLT_EVAL_METHOD == 0, "the bounds need every operation rounded to 
 #error "fast-math breaks the bounds"
 #endif
 
-/// Half the distance from 1 to the next double: what one rounded operation errs at most, relative.
+/// Half the distance from 1 to the next double: the largest relative error of one rounded operation.
 inline constexpr double kUnit = 0x1p-53;
 
-/// A computed number, and how far from the exact one it is at most.
+/// A computed number, and its largest possible distance from the exact number.
 struct Bounded {
   double value = 0;
   double error = 0;
@@ -23,7 +23,8 @@ struct Bounded {
   bool surely_negative() const { return value < -error; }
 };
 
-// The formulas whose errors are bounded, each once, for any kind of number: the tests count their roundings.
+// The formulas whose errors are bounded. Each is written once, for any type of number, so that the tests can count its
+// roundings.
 
 template <typename Vector>
 Vector difference(const Vector& a, const Vector& b) {
@@ -40,11 +41,12 @@ auto dot_product(const Vector& u, const Vector& v) {
   return (u.x * v.x + u.y * v.y) + u.z * v.z;
 }
 
-/// The error of dot_product(u, cross_product(v, w)) of differences u, v, w, in units of its permanent (the same sum of
-/// the absolute values of its terms). In each term meet the rounding of three differences, of two products, of the
-/// subtraction within the cross product and of two additions: at most 8 factors (1 + e), |e| <= kUnit. So the sum errs
-/// by at most 8 kUnit / (1 - 8 kUnit) of the permanent (Higham 2002, Accuracy and Stability of Numerical Algorithms,
-/// Lemma 3.1). The permanent is itself computed with at most 8 such factors; 1 + 32 kUnit covers both.
+/// The error of dot_product(u, cross_product(v, w)) for differences u, v, w, in units of its permanent (the same sum
+/// over the absolute values of its terms). Each term contains the rounding of three differences, of two products, of
+/// the subtraction within the cross product and of two additions: at most 8 factors (1 + e), |e| <= kUnit. So the sum
+/// errs by at most 8 kUnit / (1 - 8 kUnit) of the permanent (Higham 2002, Accuracy and Stability of Numerical
+/// Algorithms, Lemma 3.1). The permanent is itself computed with at most 8 such factors. The factor 1 + 32 kUnit covers
+/// both.
 inline constexpr double kTripleError = 8 * kUnit * (1 + 32 * kUnit);
 
 }  // namespace vestige

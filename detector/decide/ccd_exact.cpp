@@ -21,7 +21,7 @@ Polynomial dot(const PolynomialVector& a, const PolynomialVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/// An edge as seen from the point: the cross and the dot product of its two corners, quadratics in t.
+/// An edge relative to the point: the cross product and the dot product of its two corners, quadratics in t.
 struct Edge {
   PolynomialVector cross;
   Polynomial dot;
@@ -29,7 +29,7 @@ struct Edge {
 
 struct Motion {
   std::array<Edge, 3> edges;
-  Polynomial above;  ///< f: on the front side where it is positive
+  Polynomial above;  ///< f: positive if the point is on the front side
 };
 
 Motion make_motion(const Way& way, const Corners& before, const Corners& after) {
@@ -59,8 +59,8 @@ Motion make_motion(const Way& way, const Corners& before, const Corners& after) 
   return motion;
 }
 
-/// Whether the point is in the closed triangle at a time at which it is in its plane. `sign_of` gives a quadratic's
-/// sign then.
+/// Returns whether the point is in the closed triangle at a time at which it is in the triangle's plane. `sign_of`
+/// returns the sign of a quadratic at that time.
 template <typename SignOf>
 bool is_inside(const Motion& motion, const SignOf& sign_of) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -76,7 +76,7 @@ bool is_inside(const Motion& motion, const SignOf& sign_of) {
   return std::ranges::any_of(motion.edges, [&](const Edge& edge) { return sign_of(edge.dot) <= 0; });
 }
 
-/// Whether the point is on the closed edge.
+/// Returns whether the point is on the closed edge.
 template <typename SignOf>
 bool is_on_edge(const Edge& edge, const SignOf& sign_of) {
   return std::ranges::all_of(edge.cross, [&](const Polynomial& part) { return sign_of(part) == 0; }) &&
@@ -95,8 +95,8 @@ auto signs_at(const UnitRoots& roots, std::size_t root) {
   return [&roots, root](const Polynomial& polynomial) { return roots.sign_at(root, polynomial); };
 }
 
-/// The point stays in the triangle's plane and starts outside. It enters over an edge, at a root of whatever vanishes
-/// where the point is on the edge.
+/// Returns the first contact of a point that stays in the triangle's plane and starts outside the triangle. The point
+/// enters over an edge, at a root of a function that vanishes if the point is on the edge.
 std::optional<FirstContact> coplanar_contact(const Motion& motion) {
   std::optional<FirstContact> first;
   const auto offer = [&first](float t) {

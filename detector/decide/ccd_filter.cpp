@@ -14,13 +14,14 @@ namespace vestige {
 
 namespace {
 
-// M: per axis, the largest absolute coordinate of a corner as seen from the point (ccd_formulas.hpp).
-// With every Mi in this range nothing overflows, and what underflow loses (2^-1075 a product, times 2^250 at most) is
-// far below the bounds (2^-48 * 2^-750 and more). An axis whose coordinates are all zero is exact.
+// M is, per axis, the largest absolute coordinate of a corner relative to the point (ccd_formulas.hpp). With every Mi
+// in this range, nothing overflows. The loss by underflow (2^-1075 a product, times 2^250 at most) is far below the
+// bounds (2^-48 * 2^-750 and more). An axis whose coordinates are all zero is exact.
 constexpr double kLeastReach = 0x1p-250;
 constexpr double kGreatestReach = 0x1p250;
 
-// Two roots, or a near touch, are told apart by halving. Few cases that 2^-12 does not tell are told by less.
+// The search separates two roots, and decides a near touch, by halving. Few cases that 2^-12 does not decide are
+// decided by smaller parts.
 constexpr int kMostHalvings = 12;
 constexpr int kMostParts = 40;
 constexpr int kMostNewtonSteps = 40;
@@ -40,7 +41,7 @@ Corners as_seen_from(const glm::dvec3& point, const Corners& triangle) {
 
 using Quadratic = QuadraticVector<glm::dvec3>;
 
-/// The sign that a coordinate is proven to have throughout; 0: none is.
+/// Returns the sign that a coordinate is proven to have throughout, or 0 if no sign is proven.
 int proven_sign(const Quadratic& quadratic, int axis, double error) {
   const double middle = 0.5 * quadratic.twice_middle[axis];
   const double least = std::min({quadratic.first[axis], middle, quadratic.last[axis]});
@@ -67,7 +68,7 @@ ValueAndSlope evaluate(const Cubic& b, double s) {
   return {mix(b012, b123), 3 * (b123 - b012)};
 }
 
-/// About where the cubic, whose ends have opposite signs, vanishes: Newton's method, kept between the ends.
+/// Returns an approximate root of the cubic, whose ends have opposite signs: Newton's method, kept between the ends.
 double solve(const Cubic& b) {
   double low = 0;
   double high = 1;
@@ -98,7 +99,7 @@ class Filter {
 
   bool in_range() const { return in_range_; }
 
-  /// What happens first between these times. Both are multiples of 2^-kMostHalvings, so 1 - t is exact.
+  /// Returns what happens first between these times. Both are multiples of 2^-kMostHalvings, so 1 - t is exact.
   CcdProof search(double low, double high, int halvings) {
     if (--parts_left_ < 0) return kGivenUp;
     const Corners p = at(low);
@@ -111,7 +112,7 @@ class Filter {
     if (sign[0] != 0 && std::ranges::all_of(sign, [&](int other) { return other == sign[0]; })) return kNone;
     if (passes_beside(bc, quadratic_cross(p.c, q.c, p.a, q.a), quadratic_cross(p.a, q.a, p.b, q.b))) return kNone;
 
-    // The coefficients change their signs once: there is one root, and it is simple (Descartes' rule of signs).
+    // The signs of the coefficients change once, so there is one root, and it is simple (Descartes' rule of signs).
     const bool one_root = sign[0] * sign[3] < 0 && (sign[1] == sign[0] || sign[2] == sign[3]);
     if (one_root) return decide_root(volume, low, high, sign[0]);
     if (halvings == kMostHalvings) return kGivenUp;
@@ -130,8 +131,8 @@ class Filter {
     return -dot_product(corners.a, cross_product(corners.b, corners.c));
   }
 
-  /// Whether, whenever the point is in the triangle's plane, it is outside: of the triangle's three parts as seen from
-  /// the point, two have areas of opposite signs throughout.
+  /// Returns whether the point is outside the triangle whenever it is in the triangle's plane. The point divides the
+  /// triangle into three parts. The test succeeds if the areas of two of the parts have opposite signs throughout.
   bool passes_beside(const Quadratic& bc, const Quadratic& ca, const Quadratic& ab) const {
     for (int axis = 0; axis < 3; ++axis) {
       const double error = kAreaError * area_[axis];
@@ -145,7 +146,7 @@ class Filter {
     return false;
   }
 
-  /// The one root between these times, before which the volume has this sign.
+  /// Decides the one root between these times. Before the root, the volume has the sign `sign_before`.
   CcdProof decide_root(const Cubic& volume, double low, double high, int sign_before) const {
     const double s = solve(volume);
     const double t = low + s * (high - low);
@@ -158,8 +159,8 @@ class Filter {
         proven_sign(volume_at(after), volume_error_) != -sign_before)
       return kGivenUp;
 
-    // The root is between `before` and `after`. Corners there are those at t but for 2 M width, so the areas but for
-    // 8 Mi Mj width, to first order; the rest of it is in the factor.
+    // The root is between `before` and `after`. Corners there differ from those at t by at most 2 M width, so the areas
+    // differ by at most 8 Mi Mj width, to first order. The factor 17 covers the terms of higher order.
     const Corners corners = at(t);
     const glm::dvec3 bc = cross_product(corners.b, corners.c);
     const glm::dvec3 ca = cross_product(corners.c, corners.a);
@@ -186,7 +187,8 @@ class Filter {
   bool in_range_ = true;
 };
 
-/// Whether all corners stay on one side of the point along an axis. Exact: the sign of a difference always is.
+/// Returns whether all corners stay on one side of the point along an axis. The test is exact, because the sign of a
+/// difference always is.
 bool passes_box(const Corners& first, const Corners& last) {
   const glm::dvec3 least =
       glm::min(glm::min(glm::min(first.a, first.b), first.c), glm::min(glm::min(last.a, last.b), last.c));

@@ -11,8 +11,8 @@ namespace vestige {
 
 namespace {
 
-/// kTripleError holds where nothing underflows or overflows. With differences up to 2^100 and a permanent from
-/// 2^-800 up, what underflow adds (at most 2^-1075 * 2^101 a term) lies far below kUnit times the permanent.
+/// kTripleError holds if nothing underflows or overflows. With differences up to 2^100 and a permanent from 2^-800 up,
+/// underflow adds at most 2^-1075 * 2^101 a term, far below kUnit times the permanent.
 constexpr double kLargestDifference = 0x1p100;
 constexpr double kSmallestPermanent = 0x1p-800;
 
@@ -41,7 +41,7 @@ Bounded triple(const glm::dvec3& u, const Cross& cross) {
   return {value, without_underflow ? kTripleError * permanent : HUGE_VAL};
 }
 
-/// numerator / denominator as fp32, when every number within the errors rounds to the same one.
+/// Returns numerator / denominator as fp32, if every number within the errors rounds to the same fp32 number.
 std::optional<float> sure_quotient(const Bounded& numerator, const Bounded& denominator) {
   const double quotient = numerator.value / denominator.value;
   const double error =
@@ -51,14 +51,14 @@ std::optional<float> sure_quotient(const Bounded& numerator, const Bounded& deno
   const auto low = static_cast<float>(quotient - error);
   const auto high = static_cast<float>(quotient + error);
   if (low != high) return std::nullopt;
-  return std::abs(high);  // 0 < t: where both round to 0, never -0
+  return std::abs(high);  // 0 < t: if both round to 0, never -0
 }
 
 }  // namespace
 
 Decision decide_static(const Way& way, const Corners& triangle) {
-  // Seen from the way's start p: corners A, B, C, and the way d. With n the normal (b-a) x (c-a), n.(p-a) = -A.(B x C)
-  // and n.d is the sum of the volumes of d with the edges, d.(A x B) + d.(B x C) + d.(C x A).
+  // Relative to the way's start p: corners A, B, C, and the way d. With n the normal (b-a) x (c-a), n.(p-a) = -A.(B x
+  // C). n.d is the sum of the volumes of d with the edges, d.(A x B) + d.(B x C) + d.(C x A).
   const glm::dvec3 to_a = difference(triangle.a, way.start);
   const glm::dvec3 to_b = difference(triangle.b, way.start);
   const glm::dvec3 to_c = difference(triangle.c, way.start);
@@ -71,7 +71,7 @@ Decision decide_static(const Way& way, const Corners& triangle) {
   const Cross ab = cross_of(to_a, to_b);
   const Cross bc = cross_of(to_b, to_c);
   const Cross ca = cross_of(to_c, to_a);
-  const Bounded height_start = triple(to_a, bc);  // of p below the plane, times |n|
+  const Bounded height_start = triple(to_a, bc);  // depth of p below the plane, times |n|
   const std::array<Bounded, 3> edges = {triple(moved, ab), triple(moved, bc), triple(moved, ca)};
   bool left = false;
   bool right = false;
@@ -81,16 +81,16 @@ Decision decide_static(const Way& way, const Corners& triangle) {
     right = right || edge.surely_negative();
     sure = sure && edge.sure();
   }
-  // Two signs prove a miss: the way's line passes beside the triangle. Seen from the way's start, a triangle without
-  // area is a line, whose volumes differ from 0 only if the start is not on it and the way leaves their common plane:
-  // then they never meet.
+  // Two opposite signs prove a miss: the way's line passes beside the triangle. A triangle without area is a line. Its
+  // volumes relative to the way's start differ from 0 only if the start is not on that line and the way leaves their
+  // common plane. Then they never meet.
   if (left && right) return {};
   const double sum = (edges[0].value + edges[1].value) + edges[2].value;
   const double sum_error =
       (edges[0].error + edges[1].error + edges[2].error +
        (std::abs(edges[0].value) + std::abs(edges[1].value) + std::abs(edges[2].value)) * 2 * kUnit) *
       (1 + 8 * kUnit);
-  const Bounded closing = {sum, sum_error};  // what d takes from the height
+  const Bounded closing = {sum, sum_error};  // the decrease of the depth along d
   const Bounded height_end = height_start - closing;
   if (height_start.surely_positive() && height_end.surely_positive()) return {};
   if (height_start.surely_negative() && height_end.surely_negative()) return {};

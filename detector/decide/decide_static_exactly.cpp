@@ -11,7 +11,7 @@ namespace vestige {
 
 namespace {
 
-/// t = numerator / denominator where it lies in [0, 1]. The denominator is not 0.
+/// Returns t = numerator / denominator if it lies in [0, 1]. The denominator must not be 0.
 std::optional<float> time_of(Integer numerator, Integer denominator) {
   if (denominator < 0) {
     numerator = -numerator;
@@ -21,18 +21,19 @@ std::optional<float> time_of(Integer numerator, Integer denominator) {
   return nearest_float(numerator, denominator);
 }
 
-/// The earlier of two times, if any. Rounding is monotonic: the earliest rounded is the earliest, rounded.
+/// Returns the earlier of two times, if there is one. Rounding is monotonic: the earliest rounded time is the earliest
+/// time, rounded.
 std::optional<float> earlier(const std::optional<float>& a, const std::optional<float>& b) {
   if (!a) return b;
   return b ? std::min(*a, *b) : a;
 }
 
-/// A coordinate in which `v`, which is not zero, is not zero.
+/// Returns an axis along which `v` is not zero. `v` must not be zero.
 std::size_t axis_of(const IntegerVector& v) {
   return !v[0].is_zero() ? 0 : (!v[1].is_zero() ? 1 : 2);
 }
 
-/// When the way p + t d first meets the closed edge u v. `d` or the edge may have no length.
+/// Returns the time at which the way p + t d first meets the closed edge u v. `d` or the edge may have no length.
 std::optional<float> meets_edge(const IntegerVector& p, const IntegerVector& d, const IntegerVector& u,
                                 const IntegerVector& v) {
   const IntegerVector edge = minus(v, u);
@@ -48,13 +49,14 @@ std::optional<float> meets_edge(const IntegerVector& p, const IntegerVector& d, 
   }
   const IntegerVector to_v = minus(v, p);
   if (!is_zero(cross(to_u, to_v)) || !is_zero(cross(to_u, d)) || !is_zero(cross(to_v, d))) return std::nullopt;
-  // All in one line.
+  // The way and the edge are on one line.
   if (dot(to_u, to_v) <= 0) return 0.0F;
   if (is_zero(d)) return std::nullopt;
   return earlier(time_of(dot(to_u, d), dot(d, d)), time_of(dot(to_v, d), dot(d, d)));
 }
 
-/// Whether p, a point of the triangle's plane, lies in the closed triangle, whose normal is not zero.
+/// Returns whether p, a point of the triangle's plane, lies in the closed triangle. The triangle's normal must not be
+/// zero.
 bool inside(const IntegerVector& to_a, const IntegerVector& to_b, const IntegerVector& to_c, std::size_t axis) {
   const std::array<Integer, 3> turn = {cross(to_a, to_b)[axis], cross(to_b, to_c)[axis], cross(to_c, to_a)[axis]};
   return std::ranges::all_of(turn, [](const Integer& x) { return x >= 0; }) ||

@@ -4,8 +4,8 @@
 
 namespace vestige {
 
-/// `decide_static` in whole numbers, for what its filter cannot tell: touching, coplanar, degenerate, huge and tiny
-/// things.
+/// `decide_static` in integers, for the cases that its filter cannot decide: touching, coplanar, degenerate, huge and
+/// tiny input.
 Decision decide_static_exactly(const Way& way, const Corners& triangle);
 
 }  // namespace vestige

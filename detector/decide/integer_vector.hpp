@@ -6,7 +6,7 @@
 
 namespace vestige {
 
-/// A vector of whole numbers, for signs that must be exact.
+/// A vector of integers, for signs that must be exact.
 using IntegerVector = std::array<Integer, 3>;
 
 inline IntegerVector minus(const IntegerVector& a, const IntegerVector& b) {

@@ -4,7 +4,8 @@
 
 namespace vestige {
 
-/// numerator / denominator, rounded to the nearest fp32, ties to even. 0 <= numerator <= denominator, denominator > 0.
+/// Returns numerator / denominator, rounded to the nearest fp32, ties to even. Requires 0 <= numerator <= denominator
+/// and denominator > 0.
 float nearest_float(const Integer& numerator, const Integer& denominator);
 
 }  // namespace vestige

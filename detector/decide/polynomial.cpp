@@ -10,7 +10,7 @@ namespace vestige {
 
 namespace {
 
-/// A double >= 0 as whole / 2^places, with the fewest places.
+/// A double >= 0 as whole / 2^places, with the smallest possible `places`.
 struct Dyadic {
   std::int64_t whole = 0;
   unsigned places = 0;
@@ -29,7 +29,7 @@ Dyadic dyadic(double value) {
   return exponent < 0 ? Dyadic{whole, static_cast<unsigned>(-exponent)} : Dyadic{whole << exponent, 0};
 }
 
-/// Without the powers of two that all coefficients have in common.
+/// Divides by the powers of two that all coefficients have in common.
 std::vector<Integer> without_common_twos(std::vector<Integer> coefficients) {
   unsigned twos = std::numeric_limits<unsigned>::max();
   for (const Integer& coefficient : coefficients)
@@ -39,7 +39,7 @@ std::vector<Integer> without_common_twos(std::vector<Integer> coefficients) {
   return coefficients;
 }
 
-/// One step of a division: a |lead(b)| - b t^k (sign of lead(b)) lead(a), which has a smaller degree than a.
+/// One step of a division: returns a |lead(b)| - b t^k (sign of lead(b)) lead(a), which has a smaller degree than a.
 std::vector<Integer> division_step(const std::vector<Integer>& a, const std::vector<Integer>& b) {
   const Integer scale = abs(b.back());
   const Integer factor = b.back().sign() > 0 ? a.back() : Integer(-a.back());

@@ -7,8 +7,8 @@
 
 namespace vestige {
 
-/// A polynomial in t with whole coefficients, exact. The coefficient of t^i is `coefficients()[i]`; the last is not
-/// zero; the zero polynomial has none, and degree -1.
+/// A polynomial in t with integer coefficients, exact. The coefficient of t^i is `coefficients()[i]`. The last
+/// coefficient is not zero. The zero polynomial has no coefficients, and its degree is -1.
 class Polynomial {
  public:
   Polynomial() = default;
@@ -21,17 +21,18 @@ class Polynomial {
 
   int sign_at_0() const { return is_zero() ? 0 : coefficients_.front().sign(); }
   int sign_at_1() const;
-  /// The sign at a finite t >= 0.
+  /// Returns the sign at a finite t >= 0.
   int sign_at(double t) const;
-  /// The sign throughout [low, high], 0 <= low < high finite, if a polynomial of degree <= 2 shows it at a glance (its
-  /// Bernstein coefficients agree); else 0.
+  /// Returns the sign throughout [low, high], if the Bernstein coefficients of the polynomial agree; otherwise 0.
+  /// Requires degree <= 2 and 0 <= low < high, both finite.
   int constant_sign_on(double low, double high) const;
 
-  /// The sign between 0 and the first root above it. 0 for the zero polynomial only.
+  /// Returns the sign between 0 and the first root above it. Returns 0 only for the zero polynomial.
   int sign_after_0() const;
 
   Polynomial derivative() const;
-  /// Divided by the highest powers of t and of t - 1 that divide it: without roots at 0 and 1. Not zero.
+  /// Returns the polynomial divided by the highest powers of t and of t - 1 that divide it. The result has no roots at
+  /// 0 and 1. The polynomial must not be zero.
   Polynomial without_end_roots() const;
 
   friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
@@ -42,17 +43,18 @@ class Polynomial {
   std::vector<Integer> coefficients_;
 };
 
-/// A positive multiple of the remainder of a / b. b is not zero.
+/// Returns a positive multiple of the remainder of a / b. b must not be zero.
 Polynomial remainder(const Polynomial& a, const Polynomial& b);
 
-/// A multiple, not zero, of a / b, which leaves no remainder.
+/// Returns a non-zero multiple of a / b. b must divide a.
 Polynomial quotient(const Polynomial& a, const Polynomial& b);
 
-/// a, b, and then each time the negative remainder of the two before, until none is left: the signed remainder sequence
-/// of Basu, Pollack, Roy, Algorithms in Real Algebraic Geometry (2006), definition 1.7, up to positive factors.
+/// Returns a, b, and then repeatedly the negative remainder of the last two, until the remainder is zero: the signed
+/// remainder sequence of Basu, Pollack, Roy, Algorithms in Real Algebraic Geometry (2006), definition 1.7, up to
+/// positive factors.
 std::vector<Polynomial> signed_remainders(const Polynomial& a, const Polynomial& b);
 
-/// How often the sign changes along a list, zeros left out.
+/// Returns the number of sign changes along a list, zeros left out.
 int sign_changes(std::span<const int> signs);
 
 }  // namespace vestige

@@ -10,15 +10,15 @@
 
 namespace vestige {
 
-/// A whole number without bounds; small ones need no allocation.
+/// An integer of any size; small values need no allocation.
 using Integer = boost::multiprecision::number<
     boost::multiprecision::cpp_int_backend<1024, 0, boost::multiprecision::signed_magnitude,
                                            boost::multiprecision::unchecked,
                                            std::allocator<boost::multiprecision::limb_type>>,
     boost::multiprecision::et_off>;
 
-/// Finite doubles, all multiplied by one power of two that makes them whole numbers. Signs of polynomials whose terms
-/// all have the same degree do not change, nor do quotients of two such polynomials of equal degree.
+/// Multiplies finite doubles by one power of two that makes all of them integers. This does not change the signs of
+/// polynomials whose terms all have the same degree, or the quotients of two such polynomials of equal degree.
 template <std::size_t Count>
 std::array<Integer, Count> scaled_integers(const std::array<double, Count>& values) {
   constexpr int kDigits = std::numeric_limits<double>::digits;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kBitsOfOne = std::bit_cast<std::uint32_t>(1.0F);
 
-/// The sequence's sign changes lost from 0 to 1.
+/// Returns the number of sign changes that the sequence loses from 0 to 1.
 int changes_lost(const std::vector<Polynomial>& sequence) {
   std::vector<int> at_0;
   std::vector<int> at_1;
@@ -29,7 +29,7 @@ int changes_at(const std::vector<Polynomial>& sequence, double t) {
   return sign_changes(signs);
 }
 
-/// Between the fp32 number with these bits and the next; exact.
+/// Returns the midpoint between the fp32 number with these bits and the next number. The result is exact.
 double midpoint_above(std::uint32_t bits) {
   return 0.5 * (static_cast<double>(std::bit_cast<float>(bits)) + static_cast<double>(std::bit_cast<float>(bits + 1)));
 }
@@ -56,7 +56,7 @@ bool UnitRoots::is_at_most(std::size_t root, double t) const {
 }
 
 UnitRoots::Cell UnitRoots::find_cell(std::size_t root) const {
-  // Bisection over the fp32 numbers: the first whose upper midpoint the root does not exceed.
+  // Bisection over the fp32 numbers: find the first number whose upper midpoint is not below the root.
   std::uint32_t low = 0;
   std::uint32_t high = kBitsOfOne;
   while (low < high) {
@@ -76,8 +76,8 @@ UnitRoots::Cell UnitRoots::find_cell(std::size_t root) const {
 }
 
 int UnitRoots::tarski_query(const Polynomial& other) const {
-  // The sum, over the roots, of the sign of `other`: Basu, Pollack, Roy, theorem 2.61. The remainder has the same
-  // Cauchy index, and is shorter.
+  // The result is the sum, over the roots, of the sign of `other`: Basu, Pollack, Roy, theorem 2.61. The remainder has
+  // the same Cauchy index and a lower degree.
   return changes_lost(signed_remainders(square_free_, remainder(derivative_ * other, square_free_)));
 }
 
@@ -88,15 +88,16 @@ int UnitRoots::sign_at(std::size_t root, const Polynomial& other) const {
 
   const int sum = tarski_query(other);
   if (cells_.size() == 1) return sum;
-  // All roots are simple, so the derivative's signs alternate along them: a second query tells even from odd ones.
+  // All roots are simple, so the derivative's signs alternate from root to root. A second query separates the even from
+  // the odd roots.
   const int first_slope = -square_free_.sign_at_0();
   const int alternating = first_slope * tarski_query(remainder(derivative_ * other, square_free_));
   const int even = (sum + alternating) / 2;
   const int odd = (sum - alternating) / 2;
   if (root == 1) return odd;
   if (cells_.size() == 2) return even;
-  // Three roots: the second derivative vanishes at their mean, so between the first and the last. A third query tells
-  // these two apart.
+  // With three roots, the second derivative vanishes at their mean, which lies between the first and the last root. A
+  // third query separates these two.
   const Polynomial curvature = derivative_.derivative();
   const int leading = square_free_.leading().sign();
   const int middle_curvature = tarski_query(curvature);
@@ -106,7 +107,7 @@ int UnitRoots::sign_at(std::size_t root, const Polynomial& other) const {
 }
 
 bool UnitRoots::is_even(std::size_t root) const {
-  // A triple root, where the common divisor has degree 2, is odd.
+  // A triple root, at which the common divisor has degree 2, is odd.
   return common_.degree() == 1 && sign_at(root, common_) == 0;
 }
 

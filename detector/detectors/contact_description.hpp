@@ -10,20 +10,20 @@
 
 namespace vestige {
 
-/// u, v: the weights of b and c in the point of triangle a b c nearest to `x` in its plane, clamped to the triangle. A
-/// triangle without area gives the nearest point of its longest edge.
+/// Returns u, v: the weights of b and c for the point of triangle a b c nearest to `x` in the triangle's plane, clamped
+/// to the triangle. For a triangle without area, the point is the nearest point of the longest edge.
 glm::dvec2 barycentric_of(const glm::dvec3& x, const Corners& triangle);
 
-/// A pair that meets.
+/// A way and a triangle that meet at time t.
 struct Meeting {
   std::uint32_t triangle;
   Way way;
-  Corners at_contact;  ///< the triangle as it is at time t
+  Corners at_contact;  ///< the triangle at time t
   FirstContact first;
 };
 
-/// Everything about a contact that follows from the pair and t, in one fp64 function for every detector
-/// (detector/CONTRACT.md, 7 and 8). `duration_s`: of the frame.
+/// Returns everything about a contact that follows from the pair and t. All detectors use this one fp64 function
+/// (detector/CONTRACT.md, 7 and 8). `duration_s` is the duration of the frame.
 Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, const Meeting& meeting, double duration_s);
 
 }  // namespace vestige

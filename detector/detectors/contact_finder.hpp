@@ -11,22 +11,22 @@
 
 namespace vestige {
 
-/// Decides pairs of collider and triangle exactly, and keeps the winner of each collider: what `cpu` and `geometry`
-/// have in common (detector/CONTRACT.md, 4 to 9). In which order pairs are offered changes nothing.
+/// The narrow phase that `cpu` and `geometry` share: decides pairs of collider and triangle exactly, and keeps the
+/// winner of each collider (detector/CONTRACT.md, 4 to 9). The order of the pairs does not matter.
 class ContactFinder {
  public:
   ContactFinder(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
       : avatar_(avatar), map_(map), surface_(options.surface), method_(options.method) {}
 
-  /// Decides the pair, the triangle's corners given, and replaces `winner`, the best contact of this segment so far, if
-  /// this one is better.
+  /// Decides a pair, given the triangle's corners. `winner` is the best contact of this segment so far; a better
+  /// contact replaces it.
   void offer(const Frame& frame, const MovingCorners& corners, const Segment& segment, std::uint32_t triangle,
              Contact& winner);
 
-  /// Pairs offered since the last call that truly meet.
+  /// Returns the number of offered pairs, since the last call, that really meet.
   std::uint64_t take_meeting();
 
-  /// Pairs that took exact arithmetic since the last call.
+  /// Returns the number of pairs, since the last call, that needed exact arithmetic.
   std::uint64_t take_unsure();
 
  private:

@@ -11,12 +11,13 @@
 #include "detector/broad/triangle_boxes.hpp"
 #include "detector/detector.hpp"
 #include "detector/detectors/contact_finder.hpp"
+#include "detector/detectors/make_detectors.hpp"
 
 namespace vestige {
 
 namespace {
 
-/// Every segment against every triangle.
+/// Tests every segment against every triangle.
 class CpuDetector final : public Detector {
  public:
   CpuDetector(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
@@ -52,7 +53,7 @@ class CpuDetector final : public Detector {
   TriangleBoxes boxes_;
 };
 
-/// Every segment against the meshlets that it may meet; only those are skinned.
+/// Tests every segment against the meshlets that it may meet. Only those meshlets are skinned.
 class SkippingCpuDetector final : public Detector {
  public:
   SkippingCpuDetector(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
@@ -118,7 +119,7 @@ class SkippingCpuDetector final : public Detector {
   MeshletCorners now_ = {};
   MeshletCorners before_ = {};
   MeshletTriangles triangles_;
-  std::vector<std::uint32_t> meets_;  ///< of each segment that may meet a meshlet, which triangles
+  std::vector<std::uint32_t> meets_;  ///< for each segment that may meet a meshlet: bits of the triangles
 };
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace vestige {
 
 namespace {
 
-/// Embree's functions, typed by its own header and found at run time.
+/// Embree's functions, with the types of its header, found at run time.
 struct EmbreeLibrary {
   decltype(&rtcNewDevice) new_device;
   decltype(&rtcReleaseDevice) release_device;
@@ -73,13 +73,13 @@ struct EmbreeLibrary {
   }
 };
 
-/// Once for the whole program: a library is never closed.
+/// Opened once for the whole program: a library is never closed.
 const EmbreeLibrary& embree() {
   static const EmbreeLibrary library;
   return library;
 }
 
-/// What Embree counts references of, let go in the end.
+/// An owner of an Embree object that is reference-counted; releases it at the end.
 template <typename Object>
 using Handle = std::unique_ptr<std::remove_pointer_t<Object>, void (*)(Object)>;
 
@@ -174,7 +174,7 @@ class EmbreeDetector final : public Detector {
     return describe_contact(avatar_, map_, {triangle, way, corners, {t + 0.0F, side}}, frame_->duration_s);
   }
 
-  /// Embree asks for each contact whether it counts.
+  /// Embree calls this for each contact to ask whether it counts.
   static void pass_through_unmapped(const RTCFilterFunctionNArguments* arguments) {
     const auto* detector = static_cast<const EmbreeDetector*>(arguments->geometryUserPtr);
     for (unsigned i = 0; i < arguments->N; ++i) {
@@ -191,9 +191,9 @@ class EmbreeDetector final : public Detector {
   Handle<RTCDevice> device_;
   Handle<RTCScene> scene_;
   Handle<RTCGeometry> geometry_;
-  glm::vec3* vertices_ = nullptr;  ///< Embree's own, one entry a vertex
+  glm::vec3* vertices_ = nullptr;  ///< Embree's own buffer, one entry for each vertex
   SkinMotion skin_;
-  const Frame* frame_ = nullptr;  ///< while it is being detected
+  const Frame* frame_ = nullptr;  ///< set while `detect` runs
   const Segment* segment_ = nullptr;
 };
 

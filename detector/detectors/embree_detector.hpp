@@ -7,18 +7,21 @@
 namespace vestige {
 
 /// How Embree builds its scene. kRobust (RTC_SCENE_FLAG_ROBUST) keeps vertices in the leaves and tests by Plücker
-/// coordinates. kDefault keeps edges and normals, for Möller-Trumbore's test: a refit then has more to compute, so that
-/// kRobust is the faster of the two where everything moves (87 against 117 µs for 5000 triangles, rays alike).
+/// coordinates. kDefault keeps edges and normals, for Möller-Trumbore's test. So a refit has more to compute, and
+/// kRobust is the faster of the two if everything moves (87 against 117 µs for 5000 triangles; rays take the same
+/// time).
 enum class EmbreeMode { kRobust, kDefault };
 
-/// Opens libembree3.so.3, if it is not open yet. Throws `Error` naming the package where it is missing.
+/// Opens libembree3.so.3, unless it is open. Throws `Error` with the package to install if the library is missing.
 void require_embree();
 
-/// What a user would pick instead: Embree 3's BVH (https://www.embree.org), dynamic and refitted each frame, over the
-/// vertices as the CPU skins them; one ray a segment, in one thread. Contact, t and triangle are Embree's; what follows
-/// from them is `describe_contact`'s. Its name is "embree" for kRobust, "embree_default" for kDefault.
+/// The usual alternative: Embree 3's BVH (https://www.embree.org), dynamic and refitted each frame, over the vertices
+/// as the CPU skins them. One ray for each segment, in one thread. Embree computes contact, t and triangle;
+/// `describe_contact` computes everything that follows from them. The name is "embree" for kRobust and "embree_default"
+/// for kDefault.
 ///
-/// Throws what `require_embree` throws, and `UsageError` for another method than `kStatic`, which Embree does not know.
+/// Throws the errors of `require_embree`. Throws `UsageError` for any method except `kStatic`, because Embree has no
+/// other.
 std::unique_ptr<Detector> make_embree_detector(EmbreeMode mode, const Avatar& avatar, const ActuatorMap& map,
                                                const DetectorOptions& options);
 

@@ -1,14 +1,15 @@
 #include "detector/broad/skin_motion.hpp"
 #include "detector/detector.hpp"
 #include "detector/detectors/contact_description.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/truth/truth.hpp"
 
 namespace vestige {
 
 namespace {
 
-/// Every segment against every triangle by `exact::`. Skinning, carrying and the description of a contact are what the
-/// contract defines, and so are shared; every decision, the winner included, is this detector's own.
+/// Tests every segment against every triangle by `exact::`. The contract defines skinning, carrying and the description
+/// of a contact, so this detector shares that code. All decisions, including the winner, are this detector's own.
 class ExactDetector final : public Detector {
  public:
   ExactDetector(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
@@ -36,7 +37,7 @@ class ExactDetector final : public Detector {
     for (std::uint32_t triangle = 0; triangle < avatar_.triangles.size(); ++triangle) {
       const Contact contact = contact_with(frame, segment, triangle);
       const bool counts = contact.hit() && (options_.surface == Surface::kAll || contact.actuator != 0);
-      if (counts && contact.t < first.t) first = contact;  // ascending triangles: a tie goes to the smallest number
+      if (counts && contact.t < first.t) first = contact;  // triangles ascend, so the smallest number wins a tie
     }
     return first;
   }

@@ -14,6 +14,7 @@
 #include "detector/broad/skin_motion.hpp"
 #include "detector/detector.hpp"
 #include "detector/detectors/contact_finder.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/detectors/skipping_geometry_detector.hpp"
 #include "detector/gl/captured_pairs.hpp"
 #include "detector/gl/collision_texture.hpp"
@@ -42,15 +43,16 @@ struct GpuSegment {
 };
 static_assert(sizeof(GpuSegment) == 64);
 
-/// What every driver grants a uniform block (GL_MAX_UNIFORM_BLOCK_SIZE).
+/// The size that every driver allows for a uniform block (GL_MAX_UNIFORM_BLOCK_SIZE).
 constexpr std::size_t kUniformBlockBytes = 16384;
 constexpr std::size_t kBlockSegments = kUniformBlockBytes / sizeof(GpuSegment);
 
-/// The shader's `least_radius`: what denormals, flushed to zero, may do to a coordinate of a skinned vertex. The vertex
-/// is a sum of 8 products w M x and intermediate results thereof; to flush an operand or a result below 2^-126 errs by
-/// less than 2^-126 times the other factors, each time less than 2^-126 (1 + H + X), H the largest |M_0 x| + ... +
-/// |M_3| with |x| taken as at least 1, X the largest such |x|; weights are at most about 1. There are fewer than 100
-/// such times; gradual underflow on the CPU errs by less. This is 1024 of them.
+/// The shader's `least_radius`: a bound for the error of a skinned vertex's coordinate if denormals are flushed to
+/// zero. The vertex is a sum of 8 products w M x, with intermediate results. To flush an operand or a result below
+/// 2^-126 errs by less than 2^-126 times the other factors. Each time that is less than 2^-126 (1 + H + X). H is the
+/// largest |M_0 x| + ... + |M_3|, with |x| taken as at least 1. X is the largest such |x|. Weights are at most about 1.
+/// It happens fewer than 100 times, and gradual underflow on the CPU errs by less. The function returns 1024 times the
+/// bound for one.
 float least_radius_m(std::span<const SkinMatrix> palette, const glm::dvec3& extent_m) {
   const glm::dvec3 extent = glm::max(extent_m, glm::dvec3(1));
   double largest = 0;
@@ -61,7 +63,7 @@ float least_radius_m(std::span<const SkinMatrix> palette, const glm::dvec3& exte
   return static_cast<float>(std::ldexp(1 + largest + extent.x + extent.y + extent.z, -116));
 }
 
-/// Every segment against every triangle.
+/// Tests every segment against every triangle.
 class GeometryDetector final : public Detector {
  public:
   GeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
@@ -90,7 +92,7 @@ class GeometryDetector final : public Detector {
     try {
       context_->make_current();
     } catch (const Error&) {
-      // The context is lost, and with it all that was in it.
+      // The context is lost, together with everything in it.
     }
   }
 
@@ -138,7 +140,7 @@ class GeometryDetector final : public Detector {
   }
 
  private:
-  /// Entries that the shaders' palette has room for.
+  /// The capacity of the shaders' palette, in entries.
   std::size_t palette_entries() const {
     return avatar_.palette.size() * (method_ == Method::kStatic ? std::size_t{1} : std::size_t{2});
   }
@@ -152,7 +154,7 @@ class GeometryDetector final : public Detector {
         palette_in_uniform_block() ? palette_entries() : 0);
   }
 
-  /// This frame's palette, followed by that of the frame before where the method looks at it.
+  /// Uploads this frame's palette, followed by that of the previous frame if the method uses it.
   void upload_palette(const Frame& frame, const GlProgram& program) {
     float least_radius = least_radius_m(frame.palette, bind_extent_m_);
     gpu_palette_ = frame.palette;
@@ -174,7 +176,7 @@ class GeometryDetector final : public Detector {
       gpu_segments_.push_back({glm::vec4(glm::min(segment.start, segment.end), 0),
                                glm::vec4(glm::max(segment.start, segment.end), 0), glm::vec4(segment.start, 0),
                                glm::vec4(segment.end, 0)});
-    // Room for whole blocks: a uniform block must be backed to its end.
+    // Allocate whole blocks, because a uniform block must be backed to its end.
     const std::size_t blocks = (gpu_segments_.size() + kBlockSegments - 1) / kBlockSegments;
     segments_.upload(nullptr, blocks * kUniformBlockBytes, GL_STREAM_DRAW);
     segments_.upload(gpu_segments_.data(), gpu_segments_.size() * sizeof(GpuSegment), GL_STREAM_DRAW);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
@@ -29,7 +30,7 @@ struct GpuSegment {
 };
 static_assert(sizeof(GpuSegment) == 32);
 
-/// Pressure follows from the speed on the CPU; many drivers have no ninth texture to draw into.
+/// The CPU computes the pressure from the speed. Many drivers have no ninth texture to draw into.
 DetectorOptions with_sources(DetectorOptions options) {
   if (options.planes.has(Plane::kPressure)) options.planes = options.planes | Plane::kSpeed;
   return options;
@@ -68,7 +69,7 @@ class PaperDetector final : public Detector {
       context_->make_current();
       gl_.DeleteTextures(1, &map_texture_);
     } catch (const Error&) {
-      // The context is lost, and with it all that was in it.
+      // The context is lost, together with everything in it.
     }
   }
 
@@ -130,7 +131,8 @@ class PaperDetector final : public Detector {
     gl_.TextureParameteri(map_texture_, GL_TEXTURE_WRAP_T, GL_REPEAT);
   }
 
-  /// Palette and segments of this frame, and every binding that another detector of the context may have changed.
+  /// Uploads the palette and the segments of this frame, and restores every binding that another detector of the
+  /// context may have changed.
   void upload_frame(const Frame& frame) {
     palette_.upload(frame.palette.data(), frame.palette.size() * sizeof(SkinMatrix), GL_STREAM_DRAW);
     gpu_segments_.clear();
@@ -142,9 +144,9 @@ class PaperDetector final : public Detector {
     gl_.BindTextureUnit(VESTIGE_TEXTURE_ACTUATOR_MAP, map_texture_);
   }
 
-  /// Segments that one invocation of the geometry shader tests. It may emit a point for each, so a block is never
-  /// larger than the points that an invocation may emit: no contact can be dropped. Powers of two keep the programs
-  /// few.
+  /// Returns the number of segments that one invocation of the geometry shader tests. The shader may emit a point for
+  /// each segment, so a block is never larger than the number of points that an invocation may emit. So no contact can
+  /// be dropped. Powers of two keep the number of programs small.
   std::size_t block_for(std::size_t segments) const {
     return std::min(std::bit_ceil(std::max<std::size_t>(segments, 1)), largest_block_);
   }
@@ -173,7 +175,7 @@ class PaperDetector final : public Detector {
       if (!options_.planes.has(kGlPlanes[i].plane)) continue;
       texture_.read(i, texels_);
       for (std::size_t column = 0; column < row.size(); ++column) {
-        // The actuator plane comes first and says which texels hold a contact.
+        // The actuator plane comes first and shows which texels have a contact.
         if (i != VESTIGE_PLANE_ACTUATOR && !row[column].hit()) continue;
         store(kGlPlanes[i].plane, &texels_[column * kGlPlanes[i].components], row[column]);
       }
@@ -209,7 +211,7 @@ class PaperDetector final : public Detector {
       case Plane::kSide:
         contact.side = static_cast<std::int8_t>(value(0));
         return;
-      case Plane::kPressure:  // no texture has it
+      case Plane::kPressure:  // no texture carries it
         return;
     }
   }

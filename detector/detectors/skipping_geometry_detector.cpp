@@ -33,7 +33,7 @@ namespace {
 constexpr std::size_t kBlockSlots = 256;
 constexpr std::size_t kBlockSegments = 384;
 
-/// std140 layout of the shader's Candidates: what one draw tests.
+/// std140 layout of the shader's Candidates: the input of one draw.
 struct Slot {
   std::uint32_t first = 0;
   std::uint32_t count = 0;
@@ -48,23 +48,24 @@ struct Block {
   std::array<Slot, kBlockSlots> slots;
   std::array<GpuSegment, kBlockSegments> segments;
 };
-static_assert(sizeof(Block) == 16384);  // what every driver grants a uniform block (GL_MAX_UNIFORM_BLOCK_SIZE)
+static_assert(sizeof(Block) ==
+              16384);  // the size that every driver allows for a uniform block (GL_MAX_UNIFORM_BLOCK_SIZE)
 
-/// Whole slots, of meshlets with all of their triangles, that one draw tests.
+/// The slots and segments that one draw tests. A slot is a meshlet with all of its triangles.
 struct Draw {
   std::size_t slots = 0;
   std::size_t segments = 0;
 };
 
-/// The segments of a frame against the meshlets that they may meet. A frame without such a pair costs no call of
-/// OpenGL; else only those meshlets are skinned, by the CPU, and sent: a point for each triangle, whose corners are
-/// attributes. The geometry shader finds its segments by its primitive's number, in a uniform block.
+/// Tests the segments of a frame against the meshlets that they may meet. A frame without such a pair needs no OpenGL
+/// call. Otherwise the CPU skins only those meshlets and uploads them: a point for each triangle, with the corners as
+/// attributes. The geometry shader finds the segments by the number of the primitive, in a uniform block.
 ///
 /// Measured on llvmpipe, processor time per frame, 40 and 100 colliders of a swarm, all axes of geometry.geom: one
-/// indirect draw command a meshlet, skinned by the vertex shader, 236 and 418 us; one draw with the touched meshlets'
-/// indices, 214 and 477 us; this way, skinned by the CPU, 162 and 290 us; with a box and a slab alone, 67 and 145 us. A
-/// storage buffer in place of the uniform block took 15 % longer, and a persistently mapped buffer saved less than 2
-/// us.
+/// indirect draw command for each meshlet, skinned by the vertex shader, 236 and 418 us; one draw with the touched
+/// meshlets' indices, 214 and 477 us; this design, skinned by the CPU, 162 and 290 us; with a box and a slab alone, 67
+/// and 145 us. A storage buffer instead of the uniform block took 15 % longer. A persistently mapped buffer saved less
+/// than 2 us.
 class SkippingGeometryDetector final : public Detector {
  public:
   SkippingGeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
@@ -100,7 +101,7 @@ class SkippingGeometryDetector final : public Detector {
       context_->make_current();
       gl_.DeleteVertexArrays(1, &vertex_array_);
     } catch (const Error&) {
-      // The context is lost, and with it all that was in it.
+      // The context is lost, together with everything in it.
     }
   }
 
@@ -131,7 +132,7 @@ class SkippingGeometryDetector final : public Detector {
     return work;
   }
 
-  /// Those that the detector works with are skinned by the CPU.
+  /// Returns the vertices that the detector works with, which the CPU skins.
   void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
     skin_vertices(avatar_, frame.palette, out);
   }
@@ -144,7 +145,7 @@ class SkippingGeometryDetector final : public Detector {
         shaders::kConstantsH, static_cast<int>(method_), kBlockSlots, kBlockSegments, kMeshletTriangles);
   }
 
-  /// Three now, and where the method looks at them the same three before.
+  /// Three corners now, and the same three in the previous frame if the method uses it.
   std::size_t corners_per_triangle() const { return method_ == Method::kStatic ? 3 : 6; }
 
   void add_attribute(GLuint location, GLuint corner) const {
@@ -168,8 +169,8 @@ class SkippingGeometryDetector final : public Detector {
     work.meshlets_skinned = touched.size();
   }
 
-  /// Deals the candidates out to as many blocks as they need; a meshlet whose segments find no room in one goes on in
-  /// the next.
+  /// Distributes the candidates to as many blocks as they need. A meshlet whose segments do not fit into one block
+  /// continues in the next.
   void fill_slots(const Frame& frame) {
     draws_.clear();
     gpu_corners_.clear();
@@ -210,7 +211,8 @@ class SkippingGeometryDetector final : public Detector {
   void upload() {
     context_->make_current();
     corners_.upload(gpu_corners_.data(), gpu_corners_.size() * sizeof(glm::vec3), GL_STREAM_DRAW);
-    blocks_.upload(nullptr, draws_.size() * sizeof(Block), GL_STREAM_DRAW);  // a uniform block is backed to its end
+    blocks_.upload(nullptr, draws_.size() * sizeof(Block),
+                   GL_STREAM_DRAW);  // a uniform block must be backed to its end
     blocks_.upload(gpu_blocks_.data(),
                    draws_.size() * sizeof(Block) - (kBlockSegments - draws_.back().segments) * sizeof(GpuSegment),
                    GL_STREAM_DRAW);
@@ -227,7 +229,7 @@ class SkippingGeometryDetector final : public Detector {
     }
   }
 
-  /// Returns 0 for the places that fill up the last meshlet, else 1.
+  /// Decides a captured pair. Returns 0 for the slots after the last meshlet's last triangle, otherwise 1.
   std::uint64_t decide(const Frame& frame, const CapturedPair& pair, ContactRow& row) {
     const std::size_t touched = pair.triangle / kMeshletTriangles;
     const std::size_t i = pair.triangle % kMeshletTriangles;
@@ -255,11 +257,11 @@ class SkippingGeometryDetector final : public Detector {
   CollisionTexture nowhere_;
   GlProgram program_;
   GLuint vertex_array_ = 0;
-  std::vector<MeshletCorners> now_;  ///< of each touched meshlet
+  std::vector<MeshletCorners> now_;  ///< for each touched meshlet
   std::vector<MeshletCorners> before_;
   std::vector<Draw> draws_;
   std::vector<Block> gpu_blocks_;       ///< one for each draw
-  std::vector<glm::vec3> gpu_corners_;  ///< of the triangles of each slot
+  std::vector<glm::vec3> gpu_corners_;  ///< for the triangles of each slot
   std::vector<CapturedPair> pairs_;
 };
 

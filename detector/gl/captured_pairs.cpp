@@ -10,13 +10,13 @@ namespace vestige {
 
 namespace {
 
-/// std430 layout of the shaders' Captured: this, then its pairs.
+/// std430 layout of the shaders' Captured: this head, then the pairs.
 struct Head {
   std::uint32_t count = 0;
   std::uint32_t capacity = 0;
 };
 
-/// Pairs that there is room for at first, and that are read back at once.
+/// The initial capacity, and the number of pairs that the first read-back fetches together with the head.
 constexpr std::size_t kStartingCapacity = 1024;
 constexpr std::size_t kPairsReadAtOnce = 64;
 

@@ -8,23 +8,24 @@
 
 namespace vestige {
 
-/// What a geometry shader writes for a pair that it could not prove to miss; what the numbers count is its own matter.
+/// The entry that a geometry shader writes for a pair that it could not prove to miss. Each shader defines what the two
+/// numbers count.
 struct CapturedPair {
   std::uint32_t segment;
   std::uint32_t triangle;
 };
 
-/// The buffer into which shaders capture pairs, `Captured` at VESTIGE_BINDING_CAPTURED. Belongs to the context whose
-/// functions it was made with, which must be current.
+/// The buffer into which shaders capture pairs, `Captured` at VESTIGE_BINDING_CAPTURED. It belongs to the context whose
+/// functions it was made with. That context must be current at every call.
 class CapturedPairs {
  public:
   explicit CapturedPairs(const GlFunctions& gl);
 
-  /// Before the draws of a frame: nothing is captured yet.
+  /// Empties the buffer. Call it before the draws of a frame.
   void begin();
 
-  /// After them: fills `pairs`. False where some pairs found no room; then there is room, and all has to be drawn again
-  /// from `begin` on.
+  /// Reads the pairs back into `pairs`. Call it after the draws. Returns false if the buffer was too small. Then the
+  /// buffer has grown, and the caller must draw everything again from `begin` on.
   bool read(std::vector<CapturedPair>& pairs);
 
  private:

@@ -11,13 +11,13 @@
 
 namespace vestige {
 
-/// A plane of the collision texture: what its attachment holds. Planes are attached in the order of their bits.
+/// A plane of the collision texture: the format of its attachment. Planes are attached in the order of their bits.
 struct GlPlane {
   Plane plane;
   GLenum internal_format;
   GLenum format;
-  std::size_t components;           ///< read back for each texel
-  std::size_t geometry_components;  ///< written by the geometry shader for each point
+  std::size_t components;           ///< number of components in the read-back of each texel
+  std::size_t geometry_components;  ///< number of components that the geometry shader writes for each point
 };
 
 inline constexpr std::array<GlPlane, 8> kGlPlanes = {{
@@ -33,8 +33,8 @@ inline constexpr std::array<GlPlane, 8> kGlPlanes = {{
 static_assert(static_cast<unsigned>(Plane::kSide) == 1U << VESTIGE_PLANE_SIDE);
 
 /// The collision texture (HAVE 2010 §III.A): one texel for each collider, in as many rows as the driver's texture limit
-/// asks for, with a depth buffer that keeps the earliest contact. Belongs to the context whose functions it was made
-/// with, which must be current.
+/// requires. A depth buffer keeps the earliest contact. The texture belongs to the context whose functions it was made
+/// with. That context must be current at every call.
 class CollisionTexture {
  public:
   CollisionTexture(const GlFunctions& gl, PlaneSet planes) : gl_(gl), planes_(planes) {}
@@ -45,8 +45,8 @@ class CollisionTexture {
   GLsizei width() const { return width_; }
   GLsizei height() const { return height_; }
 
-  /// Makes room for `texels`, binds the framebuffer and clears it to +inf, 0xFFFFFFFF and depth 1. Throws `Error`: more
-  /// texels than a texture holds, or planes that the driver refuses.
+  /// Makes room for `texels`, binds the framebuffer and clears it to +inf, 0xFFFFFFFF and depth 1. Throws `Error` if a
+  /// texture cannot hold that many texels, or if the driver refuses the planes.
   void begin(std::size_t texels);
 
   /// Reads one plane back into `out`: width * height * components values of 32 bits.

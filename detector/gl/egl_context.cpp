@@ -49,7 +49,7 @@ struct EglFunctions {
   }
 };
 
-/// Opened once, at first use; a failure is thrown again at every use.
+/// Opened once, at first use. If that fails, every use throws again.
 const EglFunctions& egl() {
   static const EglFunctions functions;
   return functions;
@@ -73,7 +73,7 @@ std::string device_string(EGLDeviceEXT device, EGLint name) {
   return text == nullptr ? "" : text;
 }
 
-/// A driver is only asked for what its extensions promise: some crash on other names.
+/// Queries only what the driver's extensions promise: some drivers crash on other names.
 EglDevice describe_device(EGLDeviceEXT device) {
   EglDevice found;
   found.extensions = device_string(device, EGL_EXTENSIONS);
@@ -97,8 +97,8 @@ class EglContext final : public GlContext {
   EglContext(const std::string& name, EGLenum platform, void* native) {
     display_ = egl().GetPlatformDisplay(platform, native, nullptr);
     if (display_ == EGL_NO_DISPLAY) throw egl_error(name, "eglGetPlatformDisplay");
-    // Displays are shared in the process and initialised as often as asked; they are never terminated, since another
-    // context may still live on the same one.
+    // The process shares displays, and may initialise one several times. Displays are never terminated, because another
+    // context may still use the same one.
     if (egl().Initialize(display_, nullptr, nullptr) != EGL_TRUE) throw egl_error(name, "eglInitialize");
     if (egl().BindAPI(EGL_OPENGL_API) != EGL_TRUE) throw egl_error(name, "eglBindAPI(EGL_OPENGL_API)");
     constexpr std::array<EGLint, 7> kAttributes = {
@@ -117,7 +117,7 @@ class EglContext final : public GlContext {
 
  private:
   void bind() override {
-    // Which API is bound is kept per thread, and others may have changed it.
+    // The bound API is kept per thread, and others may have changed it.
     egl().BindAPI(EGL_OPENGL_API);
     if (egl().MakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context_) != EGL_TRUE)
       throw egl_error("EGL", "eglMakeCurrent without a surface");
@@ -138,7 +138,7 @@ std::vector<EglDevice> list_egl_devices() {
   try {
     for (EGLDeviceEXT device : query_devices()) found.push_back(describe_device(device));
   } catch (const Error&) {
-    found.clear();  // no EGL at all: no devices
+    found.clear();  // without EGL there are no devices
   }
   return found;
 }

@@ -25,7 +25,7 @@ std::string text_of(const GLubyte* text) {
   return text == nullptr ? "" : reinterpret_cast<const char*>(text);
 }
 
-/// Mesa may serve a GPU's device with its software renderer, which must not win over another device's GPU.
+/// Mesa may serve a GPU's device with its software renderer. That renderer must not win over another device's GPU.
 std::unique_ptr<GlContext> make_hardware_context(int device) {
   if (list_egl_devices()[static_cast<std::size_t>(device)].software)
     throw Error(fmt::format("egl-device-{}", device), "is software", "");

@@ -10,8 +10,9 @@
 
 namespace vestige {
 
-/// A headless OpenGL 4.5 core context, with its own function table. Several may live in one thread: `make_current` lets
-/// go of the one before, which Mesa's EGL and OSMesa, sharing one dispatch table, need.
+/// A headless OpenGL 4.5 core context with its own function table. Several contexts may live in one thread.
+/// `make_current` first releases the previous context: Mesa's EGL and OSMesa need this because they share one dispatch
+/// table.
 class GlContext {
  public:
   virtual ~GlContext() = default;
@@ -24,10 +25,11 @@ class GlContext {
 
  protected:
   GlContext() = default;
-  /// Makes a new context current, loads all functions and reads the driver's names; throws `Error` when one is missing
-  /// or the version is below 4.5. Called once the object is whole, so that its destructor lets go after a failure.
+  /// Makes a new context current, loads all functions and reads the driver's names. Throws `Error` if a function is
+  /// missing or the version is below 4.5. Call it when the object is complete, so that its destructor releases the
+  /// context after a failure.
   static std::unique_ptr<GlContext> loaded(std::unique_ptr<GlContext> context, std::string name);
-  /// For destructors: lets go of the context if it is current.
+  /// For destructors: releases the context if it is current.
   void leave();
 
   virtual void bind() = 0;
@@ -39,20 +41,20 @@ class GlContext {
   GlInfo info_;
 };
 
-/// The functions of a context that it makes current: for members that are made with them.
+/// Makes a context current and returns its functions: for members whose constructors need them.
 const GlFunctions& current_gl(GlContext& context);
 
 enum class ContextKind {
   kAuto,  ///< the first that works of: EGL device with hardware, EGL surfaceless, EGL software device, OSMesa
-  kEgl,   ///< the same without OSMesa
+  kEgl,   ///< the same list without OSMesa
   kOsMesa,
 };
 
-/// `device`: -1, or the number of an EGL device (EGL_EXT_device_enumeration) as `list_egl_devices` counts them. Throws
-/// `Error` saying what was tried, what each answered, and what to install.
+/// `device` is -1, or the number of an EGL device (EGL_EXT_device_enumeration) in the order of `list_egl_devices`.
+/// Throws `Error` if no context can be made. The error lists each attempt, its failure, and the packages to install.
 std::unique_ptr<GlContext> make_gl_context(ContextKind kind, int device);
 
-/// An EGL device, as far as its driver speaks of it: what it does not say is empty.
+/// An EGL device, as its driver describes it. Values that the driver does not report are empty.
 struct EglDevice {
   bool software = false;
   std::string vendor;
@@ -62,13 +64,13 @@ struct EglDevice {
   std::string extensions;   ///< EGL_EXTENSIONS of the device
 };
 
-/// The EGL devices of this machine; empty where EGL is missing or cannot enumerate.
+/// Returns the EGL devices of this machine; empty if EGL is missing or cannot enumerate devices.
 std::vector<EglDevice> list_egl_devices();
 
-/// Whether a renderer of this name draws on the processor: llvmpipe, softpipe, swrast, SWR, lavapipe, SwiftShader.
+/// Returns whether a renderer with this name runs on the CPU: llvmpipe, softpipe, swrast, SWR, lavapipe, SwiftShader.
 bool is_software_renderer(std::string_view renderer);
 
-/// One attempt each; throw `Error` on failure.
+/// Each function makes one attempt and throws `Error` on failure.
 std::unique_ptr<GlContext> make_egl_surfaceless_context();
 std::unique_ptr<GlContext> make_egl_device_context(int device);
 std::unique_ptr<GlContext> make_osmesa_context();

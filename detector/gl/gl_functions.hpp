@@ -4,7 +4,8 @@
 
 namespace vestige {
 
-// Every OpenGL entry point that we call. They are loaded from the context's own library: nothing links libGL.
+// Every OpenGL entry point that the program calls. They are loaded from the context's own library, so nothing links
+// libGL.
 #define VESTIGE_GL_FUNCTIONS(X)                                          \
   X(PFNGLATTACHSHADERPROC, AttachShader)                                 \
   X(PFNGLBEGINTRANSFORMFEEDBACKPROC, BeginTransformFeedback)             \

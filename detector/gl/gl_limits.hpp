@@ -8,15 +8,15 @@
 
 namespace vestige {
 
-/// A limit of the driver that the detectors meet.
+/// A limit of the driver that affects the detectors.
 struct GlLimit {
   const char* name;     ///< in JSON
   const char* meaning;  ///< for people
   std::int64_t value;
-  std::int64_t needed;  ///< by `paper`; 0: a smaller one costs speed or size, and works
+  std::int64_t needed;  ///< minimum for `paper`; 0 if a smaller value works but costs speed or size
 };
 
-/// The limits of a context, which is made current.
+/// Makes the context current and returns its limits.
 std::vector<GlLimit> gl_limits(GlContext& context);
 
 }  // namespace vestige

@@ -15,7 +15,7 @@ namespace {
 constexpr const char* kFaultRemedy =
     "this is a fault of ours or of the GL driver: try another --context, and report it";
 
-/// The info log of a shader or program, whichever the two functions read.
+/// Returns the info log of a shader or a program, depending on the two functions.
 template <typename GetIv, typename GetLog>
 std::string info_log(GLuint name, GetIv get_iv, GetLog get_log) {
   GLint length = 0;

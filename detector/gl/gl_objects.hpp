@@ -8,8 +8,8 @@
 
 namespace vestige {
 
-/// A buffer object that is filled again and again: it grows when needed and is then kept. Belongs to the context whose
-/// functions it was made with, which must be current.
+/// A buffer object for repeated uploads. It grows if needed and never shrinks. It belongs to the context whose
+/// functions it was made with. That context must be current at every call.
 class GlBuffer {
  public:
   explicit GlBuffer(const GlFunctions& gl);
@@ -17,7 +17,7 @@ class GlBuffer {
   GlBuffer(const GlBuffer&) = delete;
   GlBuffer& operator=(const GlBuffer&) = delete;
 
-  /// `data` may be null: then the content is undefined.
+  /// `data` may be null. Then the content is undefined.
   void upload(const void* data, std::size_t bytes, GLenum usage);
   GLuint name() const { return name_; }
 
@@ -27,17 +27,17 @@ class GlBuffer {
   std::size_t capacity_bytes_ = 0;
 };
 
-/// A linked program; deleted with its context current.
+/// A linked program. Its context must be current at the destruction.
 class GlProgram {
  public:
   struct Stage {
     GLenum type;
-    std::string_view file;  ///< stands in errors
+    std::string_view file;  ///< name for error messages
     std::string_view source;
   };
 
   /// Puts `head` (#version, defines) in front of every stage. `captured`, unless empty, is the one varying that
-  /// transform feedback captures. Throws `Error` with the compiler's words.
+  /// transform feedback captures. Throws `Error` with the compiler's message.
   GlProgram(const GlFunctions& gl, std::string_view head, std::initializer_list<Stage> stages,
             std::string_view captured = {});
   ~GlProgram();
@@ -50,10 +50,10 @@ class GlProgram {
   GLuint name_ = 0;
 };
 
-/// One of the driver's limits.
+/// Returns one of the driver's limits.
 GLint gl_limit(const GlFunctions& gl, GLenum name);
 
-/// Throws `Error` naming the OpenGL error, if there was one since the last call.
+/// Throws `Error` with the OpenGL error, if one occurred since the last call.
 void check_gl(const GlFunctions& gl, std::string_view doing);
 
 }  // namespace vestige

@@ -1,4 +1,4 @@
-// GL/glcorearb.h must come before GL/osmesa.h, whose GL/gl.h hides half of it otherwise.
+// GL/glcorearb.h must come before GL/osmesa.h. Otherwise the GL/gl.h of GL/osmesa.h hides half of it.
 // clang-format off
 #include "detector/gl/gl_context.hpp"
 #include <GL/osmesa.h>
@@ -13,7 +13,7 @@ namespace vestige {
 
 namespace {
 
-constexpr int kSide = 4;  // of the colour buffer that OSMesa insists on; we draw into our own framebuffer
+constexpr int kSide = 4;  // of the colour buffer that OSMesa requires; the program draws into its own framebuffer
 
 struct OsMesaFunctions {
   decltype(&OSMesaCreateContextAttribs) CreateContextAttribs = nullptr;

@@ -63,7 +63,7 @@ SceneRenderer::~SceneRenderer() {
     gl_.DeleteRenderbuffers(1, &colour_);
     gl_.DeleteRenderbuffers(1, &depth_);
   } catch (const Error&) {
-    // The context is lost, and with it all that was in it.
+    // The context is lost, together with everything in it.
   }
 }
 
@@ -107,7 +107,7 @@ std::vector<std::uint8_t> SceneRenderer::pixels() {
   return pixels;
 }
 
-/// From the front (glTF avatars face +z), far enough to see the rest pose and a moving limb beside it.
+/// Looks from the front (glTF avatars face +z), far enough away to see the rest pose and a moving limb beside it.
 void SceneRenderer::aim_camera() {
   world_matrices(avatar_, rest_pose(avatar_), world_);
   const glm::dvec3 root(world_[static_cast<std::size_t>(avatar_.root_node)][3]);

@@ -14,15 +14,15 @@
 
 namespace vestige {
 
-/// Draws what a user of the scene would see, into a framebuffer of its own: the avatar from the front, lit, and the
-/// colliders. HAVE 2010 §IV has it beside detection, in a context and a thread of its own. Belongs to the thread that
-/// made it.
+/// Draws the view of a user of the scene into its own framebuffer: the avatar from the front, lit, and the colliders.
+/// In HAVE 2010 §IV this runs beside the detection, in its own context and thread. Only the thread that made the
+/// renderer may use it.
 class SceneRenderer {
  public:
   static constexpr GLsizei kWidth = 800;
   static constexpr GLsizei kHeight = 600;
 
-  /// Throws `Error` with the driver's own words when it refuses. Keeps a reference to the avatar.
+  /// Throws `Error` with the driver's own message if the driver refuses. Keeps a reference to the avatar.
   SceneRenderer(std::unique_ptr<GlContext> context, const Avatar& avatar);
   ~SceneRenderer();
   SceneRenderer(const SceneRenderer&) = delete;
@@ -30,10 +30,10 @@ class SceneRenderer {
 
   const GlInfo& gl_info() const { return context_->info(); }
 
-  /// Draws one frame, and returns once it is drawn.
+  /// Draws one frame, and returns when the drawing is finished.
   void draw(const TraceFrame& frame);
 
-  /// What was drawn last: kWidth * kHeight pixels of red, green, blue and alpha, the lowest row first.
+  /// Returns the last drawn image: kWidth * kHeight pixels of red, green, blue and alpha, the lowest row first.
   std::vector<std::uint8_t> pixels();
 
  private:

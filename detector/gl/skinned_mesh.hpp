@@ -9,8 +9,8 @@
 
 namespace vestige {
 
-/// An avatar's vertices and triangles in a context, with the attributes of shaders/constants.h. Belongs to the context
-/// whose functions it was made with, which must be current.
+/// An avatar's vertices and triangles in a context, with the attributes of shaders/constants.h. The mesh belongs to the
+/// context whose functions it was made with. That context must be current at every call.
 class SkinnedMesh {
  public:
   SkinnedMesh(const GlFunctions& gl, const Avatar& avatar);
@@ -20,11 +20,11 @@ class SkinnedMesh {
 
   void bind() const;
 
-  /// Draws all triangles; the mesh must be bound.
+  /// Draws all triangles. The mesh must be bound.
   void draw(GLsizei instances) const;
 
-  /// Runs the current program, linked to capture one vec3, over all vertices and reads back what it captured. Some
-  /// framebuffer must be bound: a draw without any fails in a surfaceless context.
+  /// Runs the current program over all vertices and reads back its transform feedback. The program must be linked to
+  /// capture one vec3. Some framebuffer must be bound: a draw without one fails in a surfaceless context.
   void capture(std::vector<glm::vec3>& out);
 
  private:

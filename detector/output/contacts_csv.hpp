@@ -13,9 +13,9 @@
 
 namespace vestige {
 
-/// Writes `frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z`, one row a contact. collider
-/// is the id in the trace; x, y, z are world metres; floats in the shortest form that reads back to the same bits. Rows
-/// must carry all planes but speed.
+/// Writes `frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z`, one row for each contact.
+/// collider is the id in the trace. x, y, z are world metres. Floats have the shortest form that reads back to the same
+/// bits. Rows must carry all planes except speed.
 class ContactsCsv {
  public:
   ContactsCsv(const std::filesystem::path& path, Overwrite overwrite);
@@ -27,7 +27,7 @@ class ContactsCsv {
   std::string text_;
 };
 
-/// What a contacts CSV says of one contact, as far as another run is compared with it or it is drawn.
+/// One contact of a contacts CSV: the part that a comparison with another run, or a drawing, needs.
 struct RecordedContact {
   std::uint64_t frame = 0;
   std::uint32_t collider = 0;
@@ -37,15 +37,15 @@ struct RecordedContact {
   std::uint16_t actuator = 0;
 };
 
-/// What the contacts of a CSV can refer to.
+/// The numbers of triangles, actuators and frames that the contacts of a CSV can refer to.
 struct ContactLimits {
   std::size_t triangles = std::numeric_limits<std::uint32_t>::max();
   std::size_t actuators = std::numeric_limits<std::uint16_t>::max();
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Reads back what `ContactsCsv` wrote, whatever the order of its rows, ordered by frame and collider. Throws `Error`
-/// naming file and line, also for a contact that refers to what is not there.
+/// Reads a file of `ContactsCsv`, with rows in any order, and returns the contacts ordered by frame and collider.
+/// Throws `Error` with file and line, also if a contact refers to something that does not exist.
 std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path, const ContactLimits& limits = {});
 
 }  // namespace vestige

@@ -49,7 +49,8 @@ constexpr std::array<ChannelFormat, 13> kChannels = {{
     {"pressure", Plane::kPressure, Imf::FLOAT, [](const Contact& c) { return float_bits(pressure_of(c)); }},
 }};
 
-/// OpenEXR writes into memory, and `OutputFile` onto the disk, so that a full disk is reported in one way everywhere.
+/// OpenEXR writes into memory, and `OutputFile` writes to the disk. So a full disk is reported in the same way
+/// everywhere.
 class MemoryStream final : public Imf::OStream {
  public:
   MemoryStream() : Imf::OStream("memory") {}
@@ -102,7 +103,7 @@ void TextureExr::write(OutputFile& file) const {
     std::vector<std::uint32_t> line(channels.size() * columns_);
     Imf::FrameBuffer frame_buffer;
     for (std::size_t i = 0; i < channels.size(); ++i)
-      // A y stride of 0: every row is written from the same line.
+      // With a y stride of 0, every row is written from the same line.
       frame_buffer.insert(channels[i]->name, Imf::Slice(channels[i]->type, reinterpret_cast<char*>(&line[i * columns_]),
                                                         sizeof(std::uint32_t), 0));
     image.setFrameBuffer(frame_buffer);

@@ -11,21 +11,22 @@
 
 namespace vestige {
 
-/// The collision textures of a run as one OpenEXR image: a row for each frame, a column for each collider, one channel
-/// for each plane asked for, uncompressed order top-down, ZIPS. Without contact, float channels hold +inf and uint
-/// channels 0xFFFFFFFF.
+/// The collision textures of a run as one OpenEXR image: a row for each frame, a column for each collider, and the
+/// channels of each plane requested. Rows run top-down; the compression is ZIPS. Without contact, float channels have
+/// +inf and uint channels have 0xFFFFFFFF.
 ///
 /// Channels: actuator, t, triangle (uint), u, v, texture_u, texture_v, x, y, z (world metres, rounded to float), speed
 /// (m/s), side, pressure (0 … 1, `pressure_of`).
 class TextureExr {
  public:
-  /// `attributes` go into the file's header as strings.
+  /// `attributes` become strings in the file's header.
   TextureExr(PlaneSet planes, std::size_t columns, std::map<std::string, std::string> attributes);
 
-  /// Adds a row. Only contacts are kept, so memory grows with them, not with frames times colliders.
+  /// Adds a row. Only contacts are stored, so memory grows with the number of contacts, not with frames times
+  /// colliders.
   void add(const Frame& frame, const ContactRow& row);
 
-  /// Writes the whole image. A run without any frame or collider has no image: throws `Error`.
+  /// Writes the whole image. Throws `Error` for a run without frames or without colliders, which has no image.
   void write(OutputFile& file) const;
 
  private:

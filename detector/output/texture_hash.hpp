@@ -8,12 +8,12 @@
 
 namespace vestige {
 
-/// SHA-256 of a run's collision textures: per frame, then per column, little-endian u32 triangle (0xFFFFFFFF none), u32
-/// bits of t (+inf none), u16 actuator. Rows must carry `kHashedPlanes`.
+/// SHA-256 of a run's collision textures: per frame, then per column, in little-endian: u32 triangle (0xFFFFFFFF
+/// without contact), u32 bits of t (+inf without contact), u16 actuator. Rows must carry `kHashedPlanes`.
 class TextureHash {
  public:
   void add(const ContactRow& row);
-  /// Lower-case hexadecimal. Ends the hash: call once.
+  /// Returns the hash in lower-case hexadecimal. This ends the hash: call it once.
   std::string hex() { return sha_.hex(); }
 
  private:

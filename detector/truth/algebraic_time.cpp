@@ -11,8 +11,8 @@ namespace {
 
 constexpr unsigned kRefinementBits = 40;
 
-/// About where in (0, 1) of its interval a Bernstein polynomial of one sign change has its root. A guess: whoever uses
-/// it checks.
+/// Returns an approximate root, in (0, 1) of the interval, of a Bernstein polynomial with one sign change. The result
+/// is a guess, and the caller must check it.
 double guessed_root(const Bernstein& exact) {
   constexpr int kSteps = 48;
   constexpr unsigned kKeptBits = 900;  // far from overflow
@@ -46,7 +46,7 @@ Interval rescaled(const Interval& interval, unsigned scale) {
 
 }  // namespace
 
-/// Cuts the interval at x, in its own scale, if x lies within.
+/// Cuts the interval at x, given in the scale of the interval, if x lies in the interval.
 void AlgebraicTime::bisect_at(const Whole& x) {
   if (dyadic() || x <= interval_.low || x >= interval_.high) return;
   const int sign = sign_at(polynomial_, x, interval_.scale);
@@ -58,7 +58,8 @@ void AlgebraicTime::bisect_at(const Whole& x) {
   }
 }
 
-/// Shrinks the interval to half of it at most, and to 2^-39 of it where a guess in floating point is right.
+/// Shrinks the interval to at most half of its width. If the floating-point guess is right, the new width is at most
+/// 2^-38 of the old.
 void AlgebraicTime::refine() {
   if (dyadic()) return;
   const double guess = guessed_root(bernstein(polynomial_, interval_));
@@ -79,7 +80,8 @@ int AlgebraicTime::sign_of(const Polynomial& polynomial) {
     const Bernstein over_interval = bernstein(polynomial, interval_);
     if (over_interval.sign_changes() == 0) return over_interval.first_sign();
     if (tries == kQuickTries) {
-      // A simple root of polynomial_ is one of the common divisor at most once: an odd count is exactly one root.
+      // A simple root of polynomial_ is at most a simple root of the common divisor, so an odd count means exactly one
+      // root.
       const Polynomial common = common_divisor(polynomial_, polynomial);
       if (bernstein(common, interval_).sign_changes() % 2 != 0) return 0;
     }
@@ -87,7 +89,7 @@ int AlgebraicTime::sign_of(const Polynomial& polynomial) {
   }
 }
 
-/// The sign of this time less x * 2^-scale.
+/// Returns the sign of this time minus x * 2^-scale.
 int AlgebraicTime::compare_to(const Whole& x, unsigned scale) {
   const unsigned common = std::max(scale, interval_.scale);
   const Interval interval = rescaled(interval_, common);
@@ -119,7 +121,7 @@ int AlgebraicTime::compare(AlgebraicTime& other) {
 }
 
 float AlgebraicTime::rounded() {
-  constexpr unsigned kMiddleScale = 150;  // whatever lies midway between two floats is a multiple of 2^-150
+  constexpr unsigned kMiddleScale = 150;  // every midpoint of two neighbouring floats is a multiple of 2^-150
   for (;;) {
     const Whole one = Whole(1) << interval_.scale;
     const float low = rounded_quotient(interval_.low, one);
@@ -150,7 +152,7 @@ std::vector<AlgebraicTime> roots_within_frame(const Polynomial& polynomial) {
     const int changes = over_interval.sign_changes();
     if (changes == 1) roots.emplace_back(polynomial, interval, over_interval.first_sign());
     if (changes > 1) {
-      if (interval.scale == kPatience) {  // roots this close may be one, which no bisection tells
+      if (interval.scale == kPatience) {  // roots this close may be one root, which no bisection can tell
         const Polynomial repeated = common_divisor(polynomial, polynomial.derivative());
         if (repeated.degree() > 0) return roots_within_frame(quotient_of(polynomial, repeated));
       }

@@ -7,24 +7,24 @@
 
 namespace vestige::exact {
 
-/// A root of a polynomial within [0, 1], exactly: a dyadic number, or the only root, a simple one, within an open
-/// interval whose ends are dyadic. The interval shrinks as answers ask for it; the number stays the same.
+/// A root of a polynomial within [0, 1], exactly. It is either a dyadic number, or a simple root that is the only root
+/// in an open interval with dyadic ends. Queries shrink the interval as needed, but the number stays the same.
 class AlgebraicTime {
  public:
-  /// x * 2^-scale. By value: g++ 12 falsely warns of uninitialised limbs otherwise.
+  /// The time x * 2^-scale. x is passed by value because g++ 12 falsely warns of uninitialised limbs otherwise.
   // NOLINTNEXTLINE(performance-unnecessary-value-param)
   AlgebraicTime(Whole x, unsigned scale) : interval_{x, x, scale} {}
-  /// The only root of `polynomial` in `interval`; it is simple; just right of the interval's low end the polynomial has
-  /// `sign_below`, which is not 0.
+  /// The only root of `polynomial` in `interval`, which must be simple. Just right of the interval's low end the
+  /// polynomial has the sign `sign_below`, which must not be 0.
   AlgebraicTime(const Polynomial& polynomial, Interval interval, int sign_below)
       : polynomial_(polynomial), interval_(std::move(interval)), sign_below_(sign_below) {}
 
-  /// The sign of `polynomial` at this time.
+  /// Returns the sign of `polynomial` at this time.
   int sign_of(const Polynomial& polynomial);
-  /// -1, 0, 1: this time is before, equal to, after the other.
+  /// Returns -1, 0 or 1 if this time is before, equal to or after the other time.
   int compare(AlgebraicTime& other);
   bool is_zero() const { return dyadic() && interval_.low == 0; }
-  /// Nearest-even fp32.
+  /// Returns the time rounded to nearest-even fp32.
   float rounded();
 
  private:
@@ -38,7 +38,8 @@ class AlgebraicTime {
   int sign_below_ = 0;
 };
 
-/// The different roots of `polynomial` within [0, 1], in ascending order. Precondition: it does not vanish identically.
+/// Returns the distinct roots of `polynomial` within [0, 1], in ascending order. The polynomial must not vanish
+/// identically.
 std::vector<AlgebraicTime> roots_within_frame(const Polynomial& polynomial);
 
 }  // namespace vestige::exact

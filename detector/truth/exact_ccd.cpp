@@ -11,7 +11,7 @@ namespace vestige::exact {
 
 namespace {
 
-/// The moving point and triangle by their differences: what the contract's formula for the side is made of.
+/// The moving point and triangle as differences, from which the contract's formula for the side is built.
 struct Scene {
   std::array<MovingVector, 3> edge;         ///< from corner i to corner i + 1
   std::array<MovingVector, 3> from_corner;  ///< from corner i to the point
@@ -34,29 +34,31 @@ Scene scene_of(const Way& way, const Corners& before, const Corners& after) {
           {difference(1, 0), difference(2, 0), difference(3, 0)}};
 }
 
-/// For each edge twice the area, as a vector, of the triangle that the point and the edge span.
+/// Returns, for each edge, twice the area, as a vector, of the triangle that the point and the edge span.
 std::array<MovingVector, 3> edge_areas(const Scene& scene) {
   std::array<MovingVector, 3> areas;
   for (std::size_t i = 0; i < 3; ++i) areas[i] = cross(scene.edge[i], scene.from_corner[i]);
   return areas;
 }
 
-/// Twice the triangle's own area, as a vector: its normal.
+/// Returns twice the triangle's own area, as a vector: the triangle's normal.
 MovingVector normal_of(const Scene& scene) {
   return cross(scene.edge[2], scene.edge[0]);
 }
 
-/// Is the point on the closed triangle at `time`, at which it is in a plane with the three corners?
+/// Returns whether the point is on the closed triangle at `time`, at which the point and the three corners must lie in
+/// one plane.
 bool on_triangle(const Scene& scene, const MovingVector& normal, const std::array<MovingVector, 3>& area,
                  AlgebraicTime& time) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // Along an axis in which the triangle is seen with an area, the point's three triangles must all turn as it does.
+    // Take an axis along which the triangle has an area. The three triangles at the point must all turn in the same
+    // direction as the triangle.
     const int turn = time.sign_of(normal[axis]);
     if (turn == 0) continue;
     return std::ranges::all_of(area, [&](const MovingVector& edge) { return time.sign_of(edge[axis]) * turn >= 0; });
   }
-  // No area just then: the triangle is the union of its edges. The point is on one if it is in line with its ends and
-  // between them.
+  // The triangle has no area at this time, so it is the union of its edges. The point is on an edge if the point is in
+  // line with the ends of the edge and between them.
   for (std::size_t i = 0; i < 3; ++i) {
     const bool in_line =
         std::ranges::all_of(area[i], [&](const Polynomial& component) { return time.sign_of(component) == 0; });
@@ -75,10 +77,11 @@ bool on_triangle(const Scene& scene, const MovingVector& normal, const std::arra
   return false;
 }
 
-/// The first time when all move in one plane that turns with them. The time is 0, or else x comes to an edge just then:
-/// in line with an edge, or at a corner, and not so throughout. (Were each of those quantities that is zero at the
-/// first time zero throughout, then x would be in line with the edge that it is on, throughout; strictly between its
-/// ends it would have been on it before; at an end it would have been there always.)
+/// Returns the first contact if point and triangle move in one plane, which may turn with them. Either the contact is
+/// at time 0, or the point x reaches an edge at that time: x gets in line with an edge, or gets to a corner, and was
+/// not there throughout. Proof: suppose that each of these quantities that is zero at the first time is zero
+/// throughout. Then x is always in line with the edge that it is on. If x is strictly between the ends of the edge, x
+/// was on the edge before. If x is at an end, x was there always.
 std::optional<AlgebraicTime> first_in_plane(const Scene& scene, const MovingVector& normal,
                                             const std::array<MovingVector, 3>& area) {
   AlgebraicTime start(0, 0U);
@@ -98,7 +101,8 @@ std::optional<AlgebraicTime> first_in_plane(const Scene& scene, const MovingVect
   return first;
 }
 
-/// The contract's side: the sign of `height` just before `time`; at 0 the opposite of its sign just after.
+/// Returns the contract's side: the sign of `height` just before `time`. At time 0, returns the opposite of the sign
+/// just after.
 int side_at(Polynomial height, AlgebraicTime& time) {
   int before = 1;  // the sign of (earlier - time)^order
   while (!height.vanishes()) {
@@ -110,7 +114,8 @@ int side_at(Polynomial height, AlgebraicTime& time) {
   return 0;
 }
 
-/// Whether along some axis the point stays beyond the triangle, wherever in the frame each of them is.
+/// Returns whether, along some axis, the point stays beyond the triangle at all times of the frame, whatever the time
+/// of each.
 bool apart(const Way& way, const Corners& before, const Corners& after) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto [way_low, way_high] = std::minmax(way.start[axis], way.end[axis]);
@@ -123,8 +128,8 @@ bool apart(const Way& way, const Corners& before, const Corners& after) {
 
 }  // namespace
 
-// Contact needs point and corners in one plane: a root of the cubic dot(normal, x - a). Its roots are isolated by
-// Descartes' rule, and each is asked for the signs of quadratics, which tell whether the point is within.
+// A contact needs the point and the corners in one plane: a root of the cubic dot(normal, x - a). Descartes' rule
+// isolates the roots. At each root, the signs of quadratics tell whether the point is within the triangle.
 std::optional<FirstContact> ccd_contact(const Way& way, const Corners& before, const Corners& after) {
   if (apart(way, before, after)) return std::nullopt;
   const Scene scene = scene_of(way, before, after);

@@ -35,7 +35,7 @@ struct Fraction {
   }
 };
 
-/// The times within [0, 1] that meet every demand made so far. A demand is about a quantity that changes linearly,
+/// The times within [0, 1] that meet all conditions so far. A condition is about a quantity that changes linearly,
 /// given by its values at 0 and at 1.
 class Times {
  public:
@@ -71,7 +71,7 @@ class Times {
   bool none_ = false;
 };
 
-/// What is asked about, as whole multiples of one length.
+/// The input, as integer multiples of one length.
 struct Question {
   Vector start;
   Vector end;
@@ -94,7 +94,8 @@ Question question_of(const Way& way, const Corners& triangle) {
   return question;
 }
 
-/// Within the triangle's prism: the triangle is where the plane cuts the three half-spaces that stand on its edges.
+/// Keeps the times at which the way is within the triangle's prism. The triangle is the intersection of the plane with
+/// the three half-spaces that stand on its edges.
 void stay_within(const Question& q, const Vector& normal, Times& times) {
   for (std::size_t i = 0; i < 3 && !times.none(); ++i) {
     const Vector inward = cross(normal, minus(q.corner[(i + 1) % 3], q.corner[i]));
@@ -102,8 +103,8 @@ void stay_within(const Question& q, const Vector& normal, Times& times) {
   }
 }
 
-/// A triangle without area is the line between its corners that are first and last in lexicographic order, which is
-/// their order along the line; or one point.
+/// Keeps the times at which the way is on a triangle without area. Such a triangle is the line between its first and
+/// its last corner in lexicographic order, which is their order along the line; or it is one point.
 void stay_on_line(const Question& q, Times& times) {
   const auto [first, last] = std::minmax_element(q.corner.begin(), q.corner.end());
   const Vector line = minus(*last, *first);
@@ -120,7 +121,7 @@ void stay_on_line(const Question& q, Times& times) {
   times.keep_non_negative(dot(line, minus(*last, q.start)), dot(line, minus(*last, q.end)));
 }
 
-/// Whether all of the way lies beyond all of the triangle along an axis.
+/// Returns whether all of the way lies beyond all of the triangle along an axis.
 bool apart(const Way& way, const Corners& triangle) {
   for (int axis = 0; axis < 3; ++axis) {
     const auto [way_low, way_high] = std::minmax(way.start[axis], way.end[axis]);
@@ -132,8 +133,8 @@ bool apart(const Way& way, const Corners& triangle) {
 
 }  // namespace
 
-// Every condition for the way's point to be on the triangle is linear in time, so the times of contact are what is left
-// of [0, 1] after cutting it down by each: no intersection is ever computed.
+// Every condition for the way's point to be on the triangle is linear in time. So the times of contact are the part of
+// [0, 1] that remains after each condition cuts it. The code never computes an intersection.
 std::optional<FirstContact> static_contact(const Way& way, const Corners& triangle) {
   if (apart(way, triangle)) return std::nullopt;
   const Question q = question_of(way, triangle);
@@ -147,7 +148,7 @@ std::optional<FirstContact> static_contact(const Way& way, const Corners& triang
     const Whole height_1 = dot(normal, minus(q.end, q.corner[0]));
     times.keep_zero(height_0, height_1);
     stay_within(q, normal, times);
-    side = height_0.compare(height_1);  // downwards through the plane: from the front
+    side = height_0.compare(height_1);  // a way downwards through the plane comes from the front
   }
   if (times.none()) return std::nullopt;
   return FirstContact{rounded_quotient(times.first().numerator, times.first().denominator),

@@ -63,8 +63,8 @@ Polynomial operator*(const Polynomial& a, const Polynomial& b) {
   return product;
 }
 
-/// Leaves the remainder of `this`, times a power of the divisor's leading coefficient; `quotient`, where not null, is
-/// what the divisor was multiplied with, for that multiple.
+/// Replaces `this` by its remainder, times a power of the divisor's leading coefficient. If `quotient` is not null, it
+/// receives the factor of the divisor for that multiple.
 void Polynomial::reduce_by(const Polynomial& divisor, Polynomial* quotient) {
   const Whole leading = divisor[divisor.degree_];
   while (degree_ >= divisor.degree_) {
@@ -155,8 +155,8 @@ Bernstein bernstein(const Polynomial& polynomial, const Interval& interval) {
       for (int power = degree - 1; power >= i; --power) c[index_of(power)] += c[index_of(power + 1)] * interval.low;
   const Whole width = interval.high - interval.low;
   Whole stretch = 1;
-  // sum_j c_j s^j has the Bernstein coefficients b_i = sum_j (i over j) / (n over j) c_j; all times 3 for n = 3 and
-  // times 2 for n = 2, so that they are whole. The sums are Pascal's triangle: repeated sums of neighbours.
+  // sum_j c_j s^j has the Bernstein coefficients b_i = sum_j (i over j) / (n over j) c_j. All are multiplied by 3 for n
+  // = 3 and by 2 for n = 2, so that they are integers. The sums are Pascal's triangle: repeated sums of neighbours.
   constexpr std::array<std::array<int, kMaxDegree + 1>, kMaxDegree + 1> kFactor = {
       {{1}, {1, 1}, {2, 1, 2}, {3, 1, 1, 3}}};
   for (int power = 0; power <= degree; ++power) {

@@ -9,7 +9,7 @@ float rounded_quotient(const Whole& numerator, const Whole& denominator) {
   if (numerator == 0) return 0;
   constexpr int kDigits = std::numeric_limits<float>::digits;
   constexpr int kFinest = kDigits - std::numeric_limits<float>::min_exponent;  // denormals are multiples of 2^-149
-  // The quotient lies in (2^(size - 1), 2^(size + 1)): one of two scales makes it `kDigits` digits long.
+  // The quotient lies in (2^(size - 1), 2^(size + 1)), so one of two scales makes it `kDigits` digits long.
   const int size = static_cast<int>(msb(numerator)) - static_cast<int>(msb(denominator));
   int scale = std::min(kDigits - 1 - size, kFinest);
   Whole scaled = numerator << static_cast<unsigned>(scale);

@@ -9,7 +9,7 @@
 
 namespace vestige::exact {
 
-/// A whole number without bounds; up to 512 bits need no allocation.
+/// An integer of any size; up to 512 bits need no allocation.
 using Whole = boost::multiprecision::number<
     boost::multiprecision::cpp_int_backend<512, 0, boost::multiprecision::signed_magnitude,
                                            boost::multiprecision::unchecked>,
@@ -38,8 +38,8 @@ inline BinaryParts binary_parts(double value) {
   return {(bits >> 63) != 0 ? -odd : odd, kLowestExponent + (biased == 0 ? 0 : biased - 1) + trailing};
 }
 
-/// The values as whole multiples of one power of two, which all share. What follows asks only for signs of homogeneous
-/// polynomials and for quotients of two of the same degree: that power is never needed.
+/// Returns the values as integer multiples of one power of two. Callers need only signs of homogeneous polynomials, and
+/// quotients of two polynomials of the same degree. So they never need that power.
 template <std::size_t Count>
 std::array<Whole, Count> whole_multiples(const std::array<double, Count>& values) {
   std::array<BinaryParts, Count> parts;
@@ -57,8 +57,8 @@ std::array<Whole, Count> whole_multiples(const std::array<double, Count>& values
   return whole;
 }
 
-/// numerator / denominator, rounded to nearest-even fp32, denormal results included; 0 <= numerator <= denominator,
-/// denominator > 0.
+/// Returns numerator / denominator, rounded to nearest-even fp32, including denormal results. Requires 0 <= numerator
+/// <= denominator and denominator > 0.
 float rounded_quotient(const Whole& numerator, const Whole& denominator);
 
 }  // namespace vestige::exact

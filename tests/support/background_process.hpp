@@ -14,10 +14,11 @@
 
 namespace vestige::test {
 
-/// One of the built programs, or of another folder's, running beside the test; killed at the end if it has not ended.
+/// A program that runs beside the test, from the built programs or from another folder. The destructor kills the
+/// program if it still runs.
 class BackgroundProcess {
  public:
-  /// Its standard error goes to that file.
+  /// Starts the program. Its standard error goes to the file `standard_error`.
   BackgroundProcess(std::vector<std::string> arguments, const std::filesystem::path& standard_error,
                     const std::filesystem::path& programs = VESTIGE_BIN_DIR) {
     arguments[0] = (programs / arguments[0]).string();
@@ -48,14 +49,14 @@ class BackgroundProcess {
   BackgroundProcess(const BackgroundProcess&) = delete;
   BackgroundProcess& operator=(const BackgroundProcess&) = delete;
 
-  /// The next line of its standard output, waited for; without the newline. Empty at the end.
+  /// Waits for the next line of the program's standard output. Returns it without the newline, or empty at the end.
   std::string line() {
     std::string text;
     for (char letter = 0; ::read(output_, &letter, 1) == 1 && letter != '\n';) text += letter;
     return text;
   }
   void signal(const int number) const { ::kill(process_, number); }
-  /// Its exit code; 128 and more: the signal that killed it.
+  /// Waits for the program's end. Returns its exit code, or 128 plus the number of the signal that killed it.
   int wait() {
     int status = 0;
     ::waitpid(std::exchange(process_, -1), &status, 0);

@@ -5,7 +5,7 @@
 
 namespace vestige::test {
 
-/// Of the built-in avatar.
+/// The actuator map of the built-in avatar.
 inline const ActuatorMap& builtin_map() {
   static const ActuatorMap map = parse_actuator_map(builtin_actuator_map_png(), builtin_actuator_map_json(), "builtin");
   return map;

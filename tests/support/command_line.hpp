@@ -14,24 +14,24 @@
 
 namespace vestige::test {
 
-/// Runs commands as a user does, in an empty folder of its own.
+/// Runs commands as a user does, in a new empty folder.
 class CommandLineTest : public ::testing::Test {
  protected:
   Outcome run(const std::string& command) const { return test::run(command, folder_.path()); }
 
-  /// What a command that must succeed prints.
+  /// Runs a command that must succeed. Returns the JSON that it prints.
   nlohmann::json json_of(const std::string& command) const {
     const Outcome outcome = run(command);
     EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
     return nlohmann::json::parse(outcome.standard_output, nullptr, false);
   }
 
-  /// What stands in a JSON file.
+  /// Returns the content of a JSON file.
   nlohmann::json json_in(const std::string& file) const {
     return nlohmann::json::parse(read_text_file(folder_ / file), nullptr, false);
   }
 
-  /// The command fails with this exit code, says each of these words, and leaves no file named `absent`.
+  /// Expects that the command fails with this exit code, prints each of these words, and leaves no file named `absent`.
   void expect_failure(const std::string& command, int exit_code, const std::vector<std::string>& words,
                       const std::string& absent = "") const {
     const Outcome outcome = run(command);
@@ -42,7 +42,7 @@ class CommandLineTest : public ::testing::Test {
     EXPECT_FALSE(std::filesystem::exists(folder_ / absent)) << command;
   }
 
-  /// A trace of 20 colliders and 60 frames.
+  /// Records a trace of 20 colliders and 60 frames.
   void record_small(const std::string& name = "small.mcap") const {
     ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 -o " + name).exit_code, 0);
   }

@@ -12,7 +12,7 @@
 
 namespace vestige::test {
 
-/// The built-in map with so many columns and rows of actuators around the torso, each texel of it to one.
+/// Returns the built-in map with `columns` x `rows` actuators around the torso. Each mapped texel has one of them.
 inline ActuatorMap finer_map(std::uint16_t columns, std::uint16_t rows) {
   ActuatorMap map = builtin_map();
   const Avatar& avatar = builtin_avatar();

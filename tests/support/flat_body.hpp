@@ -10,8 +10,8 @@
 
 namespace vestige::test {
 
-/// A flat square of skin, 1 m wide, in z = 0 from (0, 0) to (1, 1), whose texture coordinates are x and y: `cells` x
-/// `cells` squares of two triangles each.
+/// Returns a flat square of skin, 1 m wide, in z = 0 from (0, 0) to (1, 1). It consists of `cells` x `cells` squares of
+/// two triangles each. Its texture coordinates are x and y.
 inline Avatar flat_body(int cells) {
   std::vector<glm::vec3> vertices;
   std::vector<glm::uvec3> triangles;
@@ -30,7 +30,7 @@ inline Avatar flat_body(int cells) {
   return rigid_avatar(vertices, triangles);
 }
 
-/// A contact at (x, y) of `flat_body(cells)`, both within [0, 1].
+/// Returns a contact at (x, y) of `flat_body(cells)`, both within [0, 1].
 inline Contact contact_at(double x, double y, int cells) {
   const double across = std::min(std::floor(x * cells), cells - 1.0);
   const double up = std::min(std::floor(y * cells), cells - 1.0);
@@ -45,8 +45,8 @@ inline Contact contact_at(double x, double y, int cells) {
   return contact;
 }
 
-/// Actuators of that square at these places, each where it is the nearest; `size` texels a side. Black where none is
-/// within `reach_m`.
+/// Returns a map of that square with `size` x `size` texels and an actuator at each of `places`. Each texel has the
+/// nearest actuator, or is black if no actuator is within `reach_m`.
 inline ActuatorMap nearest_map(const std::vector<glm::dvec2>& places, std::uint32_t size, double reach_m = 10) {
   ActuatorMap map;
   map.width = map.height = size;

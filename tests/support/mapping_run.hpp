@@ -6,18 +6,19 @@
 
 #include "analysis/scoring/scores.hpp"
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "tests/support/flat_body.hpp"
 #include "tests/support/scene_run.hpp"
 
 namespace vestige::test {
 
-/// A metric of a result, by its name; throws for one that is none.
+/// Returns the metric `name` of a result. Throws if there is no such metric.
 inline double metric(const Scores& scores, std::string_view name) {
   const auto found = std::ranges::find(metrics(), name, &Metric::name);
   return scores.at(static_cast<std::size_t>(found - metrics().begin()));
 }
 
-/// The contacts of a built-in scenario around an avatar.
+/// Returns the contacts of a built-in scenario around an avatar.
 inline ContactRecording record_scenario(std::string_view scenario, const Avatar& avatar, std::uint32_t colliders,
                                         int frames, double rate_hz) {
   const ActuatorMap none;

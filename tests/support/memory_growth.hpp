@@ -4,7 +4,7 @@
 
 namespace vestige::test {
 
-/// How much more memory this process has needed at its peak than when this was made.
+/// Measures how far the peak memory of this process has grown since this object was made.
 class MemoryGrowth {
  public:
   long kibibytes() const { return peak_kibibytes() - before_; }

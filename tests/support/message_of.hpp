@@ -7,7 +7,7 @@
 
 namespace vestige::test {
 
-/// What the `Error` that `call` throws says.
+/// Returns the message of the `Error` that `call` throws, or "no error".
 inline std::string message_of(const std::function<void()>& call) {
   try {
     call();

@@ -10,11 +10,13 @@
 
 namespace vestige::test {
 
-/// Where a package of tests/npm is, or should be: fetched when it is not there yet, it stays missing without network.
+/// Returns the path of a package of tests/npm. Fetches the packages if they are missing or older than
+/// package-lock.json. Without network, the package stays missing.
 inline std::filesystem::path npm_package(const std::string& name) {
   const auto folder = std::filesystem::path(VESTIGE_SOURCE_DIR) / "tests/npm";
-  // Test programs run beside each other: one of them fetches, the others wait until it is done. npm writes
-  // .package-lock.json last, when every package is complete. A registry may be out of reach for a moment.
+  // Test programs run in parallel: one of them fetches, and the others wait until the fetch is done. npm writes
+  // .package-lock.json last, when every package is complete. A registry may be unreachable for a moment, so the fetch
+  // is tried three times.
   const std::string command = fmt::format(
       "cd '{}' && flock package.json sh -c "
       "'for pause in 0 5 20; do test node_modules/.package-lock.json -nt package-lock.json && exit 0; sleep $pause; "
@@ -24,7 +26,7 @@ inline std::filesystem::path npm_package(const std::string& name) {
   return folder / "node_modules" / name;
 }
 
-/// What a script of tests/npm prints about `file`.
+/// Returns what a script of tests/npm prints about `file`.
 inline std::string run_node(const std::string& script, const std::filesystem::path& file) {
   const std::string command = fmt::format("node '{}/tests/npm/{}' '{}'", VESTIGE_SOURCE_DIR, script, file.string());
   std::FILE* pipe = ::popen(command.c_str(), "r");

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-/// What VR programs send, made with liblo.
+/// Messages that VR programs send, made with liblo.
 namespace vestige::test {
 
 struct FreeOscMessage {

@@ -8,7 +8,7 @@ namespace vestige::test {
 
 inline const std::string kSegmentHeader = "source,query,gt,float_exact,px,py,pz,qx,qy,qz,ax,ay,az,bx,by,bz,cx,cy,cz\n";
 
-/// A point falls from z = 1 to z = -1 through a triangle at rest.
+/// A query in which a point falls from z = 1 to z = -1 through a triangle at rest.
 inline const std::string kFalls =
     "1,1,1,1,1,1,1\n0,1,0,1,0,1,1\n4,1,0,1,0,1,1\n0,1,4,1,0,1,1\n"
     "1,1,1,1,-1,1,1\n0,1,0,1,0,1,1\n4,1,0,1,0,1,1\n0,1,4,1,0,1,1\n";

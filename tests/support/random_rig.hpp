@@ -11,19 +11,19 @@
 
 namespace vestige::test {
 
-/// What a random rig is like; sizes are powers of two.
+/// The shape of a random rig. Sizes and the offset are exponents of two.
 struct RigShape {
   std::uint64_t seed = 0;
   int triangles = 1;
   int entries = 1;
-  int influences = 1;  ///< of a vertex, at most
+  int influences = 1;  ///< most influences of a vertex
   int mesh_size = 0;
   int mesh_offset = 0;
   int matrix_size = 0;
   int translation_size = 0;
 };
 
-/// A soup of triangles whose palette need not have come from any skeleton: shears, mirrors and all.
+/// A triangle soup whose palette need not come from a skeleton: it includes shears and mirrors.
 class RandomRig {
  public:
   explicit RandomRig(const RigShape& shape) : shape_(shape), random_(shape.seed) {

@@ -19,7 +19,8 @@
 
 namespace vestige::test {
 
-/// `frames` frames of a built-in scenario around `avatar`, which plays its first animation, `origin_m` away.
+/// Returns `frames` frames of a built-in scenario around `avatar`, which plays its first animation. Everything is
+/// shifted by `origin_m`.
 inline std::vector<TraceFrame> scene(std::string_view scenario, const Avatar& avatar, std::uint32_t colliders,
                                      int frames, double rate_hz, const glm::dvec3& origin_m = glm::dvec3(0)) {
   const Animation* animation = avatar.animations.empty() ? nullptr : &avatar.animations.front();
@@ -39,9 +40,9 @@ inline std::vector<TraceFrame> scene(std::string_view scenario, const Avatar& av
   return scene;
 }
 
-/// What a run of frames through one detector gave.
+/// The result of a run of frames through one detector.
 struct SceneRun {
-  std::vector<ContactRow> rows;  ///< one a frame
+  std::vector<ContactRow> rows;  ///< one for each frame
   std::uint64_t non_finite_frames = 0;
   std::uint64_t non_finite_segments = 0;
   std::optional<std::uint64_t> first_non_finite;
@@ -62,7 +63,7 @@ inline std::string hash_of(const SceneRun& run) {
   return hash.hex();
 }
 
-/// For a scene of so many colliders.
+/// Returns a frame builder for a scene with this number of colliders.
 inline FrameBuilder frame_builder(const Avatar& avatar, std::uint32_t colliders, Method method) {
   std::vector<std::uint32_t> ids(colliders);
   std::iota(ids.begin(), ids.end(), 0U);

@@ -7,8 +7,8 @@
 
 namespace vestige::test {
 
-/// Calls `run(name)` once for each instruction set that this machine has and the program was compiled for, plain scalar
-/// code included, with everything that chooses at run time choosing that one.
+/// Calls `run(name)` once for each instruction set that this machine has and the program was compiled for, including
+/// plain scalar code. During the call, all code that chooses an instruction set at run time chooses that one.
 template <typename Run>
 void on_every_simd_target(Run&& run) {
   const std::int64_t supported = hwy::SupportedTargets();

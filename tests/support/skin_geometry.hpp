@@ -12,14 +12,14 @@
 
 namespace vestige::test {
 
-/// The faces, outwards, of a box whose corners are numbered by x, then y, then z, each low before high.
+/// Returns the outward faces of a box whose corners are numbered by x, then y, then z, each low before high.
 inline const std::vector<glm::uvec3>& box_faces() {
   static const std::vector<glm::uvec3> faces = {{0, 1, 3}, {0, 3, 2}, {4, 6, 7}, {4, 7, 5}, {0, 4, 5}, {0, 5, 1},
                                                 {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 5, 7}, {1, 7, 3}};
   return faces;
 }
 
-/// A closed box of a person's size, its feet at the origin, facing +z.
+/// Returns a closed box of a person's size. Its feet are at the origin, and it faces +z.
 inline Avatar box_person(float scale = 1) {
   std::vector<glm::vec3> vertices;
   for (const float x : {-0.25F, 0.25F})
@@ -28,7 +28,7 @@ inline Avatar box_person(float scale = 1) {
   return rigid_avatar(vertices, box_faces());
 }
 
-/// Its only animation, 2 s: to its left and forwards, and back.
+/// Adds an animation of 2 s: to the avatar's left and forwards, and back.
 inline void add_sway(Avatar& avatar, float scale = 1) {
   Animation sway;
   sway.name = "sway";
@@ -57,7 +57,8 @@ inline double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, con
   return std::min({distance_to_segment(p, a, b), distance_to_segment(p, b, c), distance_to_segment(p, c, a)});
 }
 
-/// By brute force, from all triangles of `avatar` with its vertices at `posed`.
+/// Returns the distance of `p` from the skin, by brute force over all triangles of `avatar` with its vertices at
+/// `posed`.
 inline double distance_to_skin(const Avatar& avatar, const std::vector<glm::dvec3>& posed, const glm::dvec3& p) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const glm::uvec3& t : avatar.triangles)
@@ -65,7 +66,7 @@ inline double distance_to_skin(const Avatar& avatar, const std::vector<glm::dvec
   return nearest;
 }
 
-/// Whether the closed skin goes around a point: by the solid angles of all triangles (van Oosterom, Strackee 1983).
+/// Returns whether a closed skin contains a point, by the solid angles of all triangles (van Oosterom, Strackee 1983).
 inline bool is_inside(const Avatar& avatar, const std::vector<glm::dvec3>& posed, const glm::dvec3& p) {
   double half_angles = 0;
   for (const glm::uvec3& t : avatar.triangles) {

@@ -7,7 +7,7 @@
 
 namespace vestige::test {
 
-/// An avatar of one rigid node, with these triangles, texture coordinates equal to x and y.
+/// Returns an avatar of one rigid node with these triangles. Its texture coordinates are x and y.
 inline Avatar rigid_avatar(const std::vector<glm::vec3>& vertices, const std::vector<glm::uvec3>& triangles) {
   Avatar avatar;
   avatar.nodes.resize(1);
@@ -23,7 +23,7 @@ inline Avatar rigid_avatar(const std::vector<glm::vec3>& vertices, const std::ve
   return avatar;
 }
 
-/// A frame in which `avatar` rests and one collider a segment moves.
+/// Returns a frame in which `avatar` is at rest and one collider moves along each segment.
 inline Frame frame_of(const Avatar& avatar, const std::vector<Segment>& segments) {
   Frame frame;
   frame.index = 1;

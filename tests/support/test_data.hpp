@@ -7,12 +7,12 @@
 
 namespace vestige::test {
 
-/// A file or folder of the real test data.
+/// Returns the path of a file or folder of the real test data.
 inline std::filesystem::path data(const std::filesystem::path& relative) {
   return std::filesystem::path(VESTIGE_DATA_DIR) / relative;
 }
 
-/// A new empty folder, removed with everything in it at the end of the test.
+/// A new empty folder. The destructor removes it with everything in it.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -35,7 +35,7 @@ class TemporaryFolder {
 
 }  // namespace vestige::test
 
-/// Skips the test, naming the missing path, when real data is absent; fails instead under CI.
+/// Skips the test with the missing path in the message if real data is absent. Under CI, fails instead.
 #define VESTIGE_REQUIRE_DATA(path)                                                     \
   if (!std::filesystem::exists(path)) {                                                \
     if (std::getenv("CI") != nullptr) FAIL() << "test data is missing: " << (path);    \

@@ -12,7 +12,7 @@
 
 namespace vestige::test {
 
-/// The frames of a timeline's CSV.
+/// Returns the frames of a timeline's CSV.
 inline std::vector<ActuatorFrame> read_timeline_csv(const std::string& csv) {
   std::vector<ActuatorFrame> frames;
   std::istringstream lines(csv);
@@ -29,7 +29,7 @@ inline std::vector<ActuatorFrame> read_timeline_csv(const std::string& csv) {
   return frames;
 }
 
-/// What the schemas say against a .hjif file; empty: nothing.
+/// Returns the complaints of the schemas about a .hjif file; empty if there are none.
 inline std::string hjif_complaints(const std::filesystem::path& file) {
   const Outcome outcome = run("python3 '" VESTIGE_SOURCE_DIR "/tests/traces/timeline/validate_hjif.py' '" +
                                   data("hjif").string() + "' '" + file.string() + "'",
@@ -38,7 +38,7 @@ inline std::string hjif_complaints(const std::filesystem::path& file) {
   return "exit code " + std::to_string(outcome.exit_code) + "\n" + outcome.standard_output + outcome.standard_error;
 }
 
-/// The duty that a .hjif file's curve has for an actuator (from 0) at a time in milliseconds.
+/// Returns the duty in a .hjif file's curve for an actuator (from 0) at a time in milliseconds. NaN outside the curve.
 inline double hjif_duty(const nlohmann::json& hjif, std::size_t actuator, double time_ms) {
   const auto& keyframes =
       hjif.at("perceptions").at(0).at("channels").at(actuator).at("bands").at(0).at("effects").at(0).at("keyframes");
@@ -58,8 +58,8 @@ inline double hjif_duty(const nlohmann::json& hjif, std::size_t actuator, double
   return NAN;  // after the end
 }
 
-/// What a .tact file must say of an actuator in the 20 ms from `start_ms` on: a frame holds until the next one, and the
-/// last for no time at all.
+/// Returns what a .tact file must say about an actuator in the 20 ms from `start_ms` on: the largest duty in percent. A
+/// frame holds until the next one. The last frame counts only at its own instant.
 inline int expected_percent(const std::vector<ActuatorFrame>& frames, std::size_t actuator, long start_ms) {
   int largest = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {

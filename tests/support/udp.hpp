@@ -31,7 +31,7 @@ class UdpSender {
   sockaddr_in place_ = {};
 };
 
-/// A port on which nobody listens now.
+/// Returns a port on which no program listens now.
 inline std::uint16_t free_udp_port() {
   const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in place = {};

@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
-// The vest's wire, written down a second time and as plainly as can be: what the firmware and the product's codec are
-// tested against shares no code with either. transport/firmware/README.md has it as tables.
+// The vest's wire protocol, implemented a second time and as plainly as possible. The tests of the firmware and of the
+// product's codec use it, and it shares no code with either. transport/firmware/README.md has the protocol as tables.
 namespace vestige::test {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// CRC-16/CCITT-FALSE, bit by bit.
+/// Returns CRC-16/CCITT-FALSE, computed bit by bit.
 inline std::uint16_t crc_ccitt_false(const std::span<const std::uint8_t> bytes) {
   unsigned crc = 0xFFFF;
   for (const std::uint8_t byte : bytes) {
@@ -24,12 +24,13 @@ inline std::uint16_t crc_ccitt_false(const std::span<const std::uint8_t> bytes) 
   return static_cast<std::uint16_t>(crc);
 }
 
-/// COBS over payload and CRC, and a 0x00 behind.
+/// Returns payload and CRC encoded with COBS, followed by 0x00.
 inline Bytes wire_frame(Bytes payload) {
   const unsigned crc = crc_ccitt_false(payload);
   payload.push_back(static_cast<std::uint8_t>(crc & 0xFF));
   payload.push_back(static_cast<std::uint8_t>(crc >> 8));
-  payload.push_back(0);  // the zero that COBS puts behind each message, so that every block ends with one
+  // COBS puts a zero behind each message, so that every block ends with a zero.
+  payload.push_back(0);
   Bytes frame;
   Bytes block;
   for (const std::uint8_t byte : payload) {
@@ -43,7 +44,7 @@ inline Bytes wire_frame(Bytes payload) {
   return frame;
 }
 
-/// 'S' or 'P': one level each, held for ttl hundredths of a second.
+/// Returns a frame of type 'S' or 'P': one level for each actuator, held for ttl hundredths of a second.
 inline Bytes levels_frame(const char type, const std::uint8_t sequence, const std::uint8_t ttl_10ms,
                           const Bytes& levels) {
   Bytes payload = {static_cast<std::uint8_t>(type), sequence, ttl_10ms, static_cast<std::uint8_t>(levels.size())};
@@ -58,7 +59,7 @@ inline Bytes off_frame(const std::uint8_t sequence) {
   return wire_frame({'X', sequence, 0, 0});
 }
 
-/// The payload of a frame without its delimiter; nothing where COBS or CRC are wrong.
+/// Returns the payload of a frame without its delimiter, or nothing if COBS or CRC is wrong.
 inline std::optional<Bytes> wire_payload(const std::span<const std::uint8_t> frame) {
   Bytes payload;
   for (std::size_t at = 0; at < frame.size();) {
@@ -76,7 +77,7 @@ inline std::optional<Bytes> wire_payload(const std::span<const std::uint8_t> fra
   return payload;
 }
 
-/// The payloads of all whole frames in what a board has sent; damaged ones are empty.
+/// Returns the payloads of all whole frames that a board has sent. Damaged frames give empty payloads.
 inline std::vector<Bytes> wire_payloads(const Bytes& line) {
   std::vector<Bytes> payloads;
   Bytes frame;

@@ -17,14 +17,14 @@ namespace vestige {
 namespace {
 
 [[noreturn]] void run_child(const std::function<void()>& work, std::uint64_t most_s) {
-  static_cast<void>(::prctl(PR_SET_PDEATHSIG, SIGKILL));  // whoever stops the parent stops it too
+  static_cast<void>(::prctl(PR_SET_PDEATHSIG, SIGKILL));  // when the parent dies, the child dies too
   const rlimit no_core = {0, 0};
   static_cast<void>(::setrlimit(RLIMIT_CORE, &no_core));
   const rlimit time = {most_s, RLIM_INFINITY};
   static_cast<void>(::setrlimit(RLIMIT_CPU, &time));
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU})
     static_cast<void>(std::signal(signal, SIG_DFL));
-  // What a failing library prints is not for whoever runs the program: it is told what came of it.
+  // Output of a failing library is not for the user, who gets our own error message.
   if (const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC); nowhere >= 0) {
     static_cast<void>(::dup2(nowhere, STDOUT_FILENO));
     static_cast<void>(::dup2(nowhere, STDERR_FILENO));

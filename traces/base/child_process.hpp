@@ -5,10 +5,10 @@
 
 namespace vestige {
 
-/// Runs `work` in a copy of this process, of which nothing is left but this: 0 where it ended, else the signal that
-/// ended it: SIGXCPU after `most_s` of processor time. For libraries that crash on damaged files, or never come to an
-/// end. What it throws is no matter, nor what it prints. To be called before threads are started. Throws `Error` where
-/// no process can be made.
+/// Runs `work` in a child process, for libraries that crash or hang on damaged files. Returns 0 if it finished,
+/// otherwise the number of the signal that killed it: SIGXCPU after `most_s` seconds of processor time. Exceptions and
+/// output of `work` are ignored. Precondition: no threads have been started. Throws `Error` if the process cannot be
+/// created.
 int signal_that_ends(const std::function<void()>& work, std::uint64_t most_s);
 
 }  // namespace vestige

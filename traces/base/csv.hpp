@@ -14,36 +14,39 @@
 
 namespace vestige {
 
-/// Goes through the rows of a CSV file, with a fixed header or none. Lines may end in LF or CRLF; empty lines are
-/// skipped, and a UTF-8 byte order mark in front of the header.
+/// Reads the rows of a CSV file, with or without a fixed header. Lines may end in LF or CRLF. Skips empty lines and a
+/// UTF-8 byte order mark in front of the header.
 class CsvLines {
  public:
-  /// `text` must stay. Throws `Error` at "NAME, line 1" when the first line is not `header`; `remedy` ends every error.
+  /// Keeps a reference to `text`. Throws `Error` at "NAME, line 1" if the first line is not `header`. Every error ends
+  /// with `remedy`.
   CsvLines(std::string_view text, std::string name, std::string_view header, std::string_view remedy);
 
-  /// Without a header.
+  /// For a file without a header. Keeps a reference to `text`.
   CsvLines(std::string_view text, std::string name, std::string_view remedy);
 
-  /// Of a file that is read line by line, with any header: `take_header` is to be called first. `reader` must stay.
+  /// For a file that is read line by line and may have any header. Call `take_header` first. Keeps a reference to
+  /// `reader`.
   CsvLines(LineReader& reader, std::string_view remedy);
 
-  /// The first line's fields, unquoted where they are quoted (RFC 4180, though on one line). Throws `Error` where there
-  /// is none.
+  /// Returns the fields of the first line, and unquotes quoted fields (RFC 4180, but within one line). Throws `Error`
+  /// if there is no first line or a quote is not closed.
   std::vector<std::string> take_header();
 
   /// Whether the first line of `text` is `header`.
   static bool has_header(std::string_view text, std::string_view header);
 
-  /// What ends every error from here on, where the header tells more.
+  /// Sets the remedy of later errors, for callers that learn more from the header.
   void set_remedy(std::string_view remedy) { remedy_ = remedy; }
 
-  /// Goes to the next row; false at the end of the file.
+  /// Goes to the next row. Returns false at the end of the file.
   bool next();
 
-  /// Reads the next field of the row as it is; false when there is none left.
+  /// Reads the next field of the row without unquoting it. Returns false if no field is left.
   bool take_text(std::string_view& field);
 
-  /// Reads the next field of the row as a number; false when there is none left or it is not wholly a number.
+  /// Reads the next field of the row as a number. Returns false if no field is left or the field is not entirely a
+  /// number.
   template <typename Number>
   bool take(Number& value) {
     std::string_view field;
@@ -55,10 +58,10 @@ class CsvLines {
     return failure == std::errc();
   }
 
-  /// Nothing is left of the row.
+  /// Whether all fields of the row were read.
   bool at_end() const { return at_end_; }
 
-  /// Of the row, from 1.
+  /// Line number of the row, from 1.
   std::size_t line() const { return line_; }
 
   Error error(std::string_view cause) const { return error(cause, remedy_); }
@@ -67,7 +70,7 @@ class CsvLines {
  private:
   bool next_line();
 
-  /// A number that is out of range since it is so small; false for one that is too large.
+  /// Rounds a number that is too small for its type. Returns false if it is too large instead.
   template <typename Number>
   static bool round_to_zero(std::string_view field, Number& value) {
     const double number = std::strtod(std::string(field).c_str(), nullptr);
@@ -76,7 +79,7 @@ class CsvLines {
   }
 
   std::string_view text_;
-  LineReader* reader_ = nullptr;  ///< in place of `text_`
+  LineReader* reader_ = nullptr;  ///< used instead of `text_` if not null
   std::string name_;
   std::string_view remedy_;
   std::string_view row_;
@@ -84,8 +87,8 @@ class CsvLines {
   bool at_end_ = true;
 };
 
-/// A field as CSV has it: in quotes where it holds a comma, a quote or white space at its ends. Line ends become
-/// spaces.
+/// Formats a field for CSV. Quotes it if it holds a comma or a quote, or begins or ends with a space. Replaces line
+/// ends by spaces.
 std::string csv_field(std::string_view text);
 
 }  // namespace vestige

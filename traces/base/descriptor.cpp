@@ -30,7 +30,7 @@ Error unreadable(const std::string& name, std::string_view doing, int error_numb
   return {name, std::string(doing) + ": " + std::strerror(error_number), ""};
 }
 
-/// An open that does not wait is for FIFOs alone: what comes after it may.
+/// Clears O_NONBLOCK: only opening a FIFO must not block, later reads and writes may.
 void let_wait(int descriptor) {
   ::fcntl(descriptor, F_SETFL, ::fcntl(descriptor, F_GETFL) & ~O_NONBLOCK);
 }
@@ -60,7 +60,7 @@ InputDescriptor::InputDescriptor(const std::filesystem::path& path)
 
 std::size_t InputDescriptor::read(std::span<std::byte> out) {
   for (;;) {
-    // A read that waits would be begun again after a signal; poll is not.
+    // After a signal, a blocking read would restart, but poll does not.
     pollfd waited{.fd = descriptor_.value(), .events = POLLIN, .revents = 0};
     if (!is_regular_ && ::poll(&waited, 1, kPatience_ms) <= 0) {
       refuse_to_wait_when_stopped(name_);

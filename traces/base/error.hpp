@@ -15,22 +15,23 @@ class Error : public std::runtime_error {
   std::string_view remedy() const;  ///< may be empty
 };
 
-/// The command was called wrongly: the same form of message, exit code 2.
+/// The command line is wrong. The message has the same form; the exit code is 2.
 class UsageError : public Error {
  public:
   using Error::Error;
 };
 
-/// Whoever read the pipe that was written to has stopped.
+/// The reader of the pipe that was written to has closed it.
 class ReaderGone : public Error {
  public:
   using Error::Error;
 };
 
-/// Names out of files may hold what moves a terminal's cursor: control characters as \xHH, but for line ends.
+/// Returns `text` with control characters, except line feeds, replaced by \xHH. Names from files may contain characters
+/// that move a terminal's cursor.
 std::string printable(std::string_view text);
 
-/// Writes to standard error. Where that is closed, nobody is told, and nothing fails for it.
+/// Writes to standard error. If standard error is closed, the message is lost without an error.
 void print_message(const std::string& text);
 
 }  // namespace vestige

@@ -34,7 +34,7 @@ bool LineReader::next(std::string_view& line) {
   return true;
 }
 
-/// Reads another block behind what is left, which it moves to the front.
+/// Moves the unread part to the front of the buffer and appends another block.
 bool LineReader::fill() {
   buffer_.erase(0, begin_);
   begin_ = 0;

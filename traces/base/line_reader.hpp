@@ -9,20 +9,20 @@
 
 namespace vestige {
 
-/// Reads a text file line by line, holding one line and a block at a time. "-" is standard input. Throws `Error` naming
-/// the file: missing, unreadable, a folder, a line longer than 64 MiB.
+/// Reads a text file line by line; holds one line and one block at a time. "-" is standard input. Throws `Error` with
+/// the name of the file if it does not exist, cannot be read, is a folder, or has a line longer than 64 MiB.
 class LineReader {
  public:
   explicit LineReader(const std::filesystem::path& path) : input_(path) {}
 
-  /// The next line without its end (LF or CRLF), valid until the next call; false at the end of the file.
+  /// Reads the next line without its end (LF or CRLF), valid until the next call. Returns false at the end of the file.
   bool next(std::string_view& line);
 
-  /// What errors are to name.
+  /// The name that error messages use.
   const std::string& name() const { return input_.name(); }
-  /// Of the last line, from 1.
+  /// Number of the last line read, from 1.
   std::size_t line() const { return line_; }
-  /// Share of the file read, 0 … 1; 0 where it has no size.
+  /// Fraction of the file read so far, 0 … 1; always 0 if the file has no size.
   double share() const;
 
  private:
@@ -30,7 +30,7 @@ class LineReader {
 
   InputDescriptor input_;
   std::string buffer_;
-  std::size_t begin_ = 0;  ///< in `buffer_`, of what was not given out yet
+  std::size_t begin_ = 0;  ///< start of the unread part of `buffer_`
   std::size_t line_ = 0;
   std::size_t bytes_read_ = 0;
 };

@@ -14,7 +14,7 @@ void append_number(std::string& out, Number value) {
   if (!std::isfinite(value)) {
     out += std::isnan(value) ? "\"nan\"" : value > 0 ? "\"inf\"" : "\"-inf\"";
   } else if (value == 0 && std::signbit(value)) {
-    out += "-0.0";  // -0 would be read as a whole number, which has no sign
+    out += "-0.0";  // a reader would take -0 for an integer, which has no negative zero
   } else {
     fmt::format_to(std::back_inserter(out), "{}", value);
   }

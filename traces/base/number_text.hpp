@@ -7,17 +7,19 @@
 
 namespace vestige {
 
-// Numbers as text. What appends to `out` is the shortest that reads back to the same bits.
+// Numbers as text. The functions that append to `out` write the shortest text that reads back to the same bits.
 
-/// As JSON has it: a zero with a sign is -0.0, NaN and infinities are the strings "nan", "inf" and "-inf".
+/// Appends a JSON value. Negative zero is -0.0. NaN and infinities are the strings "nan", "inf" and "-inf".
 void append_json(std::string& out, float value);
 void append_json(std::string& out, double value);
 void append_json(std::string& out, const glm::dvec3& vector);
 
-/// Nanoseconds as a decimal fraction of seconds, exactly: 1500000 is 0.0015.
+/// Appends nanoseconds as an exact decimal number of seconds: 1500000 is 0.0015.
 void append_seconds(std::string& out, std::int64_t time_ns);
 
-/// The reverse, of seconds read as a double: exact below 2^52 ns (52 days). Precondition: |time_s| < 9e9.
+/// Converts seconds to nanoseconds, rounded to the nearest; exact below 2^52 ns (52 days). Precondition:
+/// time_s
+///  < 9e9.
 std::int64_t nanoseconds_of(double time_s);
 
 /// "1 trace", "4 traces"

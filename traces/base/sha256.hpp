@@ -8,19 +8,19 @@
 
 namespace vestige {
 
-/// SHA-256 (FIPS 180-4) of bytes that come bit by bit.
+/// SHA-256 (FIPS 180-4) of bytes that arrive piece by piece.
 class Sha256 {
  public:
   Sha256();
   void update(std::span<const std::byte> bytes);
-  /// 64 lower-case hexadecimal digits of everything so far; more may follow.
+  /// Returns the hash of all bytes so far as 64 lower-case hexadecimal digits. More bytes may follow.
   std::string hex() const;
 
  private:
   SHA2_CTX context_;
 };
 
-/// `Sha256` of bytes that are all here.
+/// SHA-256 of bytes that are all present.
 std::string sha256_hex(std::span<const std::byte> bytes);
 
 }  // namespace vestige

@@ -12,7 +12,7 @@ namespace vestige {
 
 nlohmann::json parse_strict_json(std::string_view text, std::string_view name, std::string_view remedy) {
   using nlohmann::json;
-  std::vector<std::set<std::string>> names;  // of the objects that are open
+  std::vector<std::set<std::string>> names;  // one set for each open object
   const auto check = [&](int, json::parse_event_t event, json& parsed) {
     if (event == json::parse_event_t::object_start) names.emplace_back();
     if (event == json::parse_event_t::object_end) names.pop_back();

@@ -6,10 +6,11 @@
 
 namespace vestige {
 
-/// The length of the UTF-8 sequence (RFC 3629) that `text` starts with, 0 where it is none.
+/// Returns the length of the UTF-8 sequence (RFC 3629) at the start of `text`, or 0 if there is no valid one.
 std::size_t utf8_length(std::string_view text);
 
-/// `text` with U+FFFD in place of each byte that is no UTF-8: file names may be anything, JSON and MCAP may not.
+/// Returns `text` with each byte that is not valid UTF-8 replaced by U+FFFD. File names may hold any bytes, JSON and
+/// MCAP strings may not.
 std::string valid_utf8(std::string_view text);
 
 }  // namespace vestige

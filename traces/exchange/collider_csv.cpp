@@ -12,7 +12,7 @@ namespace vestige {
 
 namespace {
 
-/// Whether the collider moved here from the sample before, or was absent or elsewhere in between.
+/// Whether the collider moved here from the previous sample, or was absent or elsewhere in between.
 enum class Arrival { kMoved, kApart };
 
 struct Sample {
@@ -40,7 +40,7 @@ Samples parse(ColliderRows& rows) {
     }
     of_collider.push_back(sample);
   }
-  // A trace without any collider has an export of none; it has no time to record.
+  // The export of a trace without colliders has no rows, so there is no time span to record.
   if (samples.empty()) throw Error(rows.name(), "holds no sample", "name a file with at least one row");
   return samples;
 }
@@ -82,7 +82,7 @@ class CsvColliders final : public ColliderSource {
   struct Track {
     std::uint32_t id;
     std::vector<Sample> samples;
-    std::size_t next;  // the first sample later than the last time asked for
+    std::size_t next;  // the first sample after the time of the last `sample`
   };
   std::vector<Track> tracks_;
   TimeSpan span_s_;

@@ -8,19 +8,19 @@
 
 namespace vestige {
 
-/// Reads `time_s,id,x,y,z` (that header, then a row for each sample, metres; times not decreasing). Between two samples
-/// of a collider its position is interpolated linearly; before its first and after its last it is absent. With the
-/// header `frame,time_s,id,x,y,z,teleported` that a trace is exported with, it is absent too over frames that it misses
-/// and on the way to where it teleported. Throws `Error` as `ColliderRows` does, for two positions at one time and for
-/// a file without rows.
+/// Reads a CSV file with the header `time_s,id,x,y,z`, then a row for each sample, in metres; times must not decrease.
+/// Between two samples of a collider, its position is interpolated linearly. Before its first and after its last
+/// sample, the collider is absent. An exported trace has the header `frame,time_s,id,x,y,z,teleported`. With that
+/// header, a collider is also absent over frames that it misses and on the way to where it teleported. Throws `Error`
+/// as `ColliderRows` does, and if a collider has two positions at one time or the file has no rows.
 std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path);
 
-/// Colliders that are nodes of a glTF file, where its animations (all of them, from time 0) move them in the world.
-/// They are absent while their scale is 0 and after the last key. `pattern` chooses nodes by name, as a shell does
-/// (`*`, `?`,
-/// `[…]`); empty: those named "collider…", or else every node whose translation is animated and that is no joint of a
-/// skin. A node's id is the number that its name ends in, where all have one and none twice; else they are counted in
-/// the file's order. Throws `Error` for what is no glTF and where no node is chosen, naming those there are.
+/// Reads colliders that are nodes of a glTF file. The file's animations (all of them, from time 0) move them in the
+/// world. A collider is absent while its scale is 0 and after the last key. `pattern` selects nodes by name, as a shell
+/// does (`*`, `?`, `[…]`). If `pattern` is empty, selects the nodes named "collider…". If there are none, selects every
+/// node whose translation is animated and that is not a joint of a skin. A node's id is the number at the end of its
+/// name, if all selected nodes have different ones. Otherwise ids count the nodes in file order. Throws `Error` if the
+/// file is not glTF. Throws `Error` with the names of existing nodes if no node is selected.
 std::unique_ptr<ColliderSource> read_collider_gltf(const std::filesystem::path& path, const std::string& pattern);
 
 }  // namespace vestige

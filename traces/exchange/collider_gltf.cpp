@@ -29,7 +29,7 @@ std::set<int> joints_of(const gltf::Document& document) {
   return joints;
 }
 
-/// "collider 17" is 17.
+/// Returns the number at the end of a name: 17 for "collider 17".
 std::optional<std::uint32_t> number_at_end(std::string_view name) {
   const std::size_t last_other = name.find_last_not_of("0123456789");
   const std::string_view digits = name.substr(last_other == std::string_view::npos ? 0 : last_other + 1);
@@ -38,7 +38,7 @@ std::optional<std::uint32_t> number_at_end(std::string_view name) {
   return failure == std::errc() && !digits.empty() ? std::optional(number) : std::nullopt;
 }
 
-/// What happens in a file: its nodes, and one animation that plays all of the file's together.
+/// The content of a file: its nodes, and one animation that plays all animations of the file together.
 struct Scene {
   Avatar nodes;
   Animation animation;

@@ -11,7 +11,7 @@
 
 namespace vestige {
 
-/// One row of a collider CSV. Frame and teleport are only in files that a trace was exported to.
+/// One row of a collider CSV. `frame` and `teleported` exist only in exports of a trace.
 struct ColliderRow {
   std::uint64_t frame = 0;
   double time_s = 0;
@@ -27,13 +27,14 @@ enum class ColliderColumns {
 inline constexpr std::string_view kColliderTimesHeader = "time_s,id,x,y,z";
 inline constexpr std::string_view kColliderFramesHeader = "frame,time_s,id,x,y,z,teleported";
 
-/// Reads a collider CSV of either header, a row at a time. Throws `Error` naming file and line: another header, a wrong
-/// number of columns, no number, not finite, farther than 1e9 m, frames or times that run back.
+/// Reads a collider CSV with either header, one row at a time. Throws `Error` with file and line: another header, a
+/// wrong number of columns, a field that is not a number, not finite, farther than 1e9 m, frames or times that
+/// decrease.
 class ColliderRows {
  public:
   explicit ColliderRows(const std::filesystem::path& path);
   bool next(ColliderRow& row);
-  /// What errors are to name.
+  /// The name that error messages use.
   const std::string& name() const { return reader_.name(); }
   ColliderColumns columns() const { return columns_; }
   Error error(std::string_view cause, std::string_view remedy) const { return lines_.error(cause, remedy); }
@@ -47,16 +48,17 @@ class ColliderRows {
   double last_time_s_ = 0;
 };
 
-/// Puts the rows of `frame,time_s,…` files back into frames; holds one row.
+/// Groups the rows of `frame,time_s,…` files by frame; holds one row.
 class ColliderFrames {
  public:
   explicit ColliderFrames(const std::filesystem::path& path) : rows_(path) { advance(); }
   ColliderColumns columns() const { return rows_.columns(); }
 
-  /// Fills colliders and teleported ids of the frame of this index and time. Indices grow from call to call. Throws
-  /// `Error` where the file has a frame between two indices asked for, an id twice, or another time for this frame.
+  /// Fills in colliders and teleported ids of the frame with this index and time. Indices must increase from call to
+  /// call. Throws `Error` if the file has a frame between two requested indices, an id twice, or another time for this
+  /// frame.
   void fill(TraceFrame& frame);
-  /// Throws `Error` where rows are left.
+  /// Throws `Error` if rows are left.
   void expect_end() const;
 
  private:
@@ -64,7 +66,7 @@ class ColliderFrames {
 
   ColliderRows rows_;
   std::optional<ColliderRow> ahead_;
-  std::unordered_set<std::uint32_t> ids_;  ///< of the frame so far
+  std::unordered_set<std::uint32_t> ids_;  ///< ids of the current frame so far
 };
 
 }  // namespace vestige

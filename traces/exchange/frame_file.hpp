@@ -16,8 +16,8 @@ namespace vestige {
 
 class TraceReader;
 
-/// A file of a trace's frames for other programs. Complete or absent: without `commit` it leaves nothing behind. Memory
-/// does not grow with the number of frames. Every function throws `Error` as `OutputFile` does.
+/// A file of a trace's frames for other programs. The file is complete or absent: without `commit` it leaves nothing
+/// behind. Memory does not grow with the number of frames. Every function throws `Error` as `OutputFile` does.
 class FrameFile {
  public:
   FrameFile() = default;
@@ -27,32 +27,35 @@ class FrameFile {
 
   virtual void write(const TraceFrame& frame) = 0;
   virtual void commit() = 0;
-  /// What of the frames the format could not hold, one sentence each.
+  /// The data of the frames that the format could not hold, one sentence each.
   virtual std::vector<std::string> losses() const { return {}; }
 };
 
-/// A line of JSON a frame; FORMAT.md, "Frames as text". "-" is standard output.
+/// Writes one line of JSON for each frame; FORMAT.md, "Frames as text". "-" is standard output.
 std::unique_ptr<FrameFile> make_frame_ndjson(const std::filesystem::path& path, Overwrite overwrite);
 
-/// A row a frame: `frame,time_s,origin_x,origin_y,origin_z`, then ten columns for each node, as `pose_csv_nodes`
-/// names them. "-" is standard output.
+/// Writes one row for each frame: `frame,time_s,origin_x,origin_y,origin_z`, then ten columns for each node, as
+/// `pose_csv_nodes` names them. "-" is standard output.
 std::unique_ptr<FrameFile> make_pose_csv(const std::filesystem::path& path, Overwrite overwrite,
                                          const std::vector<std::string>& node_names);
 
-/// A row a collider and frame: `frame,time_s,id,x,y,z,teleported`. "-" is standard output.
+/// Writes one row for each collider in each frame: `frame,time_s,id,x,y,z,teleported`. "-" is standard output.
 std::unique_ptr<FrameFile> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite);
 
-/// Binary glTF 2.0: the avatar as the trace carries it (`avatar` is what `glb` means), its motion as the one animation,
-/// LINEAR, and a small sphere named "collider ID" for each of `collider_ids`, whose translation is animated, and whose
-/// scale is 0 (STEP) while it is absent. Poses keep their bits, but for rotations that are not of length 1; times and
-/// positions of colliders, which count from the first frame's origin (`extras.origin_m` of the scene), are rounded to
-/// fp32. glTF has no teleports. A part that never moves has no channel. Holds 16 MiB of frames; the rest waits on disk,
-/// beside `path`. Throws `Error` where the file would become larger than the 4 GiB that a GLB can hold.
+/// Writes binary glTF 2.0. It holds the trace's avatar (`avatar` is the parsed `glb`) with the trace's motion as the
+/// only animation, LINEAR. Each of `collider_ids` is a small sphere named "collider ID" with an animated translation.
+/// Its scale is 0 (STEP) while the collider is absent.
+///
+/// Poses keep their bits, except rotations whose length is not 1. Times and positions of colliders are rounded to fp32;
+/// positions count from the first frame's origin (`extras.origin_m` of the scene). glTF has no teleports. A part that
+/// never moves has no channel. Holds 16 MiB of frames in memory, and the rest on disk beside `path`. Throws `Error` if
+/// the file would exceed the 4 GiB that a GLB can hold.
 std::unique_ptr<FrameFile> make_frame_gltf(const std::filesystem::path& path, Overwrite overwrite, const Avatar& avatar,
                                            std::span<const std::byte> glb, std::vector<std::uint32_t> collider_ids);
 
-/// HDF5, into which a whole trace fits: `TraceHdf5` gives it back to the bit, but for markers and counts of drops. The
-/// layout is in FORMAT.md. Holds a few chunks. The library is opened at run time. Throws `Error` where it is missing.
+/// Writes HDF5, which holds a whole trace: `TraceHdf5` reads it back to the bit, except markers and counts of drops.
+/// FORMAT.md describes the layout. Holds a few chunks in memory. Opens the library at run time, and throws `Error` if
+/// it is missing.
 std::unique_ptr<FrameFile> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace);
 
 }  // namespace vestige

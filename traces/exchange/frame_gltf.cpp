@@ -36,7 +36,7 @@ struct Sphere {
   std::vector<std::uint16_t> indices;
 };
 
-/// Of 1 cm radius.
+/// Returns a sphere of 1 cm radius.
 Sphere make_sphere() {
   constexpr int kRings = 8;
   constexpr int kSegments = 12;
@@ -67,7 +67,7 @@ Sphere make_sphere() {
   return sphere;
 }
 
-/// A glTF that grows: what is appended to its buffer is either in memory or a column of frames.
+/// A glTF under construction. Data appended to its buffer are either in memory or a column of frames.
 class Builder {
  public:
   Builder(std::span<const std::byte> glb) {
@@ -77,12 +77,12 @@ class Builder {
     try {
       json = Json::parse(chunks.json);
     } catch (const Json::exception&) {
-      // What reads avatars leaves out what it does not need; here all of it is copied.
+      // The avatar's reader skips the JSON that it does not need, but here all of it is copied.
       throw Error("the trace's avatar.glb", "has JSON that cannot be copied, such as a number beyond double",
                   "mend the avatar and record again, or export to another format");
     }
     if (chunks.bin.empty() && json.contains("buffers")) {
-      // Its data is in data: URIs; the buffer of a GLB must be the first.
+      // The avatar's data are in data: URIs, and a GLB's own buffer must be the first.
       for (Json& view : json["bufferViews"]) {
         view["buffer"] = view["buffer"].get<int>() + 1;
         if (view.contains("extensions") && view["extensions"].contains(gltf::kMeshopt))
@@ -118,7 +118,7 @@ class Builder {
   }
 
   Json json;
-  std::vector<std::byte> bin;  ///< multiple of 4
+  std::vector<std::byte> bin;  ///< its size is a multiple of 4
 
  private:
   void align() { bin.resize((bin.size() + 3) / 4 * 4); }
@@ -160,7 +160,7 @@ class FrameGltf final : public FrameFile {
         ids_(std::move(ids)),
         columns_(path, widths(avatar.nodes.size(), ids_.size())),
         varies_(2 + 3 * avatar.nodes.size() + 2 * ids_.size()) {
-    static_cast<void>(Builder(glb_));  // what it cannot copy, it says before the work
+    static_cast<void>(Builder(glb_));  // reports what cannot be copied before the work begins
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     last_position_.resize(ids_.size(), glm::vec3(0));
   }
@@ -224,7 +224,7 @@ bool is_finite(const glm::vec3& vector) {
   return std::isfinite(vector.x) && std::isfinite(vector.y) && std::isfinite(vector.z);
 }
 
-/// What glTF forbids is mended: a rotation has length 1, and numbers are finite.
+/// Corrects what glTF forbids: a rotation must have length 1, and numbers must be finite.
 void FrameGltf::append_node(std::size_t index, NodeLocal node) {
   const auto& q = node.rotation;
   const double length = glm::length(glm::dquat(q));
@@ -298,7 +298,7 @@ void FrameGltf::note_what_varies() {
   }
 }
 
-/// Every node as the first frame has it.
+/// Gives every node its transform in the first frame.
 void FrameGltf::place_nodes(Builder& builder) const {
   for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
     if (avatar_.nodes[i].fixed_matrix) continue;
@@ -323,7 +323,8 @@ Json& FrameGltf::scene_of(Builder& builder) const {
   return json["scenes"][json["scene"].get<std::size_t>()];
 }
 
-/// Above the avatar, where it wanders in the world; a skinned mesh follows its joints and stays at the root.
+/// Adds a node above the avatar if the avatar's origin moves in the world. A skinned mesh follows its joints and stays
+/// at the root.
 std::optional<int> FrameGltf::add_origin_node(Builder& builder) const {
   if (!varies_[kOrigin]) return {};
   Json& roots = scene_of(builder)["nodes"];
@@ -339,7 +340,7 @@ std::optional<int> FrameGltf::add_origin_node(Builder& builder) const {
   return node;
 }
 
-/// The colliders' nodes.
+/// Returns the nodes of the colliders.
 std::vector<int> FrameGltf::add_colliders(Builder& builder) const {
   std::vector<int> nodes;
   if (ids_.empty()) return nodes;
@@ -355,7 +356,7 @@ std::vector<int> FrameGltf::add_colliders(Builder& builder) const {
   return nodes;
 }
 
-/// Adds an animation without channels, and the view of its columns; returns the accessor of the times.
+/// Adds an animation without channels, and the view of its columns. Returns the accessor of the times.
 int FrameGltf::begin_animation(Builder& builder) const {
   const std::uint64_t time_bytes = columns_.rows() * sizeof(float);
   const int view =
@@ -371,7 +372,7 @@ int FrameGltf::begin_animation(Builder& builder) const {
   return input;
 }
 
-/// Adds what varies to the animation and to `columns`.
+/// Adds a channel to the animation and its column to `columns`, unless the column never varies.
 void FrameGltf::add_channel(Builder& builder, Columns& columns, int input, const Channel& channel) const {
   if (!varies_[channel.column]) return;
   const std::uint64_t offset = builder.json["bufferViews"].back()["byteLength"].get<std::uint64_t>();
@@ -389,7 +390,7 @@ void FrameGltf::add_channel(Builder& builder, Columns& columns, int input, const
       {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", channel.node}, {"path", channel.path}}}});
 }
 
-/// One view behind all that the avatar has: the times, then a column for each channel.
+/// Adds the animation: one view after all of the avatar's data, with the times, then a column for each channel.
 FrameGltf::Columns FrameGltf::add_animation(Builder& builder, std::optional<int> origin,
                                             const std::vector<int>& colliders) const {
   Columns columns = {kTime};
@@ -409,7 +410,7 @@ FrameGltf::Columns FrameGltf::add_animation(Builder& builder, std::optional<int>
   }
   Json& json = builder.json;
   if (json["animations"][0]["channels"].empty()) {
-    // Nothing moves: an animation without channels is not allowed.
+    // If nothing moves there is no animation, because glTF forbids one without channels.
     json.erase("animations");
     json["accessors"].erase(json["accessors"].size() - 1);
     json["bufferViews"].erase(json["bufferViews"].size() - 1);

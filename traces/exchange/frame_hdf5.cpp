@@ -37,14 +37,14 @@ void write_attribute(hid_t object, const std::string& name, const std::string& t
   hdf5_check(h5.write_attribute(attribute.id(), type.id(), text.c_str()), path, "write an attribute");
 }
 
-/// A table that grows by a row a frame: chunked, deflated, written a chunk at a time.
+/// A table that grows by one row a frame: chunked, deflated, written one chunk at a time.
 class GrowingDataset {
  public:
   struct Description {
     const char* name;
     hid_t type;
     std::size_t element_bytes;
-    Dimensions row;  ///< of a frame
+    Dimensions row;  ///< dimensions of one frame's row
     std::string units;
     std::string axes = {};
   };
@@ -55,7 +55,7 @@ class GrowingDataset {
     row_bytes_ = description_.element_bytes;
     for (const hsize_t size : description_.row) row_bytes_ *= static_cast<std::size_t>(size);
     chunk_rows_ = row_bytes_ == 0 ? 1 : std::clamp<std::size_t>(kChunkBytes / row_bytes_, 1, 4096);
-    // A table without columns has no chunks, and so cannot grow; it says that there are none.
+    // A table without columns has no chunks and cannot grow; its shape says that there are no columns.
     const Dimensions most = dimensions(row_bytes_ == 0 ? 0 : H5S_UNLIMITED);
     const Hdf5Handle space(h5.create_simple_space(static_cast<int>(most.size()), dimensions(0).data(), most.data()),
                            h5.close_space, path, "make a space");
@@ -74,7 +74,7 @@ class GrowingDataset {
     if (!description_.axes.empty()) write_attribute(dataset_.id(), "axes", description_.axes, path);
   }
 
-  /// The next row, `row_bytes` long.
+  /// Appends a row of `row_bytes` bytes.
   void append(const void* row) {
     const auto* bytes = static_cast<const std::byte*>(row);
     waiting_.insert(waiting_.end(), bytes, bytes + row_bytes_);
@@ -104,7 +104,7 @@ class GrowingDataset {
 
   void close() {
     flush();
-    // What HDF5 still holds of it goes to disk now, which may be full.
+    // Data that HDF5 still buffers go to disk now, which may be full.
     hdf5_check(dataset_.reset(), path_, fmt::format("write {}", description_.name));
   }
 
@@ -131,7 +131,7 @@ class FrameHdf5 final : public FrameFile {
       : file_(path, overwrite), path_(path), scratch_(path, ScratchName::kKept), ids_(trace.collider_ids()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     const Hdf5Library& h5 = hdf5();
-    // From HDF5 1.10 on there are checksums of what describes the tables, too.
+    // From HDF5 1.10 on, the metadata of the tables have checksums, too.
     const Hdf5Handle how(h5.create_properties(h5.file_access), h5.close_properties, path, "make properties");
     hdf5_check(h5.set_versions(how.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), path, "choose a version");
     h5_file_ = Hdf5Handle(h5.create_file(scratch_.path().c_str(), kHdf5Truncate, H5P_DEFAULT, how.id()), h5.close_file,
@@ -208,7 +208,7 @@ class FrameHdf5 final : public FrameFile {
     write_whole("colliders/id", h5.uint32, ids_.size(), ids_.data(), Checksum::kYes);
   }
 
-  enum class Checksum { kNo, kYes };  ///< attachments have their SHA-256
+  enum class Checksum { kNo, kYes };  ///< attachments have their own SHA-256
 
   void write_whole(const char* name, hid_t type, std::size_t count, const void* data,
                    Checksum checksum = Checksum::kNo) {
@@ -231,7 +231,7 @@ class FrameHdf5 final : public FrameFile {
     if (!bytes.empty()) write_whole(name, hdf5().uint8, bytes.size(), bytes.data());
   }
 
-  /// Texts of one length: those of any length lie apart, without a checksum.
+  /// Writes texts of fixed length, because texts of variable length are stored apart, without a checksum.
   void write_node_names(const std::vector<std::string>& names) {
     const Hdf5Library& h5 = hdf5();
     std::size_t longest = 1;

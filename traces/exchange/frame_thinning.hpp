@@ -9,18 +9,19 @@
 
 namespace vestige {
 
-/// Leaves out frames so that no more than a rate are left: of those between two ticks the first. What is left is
-/// numbered anew, one number apart unless frames were missing before; teleports go over to the next frame that is left.
+/// Drops frames so that at most a given rate is left: of the frames between two ticks, the first stays. The frames that
+/// stay get consecutive new numbers, with a gap where frames were missing before. Teleports of a dropped frame move to
+/// the next frame that stays.
 class FrameThinning {
  public:
   explicit FrameThinning(double rate_hz) : rate_hz_(rate_hz) {}
 
-  /// Whether the frame stays; then its number and teleports are changed.
+  /// Returns whether the frame stays. If so, changes its number and its teleports.
   bool keep(TraceFrame& frame) {
     is_gap_ = is_gap_ || (last_index_ && frame.index != *last_index_ + 1);
     last_index_ = frame.index;
     teleported_.insert(frame.teleported.begin(), frame.teleported.end());
-    // Times are rounded to nanoseconds: a frame just before its tick is meant to be on it.
+    // Times are rounded to nanoseconds, so a frame just before its tick counts as on the tick.
     constexpr double kTolerance = 1e-3;
     const double tick = std::floor(static_cast<double>(frame.time_ns) * rate_hz_ / 1e9 + kTolerance);
     if (last_tick_ && tick <= *last_tick_) return false;

@@ -10,7 +10,7 @@ namespace vestige {
 namespace {
 
 SharedLibrary open_library() {
-  // 1.10 is Debian 12's; the plain name is what other systems have.
+  // HDF5 1.10 is Debian 12's version; other systems use the plain name.
   constexpr const char* kNames[] = {"libhdf5_serial.so.103", "libhdf5.so.103"};
   for (const char* name : kNames) {
     try {
@@ -74,12 +74,13 @@ Hdf5Library load() {
     library.find("H5Tset_strpad", all.set_padding);
     library.find("H5Tset_cset", all.set_character_set);
     library.find("H5Tclose", all.close_type);
-    // Its own handler at exit would crash on a file that could not be flushed; whoever opens something here closes it.
+    // HDF5's own exit handler would crash on a file that could not be flushed. Every user of the library closes its own
+    // objects.
     decltype(&::H5dont_atexit) leave_exit_alone = nullptr;
     library.find("H5dont_atexit", leave_exit_alone);
     static_cast<void>(leave_exit_alone());
     if (all.open() < 0) throw Error("libhdf5", "cannot be started", "");
-    // Failures are said by us, not printed by it.
+    // Our own errors report failures, so HDF5 must not print them.
     all.set_error_printing(H5E_DEFAULT, nullptr, nullptr);
     const auto value = [&](const char* name) {
       hid_t* variable = nullptr;

@@ -12,7 +12,7 @@
 
 namespace vestige {
 
-/// HDF5's functions, typed by its own header, and the types of numbers that files hold.
+/// HDF5's functions, with the types of its own header, and the number types of files.
 struct Hdf5Library {
   decltype(&::H5open) open;
   decltype(&::H5free_memory) free_memory;
@@ -62,7 +62,7 @@ struct Hdf5Library {
   decltype(&::H5Tset_strpad) set_padding;
   decltype(&::H5Tset_cset) set_character_set;
   decltype(&::H5Tclose) close_type;
-  // Values, since the library's own macros name variables that are found at run time.
+  // Plain values, because the library's own macros name variables that are only found at run time.
   hid_t float32;
   hid_t float64;
   hid_t int64;
@@ -74,22 +74,22 @@ struct Hdf5Library {
   hid_t file_access;
 };
 
-// The header's names of these would call the library as if it were linked.
+// The header's macros for these would call the library as if it were linked.
 inline constexpr unsigned kHdf5ReadOnly = 0;  ///< H5F_ACC_RDONLY
 inline constexpr unsigned kHdf5Truncate = 2;  ///< H5F_ACC_TRUNC
 
-/// Opened the first time, never closed; at exit it closes nothing that is still open. Throws `Error` where libhdf5 is
-/// not installed.
+/// Returns the library. It is opened by the first call and never closed; at exit it does not close objects that are
+/// still open. Throws `Error` if libhdf5 is not installed.
 const Hdf5Library& hdf5();
 
-/// Something that HDF5 counts references of. Negative identifiers are failures.
+/// Owns an HDF5 identifier, which HDF5 counts references of. A negative identifier means failure.
 class Hdf5Handle {
  public:
   using Close = herr_t (*)(hid_t);
   Hdf5Handle() = default;
-  /// Without a check: whoever made it looks at `id`.
+  /// Does not check `id`; the caller does.
   Hdf5Handle(hid_t id, Close close) : id_(id), close_(close) {}
-  /// Throws `Error` at `path`, saying what failed, for a negative identifier.
+  /// Throws `Error` at `path`, saying what failed, if the identifier is negative.
   Hdf5Handle(hid_t id, Close close, const std::filesystem::path& path, std::string_view doing);
   ~Hdf5Handle() { reset(); }
   Hdf5Handle(Hdf5Handle&& other) noexcept
@@ -101,7 +101,7 @@ class Hdf5Handle {
     return *this;
   }
   hid_t id() const { return id_; }
-  /// Closes it; returns what HDF5 says of that, negative for a failure.
+  /// Closes the identifier and returns HDF5's result, which is negative for a failure.
   herr_t reset() {
     const herr_t result = id_ >= 0 && close_ != nullptr ? close_(id_) : 0;
     id_ = -1;
@@ -113,7 +113,7 @@ class Hdf5Handle {
   Close close_ = nullptr;
 };
 
-/// Throws `Error` at `path` where `result` is negative.
+/// Throws `Error` at `path` if `result` is negative.
 void hdf5_check(herr_t result, const std::filesystem::path& path, std::string_view doing);
 
 }  // namespace vestige

@@ -45,7 +45,7 @@ std::size_t Hdf5Table::numbers_in(hsize_t rows) const {
 
 void Hdf5Table::read(const Type& type, hsize_t first, hsize_t rows, void* out) const {
   const Hdf5Library& h5 = hdf5();
-  // Of what does not fit HDF5 would make something that does, without a word.
+  // HDF5 would silently change numbers that do not fit.
   if (!type_.fits_into(type))
     fail(fmt::format("holds numbers that may not fit {} of {} bits",
                      type.kind == H5T_FLOAT ? "floats"

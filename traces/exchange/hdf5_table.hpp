@@ -10,26 +10,27 @@
 
 namespace vestige {
 
-/// What whoever is told of a file that is not as it should be may do.
+/// Remedies for files that are not as they should be.
 inline constexpr const char* kHdf5DamagedRemedy = "export it again, or take an undamaged copy";
 inline constexpr const char* kHdf5TypeRemedy = "convert it, as numpy's astype does, to the type that FORMAT.md has";
 inline constexpr const char* kHdf5Remedy =
     "name a file that 'vestige export' wrote, or that has its tables (FORMAT.md)";
 
-/// A table of numbers in an HDF5 file of anyone's. Every function throws `Error` naming file and table.
+/// A table of numbers in an HDF5 file that any program may have written. Every function throws `Error` with file and
+/// table.
 class Hdf5Table {
  public:
-  /// Throws where it is not there, has no rank from 1 to 3, or holds no numbers.
+  /// Throws if the table does not exist, has no rank from 1 to 3, or holds no numbers.
   Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name);
 
   const std::vector<hsize_t>& dimensions() const { return dimensions_; }
 
   [[noreturn]] void fail(std::string_view cause, const char* remedy = kHdf5Remedy) const;
 
-  /// Throws unless it has this shape; 0 stands for any size.
+  /// Throws unless the table has this shape. A first size of 0 stands for any size.
   void expect(const std::vector<hsize_t>& shape) const;
 
-  /// Rows `first` … `first + rows`. Throws where a number of the table's type may not fit a `Number`.
+  /// Reads the rows from `first` to `first + rows - 1`. Throws if a number of the table's type may not fit a `Number`.
   template <typename Number>
   void read(hsize_t first, hsize_t rows, std::vector<Number>& out) const {
     out.resize(numbers_in(rows));

@@ -21,7 +21,7 @@ constexpr std::string_view kRemedy =
 constexpr std::string_view kAvatarRemedy =
     "name the avatar that it was exported with (--avatar), or leave the column out";
 
-constexpr double kLongest_s = 9e9;  // int64 nanoseconds
+constexpr double kLongest_s = 9e9;  // limit of int64 nanoseconds
 
 float& part_of(NodeLocal& node, std::size_t part) {
   switch (part) {
@@ -84,7 +84,7 @@ std::vector<std::string> pose_csv_nodes(const std::vector<std::string>& node_nam
   std::vector<std::string> nodes = node_names;
   std::map<std::string, int> count;
   for (std::string& node : nodes) {
-    // A line end would end the row.
+    // A line end in a name would end the row.
     std::ranges::replace(node, '\n', ' ');
     std::ranges::replace(node, '\r', ' ');
     ++count[node];
@@ -99,7 +99,7 @@ std::vector<std::string> pose_csv_nodes(const std::vector<std::string>& node_nam
   for (std::size_t k = 0; k < numbered.size(); ++k) {
     std::string& node = nodes[numbered[k]];
     node += fmt::format("#{}", numbered[k]);
-    // A node may have this for its plain name: then it gets its own number, which no other has.
+    // If another node has this as its plain name, that node gets its own number, which is unique.
     if (const auto same = plain.find(node); same != plain.end()) {
       numbered.push_back(same->second);
       plain.erase(same);

@@ -11,25 +11,26 @@
 
 namespace vestige {
 
-/// What a node is called in the columns of a pose CSV, each otherwise than all others: its name, line ends as spaces;
-/// behind it `#INDEX` where the name is empty or another node is called so too.
+/// Returns the unique column names of the nodes in a pose CSV: the node's name, with line ends replaced by spaces.
+/// `#INDEX` follows if the name is empty or another node has the same name.
 std::vector<std::string> pose_csv_nodes(const std::vector<std::string>& node_names);
 
-/// The ten columns of a node: NODE.tx, .ty, .tz, .rx, .ry, .rz, .rw, .sx, .sy, .sz.
+/// The endings of a node's ten columns: NODE.tx, .ty, .tz, .rx, .ry, .rz, .rw, .sx, .sy, .sz.
 inline constexpr const char* kPoseCsvParts[] = {"tx", "ty", "tz", "rx", "ry", "rz", "rw", "sx", "sy", "sz"};
 
-/// Reads `frame,time_s,origin_x,origin_y,origin_z,NODE.tx,…`, a row a frame, as `make_pose_csv` writes it, one row at a
-/// time. Columns may come in any order; all but `time_s` may be missing: frames are counted then, the origin is 0, and
-/// a node's part keeps the avatar's rest. Throws `Error` naming file and line: no such node, a column twice, a wrong
-/// number of fields, no number, not finite, frames or times that run back, a rotation of length 0, no row.
+/// Reads `frame,time_s,origin_x,origin_y,origin_z,NODE.tx,…` as `make_pose_csv` writes it: one row for each frame, one
+/// row at a time. Columns may come in any order, and all but `time_s` may be missing. Without `frame`, frames are
+/// counted. A missing origin is 0. A missing part of a node keeps the avatar's rest value. Throws `Error` with file and
+/// line: an unknown node, a column twice, a wrong number of fields, a field that is not a number, not finite, frames or
+/// times that decrease, a rotation of length 0, no row.
 class PoseCsvReader {
  public:
   PoseCsvReader(const std::filesystem::path& path, const Avatar& avatar);
 
-  /// Index, time and pose of the next frame; false at the end.
+  /// Reads index, time and pose of the next frame. Returns false at the end.
   bool next(TraceFrame& frame);
   double share() const { return reader_.share(); }
-  /// Nodes without any column, which rest.
+  /// Nodes without any column; they stay in the rest pose.
   const std::vector<std::string>& resting() const { return resting_; }
 
  private:
@@ -37,7 +38,7 @@ class PoseCsvReader {
   struct Target {
     Column column = Column::kTime;
     std::size_t node = 0;
-    std::size_t part = 0;  ///< of kPoseCsvParts, or of the origin
+    std::size_t part = 0;  ///< index into kPoseCsvParts, or into the origin
   };
 
   void read_header();

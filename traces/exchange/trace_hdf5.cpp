@@ -90,7 +90,7 @@ class TraceHdf5::Implementation {
     return file;
   }
 
-  /// What nothing says is ours is taken as it is.
+  /// A file that does not state its format is accepted.
   void require_format() const {
     const std::string format = read_text("/", "format").value_or(kFormat);
     if (format != kFormat) throw Error(path_.string(), fmt::format("its format is '{}'", format), kHdf5Remedy);
@@ -103,7 +103,7 @@ class TraceHdf5::Implementation {
     }
   }
 
-  /// A trace without colliders may do without their tables.
+  /// A trace without colliders may lack the tables of colliders.
   void read_ids(hsize_t frames) {
     if (hdf5().link_exists(file_.id(), "colliders", H5P_DEFAULT) <= 0) return;
     const Hdf5Table ids(file_.id(), path_, "colliders/id");
@@ -124,8 +124,8 @@ class TraceHdf5::Implementation {
     throw Error(path_.string(), fmt::format("its {} {}", what, cause), remedy);
   }
 
-  /// All texts of a table or an attribute, of any length or of one. `read` fills memory of the file's own type;
-  /// negative: it failed.
+  /// Returns all texts of a table or an attribute, of fixed or variable length. `read` fills memory of the file's own
+  /// type, and returns a negative number if it fails.
   template <typename Read>
   std::vector<std::string> read_texts(const std::string& what, hid_t type, hid_t space, Read read) const {
     const Hdf5Library& h5 = hdf5();
@@ -150,12 +150,12 @@ class TraceHdf5::Implementation {
     if (read(static_cast<void*>(found.data())) < 0) fail(what, "cannot be read", kHdf5DamagedRemedy);
     for (std::size_t i = 0; i < texts.size(); ++i) {
       const std::string_view text = std::string_view(found).substr(i * size, size);
-      texts[i] = text.substr(0, text.find('\0'));  // what a text leaves is filled
+      texts[i] = text.substr(0, text.find('\0'));  // the rest of a short text is padding
     }
     return texts;
   }
 
-  /// Empty where there are none.
+  /// Empty if there are none.
   std::vector<std::string> read_node_names() const {
     const Hdf5Library& h5 = hdf5();
     if (h5.link_exists(file_.id(), kNodeNames, H5P_DEFAULT) <= 0) return {};
@@ -168,7 +168,7 @@ class TraceHdf5::Implementation {
                       [&](void* out) { return h5.read(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out); });
   }
 
-  /// Empty where there is none.
+  /// Empty if there is none.
   std::vector<std::byte> read_attachment(const char* name) const {
     std::vector<std::byte> bytes;
     if (hdf5().link_exists(file_.id(), name, H5P_DEFAULT) <= 0) return bytes;
@@ -187,7 +187,7 @@ class TraceHdf5::Implementation {
     return bytes;
   }
 
-  /// What an attribute of a group says, if both are there.
+  /// Returns the text of a group's attribute, if both exist.
   std::optional<std::string> read_text(const char* group, const std::string& key) const {
     const Hdf5Library& h5 = hdf5();
     if (h5.attribute_exists(file_.id(), group, key.c_str(), H5P_DEFAULT) <= 0) return {};
@@ -280,7 +280,7 @@ class TraceHdf5::Implementation {
 
 TraceHdf5::TraceHdf5(const std::filesystem::path& path) {
   static_cast<void>(hdf5());
-  // The library believes what a damaged file says of itself, and may not survive it.
+  // The library trusts a damaged file and may crash on it.
   std::error_code unknown;
   const std::uint64_t bytes = std::filesystem::file_size(path, unknown);
   constexpr std::uint64_t kSlowestBytesPerSecond = 1'000'000;

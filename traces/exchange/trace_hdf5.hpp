@@ -10,13 +10,14 @@
 
 namespace vestige {
 
-/// Reads what `make_frame_hdf5` wrote, or what others wrote in the same layout (FORMAT.md), a block of frames at a
-/// time. Numbers of other types are converted where all of them fit. Every function throws `Error` naming the file: no
-/// HDF5, another format or version, a table that is missing, of another shape or type, an attachment with another
-/// SHA-256 than the session says, frames or times that run back, a library that is not installed.
+/// Reads a file by `make_frame_hdf5`, or by another program in the same layout (FORMAT.md), one block of frames at a
+/// time. Converts numbers of other types if all of them fit. Every function throws `Error` with the name of the file:
+/// not HDF5, another format or version, a missing table, a table of another shape or type, an attachment with another
+/// SHA-256 than in the session, frames or times that decrease, a missing library.
 class TraceHdf5 {
  public:
-  /// Reads all of it once, in a process of its own, which HDF5 may crash: before threads are started.
+  /// First reads the whole file once in a child process, because HDF5 may crash on it. Precondition: no threads have
+  /// been started.
   explicit TraceHdf5(const std::filesystem::path& path);
   ~TraceHdf5();
   TraceHdf5(const TraceHdf5&) = delete;
@@ -26,7 +27,7 @@ class TraceHdf5 {
   const std::vector<std::byte>& actuator_map_png() const;   ///< empty: none
   const std::vector<std::byte>& actuator_map_json() const;  ///< empty: none
 
-  /// What it says that the avatar's nodes are called; empty: nothing.
+  /// The names that the file gives to the avatar's nodes; empty if it gives none.
   const std::vector<std::string>& node_names() const;
 
   bool next(TraceFrame& frame);

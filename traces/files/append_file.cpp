@@ -69,7 +69,7 @@ void AppendFile::write(std::span<const std::byte> bytes) {
 }
 
 void AppendFile::sync() {
-  // Pipes and some devices and network disks cannot be synced, which is no failure.
+  // Pipes, some devices and some network disks cannot be synced; that is not an error.
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS)
     fail("could not bring it to disk", errno);
 }
@@ -94,19 +94,20 @@ void AppendFile::close() {
   if (descriptor != STDOUT_FILENO && ::close(descriptor) != 0) throw system_error(path_, "could not write", errno);
 }
 
-/// Renames to the first free NAME.partial, NAME.partial-2, …; where nothing is free the file keeps its name.
+/// Renames the file to the first free name of NAME.partial, NAME.partial-2, …. If all names are taken, the file keeps
+/// its name.
 std::filesystem::path AppendFile::set_aside() {
   constexpr int kMostNames = 100;
   for (int number = 1; number < kMostNames; ++number) {
     std::filesystem::path aside = path_;
     aside += number == 1 ? ".partial" : fmt::format(".partial-{}", number);
-    // link() refuses an existing name, where rename() would replace what is there.
+    // link() refuses an existing name, whereas rename() would replace the existing file.
     if (::link(current_path_.c_str(), aside.c_str()) == 0) {
       ::unlink(current_path_.c_str());
       return aside;
     }
     if (errno == EEXIST) continue;
-    // Some file systems have no links.
+    // Some file systems have no hard links.
     std::error_code failed;
     if (!std::filesystem::exists(aside, failed)) std::filesystem::rename(current_path_, aside, failed);
     return failed ? current_path_ : aside;
@@ -117,7 +118,7 @@ std::filesystem::path AppendFile::set_aside() {
 void AppendFile::fail(std::string_view doing, int error_number) {
   const int descriptor = std::exchange(descriptor_, -1);
   if (is_file() && worth_keeping_) {
-    // The beginning of a chunk is no use to anyone, and its room may be needed; if that fails, it does no harm.
+    // The beginning of a chunk is useless, and its space may be needed. If the truncation fails, no harm is done.
     static_cast<void>(!::ftruncate(descriptor, static_cast<off_t>(bytes_)));
   }
   if (descriptor != STDOUT_FILENO) ::close(descriptor);

@@ -10,30 +10,31 @@
 
 namespace vestige {
 
-/// What becomes of a file whose program died, or could not write on.
+/// What happens to the file if the program dies, or cannot continue writing.
 enum class Unfinished : std::uint8_t { kKept, kRemoved };
 
-/// A file that grows under its own name, for recordings that must survive the death of their program; `OutputFile` is
-/// for everything that should be complete or absent, as this is with `Unfinished::kRemoved`.
+/// A file that grows under its own name, for recordings that must survive the death of the program. With
+/// `Unfinished::kRemoved` the file is complete or absent. `OutputFile` is for all other files that should be complete
+/// or absent.
 ///
-/// A new file appears at once under its name; an existing one that may be overwritten is replaced only by `keep` or
-/// `close`, by what is then safely on disk. Destroyed before either, it leaves nothing behind, and what was there
-/// untouched. "-", devices and pipes are just written to.
+/// A new file appears under its name at once. An existing file that may be overwritten is replaced only by `keep` or
+/// `close`, after the new bytes are safely on disk. If this object is destroyed before either, it leaves no new file
+/// and does not touch the existing one. "-", devices and pipes are written to directly.
 class AppendFile {
  public:
-  /// Throws `Error`: it exists (and `Overwrite::kRefuse`), no such folder, permission.
+  /// Throws `Error` if the file exists (with `Overwrite::kRefuse`), its folder does not exist, or permission is
+  /// missing.
   AppendFile(std::filesystem::path path, Overwrite overwrite, Unfinished unfinished = Unfinished::kKept);
   ~AppendFile();
   AppendFile(const AppendFile&) = delete;
   AppendFile& operator=(const AppendFile&) = delete;
 
-  /// Appends. When that fails, the bytes of this call are taken away again; a file worth keeping is renamed to
-  /// NAME.partial, any other removed, and the `Error` thrown says which, and why.
+  /// Appends bytes. If that fails, removes the bytes of this call from the file. A file worth keeping is then renamed
+  /// to NAME.partial, any other is deleted. The `Error` thrown gives the cause and the name of a kept file.
   void write(std::span<const std::byte> bytes);
-  /// From now on there is something worth keeping in it, under its name; not so with `Unfinished::kRemoved`. Throws
-  /// `Error`.
+  /// Marks the file as worth keeping, and gives it its name. Does nothing with `Unfinished::kRemoved`. Throws `Error`.
   void keep();
-  /// Brings what was written to disk. Throws `Error`.
+  /// Syncs the written bytes to disk. Throws `Error`.
   void sync();
   /// Syncs, gives the file its name and closes it. Throws `Error`.
   void close();
@@ -45,7 +46,7 @@ class AppendFile {
   bool is_file() const { return !current_path_.empty(); }
 
   std::filesystem::path path_;
-  std::filesystem::path current_path_;  ///< where the bytes are; empty when that is no regular file
+  std::filesystem::path current_path_;  ///< the file that holds the bytes; empty for "-", devices and pipes
   Overwrite overwrite_;
   Unfinished unfinished_;
   int descriptor_ = -1;

@@ -27,7 +27,7 @@ void ColumnFile::append(std::span<const float> row) {
   if (++waiting_ == block_rows_) flush();
 }
 
-/// A block on disk: its rows of the first column, then of the second, ….
+/// Writes the waiting rows as one block: first their values of the first column, then of the second, and so on.
 void ColumnFile::flush() {
   std::vector<float> column;
   for (std::size_t c = 0; c < widths_.size(); ++c) {

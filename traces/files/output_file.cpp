@@ -23,7 +23,7 @@ bool is_standard_output(const std::filesystem::path& path) {
   return path == "-";
 }
 
-/// Makes the rename itself durable; a folder that cannot be synced (some network disks) is no failure.
+/// Makes the rename durable. A folder that cannot be synced (on some network disks) is not an error.
 void sync_folder(const std::filesystem::path& path) {
   const auto parent = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   const int folder = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -47,9 +47,9 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const std::file
 }
 
 std::filesystem::path where_it_leads(std::filesystem::path path) {
-  constexpr int kMostLinks = 40;  // as the kernel follows
+  constexpr int kMostLinks = 40;  // the kernel's own limit
   std::error_code failed;
-  // What /dev/stdout leads to has a name only where it is a file.
+  // The target of /dev/stdout has a name only if it is a file.
   const auto end = std::filesystem::status(path, failed);
   if (std::filesystem::exists(end) && !std::filesystem::is_regular_file(end)) return path;
   std::filesystem::path led = path;
@@ -57,14 +57,14 @@ std::filesystem::path where_it_leads(std::filesystem::path path) {
     if (i == kMostLinks) throw system_error(path, "could not open", ELOOP);
     led = led.parent_path() / std::filesystem::read_symlink(led, failed);
   }
-  // /proc names what a descriptor had, which may be gone.
+  // /proc gives the name the file had when it was opened, which may no longer exist.
   if (std::filesystem::exists(end) && !std::filesystem::equivalent(path, led, failed))
     throw Error(path.string(), "is open, but has no name any more", "write to '-', or name a file");
   return led;
 }
 
 mode_t new_file_mode() {
-  // The umask can only be read by setting it, which no two threads may do at a time.
+  // The umask can only be read by setting it, and two threads must not do that at the same time.
   static const mode_t mask = [] {
     const mode_t found = ::umask(0);
     ::umask(found);
@@ -112,7 +112,7 @@ OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite)
   refuse_overwrite(path_, overwrite_);
   std::error_code ignored;
   if (std::filesystem::exists(path_, ignored) && !std::filesystem::is_regular_file(path_, ignored)) {
-    // A device or a pipe has no complete-or-absent: write to it as it comes.
+    // A device or a pipe cannot be complete or absent, so bytes go to it directly.
     descriptor_ = open_device_for_writing(path_);
     return;
   }
@@ -153,7 +153,7 @@ void OutputFile::commit() {
 
 void give_name(const std::filesystem::path& temporary_path, const std::filesystem::path& path, Overwrite overwrite) {
   if (overwrite == Overwrite::kRefuse) {
-    // link() refuses an existing name, where rename() would replace a file made meanwhile.
+    // link() refuses an existing name, whereas rename() would replace a file created in the meantime.
     if (::link(temporary_path.c_str(), path.c_str()) == 0) {
       ::unlink(temporary_path.c_str());
     } else if (errno == EEXIST) {

@@ -14,12 +14,12 @@ namespace vestige {
 
 enum class Overwrite { kRefuse, kAllow };
 
-/// A file that is complete or absent: bytes go to a temporary file in the same folder, `commit` syncs it and gives it
-/// its name. Destroyed without `commit`, it leaves nothing behind. The name "-" is standard output, written as it
-/// comes.
+/// A file that is complete or absent. Bytes go to a temporary file in the same folder; `commit` syncs it and gives it
+/// its name. If this object is destroyed without `commit`, it leaves nothing behind. The name "-" is standard output,
+/// which is written to directly, like a device or a pipe.
 ///
-/// Every function throws `Error` naming the file: it exists (and `Overwrite::kRefuse`), no such folder, permission,
-/// disk full.
+/// Every function throws `Error` with the name of the file: it exists (with `Overwrite::kRefuse`), no such folder, no
+/// permission, disk full.
 class OutputFile {
  public:
   OutputFile(std::filesystem::path path, Overwrite overwrite);
@@ -29,7 +29,7 @@ class OutputFile {
 
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
-  /// Hands what was written so far to the system: for readers of standard output, a device or a pipe.
+  /// Passes the bytes written so far to the system, for readers of standard output, a device or a pipe.
   void flush();
   void commit();
 
@@ -43,27 +43,29 @@ class OutputFile {
   std::string buffer_;
 };
 
-/// Gives a finished, synced file its name, in the same folder. Throws `Error`, also where `path` exists by now and may
-/// not be overwritten; then the file keeps its temporary name.
+/// Gives a finished, synced file its name, in the same folder. Throws `Error`, also if `path` exists by now and may not
+/// be overwritten; then the file keeps its temporary name.
 void give_name(const std::filesystem::path& temporary_path, const std::filesystem::path& path, Overwrite overwrite);
 
-/// The file that a link leads to, which need not be there; any other path, and links to devices, as they are. A link
-/// stays a link when that is written instead. Throws `Error`: links in a circle, an open file without a name.
+/// Returns the target of a symbolic link, which need not exist. Returns any other path, and a link to a device,
+/// unchanged. Writing to the target keeps the link a link. Throws `Error` if links form a circle, or the target is an
+/// open file without a name.
 std::filesystem::path where_it_leads(std::filesystem::path path);
 
-/// Permissions of a new file, under the process's umask.
+/// Returns the permissions of a new file: 0666 without the bits of the process's umask.
 mode_t new_file_mode();
 
-/// Throws `Error` when `path` exists and may not be overwritten: to be called before long work, not after it.
+/// Throws `Error` if `path` exists and may not be overwritten. Call this before long work, not after it.
 void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite);
 
-/// With those that it lies in; one that is there stays. Throws `Error`.
+/// Creates `folder` and its parents if they do not exist. Throws `Error`.
 void make_folder(const std::filesystem::path& folder);
 
-/// Throws `UsageError` when standard output is a terminal: binary data would garble it.
+/// Throws `UsageError` if standard output is a terminal, because binary data would garble it.
 void refuse_terminal(std::string_view flag);
 
-/// Writes all of `bytes` to `descriptor`; throws `Error` naming `path`, `ReaderGone` for a pipe that nobody reads.
+/// Writes all of `bytes` to `descriptor`. Throws `Error` with the name of `path`, or `ReaderGone` if the pipe has no
+/// reader.
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 }  // namespace vestige

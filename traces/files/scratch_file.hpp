@@ -9,14 +9,14 @@
 
 namespace vestige {
 
-/// The folder for temporary files: $TMPDIR, else /tmp. Throws `Error` where it is none.
+/// Returns the folder for temporary files: $TMPDIR if set, otherwise /tmp. Throws `Error` if it is not a folder.
 std::filesystem::path temporary_folder();
 
 enum class ScratchName { kNone, kKept };
 
-/// A file that goes when this object does: for what does not fit into memory before it is written in order. It lies in
-/// the folder of `beside` (of "-": where temporary files are), without a name unless a library is to open it. Throws
-/// `Error`.
+/// A temporary file that is deleted with this object, for data that do not fit into memory before they are written in
+/// order. It lies in the folder of `beside`, or in the temporary folder if `beside` is "-", a device or a pipe. It has
+/// a name only with `ScratchName::kKept`, so that a library can open it. Throws `Error`.
 class ScratchFile {
  public:
   explicit ScratchFile(const std::filesystem::path& beside, ScratchName name = ScratchName::kNone);
@@ -27,9 +27,9 @@ class ScratchFile {
   void append(std::span<const std::byte> bytes);
   void read(std::uint64_t offset, std::span<std::byte> into) const;
 
-  /// Empty without a name.
+  /// Empty if the file has no name.
   const std::filesystem::path& path() const { return path_; }
-  /// Writes all of it, whoever wrote it.
+  /// Copies the whole file to `file`, including bytes that a library wrote to it.
   void copy_to(OutputFile& file) const;
 
  private:

@@ -19,8 +19,8 @@ namespace {
 
 using gltf::Report;
 
-/// A node of the lowest skin that is drawn: the lowest joint without a joint above it. Without any skin, the first node
-/// that is drawn.
+/// Returns the root node. In the lowest skin that is drawn, it is the lowest joint without a joint above it. Without
+/// any skin, it is the first node that is drawn.
 int find_root(const gltf::Document& document, const std::vector<bool>& drawn, const Avatar& avatar) {
   int skin = -1;
   int first_drawn = -1;
@@ -45,8 +45,8 @@ int find_root(const gltf::Document& document, const std::vector<bool>& drawn, co
   return root;
 }
 
-/// A scene that shows a skinned mesh should hold its joints too (glTF 2.0 §3.7.3.1); their transforms count all the
-/// same.
+/// A scene that shows a skinned mesh should hold its joints, too (glTF 2.0 §3.7.3.1). The transforms of joints outside
+/// the scene still count.
 void warn_of_joints_outside(const gltf::Document& document, const std::vector<bool>& drawn, Report& report) {
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     const tinygltf::Node& node = document.model.nodes[i];
@@ -67,7 +67,7 @@ bool fits_into_float(const glm::dmat4& matrix) {
   return true;
 }
 
-/// Numbers that are finite each may still be too large for a float once they are multiplied.
+/// Finite numbers may still have a product that is too large for a float.
 void refuse_rest_pose_beyond_float(const Avatar& avatar, const Report& report) {
   const auto fail = [&](int node, std::string_view cause) {
     report.fail(fmt::format("nodes[{}]", node), fmt::format("in the rest pose {} beyond what a float can hold", cause),

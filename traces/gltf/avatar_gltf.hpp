@@ -10,27 +10,28 @@
 
 namespace vestige {
 
-/// A glTF avatar as one self-contained binary file: a .glb (or .vrm) that is one, byte for byte as it is; otherwise,
-/// and for a .gltf, told by its content, packed together with the buffers that are read (images, materials and extras
-/// are left out; the same input gives the same bytes). "-" is standard input. Throws `Error`: missing file, no glTF, a
-/// buffer that is missing or too short, a URI that leaves the folder.
+/// Reads a glTF avatar as one self-contained binary file. A self-contained .glb (or .vrm) is returned unchanged, byte
+/// for byte. Any other .glb, and a .gltf (recognised by its content), is packed together with the buffers that are
+/// read. Images, materials and extras are then left out; the same input gives the same bytes. "-" is standard input.
+/// Throws `Error` if the file does not exist or is not glTF, a buffer is missing or too short, or a URI leaves the
+/// folder.
 std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path);
 
-/// The same for what `path` holds; its buffers are looked for beside it.
+/// Does the same for `content`, which was read from `path`; looks for its buffers beside `path`.
 std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std::filesystem::path& path);
 
-/// Parses and validates a binary glTF 2.0 file. `name` stands in errors and warnings. Images are never looked at.
+/// Parses and validates a binary glTF 2.0 file. `name` is used in errors and warnings. Images are never read.
 ///
-/// Throws `Error`, naming the JSON field or byte offset, for whatever would make geometry, skin or motion wrong:
-/// out-of-range indices, accessors beyond their buffer, non-finite values (those of the rest pose too), node cycles,
+/// Throws `Error`, with the JSON field or byte offset, for everything that would make geometry, skin or motion wrong:
+/// out-of-range indices, accessors beyond their buffer, non-finite values (in the rest pose, too), node cycles,
 /// negative weights, animation times that do not increase, required extensions that are not supported, no triangle at
-/// all. What does no harm becomes one of `Avatar::warnings`: unknown properties, wrong min and max, weights whose sum
-/// is not 1 (normalised), vertices without any weight (they follow their first joint), joints outside the scene, morph
-/// targets and other motion that moves no node.
+/// all. Harmless faults become `Avatar::warnings`: unknown properties, wrong min and max, weights whose sum is not 1
+/// (normalised), vertices without any weight (they follow their first joint), joints outside the scene, morph targets
+/// and other motion that moves no node.
 ///
-/// `root_node` is the lowest joint without a joint above it of the lowest skin that is drawn; without a skin, the first
-/// node that draws. `joint_count` counts all skins. Primitives that share their attributes and skin (or node) share
-/// vertices.
+/// `root_node` belongs to the skin with the lowest index that is drawn: it is the lowest joint without a joint above
+/// it. Without a skin, it is the first node that is drawn. `joint_count` counts all skins. Primitives that share their
+/// attributes and skin (or node) share vertices.
 Avatar parse_avatar_glb(std::span<const std::byte> glb, std::string_view name);
 
 }  // namespace vestige

@@ -30,7 +30,7 @@ std::string at(std::size_t offset) {
   return fmt::format("byte {}", offset);
 }
 
-/// Returns the file without what follows its own length.
+/// Checks the header and returns the file without the bytes after its stated length.
 std::span<const std::byte> check_header(std::span<const std::byte> glb, Report& report) {
   if (glb.size() < kHeaderBytes)
     report.fail(at(glb.size()), fmt::format("{} bytes are too few for a GLB header of {}", glb.size(), kHeaderBytes),

@@ -12,14 +12,15 @@ namespace vestige::gltf {
 /// The two chunks of a binary glTF file (glTF 2.0 §4.4), as views into it.
 struct GlbChunks {
   std::string_view json;
-  std::span<const std::byte> bin;  ///< empty where there is no BIN chunk
+  std::span<const std::byte> bin;  ///< empty if there is no BIN chunk
 };
 
-/// Checks magic, version and all lengths, and that the chunks are JSON, at most one BIN, then unknown ones (skipped
-/// with a warning, as are bytes behind the end). Fails naming the byte offset.
+/// Splits a GLB into its chunks. Checks magic, version and all lengths. The chunks must be JSON, at most one BIN, then
+/// unknown ones. Unknown chunks and bytes after the end are skipped with a warning. Fails with the byte offset.
 GlbChunks split_glb(std::span<const std::byte> glb, Report& report);
 
-/// The reverse: header, JSON padded with spaces, BIN padded with zeros (left out when empty). Fails beyond 4 GiB.
+/// Joins the chunks into a GLB: header, JSON padded with spaces, BIN padded with zeros (left out if empty). Fails
+/// beyond 4 GiB.
 std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte> bin, const Report& report);
 
 }  // namespace vestige::gltf

@@ -18,7 +18,7 @@ struct ComponentType {
   std::string_view name;
 };
 
-/// By number, from 5120 (GL_BYTE) on; glTF 2.0 leaves out 5124.
+/// Indexed by number, from 5120 (GL_BYTE) on; glTF 2.0 omits 5124.
 constexpr std::array<ComponentType, 7> kComponentTypes = {
     ComponentType{1, kInt8, kNormalizedInt8, "int8"},
     ComponentType{1, kUint8, kNormalizedUint8, "uint8"},
@@ -29,7 +29,7 @@ constexpr std::array<ComponentType, 7> kComponentTypes = {
     ComponentType{4, kFloat, kFloat, "float"},
 };
 
-/// The schema lets only 5120 … 5126 through.
+/// Precondition: the number is 5120 … 5126, as the schema ensures.
 const ComponentType& component_type(int number) {
   return kComponentTypes[static_cast<std::size_t>(number - TINYGLTF_COMPONENT_TYPE_BYTE)];
 }
@@ -81,7 +81,7 @@ std::string accessor_path(std::size_t index, std::string_view property = {}) {
   return fmt::format("accessors[{}]{}", index, property);
 }
 
-/// Where elements lie in a view, in bytes from its beginning.
+/// The place of elements in a view, in bytes.
 struct Elements {
   std::uint64_t offset;
   std::uint64_t count;
@@ -89,8 +89,8 @@ struct Elements {
   std::uint64_t size;
 };
 
-/// The elements must lie inside the view, and the view inside its buffer. All numbers are below 2³³, so that no product
-/// or sum here can overflow 64 bits.
+/// Checks that the elements lie inside the view, and the view inside its buffer. All numbers are below 2³³, so no
+/// product or sum here can overflow 64 bits.
 void check_range(const Document& document, int view_index, const Elements& elements, const std::string& path,
                  const Report& report) {
   const auto& [offset, count, stride, size] = elements;
@@ -104,7 +104,7 @@ void check_range(const Document& document, int view_index, const Elements& eleme
                                   count, size, offset, stride, index, view.length));
 }
 
-/// glTF 2.0 §3.6.2.4: `offset` and where that is in the buffer are multiples of the component's size.
+/// glTF 2.0 §3.6.2.4: `offset` and the resulting offset in the buffer are multiples of the component's size.
 void check_alignment(const Document& document, int view, std::uint64_t offset, std::uint64_t component_bytes,
                      const std::string& path, const Report& report) {
   const std::uint64_t start = document.views[static_cast<std::size_t>(view)].offset + offset;
@@ -159,7 +159,7 @@ void check_accessors(const Document& document, Report& report) {
       report.fail(accessor_path(i, ".componentType"), fmt::format("{} does not exist", accessor.component_type));
     if (accessor.normalized && type.normalized == type.plain)
       report.warn(accessor_path(i, ".normalized"), fmt::format("means nothing for {}", type.name));
-    // Without data of its own an accessor is all zeros, of a length that nothing else would bound.
+    // An accessor without data of its own is all zeros, and nothing else would limit its length.
     if (accessor.count > document.data_bytes)
       report.fail(accessor_path(i, ".count"),
                   fmt::format("{} elements do not fit into a file of {} bytes", accessor.count, document.data_bytes));
@@ -290,7 +290,7 @@ void AccessorReader::check_vertex_alignment(Report& report) const {
 }
 
 void AccessorReader::compare_bounds(Report& report) const {
-  // Exporters print these numbers with six digits.
+  // Exporters write these numbers with six digits.
   const auto differs = [](double said, double found) {
     return !(std::abs(said - found) <= 1e-5 * std::max(1.0, std::abs(found)));
   };

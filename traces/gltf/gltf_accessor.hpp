@@ -9,7 +9,7 @@
 
 namespace vestige::gltf {
 
-/// Component kinds, to be combined into a set. kNormalized… stand for [0, 1] or [-1, 1] (glTF 2.0 §3.11).
+/// Component types, to be combined into a set. kNormalized… types represent [0, 1] or [-1, 1] (glTF 2.0 §3.11).
 enum Component : unsigned {
   kFloat = 1U << 0,
   kInt8 = 1U << 1,
@@ -23,38 +23,40 @@ enum Component : unsigned {
   kNormalizedUint16 = 1U << 9,
 };
 
-/// What a use of an accessor demands of it.
+/// The format that a use of an accessor requires.
 struct Format {
   int type = 0;             ///< TINYGLTF_TYPE_…
   unsigned components = 0;  ///< a set of `Component`
 };
 
-/// Checks, without touching their data, that all accessors lie inside their buffer views and those inside their
-/// buffers, sparse ones included. Fails naming the accessor.
+/// Checks, without reading data, that all accessors lie inside their buffer views and all buffer views inside their
+/// buffers, including sparse ones. Fails with the name of the accessor.
 void check_accessors(const Document& document, Report& report);
 
-/// Random access to the elements of an accessor: strides, sparse substitution, missing data (zeros) and normalisation
-/// are dealt with. Refers to the document's buffers.
+/// Random access to the elements of an accessor. Handles strides, sparse substitution, missing data (zeros) and
+/// normalisation. Keeps a reference to the document's buffers.
 class AccessorReader {
  public:
-  /// `use` says in errors what the accessor is read for. Fails when it is not of `format`, or when its sparse indices
-  /// are not strictly increasing or beyond its end.
+  /// `use` names the accessor's purpose in errors. Fails if the accessor does not have `format`, or if its sparse
+  /// indices are not strictly increasing or exceed its count.
   AccessorReader(const Document& document, int accessor, const Format& format, std::string_view use,
                  const Report& report);
 
   std::size_t count() const { return count_; }
 
-  /// Component `c` of element `i`, normalised where the accessor is. Matrices count column by column.
+  /// Returns component `c` of element `i`, normalised if the accessor is. Components of matrices count column by
+  /// column.
   double number(std::size_t i, std::size_t c) const;
-  /// The same, rounded once. Fails at `use` when it is not finite.
+  /// Like `number`, but rounded once. Fails at `use` if the result is not finite.
   float finite(std::size_t i, std::size_t c) const;
-  /// The same for kUint8, kUint16 and kUint32.
+  /// Like `number`, but for kUint8, kUint16 and kUint32.
   std::uint32_t integer(std::size_t i, std::size_t c) const;
 
-  /// Warns when elements do not start at multiples of 4 bytes, as vertex attributes must (glTF 2.0 §3.6.2.4).
+  /// Warns if elements do not start at multiples of 4 bytes, as vertex attributes must (glTF 2.0 §3.6.2.4).
   void check_vertex_alignment(Report& report) const;
 
-  /// Warns when the file's min or max is not that of the data, or is missing: wrong, but nothing relies on it.
+  /// Warns if the file's min or max is missing or differs from the data. That is wrong but harmless, because nothing
+  /// relies on these values.
   void compare_bounds(Report& report) const;
 
  private:
@@ -68,7 +70,7 @@ class AccessorReader {
   const Report& report_;
   const std::byte* first_ = nullptr;
   std::size_t stride_ = 0;
-  std::uint64_t start_ = 0;  ///< where in its buffer the accessor starts
+  std::uint64_t start_ = 0;  ///< offset of the accessor in its buffer
   std::size_t count_ = 0;
   std::size_t component_bytes_ = 0;
   Component component_ = kFloat;

@@ -14,10 +14,11 @@ namespace vestige::gltf {
 
 namespace {
 
-// Channels may share accessors, but are stored one by one. Ten minutes of 60 joints at 120 Hz are half of it.
+// Channels may share accessors, but each is stored separately. Ten minutes of 60 joints at 120 Hz are half of this
+// limit.
 constexpr std::size_t kMostNumbers = std::size_t{1} << 26;
 
-/// Bounds what a small file can ask for: no channel stores more than four numbers for each of its bytes.
+/// Limits the memory that a small file can request: no channel stores more than four numbers for each byte of the file.
 std::size_t most_numbers(const Document& document) {
   return std::min(kMostNumbers, (std::size_t{1} << 22) + 4 * document.data_bytes);
 }
@@ -130,7 +131,7 @@ class AnimationReader {
       for (std::size_t c = 0; c < components; ++c) channel.values.push_back(reader.finite(i, c));
   }
 
-  /// Every key, though not the tangents of a spline, must be a rotation.
+  /// Checks that every key, except the tangents of a spline, is a rotation.
   void check_rotations(const AnimationChannel& channel, const std::string& path) {
     const bool is_spline = channel.interpolation == Interpolation::kCubicSpline;
     for (std::size_t key = 0; key < channel.times_s.size(); ++key) {

@@ -5,9 +5,9 @@
 
 namespace vestige::gltf {
 
-/// Fills `animations`, in the file's order. Fails on times that do not strictly increase, values that do not match
-/// them, two channels for one property and animated nodes that have a `matrix`; what is neither translation, rotation
-/// nor scale is ignored with a warning.
+/// Fills `animations`, in file order. Fails if times do not strictly increase, values do not match the times, two
+/// channels animate one property, or an animated node has a `matrix`. Ignores other properties than translation,
+/// rotation and scale, with a warning.
 void read_animations(const Document& document, Avatar& avatar, Report& report);
 
 }  // namespace vestige::gltf

@@ -18,12 +18,12 @@ namespace {
 
 using nlohmann::json;
 
-// tinygltf looks up whatever a primitive calls its indices, at once, and refuses those that are all sparse. Among the
-// attributes it lets them pass; no attribute has such a name.
+// tinygltf looks up a primitive's indices at once, and refuses accessors that are entirely sparse. It accepts them
+// among the attributes, so the indices go there. No attribute has this name.
 constexpr const char* kIndicesAsAttribute = "(indices)";
 
-/// Turns JSON that is known to be sound into tinygltf's types. It sees neither buffers nor images, reads no file, and
-/// decodes nothing.
+/// Converts valid JSON to tinygltf's types. tinygltf sees neither buffers nor images, reads no file, and decodes
+/// nothing.
 tinygltf::Model to_model(const std::string& text, const Report& report) {
   tinygltf::TinyGLTF parser;
   parser.SetImageLoader([](tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int,
@@ -38,8 +38,8 @@ tinygltf::Model to_model(const std::string& text, const Report& report) {
   return model;
 }
 
-/// Hands a list to tinygltf, some elements at a time: its tree of their JSON takes ten times as much memory as the
-/// text. `prepare` may look at an element and change it; `take` gets a model that holds some of them.
+/// Passes a list to tinygltf, a few elements at a time, because its JSON tree takes ten times as much memory as the
+/// text. `prepare` may read and change an element. `take` gets a model that holds some of the elements.
 template <typename Prepare, typename Take>
 void read_list(const Json& source, const std::string& list, Report& report, const Prepare& prepare, const Take& take) {
   constexpr std::size_t kPieceBytes = 1 << 14;
@@ -173,7 +173,7 @@ void resolve_buffers(Document& document, std::span<const std::byte> bin, Report&
   for (std::size_t i = 0; i < document.is_buffer_read.size(); ++i)
     if (document.is_buffer_read[i]) resolve_buffer(document, i, bin, report);
 
-  // No mode packs more than 64 bytes into one; many views may name the same packed bytes.
+  // No mode packs more than 64 bytes into one. Many views may refer to the same packed bytes.
   std::uint64_t left_bytes = 64 * (document.data_bytes + 1024);
   for (const auto& [view, packed] : document.packed) {
     if (!document.is_view_read[view]) continue;
@@ -251,7 +251,8 @@ void check_strides(const Document& document, const Report& report) {
 
 tinygltf::Animation load_animation(const Document& document, std::size_t index, Report& report) {
   json animation = document.json.element("animations", index, report);
-  // tinygltf drops a channel without a node, which would renumber the others: give it one, and a path that says so.
+  // tinygltf drops a channel without a node, which would renumber the others. So such a channel gets a node, and a path
+  // that marks it.
   for (json& channel : animation["channels"]) {
     json& target = channel["target"];
     if (!target.contains("node")) target = {{"node", 0}, {"path", target["path"] == "pointer" ? "pointer" : kNoNode}};

@@ -18,15 +18,15 @@
 
 namespace vestige::gltf {
 
-/// `tinygltf::BufferView`, of a tenth of its size: there are as many as an avatar has animation channels.
+/// `tinygltf::BufferView` in a tenth of its size, because an avatar has as many as animation channels.
 struct BufferView {
-  std::size_t buffer = 0;  ///< into `Document::buffers`
+  std::size_t buffer = 0;  ///< index into `Document::buffers`
   std::uint64_t offset = 0;
   std::uint64_t length = 0;
   std::uint64_t stride = 0;  ///< 0: tightly packed
 };
 
-/// The same for `tinygltf::Accessor`.
+/// `tinygltf::Accessor` in a smaller size.
 struct Accessor {
   struct Sparse {
     std::uint32_t count = 0;
@@ -42,13 +42,13 @@ struct Accessor {
   bool normalized = false;
   std::uint32_t count = 0;
   std::uint64_t offset = 0;
-  // What the file claims of the first three components; nothing where it claims nothing.
+  // The file's claim about the first three components, or nothing if there is no claim.
   std::optional<std::array<double, 3>> min;
   std::optional<std::array<double, 3>> max;
   std::optional<Sparse> sparse;
 };
 
-/// A glTF whose JSON fits the schema (animations excepted). What its accessors hold is not checked yet.
+/// A glTF whose JSON fits the schema (except the animations). The content of its accessors is not yet checked.
 struct Document {
   explicit Document(Json source) : json(std::move(source)) {}
 
@@ -57,34 +57,35 @@ struct Document {
   std::vector<BufferView> views;
   std::vector<Accessor> accessors;
   std::vector<bool> is_view_read;                   ///< for each view whether an accessor reads it
-  std::map<std::size_t, PackedView> packed;         ///< by the number of their view
-  std::vector<bool> is_buffer_read;                 ///< for each buffer; images and other unread data may be missing
-  std::vector<std::span<const std::byte>> buffers;  ///< one for each of the file's; empty where no accessor reads it
-  std::vector<std::vector<std::byte>> decoded;      ///< what `buffers` refer to where it was a data: URI
-  std::size_t data_bytes = 0;  ///< of the file and of what was unpacked: bounds what the avatar may need
+  std::map<std::size_t, PackedView> packed;         ///< by index of their view
+  std::vector<bool> is_buffer_read;                 ///< for each buffer; unread data such as images may be missing
+  std::vector<std::span<const std::byte>> buffers;  ///< the file's, empty if unread; then unpacked views
+  std::vector<std::vector<std::byte>> decoded;      ///< decoded data: URIs and unpacked views that `buffers` refer to
+  std::size_t data_bytes = 0;  ///< size of the file plus unpacked views: limits the avatar's memory
   bool quantized = false;      ///< KHR_mesh_quantization: integer positions and texture coordinates are allowed
 };
 
-/// All but the animations and the data. Fails on required extensions that are not supported, on whatever does not fit
-/// the schema, and on interleaved data that is no vertex attribute.
+/// Parses everything except the animations and the data. Fails on required extensions that are not supported, on
+/// anything that does not fit the schema, and on interleaved data that are no vertex attribute.
 Document parse_document(Json json, Report& report);
 
-/// Splits, parses and checks a GLB, which the result keeps referring to: all accessors lie inside their buffers. Fails
-/// on whatever `split_glb`, `Json`, `parse_document` and `check_accessors` refuse.
+/// Splits, parses and checks a GLB, and keeps references to it: all accessors lie inside their buffers. Fails on
+/// everything that `split_glb`, `Json`, `parse_document` and `check_accessors` refuse.
 Document load_document(std::span<const std::byte> glb, Report& report);
 
-/// Stands as the path of an animation channel that names no node, unless it animates a "pointer".
+/// The path of an animation channel that names no node, unless it animates a "pointer".
 inline constexpr const char* kNoNode = "(no node)";
 
-/// Animations are most of the JSON of some avatars, and are parsed one at a time.
+/// Parses one animation. Animations are parsed one at a time, because they are most of the JSON of some avatars.
 tinygltf::Animation load_animation(const Document& document, std::size_t index, Report& report);
 
-/// Fails at `path` where `length` bytes from `offset` on, both below 2³², do not lie inside a buffer of `buffer_bytes`.
+/// Fails at `path` if `length` bytes from `offset` on do not lie inside a buffer of `buffer_bytes`. Precondition:
+/// `length` and `offset` are below 2³².
 void check_inside_buffer(std::uint64_t offset, std::uint64_t length, std::size_t buffer, std::uint64_t buffer_bytes,
                          std::string_view path, const Report& report);
 
-/// Only vertex attributes may be interleaved (glTF 2.0 §3.6.2.1): fails, naming `use`, where a byteStride stands behind
-/// an accessor.
+/// Fails, with the name `use`, if the accessor's buffer view has a byteStride. Only vertex attributes may be
+/// interleaved (glTF 2.0 §3.6.2.1).
 void refuse_stride(const Document& document, int accessor, std::string_view use, const Report& report);
 
 }  // namespace vestige::gltf

@@ -20,7 +20,7 @@ using nlohmann::json;
 constexpr std::string_view kQuantization = "KHR_mesh_quantization";
 constexpr const char* kDraco = "KHR_draco_mesh_compression";
 
-/// Extensions that change neither geometry nor skin nor motion, and those that are supported.
+/// Whether an extension changes neither geometry nor skin nor motion, or is supported.
 bool is_harmless(std::string_view extension) {
   constexpr std::array<std::string_view, 8> kNames = {kQuantization,
                                                       kMeshopt,
@@ -39,7 +39,7 @@ bool is_harmless(std::string_view extension) {
          std::any_of(kPrefixes.begin(), kPrefixes.end(), [&](auto prefix) { return extension.starts_with(prefix); });
 }
 
-/// What ignoring an extension does to what is drawn, where there is something to say.
+/// Returns the visible effect of ignoring an extension, or an empty text if there is nothing to report.
 std::string_view effect_of_ignoring(std::string_view extension) {
   if (extension == "EXT_mesh_gpu_instancing") return " (what has instances is drawn once)";
   if (extension == "KHR_node_visibility") return " (hidden nodes are drawn)";

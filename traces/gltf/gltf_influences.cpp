@@ -9,7 +9,7 @@ namespace vestige::gltf {
 
 namespace {
 
-// Exporters that round to 8 bits or to a few digits stay below it.
+// Exporters that round to 8 bits or to a few digits stay below this.
 constexpr double kSumTolerance = 1e-2;
 
 void sort_by_palette(std::vector<Influence>& influences) {
@@ -56,7 +56,7 @@ Influences combine_influences(std::vector<Influence>& influences, std::uint16_t 
     sort_by_palette(influences);
   }
   const double sum = sum_of(influences);
-  // A weight that vanishes in single precision moves nothing.
+  // A weight that is zero in single precision moves nothing.
   std::erase_if(influences, [&](const Influence& i) { return static_cast<float>(i.weight / sum) == 0; });
   Influences result;
   for (std::size_t i = 0; i < influences.size(); ++i) {

@@ -9,15 +9,15 @@
 
 namespace vestige::gltf {
 
-/// One joint's weight on one vertex, as the file gives it: finite, not negative.
+/// One joint's weight on one vertex, as in the file: finite, not negative.
 struct Influence {
   std::uint16_t palette = 0;
   double weight = 0;
 };
 
-/// Puts what a file says of one vertex into the form that `Influences` promises; `influences` is left with as many
-/// elements as that has. More than `kMaxInfluences`: the largest are kept (of equal ones, the lowest palette indices).
-/// No weight at all: the vertex follows `first`. Both, and weights whose sum is not 1, are warned of at `path`.
+/// Converts a file's influences of one vertex to the form that `Influences` promises. Leaves the same elements in
+/// `influences`. Of more than `kMaxInfluences`, keeps the largest (of equal ones, the lowest palette indices). A vertex
+/// without any weight follows `first`. Warns at `path` of both cases, and of weights whose sum is not 1.
 Influences combine_influences(std::vector<Influence>& influences, std::uint16_t first, std::string_view path,
                               Report& report);
 

@@ -15,22 +15,22 @@ namespace vestige::gltf {
 
 namespace {
 
-// An avatar of this size would be beyond any use.
+// A larger avatar would be useless.
 constexpr std::size_t kMostVertices = std::size_t{1} << 23;
 constexpr std::size_t kMostTriangles = std::size_t{1} << 24;
-// One small file can show one mesh thousands of times: its bytes and this many vertices bound what it can ask for.
+// A small file can show one mesh thousands of times. Its size plus this many vertices limits the memory it can request.
 constexpr std::size_t kMostRepeated = std::size_t{1} << 20;
 
 constexpr int kNoNode = -1;
 
-/// A primitive as one node shows it.
+/// A primitive as drawn by one node.
 struct Part {
   int node = 0;
   int skin = -1;
   std::size_t mesh = 0;
   std::size_t primitive = 0;
   std::size_t vertex_count = 0;
-  std::size_t corner_count = 0;  ///< indices, or vertices where there are none
+  std::size_t corner_count = 0;  ///< number of indices, or of vertices if there are no indices
 };
 
 std::string part_path(const Part& part, std::string_view property = {}) {
@@ -46,7 +46,7 @@ std::size_t triangle_count(int mode, std::size_t corners) {
   return corners < 3 ? 0 : corners - 2;
 }
 
-/// Those of §3.7.2.1 and, with an underscore, a file's own.
+/// Whether an attribute is one of §3.7.2.1 or, with an underscore, the file's own.
 bool is_known_attribute(std::string_view name) {
   constexpr std::array<std::string_view, 4> kNumbered = {"TEXCOORD_", "COLOR_", "JOINTS_", "WEIGHTS_"};
   return name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name.starts_with('_') ||
@@ -65,7 +65,7 @@ class MeshReader {
     world_matrices(avatar, rest_pose(avatar), world_);
   }
 
-  /// The parts that have triangles, in node, primitive order.
+  /// Returns the parts that have triangles, in order of node and primitive.
   std::vector<Part> shown(const std::vector<bool>& drawn) {
     std::vector<Part> parts;
     for (std::size_t node = 0; node < drawn.size(); ++node) {
@@ -76,7 +76,7 @@ class MeshReader {
     return parts;
   }
 
-  /// Those of a mesh that no node shows.
+  /// Returns the parts of a mesh that no node shows.
   std::vector<Part> unshown(std::size_t mesh) {
     std::vector<Part> parts;
     collect(mesh, kNoNode, -1, parts);
@@ -93,7 +93,7 @@ class MeshReader {
   }
 
  private:
-  /// What decides about a part's vertices. Primitives that share it share their vertices.
+  /// The key of a part's vertices. Parts with the same key share their vertices.
   using Key = std::pair<std::array<int, 2>, std::vector<std::pair<std::string, int>>>;
 
   const tinygltf::Primitive& primitive(const Part& part) const {
@@ -142,7 +142,7 @@ class MeshReader {
     return triangle_count(source.mode, part.corner_count) > 0;
   }
 
-  /// All attributes, read or not, and morph targets, which are not, speak of the same vertices.
+  /// Checks that all attributes, read or not, and morph targets, which are not read, have the same number of vertices.
   void check_counts(const Part& part) {
     const auto check = [&](const std::string& path, int index) {
       if (accessor(index).count != part.vertex_count)
@@ -307,8 +307,8 @@ class MeshReader {
     return static_cast<std::uint16_t>(found->second);
   }
 
-  /// glTF 2.0 §3.7.2.1: how the corners of strips and fans make triangles.
-  /// §3.7.4: mirrored by its node, a triangle's front is where it looks clockwise. Skinned meshes ignore their node.
+  /// glTF 2.0 §3.7.2.1: how the corners of strips and fans form triangles. §3.7.4: if the node mirrors a triangle, its
+  /// front is the clockwise side. Skinned meshes ignore their node.
   void read_triangles(const Part& part, std::size_t first_vertex) {
     const tinygltf::Primitive& source = primitive(part);
     std::vector<std::uint32_t> corners(part.corner_count);
@@ -343,7 +343,7 @@ class MeshReader {
 
   const Document& document_;
   const std::vector<Skin>& skins_;
-  std::vector<std::vector<std::uint16_t>> skin_palette_;  ///< for each skin's joints, once it is drawn
+  std::vector<std::vector<std::uint16_t>> skin_palette_;  ///< for each skin's joints, once the skin is drawn
   std::vector<glm::dmat4> world_;                         ///< of each node, in the rest pose
   std::map<std::pair<int, std::array<double, 16>>, std::size_t> palette_;
   std::map<Key, std::size_t> first_vertex_;

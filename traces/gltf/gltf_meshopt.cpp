@@ -16,7 +16,7 @@ using nlohmann::json;
 constexpr std::array<std::string_view, 3> kModes = {"ATTRIBUTES", "TRIANGLES", "INDICES"};
 constexpr std::array<std::string_view, 4> kFilters = {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"};
 
-/// The properties of the extension, read one by one.
+/// Reads the properties of the extension one by one.
 class Reader {
  public:
   Reader(const json& extension, std::string path, const Report& report)

@@ -14,8 +14,8 @@ namespace vestige::gltf {
 
 inline constexpr const char* kMeshopt = "EXT_meshopt_compression";
 
-/// What EXT_meshopt_compression says of a buffer view: `count` elements of `stride` bytes are packed into `length`
-/// bytes of another buffer.
+/// The description of a buffer view packed with EXT_meshopt_compression: `count` elements of `stride` bytes are packed
+/// into `length` bytes of another buffer.
 struct PackedView {
   enum class Mode { kAttributes, kTriangles, kIndices };
   enum class Filter { kNone, kOctahedral, kQuaternion, kExponential };
@@ -29,12 +29,12 @@ struct PackedView {
   Filter filter = Filter::kNone;
 };
 
-/// What a buffer view, `view`, says of its being packed, if it is. Fails, naming the property, where that does not fit
-/// the extension's specification ("Specifying compressed views") or the view itself.
+/// Reads how the buffer view `view` is packed, or returns nothing if it is not packed. Fails, with the property, if the
+/// description does not fit the extension's specification ("Specifying compressed views") or the view itself.
 std::optional<PackedView> read_packed_view(const nlohmann::json& view, const std::string& path,
                                            std::size_t buffer_count, const Report& report);
 
-/// The view's content: count * stride bytes. Fails where `packed` cannot be unpacked to so many.
+/// Returns the view's content: count * stride bytes. Fails if `packed` does not unpack to that many bytes.
 std::vector<std::byte> unpack(const PackedView& view, std::span<const std::byte> packed, const std::string& path,
                               const Report& report);
 

@@ -26,7 +26,7 @@ void link_children(const Document& document, Avatar& avatar, const Report& repor
     }
 }
 
-/// Roots, then their children, and so on. In a cycle nobody is reached.
+/// Orders nodes: roots, then their children, and so on. Nodes in a cycle are not reached.
 void order_nodes(const Document& document, Avatar& avatar, const Report& report) {
   std::vector<bool> reached(avatar.nodes.size());
   for (Index i = 0; i < avatar.nodes.size(); ++i)
@@ -39,14 +39,14 @@ void order_nodes(const Document& document, Avatar& avatar, const Report& report)
   }
   const auto lost = std::find(reached.begin(), reached.end(), false);
   if (lost == reached.end()) return;
-  // It may only hang from the cycle; so many steps up lead into it.
+  // The lost node may only hang below the cycle; this many steps up lead into the cycle.
   auto node = static_cast<Index>(lost - reached.begin());
   for (Index step = 0; step < avatar.nodes.size(); ++step) node = static_cast<Index>(avatar.nodes[node].parent);
   report.fail(node_path(node, ".children"), "leads back to the node itself");
 }
 
-/// Translation, rotation and scale whose product, after rounding to float, is `matrix` to 1e-6; nothing where shear or
-/// a vanishing axis forbids that.
+/// Returns translation, rotation and scale whose product, after rounding to float, equals `matrix` to 1e-6. Returns
+/// nothing if shear or a vanishing axis prevents that.
 std::optional<NodeLocal> decompose(const glm::dmat4& matrix) {
   const glm::dmat3 linear(matrix);
   glm::dvec3 scale(glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2]));

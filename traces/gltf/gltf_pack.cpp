@@ -25,20 +25,20 @@ using nlohmann::json;
 
 constexpr std::size_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
-/// A .gltf is text, and starts with a brace after white space and perhaps a byte order mark.
+/// Whether `content` is a .gltf: text that starts with a brace after white space and perhaps a byte order mark.
 bool is_text(std::string_view content) {
   const std::size_t start = content.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   return start != std::string_view::npos && content[start] == '{';
 }
 
-/// Puts the buffers that are read one behind the other.
+/// Concatenates the buffers that are read.
 class BufferPacker {
  public:
-  /// `bin` is what a first buffer without a uri holds; empty where the file is no GLB.
+  /// `bin` is the content of a first buffer without a uri; empty if the file is not a GLB.
   BufferPacker(std::filesystem::path folder, std::span<const std::byte> bin, Report& report)
       : folder_(std::move(folder)), bin_(bin), report_(report) {}
 
-  /// Where in `bytes` this buffer starts. A buffer that several entries name is packed once.
+  /// Adds a buffer and returns its offset in `bytes`. A buffer that several entries name is packed once.
   std::size_t add(const Json& source, const json& buffer, std::size_t index) {
     const std::string path = fmt::format("buffers[{}]", index);
     const auto byte_length = buffer["byteLength"].get<std::size_t>();
@@ -91,7 +91,7 @@ class BufferPacker {
   std::vector<std::byte> bytes_;
 };
 
-/// What was read of a file, as one GLB.
+/// Packs the parts of a file that are read into one GLB.
 class Packer {
  public:
   Packer(const Json& source, std::span<const std::byte> bin, const std::filesystem::path& path, Report& report)
@@ -144,8 +144,8 @@ class Packer {
     text += "],";
   }
 
-  /// Makes a view refer to the one buffer of a GLB. Views that are not read held images, or are wrong without harm;
-  /// they keep their place so that the others keep their number.
+  /// Makes a view refer to the single buffer of the GLB. Views that are not read held images, or are wrong but
+  /// harmless. They keep their place, so that the other views keep their index.
   void redirect(json& view, std::size_t index) const {
     if (!is_view_read_[index]) {
       view = {{"buffer", 0}, {"byteLength", 1}};
@@ -175,8 +175,8 @@ class Packer {
   const Json& source_;
   BufferPacker packer_;
   Report& report_;
-  std::vector<bool> is_read_;       ///< for each buffer
-  std::vector<bool> is_view_read_;  ///< for each view
+  std::vector<bool> is_read_;       ///< for each buffer: whether it is read
+  std::vector<bool> is_view_read_;  ///< for each view: whether it is read
   std::vector<std::size_t> start_;
   std::vector<std::size_t> byte_length_;
 };

@@ -40,10 +40,11 @@ std::vector<glm::dmat4> read_inverse_bind(const Document& document, const tinygl
   return matrices;
 }
 
-/// Numbers the nodes so that those below one are consecutive: whether one is below another is then two comparisons.
+/// Numbers the nodes so that the descendants of a node are consecutive. Two comparisons then tell whether one node is
+/// below another.
 struct Tree {
   std::vector<std::size_t> first;  ///< a node's own number
-  std::vector<std::size_t> size;   ///< how many numbers it and those below it take
+  std::vector<std::size_t> size;   ///< size of the node's subtree
   std::vector<int> root;           ///< its topmost ancestor
 
   explicit Tree(const Avatar& avatar) : first(avatar.nodes.size()), size(avatar.nodes.size(), 1), root(first.size()) {
@@ -69,7 +70,7 @@ struct Tree {
   }
 };
 
-/// glTF 2.0 §3.7.3.1 wants all joints in one tree, and `skeleton` above them all.
+/// glTF 2.0 §3.7.3.1 requires all joints in one tree, and `skeleton` above them all.
 void check_hierarchy(const tinygltf::Skin& source, const Tree& tree, std::size_t skin, Report& report) {
   const auto root_of = [&](int joint) { return tree.root[static_cast<std::size_t>(joint)]; };
   if (!std::all_of(source.joints.begin(), source.joints.end(),
@@ -80,7 +81,7 @@ void check_hierarchy(const tinygltf::Skin& source, const Tree& tree, std::size_t
     report.warn(skin_path(skin, "skeleton"), "is not above all joints");
 }
 
-/// Before any matrix is looked at, since too few may be wrong as well.
+/// Runs before any matrix is read, because an accessor with too few matrices may have wrong ones as well.
 void check_counts(const Document& document, const Report& report) {
   for (std::size_t i = 0; i < document.model.skins.size(); ++i) {
     const tinygltf::Skin& skin = document.model.skins[i];

@@ -17,13 +17,13 @@ namespace {
 
 using mcap::Malformed;
 using Json = nlohmann::json;
-/// Numbers are read as floats at once: by way of double, some would be rounded twice.
+/// Numbers are read directly as floats, because some would be rounded twice by way of double.
 using FloatJson = nlohmann::basic_json<std::map, std::vector, std::string, bool, std::int64_t, std::uint64_t, float>;
 
 constexpr std::size_t kMostLineBytes = std::size_t{64} << 20;
 constexpr std::size_t kMostBadLinesTold = 10;
 constexpr std::size_t kDeepestJson = 128;  ///< nesting
-constexpr double kMost_s = 9e9;            ///< nanoseconds in 63 bits
+constexpr double kMost_s = 9e9;            ///< limit of nanoseconds in 63 bits
 
 std::map<std::string, std::size_t, std::less<>> nodes_by_name(const Avatar& avatar) {
   std::map<std::string, std::size_t, std::less<>> nodes;
@@ -31,8 +31,8 @@ std::map<std::string, std::size_t, std::less<>> nodes_by_name(const Avatar& avat
   return nodes;
 }
 
-/// How deep arrays and objects are nested in JSON text, without parsing it; of what is no JSON, any number. Nlohmann's
-/// library parses whatever depth, but copies by recursion.
+/// Returns how deep arrays and objects are nested in JSON text, without parsing it; any number if the text is not JSON.
+/// Nlohmann's library parses any depth, but copies by recursion.
 std::size_t depth_of(std::string_view text) {
   std::size_t depth = 0;
   std::size_t deepest = 0;
@@ -95,8 +95,9 @@ std::uint32_t id_of(const Json& json) {
   return json.get<std::uint32_t>();
 }
 
-/// The line's pose once more. A line with a number that no float can hold, which is none of a node's, is converted
-/// instead: where that rounds twice, by one bit in some hundred million numbers, it hardly matters so far out.
+/// Reads the line's pose again, as floats. If a number outside the nodes exceeds float, the pose is converted from
+/// double instead. That rounds about one in some hundred million numbers twice, by one bit, which hardly matters so far
+/// out.
 FloatJson pose_in_floats(std::string_view line, const Json& pose) {
   try {
     return FloatJson::parse(line).at("pose");

@@ -21,13 +21,13 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using WhenBehind = RecordingThread::WhenBehind;
 
-/// How long nothing is asked at most.
+/// The longest time between two calls of `asked`.
 constexpr std::chrono::milliseconds kLongestWait(20);
-/// How many datagrams are taken before it is looked whether a frame is due, and for how long.
+/// Limits, in number and time, of the datagrams taken before a due frame is made.
 constexpr int kMostInATurn = 1000;
 constexpr std::chrono::milliseconds kLongestTurn(5);
-/// How late a frame may be made: about as far as a sender's own frames, and the network's delays, are apart. A busy
-/// machine then costs no frame, each of which would be a gap over which nothing can touch.
+/// How late a frame may be made: about the interval between a sender's own frames, plus the delays of the network. So a
+/// busy machine costs no frame; each lost frame would be a gap over which no contact can occur.
 constexpr double kMostLate_s = 0.02;
 constexpr std::string_view kInput = "input";  // traces/FORMAT.md
 
@@ -35,7 +35,7 @@ std::int64_t nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
 }
 
-/// Whether there is something to read, after at most `timeout`.
+/// Waits at most `timeout`. Returns whether there is something to read.
 bool await(int descriptor, std::chrono::nanoseconds timeout) {
   pollfd place = {.fd = descriptor, .events = POLLIN, .revents = 0};
   const auto wait = std::clamp<std::chrono::nanoseconds>(timeout, std::chrono::nanoseconds(0), kLongestWait);
@@ -52,7 +52,7 @@ void note_frames(std::vector<RecordingNote>& notes, std::uint64_t count) {
   note(notes, "/colliders", count);
 }
 
-/// Serves what is asked; true: stop.
+/// Serves a request from outside. Returns true if the recording must stop.
 bool must_stop(RecordingThread& out, const LiveSettings& settings) {
   const LiveRequest request = settings.asked();
   if (request == LiveRequest::kSnapshot) out.snapshot();
@@ -104,7 +104,7 @@ LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out,
 
 namespace {
 
-/// One recording from a state.
+/// One recording of a state.
 class StateRecording {
  public:
   StateRecording(UdpReceiver& datagrams, VmcState& state, RecordingThread& out, const LiveSettings& settings)
@@ -122,7 +122,7 @@ class StateRecording {
         if (await(datagrams_.descriptor(), std::chrono::nanoseconds(left_ns))) receive();
         continue;
       }
-      receive();  // what has come until now belongs to this frame
+      receive();  // everything received until now belongs to this frame
       skip_missed();
       if (static_cast<double>(index_) < frames_) make_frame();
     }
@@ -132,7 +132,7 @@ class StateRecording {
   }
 
  private:
-  /// What the trace has been told of.
+  /// The losses already noted in the trace.
   struct Noted {
     std::uint64_t late = 0;
     std::uint64_t input = 0;
@@ -144,7 +144,8 @@ class StateRecording {
     start_ = Clock::now();
   }
 
-  /// Under a flood there is always another datagram: frames, and whoever stops it, must have their turn.
+  /// Takes a limited number of datagrams. In a flood there is always another one, but frames and stop requests must
+  /// have their turn.
   void receive() {
     const Clock::time_point until = Clock::now() + kLongestTurn;
     for (int count = 0; count < kMostInATurn && Clock::now() < until; ++count) {
@@ -158,7 +159,7 @@ class StateRecording {
     return std::llround(static_cast<double>(index) / settings_.rate_hz * kNanosecondsPerSecond);
   }
 
-  /// Frames that can no longer be made: the state is not any more what it was at their time.
+  /// Skips frames that can no longer be made, because the state has changed since their time.
   void skip_missed() {
     const double late_s = static_cast<double>(nanoseconds_since(start_)) / kNanosecondsPerSecond - kMostLate_s;
     const double first = std::max(0.0, std::ceil(late_s * settings_.rate_hz));
@@ -181,13 +182,13 @@ class StateRecording {
       ++made_;
       return;
     }
-    // Nothing of it was taken: it is for the next frame to tell.
+    // The frame was not taken, so the next frame must carry its notes.
     state_.mark_teleported(std::move(teleported));
     noted_ = before;
     ++late_;
   }
 
-  /// What has been lost since it was noted before, and markers.
+  /// Returns the losses since the last notes, and the markers.
   std::vector<RecordingNote> notes() {
     std::vector<RecordingNote> notes = state_.markers();
     const Noted now = {.late = late_, .input = state_.malformed() + datagrams_.overflowed()};

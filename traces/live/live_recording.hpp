@@ -14,30 +14,30 @@
 
 namespace vestige {
 
-/// What somebody outside wants while a recording runs.
+/// A request from outside while a recording runs.
 enum class LiveRequest : std::uint8_t { kGoOn, kSnapshot, kStop };
 
 struct LiveSettings {
-  double rate_hz = 1000;             ///< of frames made from a state
-  std::optional<double> duration_s;  ///< nothing: until the source ends or `asked` says so
+  double rate_hz = 1000;             ///< rate of frames made from a state
+  std::optional<double> duration_s;  ///< nothing: until the source ends or `asked` stops the recording
   std::function<LiveRequest()> asked = {};
 };
 
 struct LiveCounts {
-  std::uint64_t frames = 0;      ///< handed on
-  std::uint64_t late = 0;        ///< frames whose time had passed before they could be made, or that found no room
-  std::uint64_t malformed = 0;   ///< lines or datagrams
-  std::uint64_t overflowed = 0;  ///< datagrams that the system threw away
+  std::uint64_t frames = 0;      ///< frames passed on
+  std::uint64_t late = 0;        ///< frames that were too late, or for which there was no room
+  std::uint64_t malformed = 0;   ///< malformed lines or datagrams
+  std::uint64_t overflowed = 0;  ///< datagrams that the system discarded
   bool lost_something() const { return late + malformed + overflowed > 0; }
 };
 
-/// Frames from lines of JSON on `descriptor`, as they come, until it ends. What is lost is counted in the trace too: a
-/// line as a message of /pose and one of /colliders. Throws `Error`: reading or writing failed.
+/// Records frames from lines of JSON on `descriptor`, as they arrive, until it ends. Losses are also counted in the
+/// trace: a lost line as one message of /pose and one of /colliders. Throws `Error` if reading or writing failed.
 LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out, const LiveSettings& settings);
 
-/// Frames of the latest state, at absolute times of `rate_hz` since the first datagram that said something. A frame
-/// whose time has passed by more than 20 ms is left out and counted as /pose and /colliders, datagrams as
-/// `input`.
+/// Records frames of the latest state, at absolute times of `rate_hz` since the first datagram that changed the state.
+/// A frame whose time has passed by more than 20 ms is left out. The trace counts lost frames as /pose and /colliders,
+/// and lost datagrams as `input`.
 LiveCounts record_state(UdpReceiver& datagrams, VmcState& state, RecordingThread& out, const LiveSettings& settings);
 
 }  // namespace vestige

@@ -29,7 +29,7 @@ std::uint32_t big_endian(std::span<const std::byte> bytes) {
   return value;
 }
 
-/// An argument stands on a multiple of 4, which is not enough for a double.
+/// Reads an argument, which is aligned to 4 bytes; a double needs more.
 template <typename Number>
 Number copied(const lo_arg* argument) {
   Number value = 0;
@@ -54,7 +54,8 @@ OscArgument argument_of(char type, const lo_arg* argument) {
 }
 
 OscMessage decode_message(std::span<const std::byte> bytes) {
-  // liblo checks every string and argument against the bytes that are left; it writes nothing, but does not say so.
+  // liblo checks every string and argument against the remaining bytes. It writes nothing, but its interface is not
+  // const.
   std::vector<std::byte> copy(bytes.begin(), bytes.end());
   if (copy.empty() || copy.front() != std::byte{'/'})
     throw Malformed("a message's address does not begin with a slash");
@@ -62,7 +63,7 @@ OscMessage decode_message(std::span<const std::byte> bytes) {
   const std::unique_ptr<void, FreeMessage> message(lo_message_deserialise(copy.data(), copy.size(), &failure));
   if (!message) throw Malformed("a message is no OSC");
   OscMessage decoded;
-  decoded.address = reinterpret_cast<const char*>(copy.data());  // ends within, as liblo has checked
+  decoded.address = reinterpret_cast<const char*>(copy.data());  // terminated within the bytes, as liblo has checked
   const char* types = lo_message_get_types(message.get());
   lo_arg** const arguments = lo_message_get_argv(message.get());
   const int count = lo_message_get_argc(message.get());

@@ -9,7 +9,7 @@
 
 namespace vestige {
 
-/// std::monostate stands for types that nobody here asks for.
+/// std::monostate represents the types that this program does not use.
 using OscArgument = std::variant<std::monostate, std::int32_t, float, double, std::string>;
 
 struct OscMessage {
@@ -17,9 +17,9 @@ struct OscMessage {
   std::vector<OscArgument> arguments;
 };
 
-/// Decodes a datagram of Open Sound Control 1.0: a message, or a bundle, whose elements may be bundles again. Whatever
-/// time a bundle asks for, its messages are given at once, in order. Throws `mcap::Malformed` where anything in it is
-/// not as it must be: then nothing of it counts.
+/// Decodes a datagram of Open Sound Control 1.0: a message, or a bundle, whose elements may be bundles again. Returns
+/// the messages of a bundle at once and in order, whatever time the bundle asks for. Throws `mcap::Malformed` if any
+/// part of the datagram is invalid; then no part of it counts.
 std::vector<OscMessage> decode_osc_packet(std::span<const std::byte> packet);
 
 }  // namespace vestige

@@ -16,7 +16,7 @@ namespace vestige {
 namespace {
 
 constexpr std::size_t kMostDatagramBytes = 65536;
-/// Asked for, a second of a busy source; the system gives what it allows.
+/// Requested buffer size: a second of a busy source. The system grants what it allows.
 constexpr int kReceiveBytes = 4 << 20;
 
 }  // namespace

@@ -11,20 +11,20 @@
 
 namespace vestige {
 
-/// Hears datagrams on a port.
+/// Receives datagrams on a port.
 class UdpReceiver {
  public:
-  /// Throws `Error` naming `name`: the host is none of this machine's addresses, the port is taken.
+  /// Throws `Error` with `name` if the host is not an address of this machine, or the port is taken.
   UdpReceiver(const HostPort& place, const std::string& name);
   ~UdpReceiver();
   UdpReceiver(const UdpReceiver&) = delete;
   UdpReceiver& operator=(const UdpReceiver&) = delete;
 
-  /// For poll.
+  /// The descriptor for `poll`.
   int descriptor() const { return socket_; }
-  /// The next datagram that has come, if there is one; valid until the next call. Never waits.
+  /// Returns the next datagram that has arrived, if there is one; valid until the next call. Never waits.
   std::optional<std::span<const std::byte>> next();
-  /// Datagrams that the system threw away because nobody took them in time.
+  /// Number of datagrams that the system discarded because they were not read in time.
   std::uint64_t overflowed() const { return overflowed_; }
 
  private:

@@ -20,7 +20,7 @@ using mcap::Malformed;
 
 constexpr std::size_t kMostBadMessagesTold = 10;
 constexpr std::size_t kMostUnknownBones = 64;
-constexpr std::size_t kMostColliders = 1'000'000;  // as many as a scenario may have
+constexpr std::size_t kMostColliders = 1'000'000;  // the limit of a scenario, too
 constexpr std::size_t kMostMarkers = 1000;
 constexpr double kShortestQuaternion = 1e-6;
 
@@ -52,7 +52,7 @@ const std::string& text(const OscMessage& message) {
   return *value;
 }
 
-/// Rotations of all nodes in the rest pose, relative to the avatar.
+/// Returns the rotations of all nodes in the rest pose, relative to the avatar.
 std::vector<glm::dquat> rest_rotations(const Avatar& avatar) {
   std::vector<glm::dquat> world(avatar.nodes.size(), glm::dquat(1, 0, 0, 0));
   for (const int index : avatar.node_order) {
@@ -104,7 +104,7 @@ VmcState::VmcState(const Avatar& avatar, const Humanoid& humanoid, const glm::dv
 bool VmcState::take(std::span<const std::byte> datagram) {
   try {
     const std::vector<OscMessage> messages = decode_osc_packet(datagram);
-    // All must be right before one of them counts.
+    // All messages must be valid before one of them counts.
     std::size_t colliders = colliders_.size();
     std::size_t markers = markers_.size();
     for (const OscMessage& message : messages) {
@@ -137,7 +137,7 @@ VmcState::Placement VmcState::placement_of(const OscMessage& message) const {
   double values[7] = {};
   for (std::size_t i = 0; i < std::size(values); ++i) values[i] = number(message, i + 1);
   const auto [x, y, z, qx, qy, qz, qw] = values;
-  // Mirrored so that the avatar looks where its file has it look: across x for those that look along +Z, across z else.
+  // Mirrored so that the avatar faces as in its file: across x for avatars that face +Z, otherwise across z.
   const bool plus_z = facing_ == Humanoid::Facing::kPlusZ;
   const Placement placement = {.position = plus_z ? glm::dvec3(-x, y, z) : glm::dvec3(x, y, -z),
                                .rotation = plus_z ? glm::dquat(qw, qx, -qy, -qz) : glm::dquat(qw, -qx, -qy, qz)};

@@ -18,39 +18,41 @@
 
 namespace vestige {
 
-/// Who moves how, as a VR program says it by the Virtual Motion Capture protocol (https://protocol.vmc.info), and where
-/// the colliders are. Datagrams change the state; a frame shows it as it is.
+/// The pose of the avatar, as a VR program sends it by the Virtual Motion Capture protocol (https://protocol.vmc.info),
+/// and the positions of the colliders. Datagrams change the state; a frame shows the current state.
 ///
-///     /VMC/Ext/Root/Pos  ,sfffffff(fff fff)  name, position, rotation x y z w; scale and offset of 2.1 are left out
+///     /VMC/Ext/Root/Pos  ,sfffffff(fff fff)  name, position, rotation x y z w; scale and offset of 2.1 are ignored
 ///     /VMC/Ext/Bone/Pos  ,sfffffff           Unity's HumanBodyBones, position, rotation x y z w, in its parent
 ///
-///     /vestige/collider  ,ifff or ,iddd      id, x, y, z: there it is, in metres, in glTF's axes
-///     /vestige/collider/remove  ,i           it is gone
-///     /vestige/teleport  ,i                  its way since the last frame is no motion
-///     /vestige/marker    ,s                  something to find again
+///     /vestige/collider  ,ifff or ,iddd      id, x, y, z: its position, in metres, in glTF's axes
+///     /vestige/collider/remove  ,i           the collider is gone
+///     /vestige/teleport  ,i                  its path since the last frame is not a motion
+///     /vestige/marker    ,s                  a place to find again
 ///
-/// VMC's axes are Unity's (left-handed, +Y up, +Z forward). Its rotations are of a skeleton whose bones all have no
-/// rotation in the T-pose, so they are turned into each node's own rest frame. Positions of bones are the sender's
-/// proportions: only that of the hips moves the avatar, which keeps its own. Other addresses are ignored.
+/// VMC's axes are Unity's (left-handed, +Y up, +Z forward). Its rotations assume a skeleton whose bones have no
+/// rotation in the T-pose, so they are converted to each node's own rest frame. The positions of bones reflect the
+/// sender's proportions. Only the position of the hips moves the avatar, which keeps its own proportions. Other
+/// addresses are ignored.
 class VmcState {
  public:
-  /// Throws `Error` for an avatar without any bone of a human body.
+  /// Throws `Error` if the avatar has no bone of a human body.
   VmcState(const Avatar& avatar, const Humanoid& humanoid, const glm::dvec3& origin_m);
 
-  /// One datagram; a malformed one changes nothing and is counted. Returns whether it changed the state.
+  /// Takes one datagram. A malformed datagram changes nothing and is counted. Returns whether the datagram changed the
+  /// state.
   bool take(std::span<const std::byte> datagram);
 
-  /// The state as a frame, without number and time. Marks of teleports are given once.
+  /// Returns in `frame` the state, without number and time. Reports each teleport once.
   void show(TraceFrame& frame);
-  /// Marks that could not be given on, for the next frame.
+  /// Sets teleports that could not be passed on, for the next frame.
   void mark_teleported(std::vector<std::uint32_t> ids) { teleported_ = std::move(ids); }
-  /// What was marked since `forget_markers`; 1000 at most, further ones are malformed.
+  /// The markers since `forget_markers`; 1000 at most, further ones count as malformed.
   const std::vector<RecordingNote>& markers() const { return markers_; }
   void forget_markers() { markers_.clear(); }
 
   std::uint64_t malformed() const { return malformed_; }
-  const std::vector<std::string>& problems() const { return problems_; }  ///< why the first few were
-  /// Bones that were sent but that the avatar lacks; the first 64.
+  const std::vector<std::string>& problems() const { return problems_; }  ///< of the first few malformed ones
+  /// Bones that were sent but do not exist in the avatar; the first 64.
   const std::set<std::string>& unknown_bones() const { return unknown_bones_; }
   /// Bones that moved the avatar.
   const std::set<std::string>& bones() const { return bones_; }
@@ -58,8 +60,8 @@ class VmcState {
  private:
   struct Bone {
     std::size_t node = 0;
-    glm::dquat parent_rest = glm::dquat(1, 0, 0, 0);  ///< rotation of its parent in the rest pose
-    glm::dmat4 parent_from_avatar = glm::dmat4(1);    ///< position in the avatar's frame to one relative to its parent
+    glm::dquat parent_rest = glm::dquat(1, 0, 0, 0);  ///< rotation of the bone's parent in the rest pose
+    glm::dmat4 parent_from_avatar = glm::dmat4(1);    ///< converts a position from the avatar's frame to the parent's
   };
   struct Placement {
     glm::dvec3 position = glm::dvec3(0);
@@ -75,7 +77,7 @@ class VmcState {
   std::map<std::string, Bone, std::less<>> bone_of_;
   Humanoid::Facing facing_;
   std::size_t top_ = 0;  ///< the outermost node above the hips, which the root moves
-  NodeLocal top_local_;  ///< without the root
+  NodeLocal top_local_;  ///< transform of `top_` without the root
   Placement root_;
   std::map<std::uint32_t, glm::dvec3> colliders_;
   std::vector<std::uint32_t> teleported_;

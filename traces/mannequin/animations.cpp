@@ -29,14 +29,14 @@ const dvec3 kZ(0, 0, 1);
 enum class Side { kLeft, kRight };
 constexpr Side kSides[] = {Side::kLeft, Side::kRight};
 
-/// Angles in degrees, as anatomy names them; positive to the front, up and inwards.
+/// Sets a pose by angles in degrees, with anatomical names; positive is to the front, up and inwards.
 class Poser {
  public:
   JointPose& pose() { return pose_; }
 
   void set(const std::string& name, const dquat& rotation) { pose_.rotations[joint(name)] = rotation; }
 
-  /// The trunk bends forwards, to its left and turns to its left; each joint of the spine takes its share.
+  /// Bends the trunk forwards and to its left, and turns it to its left. The joints of the spine share the angles.
   void trunk(double forward_deg, double side_deg, double twist_deg) {
     const auto part = [&](double share) {
       return turn(share * twist_deg, kY) * turn(share * forward_deg, kX) * turn(-share * side_deg, kZ);
@@ -50,8 +50,8 @@ class Poser {
     set("head", turn(0.6 * turn_deg, kY) * turn(0.6 * nod_deg, kX));
   }
 
-  /// The arm hangs at `raise_deg` below the horizontal (rest: 42), swings forwards, and the elbow flexes. The collar
-  /// bone takes a part of the raising.
+  /// Lets the arm hang at `below_deg` below the horizontal (rest: 42) and swing forwards, and flexes the elbow. The
+  /// collar bone takes a part of the raising.
   void arm(Side side, double below_deg, double forward_deg, double elbow_deg) {
     const double lift_deg = 42 - below_deg;
     set(name("clavicle", side), turn(0.2 * mirror(side) * lift_deg, kZ));
@@ -142,8 +142,8 @@ void idle(double phase, Poser& poser) {
   }
 }
 
-/// Angles of hip, knee and ankle over one cycle, after the shape of published gait curves: the knee flexes a little
-/// when loaded and by 60 degrees in the swing.
+/// Angles of hip, knee and ankle over one cycle, shaped like published gait curves. The knee flexes a little under
+/// load, and by 60 degrees in the swing.
 void walk(double phase, Poser& poser) {
   for (const Side side : kSides) {
     const double p = phase + (side == Side::kLeft ? 0.0 : 0.5);
@@ -166,7 +166,7 @@ void walk(double phase, Poser& poser) {
   poser.pose().root_m.x += 0.020 * std::sin(kTwoPi * phase);
 }
 
-/// 0 to 1 and back: up in a quarter, a short stay, down in a quarter, centred on `centre`.
+/// Goes from 0 to 1 and back: up in a quarter of the phase, a short stay, down in a quarter, centred on `centre`.
 double visit(double phase, double centre) {
   const double d = std::abs(std::remainder(phase - centre, 1.0));
   const double s = std::clamp((0.25 - d) / 0.19, 0.0, 1.0);

@@ -1,5 +1,5 @@
-// Writes the files of the built-in avatar: mannequin.glb, actuator_map.png and actuator_map.json, into the folder that
-// it is given. They are committed, so that every build carries the same bytes; this program is how they came to be.
+// Writes the files of the built-in avatar: mannequin.glb, actuator_map.png and actuator_map.json, into the given
+// folder. The files are committed, so that every build carries the same bytes.
 
 #include <fmt/format.h>
 #include <png.h>
@@ -33,7 +33,7 @@ constexpr double kSpacing_m = 0.0035;
 constexpr std::size_t kTriangles = 5000;
 constexpr std::uint32_t kMapSide = 512;
 
-/// Builds the glTF document and its one buffer side by side.
+/// Builds the glTF document together with its one buffer.
 class Document {
  public:
   Document() {
@@ -143,7 +143,7 @@ void add_mesh(const Surface& surface, const std::vector<Chart>& charts, Document
              surface.positions_m.size(), positions.size());
 }
 
-/// Node 0 is the mesh, then the joints in the skeleton's order.
+/// Adds the nodes: node 0 is the mesh, then come the joints in the skeleton's order.
 void add_skeleton(Document& document) {
   const std::vector<Joint>& joints = skeleton();
   auto nodes = nlohmann::ordered_json::array({{{"name", "mannequin"}, {"mesh", 0}, {"skin", 0}}});
@@ -209,8 +209,8 @@ std::uint8_t actuator_at(const glm::dvec3& p) {
   return static_cast<std::uint8_t>(40 * (2 * band + (p.x < 0 ? 0 : 1) + 1));
 }
 
-/// Each texel gets the region of the point of the skin that it shows; two rings of texels around the panels get
-/// their neighbours', so that no rounding at a seam falls into the void.
+/// Each texel gets the region of the skin point that it shows. Two rings of texels around the panels get the region of
+/// their neighbours, so that rounding at a seam does not miss the region.
 std::vector<std::uint8_t> draw_map(const Surface& surface, const std::vector<Chart>& charts) {
   constexpr auto kSide = static_cast<int>(kMapSide);
   std::vector<std::uint8_t> map(std::size_t{kMapSide} * kMapSide, 0);

@@ -22,7 +22,7 @@ Panel panel_of(const glm::dvec3& p, const glm::dvec3& normal) {
     const glm::dvec3 axis = glm::normalize(at.wrist - at.elbow);
     const glm::dvec3 outer = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), axis));
     const glm::dvec3& from = glm::dot(p - at.elbow, axis) > 0 ? at.elbow : at.shoulder;
-    // A hand is thin and curled: the normal tells its back from its palm.
+    // A hand is thin and curled, so the normal distinguishes its back from its palm.
     if (glm::dot(p - at.wrist, axis) > 0) return glm::dot(normal, outer) > 0 ? Panel::kHandBack : Panel::kPalm;
     return glm::dot(p - from, outer) > 0 ? Panel::kArmOuter : Panel::kArmInner;
   }
@@ -37,9 +37,9 @@ bool is_paired(Panel panel) {
   return panel >= Panel::kArmOuter;
 }
 
-using Label = std::pair<Panel, bool>;  // and whether it is the right one
+using Label = std::pair<Panel, bool>;  // second: whether the panel is the right one of a pair
 
-/// Neighbours over each edge, by corner: edge i runs from corner i to corner i + 1.
+/// Returns the neighbour across each edge: edge i runs from corner i to corner i + 1.
 std::vector<std::array<std::uint32_t, 3>> neighbours(const Surface& surface) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> by_edge;
   for (std::uint32_t t = 0; t < surface.triangles.size(); ++t)
@@ -69,7 +69,7 @@ std::vector<std::vector<std::uint32_t>> components(const std::vector<Label>& lab
   return result;
 }
 
-/// Every triangle's panel. Borders are smoothed by majority, and islands go to what surrounds them.
+/// Returns every triangle's panel. Smooths borders by majority, and gives islands to the panel around them.
 std::vector<Label> label(const Surface& surface, const std::vector<std::array<std::uint32_t, 3>>& adjacent) {
   std::vector<Label> labels;
   for (const glm::uvec3& t : surface.triangles) {
@@ -122,7 +122,7 @@ std::vector<Label> label(const Surface& surface, const std::vector<std::array<st
 
 using Corners = std::array<glm::dvec2, 3>;
 
-/// Whether the insides of two triangles have a point in common, by separating axes.
+/// Whether the interiors of two triangles intersect, by separating axes.
 bool overlap(const Corners& a, const Corners& b) {
   constexpr double kTouching_m = 1e-9;
   for (const Corners* side : {&a, &b})
@@ -139,8 +139,8 @@ bool overlap(const Corners& a, const Corners& b) {
   return true;
 }
 
-/// Where a border turns in sharply, its two banks may lie upon each other. Their corners then give way, towards the
-/// middle of their neighbours, until they do not.
+/// Separates overlapping triangles. If a border turns inwards sharply, its two sides may overlap. Their corners then
+/// move towards the middle of their neighbours until they do not.
 void relax(const Surface& surface, const Chart& chart, std::vector<glm::dvec2>& flat) {
   std::map<std::uint32_t, std::size_t> local;
   for (std::size_t i = 0; i < chart.vertices.size(); ++i) local[chart.vertices[i]] = i;
@@ -181,7 +181,7 @@ void set_upright(const Surface& surface, const Chart& chart, const glm::dvec3& u
     const glm::dvec3 e2 = surface.positions_m[corner.z] - surface.positions_m[corner.x];
     const glm::dvec2 f1 = flat[local[corner.y]] - flat[local[corner.x]];
     const glm::dvec2 f2 = flat[local[corner.z]] - flat[local[corner.x]];
-    // The part of `up` in the triangle's plane, as a combination of its edges.
+    // The component of `up` in the triangle's plane, as a combination of its edges.
     const double a = glm::dot(e1, e1), b = glm::dot(e1, e2), c = glm::dot(e2, e2);
     const double determinant = a * c - b * b;
     const double s = (c * glm::dot(up, e1) - b * glm::dot(up, e2)) / determinant;
@@ -196,7 +196,8 @@ void set_upright(const Surface& surface, const Chart& chart, const glm::dvec3& u
   for (glm::dvec2& p : flat) p = scale * glm::dvec2(p.x * direction.y - p.y * direction.x, glm::dot(p, direction));
 }
 
-/// Shelves, tallest first: the corner of each box and the side of the square that holds all.
+/// Packs boxes on shelves, tallest first. Sets the corner of each box, and returns the side of the square that holds
+/// all.
 double pack(const std::vector<glm::dvec2>& sizes, double width, double gap, std::vector<glm::dvec2>& corners) {
   std::vector<std::size_t> order(sizes.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -227,7 +228,7 @@ glm::dvec3 up_of(Panel panel) {
   return {0, 1, 0};
 }
 
-/// Charts and their flat shapes: metres, y up, upright, anywhere.
+/// Charts and their flat shapes: in metres, y up, upright, at any position.
 struct Layout {
   std::vector<Chart> charts;
   std::vector<std::vector<glm::dvec2>> flats;
@@ -251,7 +252,7 @@ Layout lay_out(const Surface& surface, const std::vector<Label>& labels) {
     for (std::size_t i = 0; i < chart.vertices.size(); ++i) local[chart.vertices[i]] = i;
     std::vector<glm::dvec2> flat;
     if (chart.right) {
-      // The mirror image of its left twin, which comes before it.
+      // The chart is the mirror image of its left twin, which comes before it.
       const Chart& twin = charts.back();
       std::map<std::uint32_t, std::size_t> twin_local;
       for (std::size_t i = 0; i < twin.vertices.size(); ++i) twin_local[twin.vertices[i]] = i;
@@ -282,7 +283,7 @@ Layout lay_out(const Surface& surface, const std::vector<Label>& labels) {
 std::vector<Chart> make_charts(const Surface& surface) {
   Layout layout = lay_out(surface, label(surface, neighbours(surface)));
   auto& [charts, flats] = layout;
-  // Into the square: to the origin, y down, then to the place that packing gives.
+  // Moves each chart into the square: to the origin, y down, then to its packed place.
   std::vector<glm::dvec2> sizes;
   for (auto& flat : flats) {
     glm::dvec2 low = flat.front();

@@ -9,7 +9,7 @@
 
 namespace vestige::mannequin {
 
-/// The panels that the skin is cut into, as a tailor would.
+/// The panels into which the skin is cut, as a tailor would.
 enum class Panel : std::uint8_t {
   kTorsoFront,
   kTorsoBack,
@@ -24,18 +24,18 @@ enum class Panel : std::uint8_t {
   kSole
 };
 
-/// A connected piece of the surface, laid flat.
+/// A connected piece of the surface, flattened.
 struct Chart {
   Panel panel;
-  bool right;                            ///< of the pieces that come in pairs
+  bool right;                            ///< the right one of a pair
   std::vector<std::uint32_t> triangles;  ///< of the surface
-  std::vector<std::uint32_t> vertices;   ///< of the surface, each once
-  std::vector<glm::vec2> uv;             ///< of each of `vertices`
+  std::vector<std::uint32_t> vertices;   ///< vertices of the surface, each once
+  std::vector<glm::vec2> uv;             ///< one for each of `vertices`
 };
 
-/// Cuts the surface into 18 charts and flattens them as rigidly as possible (ARAP, Liu et al. 2008), all to one scale,
-/// upright and seen from outside, mirrored halves mirrored, packed into the unit square without overlap. Origin at the
-/// top left.
+/// Cuts the surface into 18 charts and flattens them as rigidly as possible (ARAP, Liu et al. 2008). All charts have
+/// the same scale, stand upright, are seen from outside, and mirrored halves are mirrored. They are packed into the
+/// unit square without overlap. Origin at the top left.
 std::vector<Chart> make_charts(const Surface& surface);
 
 }  // namespace vestige::mannequin

@@ -13,7 +13,7 @@ namespace vestige::mannequin {
 
 namespace {
 
-/// The chart's border, in order.
+/// Returns the chart's border vertices, in order.
 std::vector<std::uint32_t> border_of(const Surface& surface, const Chart& chart) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, bool> edges;
   for (const std::uint32_t t : chart.triangles)
@@ -31,7 +31,7 @@ std::vector<std::uint32_t> border_of(const Surface& surface, const Chart& chart)
 using Sparse = Eigen::SparseMatrix<double>;
 using Entries = std::vector<Eigen::Triplet<double>>;
 
-/// Where a vertex of the surface stands in `Chart::vertices`.
+/// The index in `Chart::vertices` of each vertex of the surface.
 using Places = std::map<std::uint32_t, int>;
 
 Places places_of(const Chart& chart) {
@@ -46,7 +46,7 @@ Sparse matrix_of(const Entries& entries, int count) {
   return matrix;
 }
 
-/// The barycentric map: the border on a circle, every other vertex in the middle of its neighbours.
+/// Returns the barycentric map: the border on a circle, every other vertex in the middle of its neighbours.
 Eigen::MatrixXd map_onto_disk(const Surface& surface, const Chart& chart, const Places& places) {
   const auto count = static_cast<int>(chart.vertices.size());
   const std::vector<std::uint32_t> border = border_of(surface, chart);
@@ -71,7 +71,7 @@ Eigen::MatrixXd map_onto_disk(const Surface& surface, const Chart& chart, const 
   return Eigen::SparseLU<Sparse>(matrix_of(entries, count)).solve(flat);
 }
 
-/// A triangle as it lies in space, in its own plane.
+/// A triangle's shape in space, in its own plane.
 struct Flat {
   std::array<int, 3> corner;
   std::array<Eigen::Vector2d, 3> edge;  ///< from corner i to corner i + 1
@@ -97,7 +97,7 @@ Flat lay_flat(const Surface& surface, std::uint32_t triangle, const Places& plac
   return f;
 }
 
-/// The matrix of the global step, which never changes.
+/// Returns the matrix of the global step, which never changes.
 Sparse laplacian_of(const std::vector<Flat>& triangles, int count) {
   Entries laplacian = {{0, 0, 1e-6}};
   for (const Flat& f : triangles)
@@ -110,11 +110,11 @@ Sparse laplacian_of(const std::vector<Flat>& triangles, int count) {
   return matrix_of(laplacian, count);
 }
 
-/// The local step: where each triangle, turned as it now lies, pulls its corners.
+/// The local step. Returns how each triangle, rotated to fit `flat`, pulls its corners.
 Eigen::MatrixXd pulls_of(const std::vector<Flat>& triangles, const Eigen::MatrixXd& flat) {
   Eigen::MatrixXd right = Eigen::MatrixXd::Zero(flat.rows(), 2);
   for (const Flat& f : triangles) {
-    // The rotation nearest to the triangle's map: of a 2 x 2 matrix, its angle.
+    // The rotation closest to the triangle's map: for a 2 x 2 matrix, its angle.
     double c = 0;
     double s = 0;
     for (std::size_t i = 0; i < 3; ++i) {

@@ -29,7 +29,7 @@ double ellipsoid(const dvec3& p, const dvec3& centre, const dvec3& radii) {
   return k1 == 0 ? -std::min({radii.x, radii.y, radii.z}) : k0 * (k0 - 1) / k1;
 }
 
-/// A capsule whose radius goes from `ra` to `rb`.
+/// A capsule whose radius changes from `ra` to `rb`.
 double round_cone(const dvec3& p, const dvec3& a, const dvec3& b, double ra, double rb) {
   const dvec3 axis = b - a;
   const double h = std::clamp(glm::dot(p - a, axis) / glm::dot(axis, axis), 0.0, 1.0);
@@ -90,7 +90,7 @@ struct Sweep {
   }
 };
 
-/// The front of a limb: +z made perpendicular to its axis.
+/// Returns the front of a limb: +z made perpendicular to its axis.
 dvec3 front_of(const dvec3& axis) {
   const dvec3 z(0, 0, 1);
   return glm::normalize(z - axis * glm::dot(z, axis));

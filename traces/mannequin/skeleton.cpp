@@ -38,7 +38,8 @@ std::vector<Joint> make_skeleton() {
   return joints;
 }
 
-/// The joint whose stretch of the body holds `p`, a point of the left half (joints of the left side are 5 to 12).
+/// Returns the joint whose section of the body contains `p`, a point of the left half (joints of the left side are 5 to
+/// 12).
 std::size_t owner(const glm::dvec3& p) {
   const Landmarks& at = landmarks();
   const auto beyond = [&](const glm::dvec3& from, const glm::dvec3& to) {
@@ -71,13 +72,13 @@ std::size_t owner(const glm::dvec3& p) {
   // The crease of the hip rises outwards.
   if (p.y > 0.800 + 0.75 * p.x) return kPelvis;
   if (p.y > at.knee.y) return kThigh;
-  // Below the shin's middle, what lies in front is the instep.
+  // Below the middle of the shin, the part in front is the instep.
   if (p.y > (at.knee.y + at.ankle.y) / 2) return kShin;
   if (p.y > at.ankle.y - 0.3 * std::max(0.0, p.z - at.ankle.z) && p.z < 0.05) return kShin;
   return p.z > at.ball.z ? kToes : kFoot;
 }
 
-/// How far, in metres, a joint's border diffuses.
+/// Returns how far, in metres, a joint's border diffuses.
 double width_m(std::size_t joint) {
   constexpr std::array<double, 13> kWidths = {0.060, 0.070, 0.070, 0.030, 0.030, 0.045, 0.042,
                                               0.028, 0.018, 0.050, 0.034, 0.024, 0.016};

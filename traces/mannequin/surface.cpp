@@ -31,7 +31,7 @@ using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 constexpr glm::dvec3 kLow_m(0, -0.02, -0.20);
 constexpr glm::dvec3 kHigh_m(0.86, 1.78, 0.24);
 
-/// The distance at each grid point; blocks that the surface cannot reach get one value.
+/// Returns the distance at each grid point. Blocks that the surface cannot reach get one value.
 vtkNew<vtkImageData> sample(double spacing_m) {
   constexpr int kBlock = 8;
   const glm::ivec3 size = glm::ivec3((kHigh_m - kLow_m) / spacing_m) + 1;
@@ -79,8 +79,8 @@ Mesh contour(vtkImageData* image) {
   return mesh;
 }
 
-/// Lindstrom and Turk's cost; a little for length, lest limbs become bundles of slivers, which bend badly; and raised
-/// where small shapes matter more to the eye than their size says: face, hands, toes.
+/// Lindstrom and Turk's cost, plus a little for length, so that limbs do not become bundles of slivers, which bend
+/// badly. The cost is raised at face, hands and toes, where small shapes are more visible than their size suggests.
 struct Cost {
   static constexpr double kEvenness = 1e-4;
 
@@ -101,7 +101,7 @@ struct Cost {
 };
 
 void simplify(Mesh& mesh, std::size_t triangle_count) {
-  // Euler: a half body is a disk, of which each collapse takes 3 edges and 2 triangles; border edges come on top.
+  // Euler: a half body is a disk. Each collapse removes 3 edges and 2 triangles; border edges come on top.
   while (mesh.number_of_faces() > triangle_count) {
     const std::size_t edges = mesh.number_of_edges() - (mesh.number_of_faces() - triangle_count) * 3 / 2;
     const std::size_t before = mesh.number_of_faces();

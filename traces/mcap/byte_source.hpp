@@ -9,7 +9,7 @@
 
 namespace vestige::mcap {
 
-/// Bytes that can be read anywhere. The size never changes.
+/// A sequence of bytes with random access. Its size never changes.
 class ByteSource {
  public:
   ByteSource() = default;
@@ -17,18 +17,19 @@ class ByteSource {
   ByteSource(const ByteSource&) = delete;
   ByteSource& operator=(const ByteSource&) = delete;
 
-  /// What errors call it.
+  /// The name that error messages use.
   virtual std::string name() const = 0;
   virtual std::uint64_t size() const = 0;
   /// Fills `out`. Precondition: offset + out.size() <= size(). Throws `Error` when reading fails.
   virtual void read_at(std::uint64_t offset, std::span<std::byte> out) const = 0;
 };
 
-/// A regular file, read with pread: never mapped, since a mapped file that shrinks kills its reader. What is no regular
-/// file ("-", standard input, or a pipe) is first copied to a temporary file without a name.
+/// A file, read with pread. The file is never mapped, because a mapped file that shrinks kills its reader. Standard
+/// input ("-"), pipes and devices have no random access, so their content is first copied to a nameless temporary file.
 class FileSource final : public ByteSource {
  public:
-  /// Throws `Error`: no such file, a folder, unreadable.
+  /// Throws `Error` if the file does not exist, is a folder, or cannot be read. Also throws if `path` is a device whose
+  /// content does not begin as an MCAP file.
   explicit FileSource(const std::filesystem::path& path);
   ~FileSource() override;
 
@@ -42,7 +43,7 @@ class FileSource final : public ByteSource {
   std::uint64_t size_ = 0;
 };
 
-/// Bytes in memory, which must stay there.
+/// Bytes in memory. The caller keeps them alive and unchanged.
 class MemorySource final : public ByteSource {
  public:
   explicit MemorySource(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -54,11 +55,12 @@ class MemorySource final : public ByteSource {
   std::span<const std::byte> bytes_;
 };
 
-/// Reads small pieces of a source in an order that mostly goes forward, with few system calls and 4 KiB of memory.
+/// Reads small pieces of a source in mostly ascending order, with few system calls. Buffers 4 KiB, or the largest piece
+/// that was asked for.
 class ReadWindow {
  public:
   explicit ReadWindow(const ByteSource& source) : source_(source) {}
-  /// `count` bytes at `offset`, valid until the next call. Precondition: they are within the source.
+  /// Returns `count` bytes at `offset`, valid until the next call. Precondition: they lie within the source.
   std::span<const std::byte> at(std::uint64_t offset, std::size_t count);
 
  private:

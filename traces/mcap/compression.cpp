@@ -25,7 +25,7 @@ struct FreeLz4 {
   void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
 };
 
-// One context a thread, since making one costs more than a small chunk.
+// One context a thread, because making one costs more than compressing a small chunk.
 ZSTD_CCtx& zstd_compressor() {
   thread_local const std::unique_ptr<ZSTD_CCtx, FreeZstd> context(ZSTD_createCCtx());
   if (!context) throw std::bad_alloc();
@@ -63,8 +63,8 @@ void expand_lz4(std::span<const std::byte> bytes, std::span<std::byte> out) {
   if (!out.empty()) throw Malformed("it expands to fewer bytes than it claims");
 }
 
-// Both libraries forget what a call has expanded when it ends in an error, so they are fed a block at a time: what they
-// ask for next is as much as completes one.
+// If a call ends in an error, both libraries discard what that call expanded. So each call gets one block: the number
+// of input bytes the library asks for completes exactly one block.
 
 std::size_t expand_zstd_beginning(std::span<const std::byte> bytes, std::span<std::byte> out) {
   ZSTD_DCtx& context = zstd_decompressor();
@@ -97,7 +97,7 @@ std::size_t expand_lz4_beginning(std::span<const std::byte> bytes, std::span<std
   return written;
 }
 
-constexpr std::size_t kMostNameBytes = 200;  ///< that a message quotes of a name in a file
+constexpr std::size_t kMostNameBytes = 200;  ///< longest part of a name from a file that an error message quotes
 
 }  // namespace
 

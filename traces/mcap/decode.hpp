@@ -13,14 +13,14 @@ namespace vestige::mcap {
 static_assert(std::endian::native == std::endian::little,
               "MCAP is little-endian, and so is every machine we build for");
 
-/// Bytes that cannot be what they are said to be. Whoever knows the file and offset turns it into an `Error` or a
+/// Thrown if bytes are not what they claim to be. A caller that knows file and offset turns it into an `Error` or a
 /// `Damage`.
 class Malformed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Reads little-endian fields one after the other. Never reads beyond its bytes: throws `Malformed` instead.
+/// Reads consecutive little-endian fields. Throws `Malformed` instead of reading past the end of the bytes.
 class Cursor {
  public:
   explicit Cursor(Bytes bytes) : rest_(bytes) {}
@@ -47,8 +47,8 @@ class Cursor {
   Bytes rest_;
 };
 
-// Each decodes the content of one record (without opcode and length) and ignores what stands behind the known fields,
-// as the specification asks. Throws `Malformed`. Costs no more memory than a small multiple of `content`.
+// Each function decodes the content of one record (without opcode and length). Bytes after the known fields are
+// ignored, as the specification asks. Throws `Malformed`. Uses at most a small multiple of the memory of `content`.
 Header decode_header(Bytes content);
 Footer decode_footer(Bytes content);
 Schema decode_schema(Bytes content);
@@ -65,24 +65,25 @@ MetadataIndex decode_metadata_index(Bytes content);
 SummaryOffset decode_summary_offset(Bytes content);
 DataEnd decode_data_end(Bytes content);
 
-/// Whether the attachment whose record has this content is undamaged (or carries no CRC).
+/// Whether the CRC of the attachment with this record content matches, or the attachment has no CRC.
 bool attachment_crc_holds(Bytes content, const Attachment& attachment);
 
-/// Fewest bytes that the content of such a record can have; nothing for an opcode that the specification does not know.
+/// Returns the least number of content bytes of such a record, or nothing if the specification does not define the
+/// opcode.
 std::optional<std::size_t> least_content_bytes(Opcode opcode);
 
-/// How many bytes of `content` the fields known to the specification fill; nothing if they do not fit, or if the kind
-/// of record does not say (messages and unknown kinds).
+/// Returns how many bytes of `content` the fields in the specification occupy. Returns nothing if the fields do not
+/// fit, or if this kind of record does not tell (messages and unknown kinds).
 std::optional<std::size_t> natural_content_bytes(Opcode opcode, Bytes content);
 
-/// One record inside a chunk or a summary: splits the next record off `cursor`. Throws `Malformed`.
+/// One record inside a chunk or a summary.
 struct InnerRecord {
   Opcode opcode = Opcode::kMessage;
   Bytes content;
 };
 InnerRecord next_record(Cursor& cursor);
 
-/// Whether a record of a kind that may stand in a chunk holds what its fields need.
+/// Whether the fields of a record fit into its content. Precondition: `belongs_in_chunks(record.opcode)`.
 bool fits_its_fields(const InnerRecord& record);
 
 }  // namespace vestige::mcap

@@ -36,7 +36,7 @@ void overwrite_number(ByteBuffer& out, std::size_t at, Number value) {
   std::memcpy(out.data() + at, &value, sizeof value);
 }
 
-/// Writes opcode and a length that is filled in when the content is complete.
+/// Writes an opcode and a length; the length is filled in once the content is complete.
 class RecordScope {
  public:
   RecordScope(ByteBuffer& out, Opcode opcode) : out_(out) {
@@ -53,7 +53,7 @@ class RecordScope {
   std::size_t length_at_ = 0;
 };
 
-/// Calls `put_content` and puts its length in bytes before it.
+/// Calls `put_content` and writes the length of its output, in bytes, in front of that output.
 template <typename PutContent>
 void put_sized(ByteBuffer& out, PutContent put_content) {
   const std::size_t length_at = out.size();

@@ -6,11 +6,11 @@
 
 namespace vestige::mcap {
 
-/// Bytes being put together; cleared and used again to keep its memory.
+/// Bytes being assembled. Cleared and reused, to keep the allocation.
 using ByteBuffer = std::vector<std::byte>;
 
-// Each appends one whole record (opcode, length, content) to `out`. A string or map of 4 GiB or more throws
-// std::length_error.
+// Each function appends one whole record (opcode, length, content) to `out`. Throws std::length_error if a string or
+// map has 4 GiB or more.
 void append_record(ByteBuffer& out, const Header& record);
 void append_record(ByteBuffer& out, const Footer& record);
 void append_record(ByteBuffer& out, const Schema& record);
@@ -26,11 +26,12 @@ void append_record(ByteBuffer& out, const MetadataIndex& record);
 void append_record(ByteBuffer& out, const SummaryOffset& record);
 void append_record(ByteBuffer& out, const DataEnd& record);
 
-/// An attachment's record up to its data, which may be large and is written from where it is; after the data follows
-/// `append_attachment_crc`.
+/// Appends an attachment's record up to its data. The data may be large, so the caller writes them directly from where
+/// they are. After the data comes `append_attachment_crc`.
 void append_attachment_head(ByteBuffer& out, const Attachment& attachment);
 
-/// The CRC that ends an attachment's record, over the content before it. `head` is what `append_attachment_head` made.
+/// Appends the CRC that ends an attachment's record; it covers the content before it. `head` is the output of
+/// `append_attachment_head`.
 void append_attachment_crc(ByteBuffer& out, Bytes head, Bytes data);
 
 void append_magic(ByteBuffer& out);

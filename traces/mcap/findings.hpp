@@ -8,8 +8,8 @@
 
 namespace vestige::mcap {
 
-/// Counts everything that is found wrong with a file and keeps the first of it, so that a file made of faults costs no
-/// memory. A `Finding` has an `offset` in the file.
+/// Counts all faults in a file and keeps the first kMostKept of them, so that memory stays bounded for a file full of
+/// faults. `Finding` has an `offset` in the file.
 template <typename Finding>
 class Findings {
  public:

@@ -41,7 +41,7 @@ void IndexedReader::note(std::uint32_t chunk, std::string_view what) {
   damages_.add({index.chunk_start_offset, index.chunk_length, fmt::format("a Chunk: {}", what)});
 }
 
-/// All whose messages may come before the earliest that is known.
+/// Opens every chunk that may have a message before the earliest known one.
 void IndexedReader::open_due_chunks() {
   for (; next_chunk_ < by_start_.size(); ++next_chunk_) {
     const std::uint32_t chunk = by_start_[next_chunk_];
@@ -60,7 +60,7 @@ void IndexedReader::open(std::uint32_t chunk) {
     const Bytes content = read_record_at(source_, index.chunk_start_offset, Opcode::kChunk,
                                          index.chunk_start_offset + index.chunk_length, content_);
     const Bytes records = expand_chunk(decode_chunk(content), opened.expanded);
-    // What was not compressed is still in `content_`, which the next chunk takes.
+    // Uncompressed records still lie in `content_`, which the next chunk overwrites.
     if (records.data() != opened.expanded.bytes().data())
       std::copy(records.begin(), records.end(), opened.expanded.reset(records.size()).begin());
     opened.records = opened.expanded.bytes();
@@ -103,7 +103,7 @@ void IndexedReader::take(const InnerRecord& record, std::uint64_t offset, std::u
   ++opened.messages_left;
 }
 
-/// The one whose message was delivered last, if it was the last of them.
+/// Closes the chunk of the message delivered last, if that was its last message.
 void IndexedReader::close_finished_chunk() {
   const auto found = open_chunks_.find(current_);
   if (found == open_chunks_.end() || found->second.messages_left > 0) return;

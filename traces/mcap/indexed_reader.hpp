@@ -14,30 +14,30 @@
 
 namespace vestige::mcap {
 
-/// Delivers a file's messages by log_time (equal times in file order), found through its summary's chunk indexes, and
-/// looks at no chunk outside `range`. Keeps the chunks whose times overlap in memory. Messages outside chunks are in no
-/// index and are not found (the specification says so): see `leads_to_everything`.
+/// Delivers a file's messages in the order of log_time; messages of equal time come in file order. Finds them through
+/// the chunk indexes of the summary and reads no chunk outside `range`. Keeps in memory the chunks whose times overlap.
+/// Messages outside chunks are in no index (by the specification), so they are not found: see `leads_to_everything`.
 class IndexedReader {
  public:
-  /// Is told of the schemas and channels in each chunk, before its messages.
+  /// Called with the schemas and channels of each chunk before its messages.
   using TakeDefinition = std::function<void(const InnerRecord&)>;
 
-  /// `source` must stay. Throws `Error` when there is no trustworthy summary: scan it with StreamReader then.
+  /// Keeps a reference to `source`. Throws `Error` if there is no trustworthy summary; use StreamReader then.
   explicit IndexedReader(const ByteSource& source, const TimeRange& range = {}, TakeDefinition take_definition = {});
 
   const Summary& summary() const { return summary_; }
-  /// The next message; its data is valid until the next call. False at the end. Throws `Error` when more than 1 GiB of
-  /// chunks overlap.
+  /// Reads the next message; its data are valid until the next call. Returns false at the end. Throws `Error` if the
+  /// chunks that overlap in time exceed 1 GiB.
   bool next(Message& message);
-  /// Of the chunk of the message delivered last, in the file.
+  /// Offset, in the file, of the chunk that holds the message delivered last.
   std::uint64_t chunk_offset() const { return summary_.chunk_indexes[current_].chunk_start_offset; }
-  /// What could not be read, or contradicts its index.
+  /// Chunks that could not be read or that contradict their index.
   const DamageList& damages() const { return damages_; }
 
  private:
   struct Entry {
     std::uint64_t log_time;
-    std::uint64_t offset;  ///< of the message's record, from the start of its chunk's records
+    std::uint64_t offset;  ///< of the message's record, from the start of its chunk's uncompressed records
     std::uint32_t chunk;
     bool operator>(const Entry& other) const;
   };
@@ -45,8 +45,8 @@ class IndexedReader {
     RawBuffer expanded;
     Bytes records;
     std::uint64_t messages_left = 0;
-    bool has_misfits = false;        ///< records whose fields do not fit
-    bool contradicts_index = false;  ///< by a message at another time
+    bool has_misfits = false;        ///< some records' fields do not fit into the record
+    bool contradicts_index = false;  ///< a message lies outside the index's time range
   };
 
   void open_due_chunks();
@@ -60,12 +60,12 @@ class IndexedReader {
   TimeRange range_;
   TakeDefinition take_definition_;
   Summary summary_;
-  std::vector<std::uint32_t> by_start_;  ///< chunks that have messages within the range, by their first message's time
-  std::size_t next_chunk_ = 0;           ///< in by_start_: the first that was not opened yet
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> entries_;  ///< of open chunks; the earliest on top
+  std::vector<std::uint32_t> by_start_;  ///< chunks that overlap the range, sorted by the time of their first message
+  std::size_t next_chunk_ = 0;           ///< index in by_start_ of the first chunk not yet opened
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> entries_;  ///< of open chunks; earliest on top
   std::map<std::uint32_t, OpenChunk> open_chunks_;
   std::uint64_t open_bytes_ = 0;
-  std::uint32_t current_ = 0;  ///< the chunk of the message delivered last
+  std::uint32_t current_ = 0;  ///< chunk of the message delivered last
   RawBuffer content_;
   DamageList damages_;
 };

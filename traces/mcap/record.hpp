@@ -10,15 +10,15 @@
 #include <utility>
 #include <vector>
 
-/// The MCAP container, written from its specification (mcap.dev/spec). Everything here knows records and nothing of
-/// what their messages mean.
+/// The MCAP container, implemented from its specification (mcap.dev/spec). This code knows the records, and not what
+/// their messages mean.
 namespace vestige::mcap {
 
 inline constexpr unsigned char kMagic[] = {0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 inline constexpr std::size_t kMagicBytes = sizeof kMagic;
 inline constexpr std::size_t kRecordHeadBytes = 9;             ///< opcode and content length
-inline constexpr std::size_t kFooterContentBytes = 20;         ///< the only record of ours that must not be extended
-inline constexpr std::uint64_t kMaxRecordBytes = 1ULL << 32;   ///< a longer record is taken for broken framing
+inline constexpr std::size_t kFooterContentBytes = 20;         ///< a Footer, alone of all records, must not be extended
+inline constexpr std::uint64_t kMaxRecordBytes = 1ULL << 32;   ///< a longer record counts as broken framing
 inline constexpr std::uint64_t kMaxChunkBytes = 256ULL << 20;  ///< a chunk that claims to expand to more is refused
 
 enum class Opcode : std::uint8_t {
@@ -47,13 +47,14 @@ constexpr bool belongs_in_chunks(Opcode opcode) {
 using Bytes = std::span<const std::byte>;
 using StringMap = std::map<std::string, std::string>;
 
-/// Whether a file may begin with these: the magic bytes, or as many of them as there are.
+/// Whether `bytes` are the magic bytes or a beginning of them.
 inline bool is_magic(Bytes bytes) {
   return bytes.size() <= kMagicBytes && std::ranges::equal(bytes, std::as_bytes(std::span(kMagic)).first(bytes.size()));
 }
 
-// Times are nanoseconds since the file's own epoch. Offsets count from the start of the file unless said otherwise.
-// A member of type `Bytes` refers to the buffer that was decoded, or that the caller keeps until it is written.
+// Times are nanoseconds since the file's own epoch. Offsets count from the start of the file unless stated otherwise. A
+// member of type `Bytes` refers to the buffer that was decoded, or to memory that the caller keeps until the record is
+// written.
 
 struct Header {
   std::string profile;

@@ -14,9 +14,9 @@ namespace vestige::mcap {
 
 namespace {
 
-constexpr std::uint64_t kFieldBytes = 1 << 16;             ///< hardly a record but chunks and attachments is larger
-constexpr std::uint64_t kHeadBytes = 1 << 12;              ///< nor is what those have before their data
-constexpr std::uint64_t kMostLookedAtBytes = 64ULL << 20;  ///< and as many as the file has up to here
+constexpr std::uint64_t kFieldBytes = 1 << 16;  ///< records other than chunks and attachments are rarely larger
+constexpr std::uint64_t kHeadBytes = 1 << 12;   ///< what chunks and attachments have before their data is rarely larger
+constexpr std::uint64_t kMostLookedAtBytes = 64ULL << 20;  ///< plus the number of bytes before this place in the file
 
 bool is_known(Opcode opcode) {
   return least_content_bytes(opcode).has_value();
@@ -31,7 +31,7 @@ bool begins_with_magic(const ByteSource& source) {
   return is_magic(begin);
 }
 
-/// Kinds of record that hold a few numbers, and a name at most.
+/// Whether records of this kind hold only a few numbers and at most a name.
 bool is_always_short(Opcode opcode) {
   return opcode == Opcode::kDataEnd || opcode == Opcode::kAttachmentIndex || opcode == Opcode::kMetadataIndex ||
          opcode == Opcode::kSummaryOffset;
@@ -89,7 +89,7 @@ Opcode RecordWalker::opcode_at(std::uint64_t offset) {
   return static_cast<Opcode>(here_.at(offset, 1)[0]);
 }
 
-/// Whether a record may begin at `offset`; the file's end is as good, since a file can be cut anywhere.
+/// Whether a record may begin at `offset`. The end of the file also counts, because a file can be cut anywhere.
 bool RecordWalker::could_follow(std::uint64_t offset, Opcode before) {
   const std::uint64_t rest = source_.size() - offset;
   if (before == Opcode::kFooter)
@@ -100,7 +100,8 @@ bool RecordWalker::could_follow(std::uint64_t offset, Opcode before) {
   return head && (is_known(head->opcode) || head->end() <= source_.size());
 }
 
-/// How many bytes the fields of a record fill, if it has `limit` bytes at most; nothing where they do not tell.
+/// Returns how many bytes the fields of a record occupy, if it has at most `limit` bytes. Returns nothing if they do
+/// not tell.
 std::optional<std::uint64_t> RecordWalker::natural_bytes(Opcode opcode, std::uint64_t content_offset,
                                                          std::uint64_t limit) {
   const bool large = opcode == Opcode::kChunk || opcode == Opcode::kAttachment;
@@ -137,8 +138,8 @@ bool RecordWalker::fills_itself(const RecordPlace& place) {
   return natural_bytes(place.opcode, place.content_offset(), place.content_bytes) == place.content_bytes;
 }
 
-/// Whether a record stands at `offset` that needs no more proof: of a kind that the specification knows, and as long as
-/// its fields say or, where they do not, followed by another.
+/// Whether a record certainly stands at `offset`. The specification must define its kind, and its length must match its
+/// fields. If its fields do not tell the length, another record must follow.
 bool RecordWalker::stands_at(std::uint64_t offset) {
   const auto head = head_at(ahead_, offset);
   if (!head || !is_known(head->opcode) || head->end() > source_.size()) return false;
@@ -147,7 +148,7 @@ bool RecordWalker::stands_at(std::uint64_t offset) {
   return fills_itself(*head);
 }
 
-/// Where the record's own fields end elsewhere, just before another record, that is where it ends.
+/// If the record's own fields end elsewhere, and just before another record, corrects the record's length to that end.
 bool RecordWalker::mend(RecordPlace& place) {
   const bool tells = is_known(place.opcode) && place.opcode != Opcode::kMessage && place.opcode != Opcode::kFooter;
   if (!tells || source_.size() - place.offset < kRecordHeadBytes || fills_itself(place)) return false;
@@ -163,8 +164,8 @@ bool RecordWalker::mend(RecordPlace& place) {
   return true;
 }
 
-/// Decided on a few heads and a limited number of looks at fields, so that resynchronising takes linear time even in a
-/// file made of lies.
+/// Uses a few record heads and a limited number of looks at fields, so that resynchronising takes linear time even if
+/// every length in the file is forged.
 bool RecordWalker::may_resume_at(const RecordPlace& place, bool messages_too) {
   if (!is_known(place.opcode) || place.end() > source_.size()) return false;
   if (belongs_in_chunks(place.opcode) && !messages_too) return false;
@@ -176,7 +177,8 @@ bool RecordWalker::may_resume_at(const RecordPlace& place, bool messages_too) {
   if (place.end() == source_.size() || place.opcode == Opcode::kFooter) return true;
   const auto second = head_at(ahead_, place.end());
   if (!second) return true;
-  // Where messages lie in chunks, they follow nothing outside: this would be in the middle of a chunk that was cut.
+  // In a file whose messages are in chunks, messages follow nothing outside chunks. This place would be in the middle
+  // of a chunk that was cut.
   if (belongs_in_chunks(second->opcode) && !messages_too) return false;
   return second->end() > source_.size() || could_follow(second->end(), second->opcode);
 }

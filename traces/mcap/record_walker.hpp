@@ -10,10 +10,11 @@
 
 namespace vestige::mcap {
 
-/// kBehindEnd, kAnotherFile: what stands behind the file's end is not read; the latter begins as an MCAP file does.
+/// kBehindEnd, kAnotherFile: bytes after the file's end, which are not read. kAnotherFile: those bytes begin with
+/// MCAP's magic bytes.
 enum class DamageEffect { kLost, kMended, kBehindEnd, kAnotherFile };
 
-/// A place in a file where something is wrong, and how much of the file it takes with it.
+/// A damaged place in a file, and how many bytes are affected.
 struct Damage {
   std::uint64_t offset = 0;
   std::uint64_t bytes = 0;
@@ -23,41 +24,43 @@ struct Damage {
 
 using DamageList = Findings<Damage>;
 
-/// Where a record stands in its file.
+/// The place of a record in its file.
 struct RecordPlace {
   Opcode opcode = Opcode::kMessage;
   std::uint64_t offset = 0;         ///< of its opcode
-  std::uint64_t content_bytes = 0;  ///< what its length field says, unless that is broken; always within the file
+  std::uint64_t content_bytes = 0;  ///< the length field, corrected if it is broken; always within the file
   std::uint64_t content_offset() const { return offset + kRecordHeadBytes; }
   std::uint64_t end() const { return content_offset() + content_bytes; }
 };
 
-/// Whether a file must begin with MCAP's magic bytes; where they may be broken, what follows is looked for.
+/// Whether a file must begin with MCAP's magic bytes. kMayBeBroken: if they are broken, the first record is searched
+/// for.
 enum class MagicBytes { kRequired, kMayBeBroken };
 
-/// Steps from record to record in the order of the file, without looking into chunks, and finds its way back when a
-/// length or opcode is broken.
+/// Steps from record to record in file order, without looking into chunks. Finds the next record again after a broken
+/// length or opcode.
 ///
-/// A length has no CRC, so a record is believed when the bytes after it look like the head of another (nine bytes of
-/// which at least four must be zero), or when its own fields fill it exactly. Where they do not, but its fields end
-/// just before a known record, its length is what is broken: that is noted as damage and mended. Otherwise everything
-/// up to the next believable records, the first of which must be filled by its fields, is skipped and noted as damage.
-/// Messages are resynchronised on only in files without chunks: inside a broken chunk no CRC would vouch for them.
-/// Takes linear time and some 100 KiB whatever the bytes.
+/// A length has no CRC. So a record is accepted if the bytes after it look like the head of another record (nine bytes,
+/// of which at least four must be zero), or if its own fields fill it exactly. If they do not, but its fields end just
+/// before a known record, then its length is what is broken: the walker corrects the length and notes the damage.
+/// Otherwise the walker skips to the next acceptable records, of which the first must be filled exactly by its fields,
+/// and notes the skipped bytes as damage. It resumes at a message only in files without chunks, because inside a broken
+/// chunk no CRC protects the messages. Takes linear time and some 100 KiB, whatever the bytes are.
 class RecordWalker {
  public:
-  /// Throws `Error` when the source is empty or does not begin with the magic bytes that it needs. `source` must stay.
+  /// Keeps a reference to `source`. Throws `Error` if the source is empty, or lacks the magic bytes although they are
+  /// required.
   explicit RecordWalker(const ByteSource& source, MagicBytes magic = MagicBytes::kRequired);
 
-  /// False at the end: after a footer, or where the file was cut.
+  /// Finds the next record. Returns false at the end: after a footer, or where the file was cut.
   bool next(RecordPlace& place);
-  /// The record's content, in `buffer`.
+  /// Reads the record's content into `buffer` and returns it.
   Bytes content(const RecordPlace& place, RawBuffer& buffer) const;
 
   bool footer_seen() const { return footer_seen_; }
   /// Where the next record is expected.
   std::uint64_t position() const { return position_; }
-  /// What the last call of `next` found wrong on its way; the first call adds what is wrong with the file's beginning.
+  /// Damage that the last call of `next` found. The first call adds damage at the beginning of the file.
   const std::vector<Damage>& damages() const { return damages_; }
 
  private:
@@ -76,9 +79,9 @@ class RecordWalker {
 
   const ByteSource& source_;
   ReadWindow here_;
-  ReadWindow ahead_;  ///< apart, so that looking ahead does not make `here_` read its bytes again
+  ReadWindow ahead_;  ///< a second window, so that looking ahead does not evict the bytes of `here_`
   RawBuffer scratch_;
-  std::uint64_t looked_at_bytes_ = 0;  ///< to tell where fields end; limited, so that lies cost linear time
+  std::uint64_t looked_at_bytes_ = 0;  ///< read to find field ends; limited, so that forged lengths cost linear time
   std::uint64_t position_ = kMagicBytes;
   bool chunk_seen_ = false;
   bool footer_seen_ = false;

@@ -71,7 +71,7 @@ bool StreamReader::next_in_chunk(StreamRecord& record) {
   return false;
 }
 
-/// One note for all of a chunk's: there may be millions.
+/// Adds one note for all misfits of a chunk, since there may be millions.
 void StreamReader::note_misfits() {
   if (const std::uint64_t bytes = std::exchange(misfit_bytes_, 0); bytes > 0)
     damages_.add({chunk_place_.offset, bytes, "records in a Chunk: their fields do not fit into them"});
@@ -122,7 +122,7 @@ void StreamReader::check(const RecordPlace& place, Bytes content) {
 void StreamReader::check_data_section(const RecordPlace& place, Bytes content) {
   data_end_seen_ = true;
   const std::uint32_t expected = decode_data_end(content).data_section_crc;
-  // After broken framing the sum has a hole, and the damage is noted already.
+  // After broken framing the CRC misses bytes, and that damage was already noted.
   if (expected != 0 && place.offset == data_end_ && data_crc_ != expected)
     throw Malformed("the CRC over everything before it is wrong: some byte there has changed");
 }

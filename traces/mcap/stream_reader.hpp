@@ -8,32 +8,32 @@
 
 namespace vestige::mcap {
 
-/// One record, wherever it stands.
+/// One record, inside or outside a chunk.
 struct StreamRecord {
   Opcode opcode = Opcode::kMessage;
   Bytes content;             ///< valid until the next call of `next`
-  std::uint64_t offset = 0;  ///< in the file; inside a chunk, the chunk's
+  std::uint64_t offset = 0;  ///< in the file; for a record inside a chunk, the offset of the chunk
   bool in_chunk = false;
 };
 
 enum class ChunkHandling {
   kExpand,
   kExpandAndShow
-};  ///< kExpandAndShow delivers the Chunk record too, before its records
+};  ///< kExpandAndShow also delivers the Chunk record, before its inner records
 
-/// Delivers every record of a file in order, with chunks expanded in place, and verifies every CRC. Damage never stops
-/// it: it skips the damaged chunk or record, or a chunk's records whose fields do not fit, and notes where. Needs as
-/// much memory as the largest record and chunk.
+/// Delivers every record of a file in order, expands chunks in place, and verifies every CRC. Never stops at damage:
+/// skips the damaged chunk or record, or those records of a chunk whose fields do not fit, and notes the place. Needs
+/// as much memory as the largest record and chunk.
 class StreamReader {
  public:
-  /// `source` must stay. Throws `Error` when it is no MCAP file.
+  /// Keeps a reference to `source`. Throws `Error` if it is not an MCAP file.
   explicit StreamReader(const ByteSource& source, ChunkHandling handling = ChunkHandling::kExpand);
 
-  /// False at the end.
+  /// Reads the next record. Returns false at the end.
   bool next(StreamRecord& record);
 
   bool footer_seen() const { return walker_.footer_seen(); }
-  /// What is wrong up to here: the first that was found, by offset.
+  /// Damage found so far: the first faults found, sorted by offset.
   DamageList damages() const;
 
  private:
@@ -52,13 +52,13 @@ class StreamReader {
   Cursor chunk_ = Cursor({});
   RecordPlace chunk_place_;
   std::uint32_t data_crc_ = 0;
-  std::uint64_t data_end_ = kMagicBytes;  ///< up to where data_crc_ reaches
+  std::uint64_t data_end_ = kMagicBytes;  ///< the end of the bytes that data_crc_ covers
   bool data_end_seen_ = false;
-  std::uint64_t misfit_bytes_ = 0;  ///< of this chunk's records whose fields do not fit
+  std::uint64_t misfit_bytes_ = 0;  ///< total size of this chunk's records whose fields do not fit
   DamageList damages_;
 };
 
-/// CRC of a piece of a file, read in blocks.
+/// CRC of a range of a file, read in blocks.
 std::uint32_t crc32_of(const ByteSource& source, std::uint64_t begin, std::uint64_t end);
 
 }  // namespace vestige::mcap

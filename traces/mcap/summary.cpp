@@ -18,7 +18,7 @@ constexpr std::size_t kTailBytes = kRecordHeadBytes + kFooterContentBytes + kMag
 constexpr std::size_t kFooterCrcBytes = 4;
 constexpr std::uint64_t kMostUnverifiedBytes = std::uint64_t{64} << 20;
 
-/// Offset and length of the record that an index entry leads to.
+/// Returns offset and length of the record that an index entry refers to.
 std::pair<std::uint64_t, std::uint64_t> place_of(const ChunkIndex& index) {
   return {index.chunk_start_offset, index.chunk_length};
 }
@@ -82,7 +82,7 @@ Summary read(const ByteSource& source) {
   if (begin < kMagicBytes || begin > footer_offset) throw Malformed("its footer points outside the file");
   summary.data_section_end = begin;
 
-  // A footer may lie: nothing large is taken into memory before a CRC vouches for it.
+  // A footer may lie, so nothing large is read into memory before a CRC verifies it.
   if (summary.footer.summary_crc != 0 && crc32_of(source, begin, crc_end) != summary.footer.summary_crc)
     throw Malformed("its summary's CRC is wrong");
   if (summary.footer.summary_crc == 0 && crc_end - begin > kMostUnverifiedBytes)
@@ -118,7 +118,7 @@ SummaryResult read_summary(const ByteSource& source) {
       result.summary->header =
           decode_header(read_record_at(source, kMagicBytes, Opcode::kHeader, result.summary->data_section_end, buffer));
     } catch (const Malformed&) {
-      // The header carries nothing that reading needs; whoever wants it sees that it is missing.
+      // Reading needs nothing from the header. A caller that wants the header sees that it is missing.
       result.summary->header.reset();
     }
     return result;
@@ -131,7 +131,7 @@ bool leads_to_everything(const ByteSource& source, const Summary& summary) {
   auto chunk = summary.chunk_indexes.begin();
   auto attachment = summary.attachment_indexes.begin();
   auto metadata = summary.metadata_indexes.begin();
-  // Whether the record is the next one of its index.
+  // Whether the record is the next entry of its index.
   const auto take = [](auto& index, auto end, std::uint64_t offset, std::uint64_t length) {
     const bool is_next = index != end && place_of(*index) == std::pair(offset, length);
     if (is_next) ++index;

@@ -9,11 +9,11 @@ namespace vestige::mcap {
 
 namespace {
 
-/// Fixed parts of an index record or of statistics, less than this.
+/// Upper bound of the fixed part of an index record or of statistics.
 constexpr std::uint64_t kMostIndexBytes = 128;
-/// A channel's entry in them: id and offset, or id and count.
+/// Size of a channel's entry in those records: id and offset, or id and count.
 constexpr std::uint64_t kIndexEntryBytes = 10;
-/// DataEnd, the offsets of six groups, footer and magic: 157.
+/// Upper bound of DataEnd, the offsets of six groups, footer and magic bytes, which take 157 bytes.
 constexpr std::uint64_t kMostEndBytes = 160;
 
 }  // namespace
@@ -112,7 +112,7 @@ std::uint64_t Writer::bytes_if_finished() const {
   const std::uint64_t index_bytes = kMostIndexBytes + kIndexEntryBytes * channels_.size();
   std::uint64_t bytes = offset_ + definition_bytes_ + kMostEndBytes + index_bytes * (chunk_indexes_.size() + 1);
   if (chunk_.empty()) return bytes;
-  // What cannot be compressed grows: zstd by 1/256 and some, LZ4's frames by 4 bytes a block and their header.
+  // Incompressible data grow: in zstd by a little more than 1/256, in LZ4 by 4 bytes a block plus the frame header.
   bytes += chunk_.size() + chunk_.size() / 128 + 1024 + index_bytes;
   for (const auto& [channel, index] : chunk_message_indexes_) bytes += 32 + 16 * index.entries.size();
   return bytes;

@@ -12,11 +12,12 @@
 namespace vestige::mcap {
 
 enum class Chunking { kChunks, kNone };
-/// Where schemas and channels go in a chunked file: into the open chunk, or before it, where no damaged chunk takes
-/// them along.
+/// Where schemas and channels go in a chunked file: into the open chunk, or before it, so that a damaged chunk does not
+/// lose them.
 enum class DefinitionPlace { kInChunks, kBeforeChunks };
 
-/// What a file contains besides its data. All of it is on by default; the rest exists for files that others wrote.
+/// What a file contains besides its data. Everything is on by default. The switches serve to write files as other
+/// programs write them.
 struct WriterOptions {
   Chunking chunking = Chunking::kChunks;
   Compression compression = Compression::kNone;
@@ -31,8 +32,9 @@ struct WriterOptions {
   bool summary_offsets = true;
 };
 
-/// Writes an MCAP file front to back through `sink`, never seeking: a pipe will do. Each chunk, with its message
-/// indexes, is one call of the sink. Errors are the sink's own; after one the writer must not be used again.
+/// Writes an MCAP file from front to back through `sink`, without seeking, so `sink` may write to a pipe. Each chunk
+/// and its message indexes are one call of the sink. Exceptions of the sink pass through; after one, the writer must
+/// not be used again.
 class Writer {
  public:
   using Sink = std::function<void(Bytes)>;
@@ -40,22 +42,22 @@ class Writer {
   Writer(Sink sink, const Header& header, const WriterOptions& options);
 
   void write(const Schema& schema);
-  /// Precondition: its schema was written before.
+  /// Precondition: the channel's schema was written before.
   void write(const Channel& channel);
-  /// Precondition: its channel was written before.
+  /// Precondition: the message's channel was written before.
   void write(const Message& message);
-  /// Goes before the open chunk. The record's CRC is computed here.
+  /// Writes the attachment before the open chunk, and computes the record's CRC.
   void write(const Attachment& attachment);
   /// Goes before the open chunk.
   void write(const Metadata& metadata);
 
-  /// Writes the open chunk, if there is anything in it.
+  /// Writes the open chunk, unless it is empty.
   void close_chunk();
-  /// Closes the chunk and writes summary and footer.
+  /// Closes the chunk, then writes summary and footer.
   void finish();
 
   std::size_t open_chunk_bytes() const { return chunk_.size(); }
-  /// How large the file is at most if `finish` is called now.
+  /// Upper bound of the file's size if `finish` is called now.
   std::uint64_t bytes_if_finished() const;
   std::uint64_t bytes_written() const { return offset_; }
   const Statistics& statistics() const { return statistics_; }
@@ -72,7 +74,7 @@ class Writer {
   WriterOptions options_;
   std::uint64_t offset_ = 0;
   std::uint32_t crc_ = 0;               ///< of everything written so far
-  std::uint64_t definition_bytes_ = 0;  ///< what schemas, channels and indexes take in the summary, at most
+  std::uint64_t definition_bytes_ = 0;  ///< upper bound of the summary bytes of schemas, channels and indexes
   ByteBuffer scratch_;
   ByteBuffer chunk_;  ///< uncompressed records
   ByteBuffer compressed_;

@@ -6,8 +6,8 @@
 
 namespace vestige {
 
-/// An animation by its name or, if none has it, by its index; "none" is null. Empty: the first, if there is one. Throws
-/// `UsageError` listing what there is.
+/// Returns an animation by its name or, if no animation has that name, by its index. "none" returns null. An empty text
+/// returns the first animation, or null if there is none. Throws `UsageError` with a list of the animations.
 const Animation* find_animation(const Avatar& avatar, const std::string& name_or_index);
 
 }  // namespace vestige

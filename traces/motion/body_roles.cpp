@@ -29,7 +29,8 @@ std::string_view without_namespace(std::string_view name) {
   return end == std::string_view::npos || end + 1 == name.size() ? name : name.substr(end + 1);
 }
 
-/// "mixamorig:LeftUpLeg" is left, up, leg; "LHipJoint" is l, hip, joint; "upperarm01.L" is upperarm, 01, l.
+/// Splits a name into words: "mixamorig:LeftUpLeg" into left, up, leg; "LHipJoint" into l, hip, joint; "upperarm01.L"
+/// into upperarm, 01, l.
 std::vector<std::string> words_of(std::string_view name) {
   std::vector<std::string> words;
   char before = ' ';
@@ -46,13 +47,13 @@ std::vector<std::string> words_of(std::string_view name) {
   return words;
 }
 
-/// A role as a name alone gives it. A weak one counts only where no other joint has it.
+/// A role judged by the name alone. A weak guess counts only if no other joint has the role.
 struct Guess {
   BodyRole role;
   enum class Strength { kWeak, kStrong } strength = Strength::kStrong;
 };
 
-// What says nothing of the bone, and what says that it is none.
+// Words that do not tell the bone (kNoise), and words that say that a joint is not a bone (kHelpers).
 const std::set<std::string, std::less<>> kNoise = {"mixamorig", "bip",   "b",     "j",   "c",   "cc",        "base",
                                                    "bone",      "joint", "jnt",   "def", "f",   "rig",       "skeleton",
                                                    "armature",  "valve", "biped", "sk",  "bvh", "character", "jt"};
@@ -72,7 +73,7 @@ const std::map<std::string, std::pair<Part, Strength>, std::less<>> kCentre = {
     {"lowerback", {Part::kSpine, Strength::kStrong}},  {"thorax", {Part::kSpine, Strength::kStrong}},
     {"torso", {Part::kSpine, Strength::kStrong}},      {"waist", {Part::kSpine, Strength::kStrong}}};
 
-// Whoever calls a collar bone so calls the upper arm a shoulder: hence the weak ones.
+// Skeletons that name the collar bone "collar" may name the upper arm "shoulder", so some guesses are weak.
 const std::map<std::string, std::pair<Part, Strength>, std::less<>> kSided = {
     {"shoulder", {Part::kShoulder, Strength::kWeak}},
     {"clavicle", {Part::kShoulder, Strength::kStrong}},
@@ -110,10 +111,10 @@ const std::map<std::string, Part, std::less<>> kFingers = {
     {"thumb", Part::kThumb}, {"index", Part::kIndex},   {"middle", Part::kMiddle}, {"mid", Part::kMiddle},
     {"ring", Part::kRing},   {"little", Part::kLittle}, {"pinky", Part::kLittle}};
 
-/// A name taken apart.
+/// The parts of a name.
 struct NameParts {
   BodySide side = BodySide::kNone;
-  std::string core;  ///< the words that are left, joined
+  std::string core;  ///< the remaining words, joined
   std::vector<std::string> words;
   std::vector<int> numbers;
   bool is_helper = false;
@@ -121,7 +122,7 @@ struct NameParts {
 
 NameParts parts_of(std::string_view name) {
   NameParts parts;
-  parts.is_helper = name.starts_with("__");  // MakeHuman's links that do not move
+  parts.is_helper = name.starts_with("__");  // MakeHuman's links, which do not move
   for (std::string word : words_of(without_namespace(name))) {
     if (is_digit(word.front())) {
       parts.numbers.push_back(word.size() < 6 ? std::stoi(word) : 0);
@@ -235,7 +236,7 @@ class RoleFinder {
     }
   }
 
-  /// What both thighs hang from.
+  /// Finds the hips: the joint from which both thighs hang.
   void complete_hips() {
     if (joint_of({Part::kHips, BodySide::kNone, 0})) return;
     const auto left = joint_of({Part::kUpperLeg, BodySide::kLeft, 0});
@@ -247,7 +248,7 @@ class RoleFinder {
       if (above.contains(i)) return give(static_cast<std::size_t>(i), {Part::kHips, BodySide::kNone, 0});
   }
 
-  /// The second of two necks.
+  /// Finds the head: the second of two necks.
   void complete_head() {
     if (joint_of({Part::kHead, BodySide::kNone, 0})) return;
     const auto neck = joint_of({Part::kNeck, BodySide::kNone, 0});
@@ -256,7 +257,7 @@ class RoleFinder {
         give(i, {Part::kHead, BodySide::kNone, 0});
   }
 
-  /// From the neck (or head) down to the hips, or to the root where the hips hang beside the spine.
+  /// Numbers the spine from the neck (or head) down to the hips, or to the root if the hips hang beside the spine.
   void number_spine() {
     auto top = joint_of({Part::kNeck, BodySide::kNone, 0});
     if (!top) top = joint_of({Part::kHead, BodySide::kNone, 0});

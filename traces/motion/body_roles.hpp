@@ -35,11 +35,11 @@ enum class BodyPart {
 
 enum class BodySide { kNone, kLeft, kRight };
 
-/// Which bone of a body a joint is.
+/// The bone of a body that a joint corresponds to.
 struct BodyRole {
   BodyPart part = BodyPart::kHips;
   BodySide side = BodySide::kNone;
-  int segment = 0;  ///< of a finger, from 1 at the hand; of a spine, from 0 at the hips
+  int segment = 0;  ///< index along a finger, from 1 at the hand, or along the spine, from 0 at the hips
 
   bool operator==(const BodyRole&) const = default;
 };
@@ -49,15 +49,16 @@ struct NamedJoint {
   int parent = -1;  ///< an earlier joint, -1 for a root
 };
 
-/// The role of each joint, as its name says it and the skeleton confirms it; each role at most once. Knows the names of
-/// Mixamo, HumanIK, CMU, Biovision, 3ds Max Biped, Poser, MakeHuman, Rigify, Unity and VRM, in any case, with any
-/// prefix, with sides as "Left", "L" or "left" at either end; and limbs whose joints are only numbered.
+/// Returns the role of each joint, derived from its name and confirmed by the skeleton; each role occurs at most once.
+/// Knows the names of Mixamo, HumanIK, CMU, Biovision, 3ds Max Biped, Poser, MakeHuman, Rigify, Unity and VRM. Names
+/// may have any case and any prefix, with sides as "Left", "L" or "left" at either end. Also knows limbs whose joints
+/// are only numbered.
 std::vector<std::optional<BodyRole>> body_roles(std::span<const NamedJoint> joints);
 
-/// The same of an avatar's nodes.
+/// Returns the roles of an avatar's nodes.
 std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar);
 
-/// A name without what programs put in front of it ("mixamorig:"), in small letters and digits only.
+/// Returns a name without the prefix that some programs add ("mixamorig:"), in lower-case letters and digits only.
 std::string plain_joint_name(std::string_view name);
 
 }  // namespace vestige

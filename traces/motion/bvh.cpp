@@ -33,14 +33,14 @@ bool same_word(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, {}, lower, lower);
 }
 
-/// Goes through a text word by word, and knows the line.
+/// Reads a text word by word and counts lines.
 class Words {
  public:
   Words(std::string_view text, const std::string& name) : text_(text), name_(name) {
     if (text_.starts_with("\xEF\xBB\xBF")) text_.remove_prefix(3);
   }
 
-  /// The next word, over line ends; empty at the end of the file.
+  /// Returns the next word, across line ends, or an empty text at the end of the file.
   std::string_view next() {
     std::string_view word;
     while ((word = next_in_line()).empty() && !text_.empty()) {
@@ -50,7 +50,7 @@ class Words {
     return word;
   }
 
-  /// The next word of this line; empty at its end.
+  /// Returns the next word of this line, or an empty text at its end.
   std::string_view next_in_line() {
     text_.remove_prefix(std::min(text_.find_first_not_of(kSpace), text_.size()));
     const std::string_view word = text_.substr(0, text_.find_first_of(" \t\r\v\f\n"));
@@ -58,7 +58,7 @@ class Words {
     return word;
   }
 
-  /// What is left of this line, without space around it, up to a brace.
+  /// Returns the rest of this line up to a brace, without space around it.
   std::string_view rest_of_line() {
     std::string_view rest = text_.substr(0, text_.find_first_of("\n{"));
     text_.remove_prefix(rest.size());
@@ -80,7 +80,7 @@ class Words {
       fail(fmt::format("{} is {}, which is no number", what, quoted(word)));
     bool fits = failure == std::errc();
     if constexpr (std::is_floating_point_v<Number>) {
-      // A number too small for its type is as good as 0; from_chars does not tell it from one that is too large.
+      // A number too small for its type counts as 0. from_chars does not distinguish it from one that is too large.
       if (!fits && std::abs(std::strtod(std::string(word).c_str(), nullptr)) < 1) return 0;
       fits = fits && std::abs(value) <= Number{kFarthest};
     }
@@ -204,7 +204,7 @@ class Parser {
       words_.fail(fmt::format("expected Frames: instead of {}", Words::quoted(word)));
     const auto frames = words_.number<std::uint64_t>(words_.next(), "the number of frames");
     if (frames == 0) words_.fail("there are 0 frames");
-    // A number takes a digit and a space at least: so what is allocated is bounded by what is there.
+    // A number takes at least a digit and a space, so the file's size bounds the allocation.
     const std::uint64_t most = (words_.bytes_left() + 1) / 2 / motion_.channel_count;
     if (frames > most)
       words_.fail(fmt::format("{} frames of {} numbers do not fit into the {} bytes that follow", frames,
@@ -251,7 +251,7 @@ class Parser {
   BvhMotion motion_;
 };
 
-/// Hangs a joint that is `local` to its parent below it.
+/// Returns the place of a joint that has the place `local` in its parent.
 BvhPlace below(const std::vector<BvhPlace>& places, int parent, const BvhPlace& local) {
   if (parent < 0) return local;
   const BvhPlace& above = places[static_cast<std::size_t>(parent)];
@@ -291,7 +291,7 @@ std::string shown_word(std::string_view word) {
   constexpr std::size_t kMost = 40;
   if (word.size() <= kMost) return std::string(word);
   std::size_t end = kMost;
-  while (end > 0 && (static_cast<unsigned char>(word[end]) & 0xC0U) == 0x80) --end;  // inside a letter of UTF-8
+  while (end > 0 && (static_cast<unsigned char>(word[end]) & 0xC0U) == 0x80) --end;  // inside a UTF-8 character
   return std::string(word.substr(0, end)) + "...";
 }
 

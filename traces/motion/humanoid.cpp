@@ -19,7 +19,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Empty: Unity has no such bone.
+/// Returns Unity's name of a bone, or an empty text if Unity has no such bone.
 std::string bone_name(const BodyRole& role) {
   static const std::map<BodyPart, const char*> names = {
       {BodyPart::kHips, "Hips"},         {BodyPart::kNeck, "Neck"},         {BodyPart::kHead, "Head"},
@@ -38,7 +38,7 @@ std::string bone_name(const BodyRole& role) {
   return segment >= 1 && segment <= kPhalanges.size() ? name + kPhalanges[segment - 1] : "";
 }
 
-/// VRM writes "leftUpperArm"; 1.0 names the thumb's bones differently from all others.
+/// Converts VRM's bone name ("leftUpperArm") to Unity's. VRM 1.0 alone names the thumb's bones differently.
 std::string unity_name(std::string name) {
   static const std::map<std::string, std::string, std::less<>> thumbs = {
       {"leftThumbMetacarpal", "LeftThumbProximal"},
@@ -62,7 +62,7 @@ void note(Humanoid& humanoid, std::string problem) {
   if (humanoid.problems.size() < kMostTold) humanoid.problems.push_back(std::move(problem));
 }
 
-/// `field` is where the extension says so.
+/// Adds a bone. `field` is the bone's JSON path in the extension.
 void take_bone(Humanoid& humanoid, std::string name, const json& bone, const Avatar& avatar, const std::string& field) {
   const json* node = member(&bone, "node");
   if (node == nullptr || !node->is_number_unsigned() || node->get<std::size_t>() >= avatar.nodes.size()) {

@@ -11,22 +11,22 @@
 
 namespace vestige {
 
-/// Which of an avatar's nodes are the bones of a human body, by the names of Unity's HumanBodyBones ("Hips",
+/// The nodes of an avatar that are the bones of a human body. Keys are the names of Unity's HumanBodyBones ("Hips",
 /// "LeftUpperArm"), which VRM and the VMC protocol share.
 struct Humanoid {
   enum class Source { kVrm, kNames };
-  /// Which way the avatar's face looks in its rest pose: VRM 0.x looks along -Z, all others along +Z as glTF asks.
+  /// The direction the avatar faces in its rest pose: -Z in VRM 0.x, otherwise +Z as glTF requires.
   enum class Facing { kPlusZ, kMinusZ };
 
   std::map<std::string, std::size_t, std::less<>> node_of;
   Source source = Source::kNames;
   Facing facing = Facing::kPlusZ;
-  /// What of the extension makes no sense and is left out, each with its field; the first 10.
+  /// Invalid parts of the extension, which are left out, each with its field; the first 10.
   std::vector<std::string> problems;
 };
 
-/// By the extensions VRM or VRMC_vrm of its file `glb` where there is one, else by the nodes' names (body_roles.hpp).
-/// May find none. Never fails: `glb` has been read as `avatar` before.
+/// Finds the bones by the extension VRM or VRMC_vrm of the file `glb`, otherwise by the nodes' names (body_roles.hpp).
+/// May find none. Never fails, because `glb` was already parsed as `avatar`.
 Humanoid find_humanoid(const Avatar& avatar, std::span<const std::byte> glb);
 
 }  // namespace vestige

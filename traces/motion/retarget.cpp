@@ -22,8 +22,8 @@ namespace {
 using Index = std::size_t;
 using Roles = std::vector<std::optional<BodyRole>>;
 
-// As many as a glTF's animation may have: half an hour of 60 joints at 120 Hz. But a file may give one number a frame
-// for all of its joints: beyond some minutes, no more than eight are stored for each number it has.
+// The limit of a glTF animation, too: half an hour of 60 joints at 120 Hz. A file may also give only one number a frame
+// for all of its joints. So beyond some minutes, at most eight numbers are stored for each number in the file.
 constexpr std::size_t kMostNumbers = std::size_t{1} << 26;
 constexpr std::size_t kAlwaysAllowed = std::size_t{1} << 22;
 constexpr std::size_t kMostGrowth = 8;
@@ -35,7 +35,7 @@ std::optional<Index> find_role(const Roles& roles, const BodyRole& role) {
   return found == roles.end() ? std::nullopt : std::optional(static_cast<Index>(found - roles.begin()));
 }
 
-/// A skeleton at rest, whatever it comes from: joints with parents before children.
+/// A skeleton at rest, of a motion or an avatar: joints with parents before children.
 struct Skeleton {
   std::vector<NamedJoint> joints;
   Roles roles;
@@ -60,7 +60,7 @@ glm::dquat rotation_of(const glm::dmat4& matrix) {
   return glm::normalize(glm::quat_cast(linear));
 }
 
-/// Joints are in the order of `avatar.node_order`.
+/// Returns the avatar's skeleton; its joints are in the order of `avatar.node_order`.
 Skeleton skeleton_of(const Avatar& avatar, const std::vector<glm::dmat4>& rest) {
   Skeleton skeleton;
   std::vector<int> place(avatar.nodes.size(), -1);
@@ -75,7 +75,7 @@ Skeleton skeleton_of(const Avatar& avatar, const std::vector<glm::dmat4>& rest) 
   return skeleton;
 }
 
-/// The unit vector along the axis that `direction` follows most, at a right angle to `other`.
+/// Returns the unit vector of the axis closest to `direction`, perpendicular to `other`.
 glm::dvec3 nearest_axis(const glm::dvec3& direction, const glm::dvec3& other, const glm::dvec3& fallback) {
   int best = -1;
   for (int axis = 0; axis < 3; ++axis)
@@ -86,7 +86,7 @@ glm::dvec3 nearest_axis(const glm::dvec3& direction, const glm::dvec3& other, co
   return nearest;
 }
 
-/// Columns: where left, up and forward are.
+/// Returns the directions left, up and forward as columns.
 glm::dmat3 axes_of(const Skeleton& skeleton) {
   const auto at = [&](BodyPart part, BodySide side) -> std::optional<glm::dvec3> {
     const auto joint = find_role(skeleton.roles, {part, side, 0});
@@ -111,7 +111,7 @@ glm::dmat3 axes_of(const Skeleton& skeleton) {
   return {left, up, glm::cross(left, up)};
 }
 
-/// How far the hips stand above the lowest joint of the legs.
+/// Returns the height of the hips above the lowest joint of the legs.
 double hip_height(const Skeleton& skeleton, const glm::dvec3& up) {
   const auto hips = find_role(skeleton.roles, kHips);
   double lowest = std::numeric_limits<double>::infinity();
@@ -146,7 +146,7 @@ std::string likely_unit(double height) {
   return {};
 }
 
-/// The joint of the motion that each joint of the avatar follows.
+/// Finds the joint of the motion that each joint of the avatar follows.
 class Matcher {
  public:
   Matcher(const Skeleton& motion, const Skeleton& avatar) : motion_(motion), avatar_(avatar) {
@@ -183,7 +183,7 @@ class Matcher {
     return joints;
   }
 
-  /// The upper end of each bone of the one follows the bone of the other that ends there.
+  /// Matches the upper end of each spine bone with the bone of the other spine that ends there.
   void match_spines() {
     const std::vector<Index> motion = spine_of(motion_.roles);
     const std::vector<Index> avatar = spine_of(avatar_.roles);
@@ -191,7 +191,7 @@ class Matcher {
       match(avatar[k], motion[((k + 1) * motion.size() + avatar.size() - 1) / avatar.size() - 1]);
   }
 
-  /// What no body has (tails, skirts): by the same name, when neither has a role.
+  /// Matches joints that are no part of a body (tails, skirts) by equal names, if neither has a role.
   void match_names() {
     static const std::set<std::string> anyones = {"", "root", "armature", "scene", "reference"};
     std::map<std::string, Index> by_name;
@@ -211,14 +211,14 @@ class Matcher {
   std::vector<bool> taken_;
 };
 
-/// The shortest turn from one direction to another; none where either has no length.
+/// Returns the shortest rotation from one direction to another, or the identity if either has length 0.
 glm::dquat turn(const glm::dvec3& from, const glm::dvec3& to) {
   if (!(glm::length(from) > 0) || !(glm::length(to) > 0)) return {1, 0, 0, 0};
   const glm::dvec3 a = glm::normalize(from);
   const glm::dvec3 b = glm::normalize(to);
   const glm::dquat twice(1 + glm::dot(a, b), glm::cross(a, b));
   if (glm::length(twice) > 1e-6) return glm::normalize(twice);
-  // Opposite: half a turn about anything at a right angle.
+  // Opposite directions: half a turn about any perpendicular axis.
   return glm::angleAxis(glm::pi<double>(),
                         glm::normalize(glm::cross(a, std::abs(a.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))));
 }
@@ -248,7 +248,7 @@ class Retargeter {
   void refuse_too_many_numbers() const;
   void align();
   glm::dquat flatter(Index foot, const glm::dquat& with_leg) const;
-  /// The avatar's joint with this role, where one of the motion leads it.
+  /// Returns the avatar's joint with this role, if it follows a joint of the motion.
   std::optional<Index> followed(const BodyRole& role) const {
     const auto node = find_role(target_.roles, role);
     return node && follows_[*node] ? node : std::nullopt;
@@ -260,12 +260,12 @@ class Retargeter {
   const std::string& name_;
   Skeleton source_;
   Skeleton target_;
-  std::vector<glm::dmat4> rest_;          ///< of the avatar's nodes, by their own number
+  std::vector<glm::dmat4> rest_;          ///< world matrices of the avatar's nodes at rest, by node index
   glm::dmat3 to_avatar_ = glm::dmat3(1);  ///< from the motion's axes to the avatar's
   glm::dvec3 source_up_ = glm::dvec3(0, 1, 0);
   glm::dvec3 target_up_ = glm::dvec3(0, 1, 0);
   std::vector<std::optional<Index>> follows_;  ///< for each joint of `target_` one of `source_`
-  std::vector<glm::dquat> at_rest_;            ///< for each of `target_`, as it is where the motion rests
+  std::vector<glm::dquat> at_rest_;            ///< for each of `target_`: its rotation while the motion rests
 };
 
 void Retargeter::refuse_other_bodies() const {
@@ -285,8 +285,8 @@ void Retargeter::refuse_other_bodies() const {
               "rename joints as VRM, Mixamo or CMU name them: hips, spine, leftUpperArm, …");
 }
 
-/// Of two ways to hold a foot while the motion rests, the one in which it stands flatter over the motion: some captures
-/// (CMU's) rest with legs spread and feet that belong to them, others with feet flat on the floor.
+/// Returns the flatter of two rotations of a foot while the motion rests. Some captures (CMU's) rest with spread legs
+/// and feet turned with them, others with feet flat on the floor.
 glm::dquat Retargeter::flatter(Index foot, const glm::dquat& with_leg) const {
   constexpr std::size_t kSamples = 64;
   const glm::dquat turn_to_avatar = glm::normalize(glm::quat_cast(to_avatar_));
@@ -301,8 +301,8 @@ glm::dquat Retargeter::flatter(Index foot, const glm::dquat& with_leg) const {
   return lead > 0 ? with_leg : glm::dquat(1, 0, 0, 0);
 }
 
-/// Turns arms and legs to where those of the motion point at rest. Hands and fingers go with their arm, toes with their
-/// foot; the trunk is upright in both.
+/// Turns arms and legs to the direction of the motion's at rest. Hands and fingers turn with their arm, toes with their
+/// foot. The trunk is upright in both.
 void Retargeter::align() {
   at_rest_.resize(target_.joints.size());
   std::vector<glm::dquat> swing(target_.joints.size(), glm::dquat(1, 0, 0, 0));
@@ -358,7 +358,7 @@ double Retargeter::metres_per_unit(std::optional<double> asked) const {
               "'vestige import --motion FILE --unit cm' (or m, or inch) says in what it is measured");
 }
 
-/// Where on the vertical the motion's hips stand at rest: some files count from the floor, others from the rest pose.
+/// Returns the height of the motion's hips at rest. Some files count it from the floor, others from the rest pose.
 double Retargeter::reference_height() const {
   const auto hips = *follows_[*find_role(target_.roles, kHips)];
   std::vector<BvhPlace> places;
@@ -372,7 +372,7 @@ double Retargeter::reference_height() const {
   return reference;
 }
 
-/// Counts what `animate` stores: a time with each rotation, and with the hips' place.
+/// Counts the numbers that `animate` stores: a time with each rotation, and with the hips' position.
 void Retargeter::refuse_too_many_numbers() const {
   const auto followers =
       static_cast<Index>(std::ranges::count_if(follows_, [](const auto& joint) { return joint.has_value(); }));

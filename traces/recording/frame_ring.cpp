@@ -14,10 +14,10 @@ using trace_format::Stream;
 namespace {
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
-/// LZ4 takes and gives more than 600 MB/s, so that a ring costs hardly more than no recording.
+/// LZ4 compresses and expands more than 600 MB/s, so a ring hardly costs more than no recording.
 constexpr mcap::Compression kCompression = mcap::Compression::kLz4;
 
-/// Of messages in blocks; the trace's own channels have the numbers of their streams.
+/// Returns the channel id of a stream's messages in blocks. The trace's own channels have the numbers of their streams.
 std::uint16_t id_of(Stream stream) {
   return trace_format::kStreams.at(static_cast<std::size_t>(stream)).id;
 }
@@ -26,7 +26,7 @@ void append(mcap::ByteBuffer& out, Stream stream, std::uint64_t index, std::int6
   mcap::append_record(out, mcap::Message{.channel_id = id_of(stream),
                                          .sequence = static_cast<std::uint32_t>(index),
                                          .log_time = static_cast<std::uint64_t>(time_ns),
-                                         .publish_time = index,  // whole, as a frame may have numbers beyond 32 bits
+                                         .publish_time = index,  // all 64 bits: a frame's number may exceed 32 bits
                                          .data = data});
 }
 
@@ -91,11 +91,11 @@ void FrameRing::Contents::for_each(const TakeNote& take_note, const TakeFrame& t
   MessageDecoder decoder;
   mcap::RawBuffer expanded;
   TraceFrame frame;
-  std::vector<RecordingNote> notes;  ///< before the frame that comes next
-  bool begun = first_ns_ == 0;       ///< nothing left the ring, or a frame has been given
+  std::vector<RecordingNote> notes;  ///< notes before the next frame
+  bool begun = first_ns_ == 0;       ///< nothing has left the ring, or a frame was delivered
   const auto give_notes = [&] {
     for (const RecordingNote& note : notes)
-      // What was lost before the ring's first frame is not missing from it.
+      // Messages lost before the ring's first frame are not missing from the ring.
       if (begun || note.kind == RecordingNote::Kind::kMarker) take_note(note);
   };
   for (const auto& block : blocks_) {

@@ -15,31 +15,31 @@
 
 namespace vestige {
 
-/// What is noted beside frames.
+/// A note that is recorded beside the frames.
 struct RecordingNote {
   enum class Kind : std::uint8_t { kDropped, kMarker };
   Kind kind = Kind::kDropped;
-  std::uint64_t count = 0;  ///< messages lost
-  std::string text = {};    ///< their topic, or the marker
+  std::uint64_t count = 0;  ///< number of messages lost
+  std::string text = {};    ///< topic of the lost messages, or text of the marker
 };
 
-/// The last seconds of a recording, in memory: frames as the messages that they will be in a trace, compressed by
-/// blocks. What comes out is what went in, to the bit.
+/// The last seconds of a recording, in memory. Frames are stored as the messages that a trace would hold, in compressed
+/// blocks. Frames come out equal to the bit to the frames that went in.
 class FrameRing {
  public:
   struct Limits {
-    double seconds = std::numeric_limits<double>::infinity();  ///< of the frames' own time
+    double seconds = std::numeric_limits<double>::infinity();  ///< measured by the frames' own times
     std::uint64_t bytes = std::numeric_limits<std::uint64_t>::max();
   };
 
-  /// Frames and notes of one moment, which stay while the ring goes on.
+  /// The ring's frames and notes at one moment. Later changes of the ring do not affect them.
   class Contents {
    public:
     using TakeNote = std::function<void(const RecordingNote&)>;
     /// Returns false to stop.
     using TakeFrame = std::function<bool(const TraceFrame&)>;
 
-    /// Notes come before the frame that they were pushed before.
+    /// Delivers all in order; a note comes before the frame that was pushed after it.
     void for_each(const TakeNote& take_note, const TakeFrame& take_frame) const;
 
    private:
@@ -50,7 +50,7 @@ class FrameRing {
       std::int64_t last_ns = 0;
     };
     std::deque<std::shared_ptr<const Block>> blocks_;
-    std::int64_t first_ns_ = 0;  ///< frames before it have left the ring
+    std::int64_t first_ns_ = 0;  ///< frames before this time have left the ring
   };
 
   explicit FrameRing(const Limits& limits) : limits_(limits) {}
@@ -59,11 +59,11 @@ class FrameRing {
   /// Precondition: times do not decrease.
   void push(const TraceFrame& frame);
 
-  /// Cheap: shares the blocks.
+  /// Cheap, because the result shares the blocks.
   Contents contents();
-  /// What it takes: at most a block, of 1 MiB or one frame, more than the limit.
+  /// Memory in use. Exceeds the limit by at most one block, of 1 MiB or one frame.
   std::uint64_t bytes() const { return bytes_ + open_.size(); }
-  /// Whether frames had to go for want of room that `Limits::seconds` would have kept.
+  /// Whether the size limit removed frames that `Limits::seconds` would have kept.
   bool is_cut_by_size() const { return is_cut_by_size_; }
 
  private:
@@ -75,7 +75,7 @@ class FrameRing {
   MessageEncoder encoder_;
   mcap::ByteBuffer open_;  ///< records of the block being filled
   Contents contents_;
-  std::uint64_t bytes_ = 0;  ///< of closed blocks
+  std::uint64_t bytes_ = 0;  ///< size of the closed blocks
   std::int64_t last_ns_ = 0;
   bool is_cut_by_size_ = false;
 };

@@ -21,7 +21,7 @@ namespace vestige {
 
 namespace {
 
-constexpr double kLatest_ns = 9.2e18;  ///< of 63 bits
+constexpr double kLatest_ns = 9.2e18;  ///< just below the largest 63-bit number
 
 void note_in(TraceWriter& writer, const RecordingNote& note) {
   if (note.kind == RecordingNote::Kind::kDropped) {
@@ -39,7 +39,7 @@ Error too_small(const std::filesystem::path& path, std::uint64_t limit, std::uin
       "allow more");
 }
 
-/// By its first record.
+/// Whether the file is a trace, judged by its Header.
 bool is_trace(const std::filesystem::path& path) {
   if (!std::filesystem::is_regular_file(path)) return false;
   try {
@@ -120,10 +120,10 @@ class Recorder::Implementation {
   std::vector<std::filesystem::path> removed_;
   std::uint64_t finished_frames_ = 0;
   std::uint64_t finished_bytes_ = 0;
-  std::uint64_t parts_ = 0;  ///< begun, or snapshots
+  std::uint64_t parts_ = 0;  ///< parts begun, or snapshots
   std::optional<std::int64_t> first_ns_;
-  std::int64_t split_ns_ = 0;  ///< where the part ends
-  bool has_frame_ = false;     ///< in the ring
+  std::int64_t split_ns_ = 0;  ///< end time of the current part
+  bool has_frame_ = false;     ///< whether the ring has a frame
   bool full_ = false;
   bool finished_ = false;
 };
@@ -155,7 +155,7 @@ Recorder::Implementation::~Implementation() {
   try {
     write_ring();
   } catch (const std::exception&) {
-    // What failed before has been told; there is nobody left to tell of this.
+    // Earlier errors were reported; a destructor cannot report this one.
     return;
   }
 }
@@ -184,7 +184,7 @@ std::optional<std::uint64_t> Recorder::Implementation::most_bytes() const {
 bool Recorder::Implementation::has_room_for(const TraceFrame& frame) {
   const auto most = most_bytes();
   if (!most || writer_->bytes_if_finished_with(frame) <= *most) return true;
-  // The bound takes the open chunk as if it could not be compressed: closed, it is known.
+  // The bound assumes that the open chunk does not compress. Closing the chunk makes its size known.
   writer_->close_chunk();
   const std::uint64_t needed = writer_->bytes_if_finished_with(frame);
   if (needed <= *most) return true;
@@ -213,7 +213,7 @@ bool Recorder::Implementation::write(const TraceFrame& frame) {
     if (full_) return false;
     finish_writer();
     open_next();
-    static_cast<void>(has_room_for(frame));  // throws where not even one fits
+    static_cast<void>(has_room_for(frame));  // throws if a single frame does not fit
   }
   if (target_.limits.split_s && frame.time_ns >= split_ns_) {
     const double length_ns = *target_.limits.split_s * kNanosecondsPerSecond;
@@ -262,7 +262,7 @@ void Recorder::Implementation::snapshot() {
 }
 
 void Recorder::Implementation::write_ring() {
-  // A snapshot that failed must not take what is still in the ring with it.
+  // A failed snapshot must not lose the frames that are still in the ring.
   std::exception_ptr snapshot_failure;
   try {
     await_snapshot();
@@ -280,7 +280,8 @@ void Recorder::Implementation::write_ring() {
   if (snapshot_failure) std::rethrow_exception(snapshot_failure);
 }
 
-/// As soon as there is something in their place: were we killed later, they would be merged with it.
+/// Deletes the stale parts as soon as the new recording has data on disk. If the program were killed later, the stale
+/// parts would be merged with the new ones.
 void Recorder::Implementation::replace_stale_parts() {
   if (stale_.empty()) return;
   writer_->close_chunk();

@@ -13,18 +13,18 @@
 
 namespace vestige {
 
-/// When a recording ends, goes on in another file, or forgets. Nothing that is not set limits anything.
+/// When a recording ends, continues in another file, or forgets frames. A value that is not set limits nothing.
 struct RecordingLimits {
-  std::optional<double> ring_s = {};            ///< only the last seconds are kept, in memory, and written at the end
-  std::optional<std::uint64_t> max_bytes = {};  ///< no file is larger; with `ring_s`, its memory; see `write`
-  std::optional<double> split_s = {};           ///< a new part at every multiple of these seconds since the first frame
-  std::optional<std::uint64_t> split_bytes = {};  ///< a new part before one would be larger
+  std::optional<double> ring_s = {};            ///< only these last seconds are kept, in memory, and written at the end
+  std::optional<std::uint64_t> max_bytes = {};  ///< largest size of a file; with `ring_s`, of the memory; see `write`
+  std::optional<double> split_s = {};  ///< a new part begins at every multiple of this time since the first frame
+  std::optional<std::uint64_t> split_bytes = {};  ///< a new part begins before one exceeds this size
   bool splits() const { return split_s || split_bytes; }
 };
 
-/// Writes a recording that lasts: into one trace, into parts NAME-0001.mcap, NAME-0002.mcap, … each of which is a whole
-/// trace with avatar and map, or into memory, of which only the end becomes a trace. Frames keep their numbers and
-/// times, so that `merge` puts parts together to what one file would have been.
+/// Writes a long recording in one of three ways. It goes into one trace, or into parts NAME-0001.mcap, NAME-0002.mcap,
+/// …, or into memory, of which only the end becomes a trace. Each part is a whole trace with avatar and map. Frames
+/// keep their numbers and times, so `merge` joins the parts to what a single file would have been.
 ///
 /// Every function throws `Error` as `TraceWriter` does.
 class Recorder {
@@ -32,41 +32,41 @@ class Recorder {
   struct Target {
     std::filesystem::path path;
     Session session;
-    const Avatar& avatar;          ///< must stay
-    TraceAttachments attachments;  ///< their bytes must stay
+    const Avatar& avatar;          ///< the caller keeps it alive
+    TraceAttachments attachments;  ///< the caller keeps their bytes alive
     TraceWriterOptions writing;
     RecordingLimits limits;
   };
 
-  /// Throws `Error` also where parts of an earlier recording are in the way (`Overwrite::kRefuse`), or other files that
-  /// have the names of such.
+  /// Also throws `Error` if parts of an earlier recording exist (with `Overwrite::kRefuse`), or other files have the
+  /// names of parts.
   explicit Recorder(Target target);
-  /// Without `finish`: keeps what there is, as `TraceWriter` does; a ring becomes a trace.
+  /// If `finish` was not called, keeps what was recorded, as `TraceWriter` does. A ring is written as a trace.
   ~Recorder();
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
-  /// False when the frame would make the file larger than `max_bytes`, and nothing splits it: it is not written, and
-  /// the recording is at its end. With a ring, older frames are forgotten instead; with `split_s`, the next part
-  /// begins.
+  /// Writes a frame. If the file would exceed `max_bytes`, returns false without writing, and the recording is
+  /// complete. But a ring forgets older frames instead, and `split_s` or `split_bytes` begins the next part instead.
   bool write(const TraceFrame& frame);
-  /// Stands with the next frame.
+  /// Adds a note, which is stored with the next frame.
   void note(RecordingNote note);
-  /// To be called every few milliseconds when there is no frame: what waits in memory does so for 100 ms at most.
+  /// Call this every few milliseconds while there is no frame, so that frames wait in memory for at most 100 ms.
   void write_old_chunk();
-  /// Writes what is in the ring now as NAME-0001.mcap, NAME-0002.mcap, …, on a thread of its own. Nothing without one.
+  /// Writes the ring's present content as NAME-0001.mcap, NAME-0002.mcap, …, in a separate thread. Does nothing without
+  /// a ring.
   void snapshot();
   void finish();
 
-  /// Whether `write` has refused a frame.
+  /// Whether `write` has returned false.
   bool is_full() const;
-  /// Whether a ring holds less than its seconds, since it may not become larger.
+  /// Whether a ring holds less than its seconds because of its size limit.
   bool is_ring_cut_by_size() const;
   std::uint64_t frame_count() const;    ///< in the files; with a ring, known after `finish`
   std::uint64_t bytes_written() const;  ///< in the files; with a ring, known after `finish`
-  /// The files that there are, in order.
+  /// The files written so far, in order.
   const std::vector<std::filesystem::path>& files() const;
-  /// Parts of an earlier recording that went as soon as this one's first frame was in its file.
+  /// Parts of an earlier recording, deleted as soon as this recording's first frame was in its file.
   const std::vector<std::filesystem::path>& removed() const;
 
  private:
@@ -74,13 +74,13 @@ class Recorder {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// man.mcap: man-0001.mcap for 1.
+/// Returns the path of a part: man-0001.mcap for man.mcap and 1.
 std::filesystem::path part_path(const std::filesystem::path& path, std::uint64_t number);
 
-/// Whether `candidate` is called as a part of `path` is.
+/// Whether the name of `candidate` is that of a part of `path`.
 bool is_part_path(const std::filesystem::path& path, const std::filesystem::path& candidate);
 
-/// Parts of an earlier recording under this name, which would be taken for parts of the next one.
+/// Returns existing parts of an earlier recording of this name, which would be mistaken for parts of the next one.
 std::vector<std::filesystem::path> existing_parts(const std::filesystem::path& path);
 
 }  // namespace vestige

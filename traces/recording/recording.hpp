@@ -13,28 +13,28 @@ namespace vestige {
 struct RecordingSettings {
   double rate_hz = 1000;
   double duration_s = 2;
-  glm::dvec3 origin_m = glm::dvec3(0);  ///< where the whole scene stands; rounded to the grid of 2^-20 m
+  glm::dvec3 origin_m = glm::dvec3(0);  ///< world position of the whole scene; rounded to the grid of 2^-20 m
 };
 
-/// How many frames a recording has: rate times duration, rounded, at least 1.
+/// Returns the number of frames of a recording: rate times duration, rounded, at least 1.
 std::uint64_t frame_count(const RecordingSettings& settings);
 
-/// What frames are sampled from. Times asked of one `colliders` must not decrease.
+/// A scene that frames are sampled from. The times requested from one `colliders` must not decrease.
 struct SampledScene {
   const Avatar& avatar;
-  const Animation* animation;  ///< loops; null: the avatar rests
+  const Animation* animation;  ///< loops; null means the rest pose
   ColliderSource& colliders;
   glm::dvec3 origin_m = glm::dvec3(0);
 };
 
-/// Pose and colliders at index / rate.
+/// Returns in `out` pose and colliders at time index / rate.
 void sample_frame(const SampledScene& scene, double rate_hz, std::uint64_t index, TraceFrame& out);
 
-/// Where frames go; false: it takes no more.
+/// Receives a frame. Returns false if it accepts no more frames.
 using FrameSink = std::function<bool(const TraceFrame&)>;
 
-/// Samples pose and colliders at k / rate and writes them. The animation (null: the avatar rests) loops. `progress` is
-/// told the share done and returns false to stop.
+/// Samples pose and colliders at the times k / rate and passes them to `write`. The animation loops; null means the
+/// rest pose. Calls `progress` with the fraction done; it returns false to stop.
 void record(const FrameSink& write, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
             const RecordingSettings& settings, const std::function<bool(double)>& progress);
 

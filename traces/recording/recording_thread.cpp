@@ -7,7 +7,7 @@ namespace vestige {
 
 namespace {
 
-/// How often the open chunk's age is looked at while no frame comes.
+/// How often the age of the open chunk is checked while no frame arrives.
 constexpr std::chrono::milliseconds kPause(10);
 
 std::size_t bytes_of(const std::vector<RecordingNote>& notes) {

@@ -13,31 +13,32 @@
 
 namespace vestige {
 
-/// Writes frames on a thread of its own, so that a slow disk delays no input, and closes chunks by the clock when the
-/// source stalls. What fails there is thrown by the next call here.
+/// Writes frames on a thread of its own, so that a slow disk does not delay input. Also closes chunks by the clock if
+/// the source stalls. An exception on that thread is thrown by the next call of a function here.
 class RecordingThread {
  public:
   enum class WhenBehind : std::uint8_t {
-    kWait,  ///< the source can wait: a file, a pipe
-    kDrop,  ///< it cannot: live input
+    kWait,  ///< for a source that can wait: a file, a pipe
+    kDrop,  ///< for a source that cannot wait: live input
   };
 
-  /// `recorder` must stay, and is not to be used by others until `stop`. Frames that wait take
-  /// at most `most_bytes`, and those being written as much again.
+  /// Keeps a reference to `recorder`, which others must not use until `stop`. Waiting frames take at most `most_bytes`,
+  /// and frames being written take at most as much again.
   explicit RecordingThread(Recorder& recorder, std::size_t most_bytes = std::size_t{64} << 20);
-  /// Writes what waits.
+  /// Writes the waiting frames.
   ~RecordingThread();
   RecordingThread(const RecordingThread&) = delete;
   RecordingThread& operator=(const RecordingThread&) = delete;
 
-  /// False: there is no room, and nothing was taken; only with kDrop. `notes` stand with the frame.
+  /// Queues a frame with its `notes`. With kDrop, returns false without taking anything if there is no room. With
+  /// kWait, waits for room.
   bool put(TraceFrame frame, std::vector<RecordingNote> notes, WhenBehind when_behind);
-  /// Notes behind the last frame.
+  /// Queues notes that follow the last frame.
   void put(std::vector<RecordingNote> notes);
   void snapshot();
-  /// The recorder has written all it may (`RecordingLimits::max_bytes`).
+  /// Whether the recorder accepts no more frames (`RecordingLimits::max_bytes`).
   bool is_full();
-  /// Writes what waits, and ends the thread. Throws `Error` if writing failed.
+  /// Writes the waiting frames and ends the thread. Throws `Error` if writing failed.
   void stop();
 
  private:
@@ -64,7 +65,7 @@ class RecordingThread {
   bool full_ = false;
   bool failed_ = false;
   std::exception_ptr failure_;
-  std::thread thread_;  ///< last: it uses all the others
+  std::thread thread_;  ///< declared last, because it uses all other members
 };
 
 }  // namespace vestige

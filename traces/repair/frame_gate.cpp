@@ -18,14 +18,14 @@ namespace {
 constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20;
 constexpr auto kLatest_ns = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
-// What no CRC vouches for is not believed beyond these.
+// Unverified messages with values beyond these limits are rejected.
 constexpr float kLargestScale = 1e6F;
 constexpr float kRotationTolerance = 0.1F;
 constexpr std::uint64_t kShortestFrame_ns = 1000;
-constexpr std::size_t kLookedBack = 64;  ///< frames that may be wrong one after the other without ending a sequence
+constexpr std::size_t kLookedBack = 64;  ///< most consecutive wrong frames that do not end a sequence
 
 bool is_near(const glm::dvec3& position_m) {
-  return glm::all(glm::lessThanEqual(glm::abs(position_m), glm::dvec3(trace_format::kFarthest_m)));  // no NaN is
+  return glm::all(glm::lessThanEqual(glm::abs(position_m), glm::dvec3(trace_format::kFarthest_m)));  // false for NaN
 }
 
 bool is_plausible_node(const NodeLocal& node) {
@@ -107,7 +107,7 @@ bool FrameGate::is_readable(const Held& held) {
   return true;
 }
 
-/// Whether a readable message says nothing that no recorder would.
+/// Whether a recorder could have written a readable message.
 bool FrameGate::is_plausible(const Held& held) {
   const auto time_ns = static_cast<std::int64_t>(held.message.log_time);
   if (held.stream == Stream::kPose) {
@@ -148,7 +148,8 @@ bool FrameGate::clean(Group& group) {
     return !keep;
   });
   if (!group.has_frame) return false;
-  // A frame with two poses, or one pose and no colliders, is whole as long as one of each that there are is good.
+  // A frame with two poses, or with one pose and no colliders, counts as whole if one good message of each kind present
+  // is left.
   const bool agrees = group.trust == Trust::kVerified || (colliders == 1 && colliders_time_ns == group.time_ns);
   const bool good = poses == 1 && agrees && (readable || colliders == 1);
   if (!good) leave_out_frame(group);
@@ -200,7 +201,7 @@ void FrameGate::release(const Group* next) {
 }
 
 void FrameGate::write(Group& group) {
-  // A definition behind a message that has waited does not change what the message was taken for.
+  // A definition that came after a waiting message does not change the stream that the message was assigned to.
   left_out_ += std::erase_if(
       group.messages, [&](const Held& held) { return streams_.stream_of(held.message.channel_id) != held.stream; });
   if (group.trust == Trust::kUnverified) unverified_ += group.messages.size();

@@ -13,29 +13,29 @@
 
 namespace vestige {
 
-/// Lets through what makes a trace that `TraceReader` reads to its end: whole frames that fit the avatar and come one
-/// after the other. Messages of other channels pass.
+/// Passes on the messages that form a trace which `TraceReader` reads to its end: whole frames that fit the avatar and
+/// follow each other. Messages of foreign channels pass.
 ///
-/// A frame that no CRC vouches for must have a pose and colliders that agree on frame and time and that a recorder
-/// could have written, and must lie between the frames around it that are vouched for: until the next of those it is
-/// held back. Of those held back, the longest sequence passes that can have been recorded, at 1 MHz at most. Needs one
-/// frame of memory, or 16 MiB where many unverified ones follow each other.
+/// An unverified frame, which no CRC covers, passes only under three conditions. Its pose and colliders agree on frame
+/// and time. A recorder could have written them. It lies between the verified frames around it, so the gate holds it
+/// back until the next verified frame. Of the frames held back, the longest sequence passes that can have been recorded
+/// at 1 MHz at most. Needs memory for one frame, or 16 MiB if many unverified frames follow each other.
 class FrameGate {
  public:
   using Write = std::function<void(const mcap::Message&)>;
 
-  /// `streams` must stay; it says which channels are ours.
+  /// Keeps a reference to `streams`, which says which channels are Vestige's own.
   FrameGate(const StreamTable& streams, Write write) : streams_(streams), write_(std::move(write)) {}
 
-  /// The avatar's; without it any number passes.
+  /// Sets the avatar's number of nodes. Without this call, any number passes.
   void set_node_count(std::size_t count) { node_count_ = count; }
-  /// The next message of the file; its data is copied.
+  /// Takes the next message of the file; copies its data.
   void take(const mcap::Message& message, mcap::Trust trust);
-  /// No more messages.
+  /// Call this after the last message.
   void finish();
 
   std::uint64_t left_out() const { return left_out_; }      ///< messages
-  std::uint64_t unverified() const { return unverified_; }  ///< messages that were let through though no CRC holds
+  std::uint64_t unverified() const { return unverified_; }  ///< messages passed on although no CRC covers them
 
  private:
   struct Held {
@@ -43,18 +43,18 @@ class FrameGate {
     trace_format::Stream stream = trace_format::Stream::kForeign;
     std::vector<std::byte> data;
   };
-  /// Neighbouring messages of one frame, and those of other channels between them.
+  /// Consecutive messages of one frame, and the foreign messages between them.
   struct Group {
     std::uint32_t sequence = 0;
     std::uint64_t time_ns = 0;  ///< of the pose
     mcap::Trust trust = mcap::Trust::kVerified;
-    bool has_frame = false;  ///< a pose or colliders, not events only
+    bool has_frame = false;  ///< has a pose or colliders, not only events
     std::vector<Held> messages;
     std::size_t bytes = 0;
   };
 
   void end_group();
-  /// Leaves out what cannot be read; returns whether a good frame is left.
+  /// Removes messages that cannot be read. Returns whether a good frame is left.
   bool clean(Group& group);
   bool is_readable(const Held& held);
   bool is_plausible(const Held& held);
@@ -69,7 +69,7 @@ class FrameGate {
   MessageDecoder decoder_;
   std::vector<ColliderSample> colliders_;
   Pose pose_;
-  Group group_;                ///< being put together
+  Group group_;                ///< being assembled
   std::deque<Group> waiting_;  ///< unverified frames
   std::size_t waiting_bytes_ = 0;
   std::optional<std::uint32_t> last_sequence_;

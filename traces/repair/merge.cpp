@@ -27,7 +27,7 @@ using trace_format::Stream;
 
 constexpr const char* kOneRecording = "merge only parts of one recording, such as `vestige trim` makes";
 
-/// By which messages are put in order.
+/// The sort key of messages.
 struct Moment {
   std::uint64_t time_ns = 0;
   std::uint32_t sequence = 0;
@@ -81,7 +81,7 @@ void require_same(const Identity& known, const Identity& added, const ByteSource
   if (added.map_text != known.map_text) refuse("actuator map's description");
 }
 
-/// Keys that only one of them has, or whose values differ.
+/// Returns the keys that only one session has, or whose values differ.
 std::vector<std::string> differing_keys(const Session& a, const Session& b) {
   std::set<std::string> keys;
   for (const auto& [one, other] : {std::tie(a, b), std::tie(b, a)})
@@ -91,11 +91,11 @@ std::vector<std::string> differing_keys(const Session& a, const Session& b) {
 }
 
 struct Common {
-  Definitions definitions;  ///< all that the parts define
+  Definitions definitions;  ///< all definitions of the parts
   std::vector<Merged::OtherSession> other_sessions;
 };
 
-/// Checks that they are parts of one recording.
+/// Checks that the sources are parts of one recording.
 Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
   const ByteSource& first = *sources.front();
   std::optional<Identity> identity;
@@ -116,7 +116,7 @@ Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
       continue;
     }
     require_same(*identity, own, first, *source);
-    // Parts of one recording have the same session, to the time it began. One that is damaged says nothing.
+    // Parts of one recording have the same session, even the same start time. A damaged session says nothing.
     std::vector<std::string> keys = differing_keys(session, index.session);
     if (!keys.empty() && !session.empty() && !index.session.empty())
       common.other_sessions.push_back({.file = source->name(), .keys = std::move(keys)});
@@ -128,7 +128,7 @@ Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
   return common;
 }
 
-/// Tells whether two files have the same messages, of which a moment may have more than fit into memory.
+/// Compares the messages of two files at one moment, which may not fit into memory.
 class Fingerprint {
  public:
   void add(const mcap::Message& message) {
@@ -146,7 +146,7 @@ class Fingerprint {
   mcap::ByteBuffer record_;
 };
 
-/// One of the files, read message by message; what else is in it goes to `take_other`.
+/// One of the files, read message by message. All other records go to `take_other`.
 class Part {
  public:
   explicit Part(const ByteSource& source) : source_(source), reader_(source) {}
@@ -175,7 +175,7 @@ class Part {
  private:
   const ByteSource& source_;
   mcap::StreamReader reader_;
-  std::optional<mcap::Message> head_;  ///< its data belongs to the reader
+  std::optional<mcap::Message> head_;  ///< its data belong to the reader
   double share_ = 0;
 };
 
@@ -253,8 +253,8 @@ void Merger::take_other(const mcap::StreamRecord& record) {
   }
 }
 
-/// Writes what the first file has of it, which is returned; what the others have must be the same. Messages of others
-/// may differ: each file's first frame has its own /viz.
+/// Writes the messages that the first file with this moment has, and returns that file. Vestige's own messages must be
+/// the same in the other files. Foreign messages may differ, because each file's first frame has its own /viz.
 const Part& Merger::take_moment(const Moment& moment) {
   const bool is_shared = std::ranges::count_if(parts_, [&](const auto& part) { return part->is_at(moment); }) > 1;
   const Part* from = nullptr;
@@ -283,7 +283,7 @@ const Part& Merger::take_moment(const Moment& moment) {
   return *from;
 }
 
-/// All messages of one moment, which stand together in a file, one by one.
+/// Passes all messages of one moment, which are consecutive in a file, to `take` one by one.
 template <typename Take>
 void Merger::take_group(Part& part, const Moment& moment, Take take) {
   while (part.is_at(moment)) {

@@ -16,29 +16,29 @@ namespace vestige {
 struct Merged {
   struct Damages {
     std::string file;
-    mcap::DamageList list;  ///< what of it could not be read
+    mcap::DamageList list;  ///< the parts of the file that could not be read
   };
-  /// A file whose metadata `session` is not that of the first, as if it were of another recording.
+  /// A file whose metadata `session` differs from that of the first file, as if it belonged to another recording.
   struct OtherSession {
     std::string file;
-    std::vector<std::string> keys;  ///< that differ, or that one of them lacks
+    std::vector<std::string> keys;  ///< keys that differ, or that only one of the two files has
   };
   std::uint64_t messages = 0;        ///< written
   std::uint64_t frames = 0;          ///< written
-  std::uint64_t duplicates = 0;      ///< of our messages, those that stood in several files, the same to the bit
-  std::uint64_t missing_frames = 0;  ///< numbers between the first and the last frame that no file has
-  std::vector<Damages> damages;      ///< of the files that have any
+  std::uint64_t duplicates = 0;      ///< own messages found, identical to the bit, in several files
+  std::uint64_t missing_frames = 0;  ///< numbers between the first and last frame that no file has
+  std::vector<Damages> damages;      ///< only of files that have damage
   std::vector<OtherSession> other_sessions;
 };
 
-/// Puts traces together that are parts of one recording, such as `trim` makes: their frames in order of time, each
-/// once, with the messages of others (/viz) that the first file has of it; every attachment and metadata once;
-/// compressed as the first is. Keeps one chunk, or the largest record, of each file in memory, however many messages a
-/// moment has.
+/// Merges traces that are parts of one recording, such as `trim` makes. Frames come in order of time, each once, with
+/// the foreign messages (/viz) that the first file with this frame has. Each attachment and metadata record comes once.
+/// The compression is that of the first file. Keeps one chunk, or the largest record, of each file in memory, however
+/// many messages one moment has.
 ///
-/// Throws `Error`, naming file and reason: no trace of ours; another avatar or actuator map; other definitions of a
-/// channel; a frame that two files have and that differs; frames whose numbers do not follow their times; reading
-/// failed; stopped by `progress`.
+/// Throws `Error` with file and reason: not a Vestige trace; another avatar or actuator map; other definitions of a
+/// channel; a frame that differs between two files; frames whose numbers do not follow their times; reading failed;
+/// stopped by `progress`.
 Merged merge_traces(const std::vector<std::unique_ptr<mcap::ByteSource>>& sources, const mcap::Writer::Sink& sink,
                     const std::function<bool(double)>& progress);
 

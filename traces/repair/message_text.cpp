@@ -22,7 +22,7 @@ std::string json_text(std::string_view text) {
   return nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-/// JSON as it stands, numbers and names that stand twice too, but on one line.
+/// Copies JSON without the white space between its tokens. Numbers and duplicate names stay as they are.
 void append_compact(std::string& out, std::string_view json) {
   if (json.starts_with("\xEF\xBB\xBF")) json.remove_prefix(3);  // a byte order mark
   bool is_string = false;
@@ -34,7 +34,7 @@ void append_compact(std::string& out, std::string_view json) {
   }
 }
 
-/// RFC 4648, section 4.
+/// Appends `bytes` as base64 (RFC 4648, section 4).
 void append_base64(std::string& out, mcap::Bytes bytes) {
   constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   for (std::size_t i = 0; i < bytes.size(); i += 3) {

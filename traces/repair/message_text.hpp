@@ -9,17 +9,18 @@
 namespace vestige {
 
 /// Writes messages as JSON, each on one line: `{"topic", "sequence", "log_time", "publish_time", "data"}`, times in
-/// nanoseconds. `data` of ours:
+/// nanoseconds. `data` of Vestige's own messages:
 ///
 ///     /pose       {"origin": [x, y, z], "nodes": [[tx, ty, tz, rx, ry, rz, rw, sx, sy, sz], …]}
 ///     /colliders  [{"id", "position": [x, y, z]}, …]
 ///     /events     {"kind", "collider", "count", "text"}
 ///
-/// Of others: a message encoded as JSON as it stands, without its line ends, or `data_base64` in place of `data`.
-/// Floats are the shortest that read back to the same bits, NaN and infinities the strings "nan", "inf" and "-inf".
+/// `data` of foreign messages: a message encoded as JSON is copied without the white space between its tokens; any
+/// other message has `data_base64` instead of `data`. Floats have the shortest text that reads back to the same bits.
+/// NaN and infinities are the strings "nan", "inf" and "-inf".
 class MessageText {
  public:
-  /// The line without its end. A message of ours that cannot be decoded throws `mcap::Malformed`.
+  /// Returns the line without its end. Throws `mcap::Malformed` if one of Vestige's own messages cannot be decoded.
   std::string line(const mcap::Message& message, const mcap::Channel& channel, trace_format::Stream stream);
 
  private:

@@ -31,7 +31,7 @@ using trace_format::Stream;
 constexpr std::string_view kDamagedSuffix = ".damaged";
 constexpr std::size_t kMostRepairsTold = 100;
 
-/// Records that say what others hold: the new file gets its own.
+/// Whether records of this kind describe other records. The new file gets its own instead.
 bool is_rebuilt(Opcode opcode) {
   switch (opcode) {
     case Opcode::kFooter:
@@ -56,8 +56,8 @@ std::string profile_of(const Definitions& definitions) {
   return streams.find(Stream::kPose) == nullptr ? std::string() : std::string(trace_format::kProfile);
 }
 
-/// The nodes that a file's channels /pose say its poses have: those of the first that is found. Others that say
-/// otherwise belong to no frame of it.
+/// The node names in the metadata of a file's channels /pose: those of the first such channel. A channel with other
+/// names belongs to none of the file's frames.
 class PoseNodes {
  public:
   bool agrees(const mcap::Channel& channel) {
@@ -119,7 +119,7 @@ class Recoverer {
   std::uint64_t messages_found_ = 0;
   std::uint64_t unknown_messages_ = 0;
   std::uint32_t crc_ = mcap::crc32(std::as_bytes(std::span(mcap::kMagic)));
-  std::uint64_t crc_end_ = mcap::kMagicBytes;  ///< up to where crc_ reaches
+  std::uint64_t crc_end_ = mcap::kMagicBytes;  ///< the end of the bytes that crc_ covers
   bool data_ended_ = false;
   bool nodes_known_ = false;
 };
@@ -154,7 +154,7 @@ void Recoverer::take_damages() {
   for (const mcap::Damage& damage : walker_.damages()) take_damage(damage);
 }
 
-/// Tries what stands where the framing is broken, up to the next record that can be believed.
+/// Tries to use the bytes at a place with broken framing, up to the next acceptable record.
 void Recoverer::take_damage(const mcap::Damage& damage) {
   const bool behind_footer = walker_.footer_seen() && damage.offset >= walker_.position();
   const bool only_magic_is_broken = damage.effect == mcap::DamageEffect::kLost && damage.bytes <= mcap::kMagicBytes;
@@ -192,7 +192,7 @@ void Recoverer::take_damage(const mcap::Damage& damage) {
   if (opcode == Opcode::kChunk) {
     take_chunk(content);
   } else if (mcap::natural_content_bytes(opcode, content) == content_bytes) {
-    // Only its length was broken: its own fields end where the next record begins.
+    // Only the record's length was broken: its own fields end where the next record begins.
     take_record(opcode, content, damage.offset);
     repaired(fmt::format("at byte {}: the length of a {} was broken", damage.offset, mcap::name_of(opcode)));
   } else {
@@ -200,7 +200,8 @@ void Recoverer::take_damage(const mcap::Damage& damage) {
   }
 }
 
-/// How much of a damaged place belongs to the record that begins there: by its length, or else by its fields.
+/// Returns how many bytes of a damaged place belong to the record that begins there, by its length, or otherwise by its
+/// fields.
 std::uint64_t Recoverer::bytes_of_rebuilt(const mcap::Damage& damage) {
   const std::uint64_t end = damage.offset + damage.bytes;
   if (damage.bytes < mcap::kRecordHeadBytes) return damage.bytes;
@@ -219,7 +220,7 @@ std::uint64_t Recoverer::bytes_of_rebuilt(const mcap::Damage& damage) {
 }
 
 void Recoverer::take(const RecordPlace& place) {
-  // Behind the data section stands what is made anew; messages there are against MCAP's rules, but readers take them.
+  // The records after the data section are made anew. Messages there violate MCAP's rules, but readers accept them.
   if (data_ended_ && place.opcode != Opcode::kChunk && place.opcode != Opcode::kMessage) return;
   if (place.content_bytes > mcap::kMaxChunkBytes && place.opcode != Opcode::kAttachment) {
     result_.bytes_lost += place.end() - place.offset;
@@ -253,7 +254,7 @@ void Recoverer::take_data_end(const RecordPlace& place, Bytes content) {
     result_.unexplained_change = true;
 }
 
-/// A record whose kind means nothing, or does not fit its fields.
+/// Takes a record of unknown kind, or one whose fields do not fit.
 void Recoverer::take_misnamed(Bytes content, std::uint64_t offset) {
   if (mcap::is_whole_chunk(content, expanded_)) {
     repaired(fmt::format("at byte {}: the opcode of a Chunk was broken", offset));
@@ -263,7 +264,7 @@ void Recoverer::take_misnamed(Bytes content, std::uint64_t offset) {
   }
 }
 
-/// A record outside chunks whose fields fit.
+/// Takes a record outside chunks whose fields fit.
 void Recoverer::take_record(Opcode opcode, Bytes content, std::uint64_t offset) {
   switch (opcode) {
     case Opcode::kSchema:
@@ -291,7 +292,7 @@ void Recoverer::take_attachment(Bytes content) {
   if (mcap::attachment_crc_holds(content, attachment)) {
     ++result_.attachments;
   } else {
-    // Kept, but under a name that nobody takes for the real thing.
+    // Keep it, but under a name that nobody mistakes for the undamaged attachment.
     result_.damaged_attachments.push_back(attachment.name);
     attachment.name += kDamagedSuffix;
   }
@@ -324,12 +325,12 @@ void Recoverer::take_records(Bytes records) {
       try {
         take_inner(record.opcode, record.content, Trust::kVerified);
       } catch (const Malformed&) {
-        // Its fields do not fit; where the next begins is known all the same.
+        // The record's fields do not fit, but the start of the next record is known.
         result_.bytes_lost += record.content.size() + mcap::kRecordHeadBytes;
       }
     }
   } catch (const Malformed&) {
-    // Its CRC holds: it was written like this.
+    // The chunk's CRC matches, so the chunk was written like this.
     result_.bytes_lost += cursor.remaining();
   }
 }
@@ -341,7 +342,7 @@ void Recoverer::take_remains(Bytes records) {
     try {
       take_inner(record.opcode, record.content, Trust::kUnverified);
     } catch (const Malformed&) {
-      continue;  // its fields do not fit
+      continue;  // the record's fields do not fit
     }
   }
 }

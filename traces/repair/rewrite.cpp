@@ -42,7 +42,7 @@ class Rewriter {
   McapOutput output_;
   Rewritten result_;
   std::set<std::uint16_t> undefined_;                                   ///< channels
-  std::uint64_t first_ns_ = std::numeric_limits<std::uint64_t>::max();  ///< of all messages there are
+  std::uint64_t first_ns_ = std::numeric_limits<std::uint64_t>::max();  ///< of all messages of the source
   std::uint64_t last_ns_ = 0;
   std::uint64_t chunk_offset_ = 0;
 };
@@ -114,7 +114,7 @@ void Rewriter::take_message(const mcap::StreamRecord& record) {
 
 void Rewriter::take_attachment(const mcap::StreamRecord& record) {
   const mcap::Attachment attachment = mcap::decode_attachment(record.content);
-  // The reader notes a damaged one; a new CRC must not make it look sound.
+  // The reader notes a damaged attachment. A new CRC must not make it look undamaged.
   if (mcap::attachment_crc_holds(record.content, attachment)) output_.write(attachment);
 }
 

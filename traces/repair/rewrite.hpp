@@ -12,7 +12,7 @@
 namespace vestige {
 
 struct RewriteOptions {
-  std::optional<mcap::Compression> compression = {};  ///< nothing: as its first chunk is
+  std::optional<mcap::Compression> compression = {};  ///< nothing: that of the source's first chunk
   mcap::TimeRange range = {};
 };
 
@@ -20,15 +20,16 @@ struct Rewritten {
   std::uint64_t messages = 0;  ///< written
   std::uint64_t bytes = 0;     ///< written
   std::uint64_t left_out = 0;  ///< messages outside the range
-  std::uint64_t start_ns = 0;  ///< of the first message kept
-  std::uint64_t end_ns = 0;    ///< of the last
-  mcap::DamageList damages;    ///< what of the source could not be read, and is not in the new file
+  std::uint64_t start_ns = 0;  ///< time of the first message kept
+  std::uint64_t end_ns = 0;    ///< time of the last message kept
+  mcap::DamageList damages;    ///< parts of the source that could not be read and are not in the new file
 };
 
-/// Writes a file anew through `sink`: the same channels, attachments, metadata and chunks, other compression or only
-/// some of the messages. Messages keep their sequence and times to the bit. Memory: the largest record and chunk.
-/// `progress` is told the share done and returns false to stop. Throws `Error`: no MCAP file, no message within the
-/// range, reading failed, stopped; and what `sink` throws.
+/// Writes a new version of a file through `sink`. Channels, attachments, metadata and chunks stay the same. The
+/// compression may change, and only messages in the range are kept. Messages keep their sequence and times to the bit.
+/// Memory: the largest record and chunk. Calls `progress` with the fraction done; it returns false to stop. Throws
+/// `Error` if the source is not an MCAP file, has no message within the range, cannot be read, or the work was stopped.
+/// Exceptions of `sink` pass through.
 Rewritten rewrite_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, const RewriteOptions& options,
                        const std::function<bool(double)>& progress);
 

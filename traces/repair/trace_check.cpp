@@ -32,7 +32,7 @@ using trace_format::Stream;
 constexpr std::string_view kRefused =
     "`vestige replay` refuses the file; `vestige recover` leaves out what does not fit";
 
-/// Checks frames against each other, message by message, as `TraceReader` puts them together.
+/// Checks frames against each other, message by message, with the same rules by which `TraceReader` assembles them.
 class FrameCheck {
  public:
   FrameCheck(TraceCheck& result, std::optional<std::size_t> node_count) : result_(result), node_count_(node_count) {}
@@ -43,13 +43,13 @@ class FrameCheck {
   void finish() { end_frame(); }
 
  private:
-  /// Messages in a row that have one number.
+  /// Consecutive messages with the same number.
   struct Frame {
     CheckedRecord first;  ///< without its content
     std::uint32_t number = 0;
     bool has_pose = false;
     bool has_colliders = false;
-    bool is_broken = false;  ///< one of its messages was no good, which was said
+    bool is_broken = false;  ///< one of its messages was bad, which was already reported
   };
 
   void end_frame();
@@ -63,11 +63,11 @@ class FrameCheck {
   std::optional<std::size_t> node_count_;
   MessageDecoder decoder_;
   std::vector<ColliderSample> colliders_;
-  std::optional<Frame> frame_;              ///< whose messages are being read
-  std::optional<std::uint32_t> delivered_;  ///< number of the last frame that readers get
+  std::optional<Frame> frame_;              ///< the frame being read
+  std::optional<std::uint32_t> delivered_;  ///< number of the last frame that readers deliver
   std::optional<std::uint64_t> last_time_ns_;
-  bool refused_ = false;            ///< readers stop here
-  bool colliders_channel_ = false;  ///< there is one
+  bool refused_ = false;            ///< readers stop at this frame
+  bool colliders_channel_ = false;  ///< there is a channel /colliders
 };
 
 void FrameCheck::report(const CheckedRecord& record, std::string what, std::string_view consequence) {
@@ -154,7 +154,7 @@ void FrameCheck::take_event(const CheckedRecord& record, const mcap::Message& me
          "they were never in the file");
 }
 
-/// What a trace says about itself: session, attachments, nodes.
+/// The trace's statements about itself: session, attachments, nodes.
 class Contents {
  public:
   explicit Contents(TraceCheck& result) : result_(result) {}
@@ -203,14 +203,14 @@ void Contents::finish(std::optional<std::size_t> pose_nodes) {
 class Checker {
  public:
   explicit Checker(const mcap::ByteSource& source) : frames_(result_, {}), contents_(result_) {
-    // As the reader does: definitions that the summary repeats are known from the beginning.
+    // As in the reader, definitions that the summary repeats are known from the beginning.
     try {
       const mcap::SummaryResult summary = mcap::read_summary(source);
       if (!summary.summary) return;
       for (const mcap::Schema& schema : summary.summary->schemas) streams_.add(schema);
       for (const mcap::Channel& channel : summary.summary->channels) take(channel);
     } catch (const Error&) {
-      // The check itself says what is wrong with the beginning.
+      // The container check reports faults at the beginning.
       return;
     }
   }

@@ -9,24 +9,24 @@
 
 namespace vestige {
 
-/// What `vestige doctor` says of a file.
+/// The result of `vestige doctor` for a file.
 struct TraceCheck {
-  bool is_trace = false;  ///< by its profile or its channels; another MCAP file is checked as a container only
+  bool is_trace = false;  ///< judged by profile or channels; any other MCAP file is checked as a container only
   mcap::ContainerFacts container;
-  std::uint64_t frames = 0;   ///< that readers deliver: up to where one of them is refused
-  std::uint64_t dropped = 0;  ///< messages that the recorder noted as lost
+  std::uint64_t frames = 0;   ///< frames that readers deliver, up to the first one that they refuse
+  std::uint64_t dropped = 0;  ///< number of messages that the recorder noted as lost
   mcap::ProblemList problems;
 
-  /// Whether there is anything left to read: a frame of a trace; a message, attachment or metadata of another file.
+  /// Whether anything is readable: a frame of a trace; a message, attachment or metadata record of another file.
   bool readable() const {
     if (is_trace) return frames > 0;
     return container.messages + container.attachments + container.metadata > 0;
   }
 };
 
-/// Checks a file as `mcap::check_container` does, and on top of that, in a trace of ours: session and attachments,
-/// every message against its schema, frames against the avatar and against each other. Throws `Error`: the source is
-/// empty, reading failed, stopped by `progress`.
+/// Checks a file as `mcap::check_container` does. In a Vestige trace, also checks session and attachments, every
+/// message against its schema, and frames against the avatar and each other. Throws `Error` if the source is empty,
+/// reading failed, or `progress` stopped the check.
 TraceCheck check_trace(const mcap::ByteSource& source, const std::function<bool(double)>& progress);
 
 }  // namespace vestige

@@ -26,7 +26,7 @@ using mcap::Malformed;
 using mcap::Opcode;
 using trace_format::Stream;
 
-/// Gathers what a summary is made of.
+/// Gathers the data of a summary.
 class Gatherer {
  public:
   explicit Gatherer(const mcap::ByteSource& source) : source_(source) {}
@@ -93,7 +93,7 @@ void Gatherer::take(const mcap::Message& message) {
   const TraceEvent event = decoder_.event(message.data);
   if (event.kind != trace_format::kDroppedKind) return;
   summary_.dropped += event.count;
-  // Recorders of ours name three topics; a file of others may name a new one in each message.
+  // Vestige's recorders use three topics; a foreign file may name a new topic in each message.
   std::string topic = dropped_topic(event);
   auto& dropped = summary_.dropped_by_topic;
   if (dropped.size() >= mcap::DamageList::kMostKept && !dropped.contains(topic)) topic = "(other topics)";
@@ -172,7 +172,7 @@ McapSummary summarise_mcap(const std::filesystem::path& path) {
     try {
       take_record(record, gatherer);
     } catch (const Malformed& malformed) {
-      // StreamReader notes records that do not decode; what it cannot know is what a message of ours should be.
+      // StreamReader notes records that do not decode. It cannot know what Vestige's own messages should contain.
       if (record.opcode == Opcode::kMessage)
         gatherer.warn({record.offset, 0, fmt::format("a Message: {}", malformed.what())});
     }

@@ -18,7 +18,7 @@ constexpr double kGrid = 1048576;  // 2^20 steps a metre
 constexpr double kHuman_m = 1.75;
 constexpr double kShortestHuman_m = 1;
 constexpr double kTallestHuman_m = 2.5;
-constexpr double kJump = 0.03;  // of the body's size
+constexpr double kJump = 0.03;  // fraction of the body's size
 
 }  // namespace
 

@@ -12,23 +12,24 @@
 
 namespace vestige {
 
-/// The nearest point of the grid of 2^-20 m (detector/CONTRACT.md, 2).
+/// Returns the nearest point of the grid of 2^-20 m (detector/CONTRACT.md, 2).
 glm::dvec3 on_grid(const glm::dvec3& position_m);
 
-/// Two directions that, with `direction` (length 1), stand at right angles to each other.
+/// Two directions perpendicular to each other and to `direction` (length 1).
 struct Across {
   glm::dvec3 first;
   glm::dvec3 second;
 };
 Across across(const glm::dvec3& direction);
 
-/// Place `index` of `count` in a disc of radius 1, evenly filled, the first in its middle (Vogel, 1979).
+/// Returns place `index` of `count` in a disc of radius 1, evenly filled, the first in its centre (Vogel, 1979).
 glm::dvec2 disc_place(std::size_t index, std::size_t count);
 
-/// 0 to 1, from rest to rest, as `share` goes from 0 to 1.
+/// Goes from 0 to 1 as `share` does, with speed 0 at both ends.
 double smooth(double share);
 
-/// What scenarios ask of an avatar: its size, and where it is at any time. Holds references to avatar and animation.
+/// The properties of an avatar that scenarios need: its size, and its pose at any time. Keeps references to avatar and
+/// animation.
 class Body {
  public:
   Body(const Avatar& avatar, const Animation* animation);
@@ -36,22 +37,22 @@ class Body {
   const Avatar& avatar() const { return avatar_; }
   const Animation* animation() const { return animation_; }
 
-  /// The box around the avatar when the trace begins.
+  /// The bounding box of the avatar at the beginning of the trace.
   const Box& box_m() const { return box_m_; }
   /// The longest side of that box, 0 for an avatar without extent.
   double size_m() const { return size_m_; }
 
-  /// What a metre beside a human being is beside this avatar. 1 if it is between 1 m and 2.5 m long; any other is taken
-  /// for a human being of 1.75 m in another unit.
+  /// The length that corresponds to one metre beside a human being. 1 if the avatar is between 1 m and 2.5 m long. Any
+  /// other avatar counts as a human being of 1.75 m in another unit.
   double metre() const { return metre_; }
 
-  /// After so long the animation begins anew; 0 where nothing moves.
+  /// The duration after which the animation starts again; 0 if nothing moves.
   double loop_s() const { return loop_s_; }
-  /// Whether since the last call (since 0) the animation began anew somewhere else than it had ended, so that whatever
-  /// goes with the body is suddenly elsewhere too.
+  /// Whether, since the last call (or since 0), the animation restarted at a place other than its end, so that
+  /// everything moving with the body jumps, too.
   bool jumps(double time_s);
 
-  /// What every palette entry does at `time_s` (before 0: at 0). Good until the next call.
+  /// The palette matrices at `time_s` (before 0: at 0), valid until the next call.
   const std::vector<glm::dmat4>& palette(double time_s);
 
  private:

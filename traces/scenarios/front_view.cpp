@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kCells = 350;
 
-/// Twice the signed area.
+/// Returns twice the signed area.
 double area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -51,7 +51,7 @@ void FrontView::draw(const Skin& skin, std::uint32_t triangle) {
   const glm::dvec3& b = skin.rest_m()[corners.y];
   const glm::dvec3& c = skin.rest_m()[corners.z];
   const double whole = area(a, b, c);
-  if (whole == 0 || !std::isfinite(whole)) return;  // seen edge on
+  if (whole == 0 || !std::isfinite(whole)) return;  // seen edge-on
   const glm::dvec3 low = glm::min(a, glm::min(b, c));
   const glm::dvec3 high = glm::max(a, glm::max(b, c));
   for (int row = row_of(low.y); row <= row_of(high.y); ++row) {

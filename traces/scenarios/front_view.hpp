@@ -9,8 +9,8 @@
 
 namespace vestige {
 
-/// The skin as seen from the front: a grid of the points that lie foremost in the rest pose. The front is +z, up is +y,
-/// as glTF 2.0 §3.4 wants it. The longest side has 350 cells: 5 mm each on a human being.
+/// The skin seen from the front: a grid of the foremost points in the rest pose. The front is +z, up is +y (glTF 2.0
+/// §3.4). The longest side has 350 cells, which are 5 mm each on a human being.
 class FrontView {
  public:
   explicit FrontView(const Skin& skin);
@@ -18,17 +18,17 @@ class FrontView {
   int columns() const { return columns_; }  ///< along +x, the avatar's left
   int rows() const { return rows_; }        ///< upwards
   double cell_m() const { return cell_m_; }
-  /// The cell that holds this place, which may be beyond the grid.
+  /// The cell that contains this place; it may lie outside the grid.
   int column_of(double x_m) const;
   int row_of(double y_m) const;
-  /// The box around the avatar at rest.
+  /// The bounding box of the avatar at rest.
   const Box& box_m() const { return box_m_; }
 
   struct Cell {
     SkinPoint point;
     double z_m;  ///< at rest
   };
-  /// Null beyond the grid and where there is no skin.
+  /// Returns null outside the grid and where there is no skin.
   const Cell* at(int column, int row) const;
 
  private:

@@ -13,13 +13,13 @@ namespace {
 
 constexpr double kWander_m_per_s = 0.3;  // along the skin
 constexpr double kStraight_m = 0.05;
-constexpr double kLeastReach_m = 0.008;  // to either side of the skin
+constexpr double kLeastReach_m = 0.008;  // to each side of the skin
 constexpr double kMostReach_m = 0.018;
-constexpr double kLeast_hz = 3;  // in and out again
+constexpr double kLeast_hz = 3;  // cycles of in and out
 constexpr double kMost_hz = 6;
 
-/// A collider swings to and fro about a point of the posed skin that walks along it. No collider is ever farther from
-/// the skin than it reaches, however the skin moves.
+/// A collider oscillates about a point of the posed skin that walks along the skin. A collider is never farther from
+/// the skin than its reach, however the skin moves.
 class Hug final : public ColliderSource {
  public:
   Hug(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings)

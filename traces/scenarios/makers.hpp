@@ -7,8 +7,9 @@
 
 namespace vestige {
 
-/// What the table of scenarios names; each file says what it does. Lengths and speeds are those beside a human being
-/// (`Body::metre`), positions lie on a grid of 2^-20 m. A source refers to the avatar and the animation.
+/// The makers in the table of scenarios; each source file describes its scenario. Lengths and speeds are those beside a
+/// human being (`Body::metre`), and positions lie on a grid of 2^-20 m. A source keeps references to the avatar and the
+/// animation.
 std::unique_ptr<ColliderSource> make_swarm(const Avatar& avatar, const Animation* animation,
                                            const ScenarioSettings& settings);
 std::unique_ptr<ColliderSource> make_rain(const Avatar& avatar, const Animation* animation,

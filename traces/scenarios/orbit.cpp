@@ -16,9 +16,9 @@ constexpr double kShortestTurn_s = 0.8;  // once around
 constexpr double kLongestTurn_s = 1.6;
 constexpr double kWithin = 0.98;
 
-/// Level circles around the upright axis through the body's centre, half of them either way. Each goes through a random
-/// point of the skin as it is when the trace begins, which gives its radius and, moved a little towards the middle, its
-/// height: a circle must not skim along a flat sole.
+/// Horizontal circles around the vertical axis through the body's centre, half of them in each direction. Each circle
+/// goes through a random point of the skin at the beginning of the trace. That point gives the circle's radius and,
+/// moved a little towards the middle, its height, because a circle must not graze a flat sole.
 class Orbit final : public ColliderSource {
  public:
   Orbit(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings)
@@ -57,7 +57,7 @@ class Orbit final : public ColliderSource {
     double radius_m;
     double y_m;
     double phase;     // turns
-    double turns_hz;  // below 0: the other way
+    double turns_hz;  // negative: the other direction
   };
 
   Body body_;

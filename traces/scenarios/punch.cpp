@@ -16,30 +16,31 @@ namespace {
 
 constexpr std::uint32_t kFistPoints = 8;
 constexpr double kFistRadius_m = 0.035;
-constexpr double kStrike_m_per_s = 8;  // on the skin
+constexpr double kStrike_m_per_s = 8;  // speed at the skin
 constexpr double kDepth_m = 0.04;
-constexpr double kReach_m = 0.4;  // from rest to the skin, all of it speeding up
+constexpr double kReach_m = 0.4;  // from rest to the skin, accelerating all the way
 constexpr double kStop_s = 2 * kDepth_m / kStrike_m_per_s;
 constexpr double kSwing_s = 2 * kReach_m / kStrike_m_per_s;
 constexpr double kBack_s = 0.25;
 constexpr double kShortestRound_s = 0.7;  // from one strike to the next
 constexpr double kLongestRound_s = 1.1;
 
-constexpr double kLowest = 0.5;  // of the height at rest: hips to head
+constexpr double kLowest = 0.5;  // fractions of the height at rest: hips to head
 constexpr double kHighest = 0.97;
 constexpr double kHalfWidth_m = 0.2;
-constexpr double kFacing = 0.6;  // the cosine between the skin struck and the front
-constexpr double kSpread = 0.2;  // how far a strike may stray from the normal: its tangent, at most
+constexpr double kFacing = 0.6;  // least cosine between the normal of the struck skin and the front
+constexpr double kSpread = 0.2;  // largest deviation of a strike from the normal, as a tangent
 
-/// Where and which way a fist strikes, and when it reaches the skin.
+/// Place, direction and time of a fist's strike on the skin.
 struct Strike {
   double time_s = 0;
   glm::dvec3 target_m = glm::dvec3(0);
   glm::dvec3 inwards = glm::dvec3(0, 0, -1);
 };
 
-/// A fist is a disc of points. It speeds up to 8 m/s at the skin, stops evenly within 4 cm, draws back and moves on to
-/// where its next strike begins. It strikes against the skin's normal, where that skin is at the moment of the strike.
+/// A fist is a disc of points. It accelerates to 8 m/s at the skin, decelerates evenly within 4 cm, draws back and
+/// moves to the beginning of its next strike. It strikes against the skin's normal, at the place where the skin is at
+/// the moment of the strike.
 class Punch final : public ColliderSource {
  public:
   Punch(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings)
@@ -75,7 +76,7 @@ class Punch final : public ColliderSource {
     Strike next;
   };
 
-  /// Where the front of torso and head faces the fists, at rest.
+  /// Finds the places at which the front of torso and head faces the fists, at rest.
   void find_targets() {
     const FrontView view(skin_);
     if (!(view.cell_m() > 0)) return;
@@ -101,7 +102,7 @@ class Punch final : public ColliderSource {
     return {time_s, place.position_m, glm::normalize(kSpread * random.direction() - place.normal)};
   }
 
-  /// Brings the fist's strikes around `time_s` up to date.
+  /// Updates the fist's strikes around `time_s`.
   void follow(Fist& fist, std::uint32_t number, double time_s) {
     const double turn = std::floor(time_s / fist.period_s - fist.phase);
     if (turn == fist.turn) return;
@@ -110,7 +111,7 @@ class Punch final : public ColliderSource {
     fist.turn = turn;
   }
 
-  /// A point of the fist when its middle is `depth_m` beneath the skin that the strike meets.
+  /// Returns a point of the fist when its middle is `depth_m` below the skin that the strike meets.
   glm::dvec3 point_m(const Strike& strike, const glm::dvec2& place, double depth_m) const {
     const Across sideways = across(strike.inwards);
     return strike.target_m +

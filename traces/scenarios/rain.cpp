@@ -9,12 +9,12 @@ namespace vestige {
 
 namespace {
 
-constexpr double kFall_m_per_s = 9;  // at which large drops end up falling
-constexpr double kAbove_m = 0.3;  // of the room, where a drop begins: none is tested before it has fallen for a frame
+constexpr double kFall_m_per_s = 9;  // terminal speed of large drops
+constexpr double kAbove_m = 0.3;     // above the room, so that a drop has fallen for a frame before it is tested
 constexpr double kBelow_m = 0.3;
 
-/// A drop falls at an even speed from above the room that the body takes up to below it. Then it is a new one, above
-/// another spot of the ground: it has teleported.
+/// A drop falls at constant speed from above the room that the body takes up to below the room. Then it teleports to
+/// above another place on the ground, as a new drop.
 class Rain final : public ColliderSource {
  public:
   Rain(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings)
@@ -37,7 +37,7 @@ class Rain final : public ColliderSource {
       if (!first && fall != falls_[id]) teleported_.push_back(id);
       falls_[id] = fall;
       const double share = falls - std::floor(falls);
-      // The room is where it will be in the middle of the fall.
+      // The room's position is that in the middle of the fall.
       Random random(settings_.seed, id, fall + 1);
       const glm::dvec3 centre_m = room_.centre_m(time_s + (0.5 - share) * fall_s_);
       out.push_back({id, on_grid(centre_m + glm::dvec3(random.uniform(room_.low_m().x, room_.high_m().x),
@@ -50,10 +50,10 @@ class Rain final : public ColliderSource {
   Body body_;
   Room room_;
   ScenarioSettings settings_;
-  double top_m_ = 0;   // from the room's centre
+  double top_m_ = 0;   // relative to the room's centre
   double fall_m_ = 0;  // from top to bottom
   double fall_s_ = 0;
-  std::vector<std::uint64_t> falls_;  // how often each had fallen at the last sample
+  std::vector<std::uint64_t> falls_;  // how many times each drop had fallen at the last sample
 };
 
 }  // namespace

@@ -8,8 +8,9 @@
 
 namespace vestige {
 
-/// SplitMix64 (Steele, Lea, Flood: Fast Splittable Pseudorandom Number Generators, 2014), eight bytes a generator. One
-/// made of a seed, a collider and a count of its turns says what that turn is like, whatever came before.
+/// SplitMix64 (Steele, Lea, Flood: Fast Splittable Pseudorandom Number Generators, 2014), eight bytes a generator. A
+/// generator made from a seed, a collider and a turn number gives that turn's values independently of all turns before
+/// it.
 class Random {
  public:
   explicit Random(std::uint64_t seed, std::uint64_t collider = 0, std::uint64_t turn = 0)
@@ -19,10 +20,10 @@ class Random {
 
   double uniform(double low, double high) { return low + (high - low) * static_cast<double>(next() >> 11) * 0x1p-53; }
 
-  /// Below `count`, which is not 0.
+  /// Returns a number below `count`. Precondition: `count` is not 0.
   std::size_t index(std::size_t count) { return static_cast<std::size_t>(next() % count); }
 
-  /// Of length 1, every direction alike.
+  /// Returns a uniformly distributed direction of length 1.
   glm::dvec3 direction() {
     const double z = uniform(-1, 1);
     const double angle = uniform(0, 2 * std::numbers::pi);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRate_hz = 30;
 constexpr double kMostIntervals = 3600;
-constexpr std::size_t kVertices = 500;  // about so many stand for all
+constexpr std::size_t kVertices = 500;  // about this many vertices represent all
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Room::Room(Body& body) : loop_s_(body.loop_s()) {
   std::vector<glm::dvec3> places;
   for (int i = 0; i <= intervals; ++i) {
     const double time_s = intervals > 0 ? loop_s_ * i / intervals : 0;
-    // The loop's end itself, which looping never shows, is where the last moments lead to.
+    // The end of the loop, which looping never shows, is where the last moments lead.
     const Animation* animation = body.animation();
     palette_matrices(avatar, animation == nullptr ? rest_pose(avatar) : sample_animation(avatar, *animation, time_s),
                      palette);

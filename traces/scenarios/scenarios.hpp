@@ -16,20 +16,20 @@ struct ScenarioSettings {
 };
 
 /// A built-in scenario. The same avatar, animation, count and seed give the same positions at the same times, at any
-/// rate of sampling.
+/// sampling rate.
 struct Scenario {
   std::string_view name;
   std::string_view summary;  ///< one line
   std::uint32_t default_count;
-  /// `animation` may be null: then the avatar rests.
+  /// `animation` may be null, for an avatar at rest.
   std::unique_ptr<ColliderSource> (*make)(const Avatar& avatar, const Animation* animation,
                                           const ScenarioSettings& settings);
 };
 
-/// All of them, in the order in which to list them.
+/// Returns all scenarios in the order of listing.
 std::span<const Scenario> scenarios();
 
-/// Null where none has this name.
+/// Returns null if no scenario has this name.
 const Scenario* find_scenario(std::string_view name);
 
 }  // namespace vestige

@@ -17,7 +17,8 @@ namespace vestige {
 
 namespace {
 
-/// The same bind position under the same influences: moved alike by every pose. An order, by bits.
+/// The key of vertices with the same bind position and the same influences, which every pose moves alike. Keys have an
+/// order, by bits.
 auto weld_key(const Avatar& avatar, std::uint32_t vertex) {
   const Influences& influences = avatar.influences[vertex];
   const glm::vec3 position = avatar.position_bind[vertex] + 0.0F;  // -0 is 0
@@ -29,7 +30,7 @@ std::vector<std::uint32_t> weld_vertices(const Avatar& avatar) {
   return weld(avatar.position_bind.size(), [&](std::uint32_t vertex) { return weld_key(avatar, vertex); });
 }
 
-/// Area-weighted, in the space of bind positions; indexed by the weld's numbers.
+/// Returns area-weighted normals in the space of bind positions, indexed by `weld_`.
 std::vector<glm::dvec3> bind_normals(const Avatar& avatar, const std::vector<std::uint32_t>& welded) {
   std::vector<glm::dvec3> normals(avatar.position_bind.size(), glm::dvec3(0));
   for (const glm::uvec3& triangle : avatar.triangles) {

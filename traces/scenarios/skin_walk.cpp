@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
 constexpr std::uint32_t kNoCorner = 3;
-constexpr double kShortestStep_s = 1e-4;  // a step takes at least this, so that slivers cannot stop time
+constexpr double kShortestStep_s = 1e-4;  // least duration of a step, so that slivers cannot stop time
 constexpr double kTurn = 0.4;             // radians
-constexpr double kResting_s = 1;          // a step where there is no way to go
+constexpr double kResting_s = 1;          // duration of a step where there is no path
 
 struct Edge {
   std::array<std::uint32_t, 2> ends;
@@ -43,7 +43,7 @@ SkinWalk::SkinWalk(const Skin& skin, double speed_m_per_s, double straight_m)
   }
   std::ranges::sort(edges,
                     [](const Edge& a, const Edge& b) { return a.ends != b.ends ? a.ends < b.ends : a.side < b.side; });
-  // Where more than two triangles share an edge, they are joined in pairs.
+  // If more than two triangles share an edge, they are joined in pairs.
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     if (edges[i].ends != edges[i + 1].ends) continue;
     neighbours_[edges[i].side] = edges[i + 1].side / 3;
@@ -68,7 +68,7 @@ SkinStep SkinWalk::step_from(double start_s, const SkinPoint& from, const glm::d
   if (!(squared > 0)) return step;
 
   double length_m = straight_m_;
-  glm::dvec3 rate(0);  // of the weights, a metre
+  glm::dvec3 rate(0);  // change of the weights per metre
   for (std::uint32_t i = 0; i < 3; ++i) {
     const auto k = static_cast<int>(i);
     rate[k] = glm::dot(glm::cross(normal, corner_m(from.triangle, (i + 2) % 3) - corner_m(from.triangle, (i + 1) % 3)),
@@ -94,7 +94,7 @@ SkinStep SkinWalk::begin(double time_s, Random& random) const {
   return step_from(time_s, point, heading);
 }
 
-/// Beyond the edge that the step ended on; where nothing is there, on the same side again.
+/// Crosses the edge at which the step ended. If there is nothing beyond the edge, stays on the same side.
 SkinWalk::Crossing SkinWalk::cross(const SkinStep& step) const {
   const auto& triangles = skin_.avatar().triangles;
   const std::vector<std::uint32_t>& weld = skin_.weld();
@@ -136,7 +136,7 @@ SkinStep SkinWalk::next(const SkinStep& step, Random& random) const {
   if (length > 0) {
     const glm::dvec3 turned =
         std::cos(angle) * start.heading + std::sin(angle) * glm::cross(normal / length, start.heading);
-    // A turn must not lead back over the edge just crossed.
+    // A turn must not lead back across the edge just crossed.
     if (glm::dot(turned, start.inwards) >= 0) start.heading = turned;
   }
   return step_from(step.end_s, start.point, start.heading);

@@ -7,23 +7,23 @@
 
 namespace vestige {
 
-/// A straight step within one triangle, at an even speed.
+/// A straight step within one triangle, at constant speed.
 struct SkinStep {
   double start_s = 0;
   double end_s = 0;
   SkinPoint from;
-  glm::dvec3 to_weight;           ///< where in the same triangle it ends
-  glm::dvec3 heading;             ///< along the skin as it rests, length 1
+  glm::dvec3 to_weight;           ///< its end in the same triangle
+  glm::dvec3 heading;             ///< along the skin at rest, length 1
   std::uint32_t exit_corner = 3;  ///< the step ends on the edge opposite to this corner; 3: within the triangle
 
   SkinPoint at(double time_s) const;
 };
 
-/// Ways along the skin: straight on over the edges between triangles, with small turns now and then, and back from the
-/// edges that have no other side. Lengths are those of the rest pose. Holds a reference to the skin.
+/// Paths along the skin. They run straight across the edges between triangles, with small turns now and then, and turn
+/// back at edges without another side. Lengths are those of the rest pose. Keeps a reference to the skin.
 class SkinWalk {
  public:
-  /// `speed_m_per_s` and `straight_m` (the longest way without a turn) are above 0.
+  /// Precondition: `speed_m_per_s` and `straight_m` (the longest path without a turn) are above 0.
   SkinWalk(const Skin& skin, double speed_m_per_s, double straight_m);
 
   SkinStep begin(double time_s, Random& random) const;
@@ -43,7 +43,7 @@ class SkinWalk {
   const Skin& skin_;
   double speed_m_per_s_;
   double straight_m_;
-  std::vector<std::uint32_t> neighbours_;  // three a triangle: beyond the edge opposite to each corner
+  std::vector<std::uint32_t> neighbours_;  // three for each triangle: the one across the edge opposite to each corner
 };
 
 }  // namespace vestige

@@ -14,17 +14,17 @@ namespace vestige {
 
 namespace {
 
-constexpr double kChest = 0.72;      // of the height at rest
-constexpr double kHalfWay_m = 0.14;  // at most so far to either side
-constexpr double kSteepest = 3;      // a steeper slope ends the chest: there an arm begins, or the side
+constexpr double kChest = 0.72;      // fraction of the height at rest
+constexpr double kHalfWay_m = 0.14;  // longest path to each side
+constexpr double kSteepest = 3;      // a steeper slope ends the chest: an arm or the side begins there
 constexpr double kThereAndBack_s = 2;
 constexpr double kObjectRadius_m = 0.025;
 constexpr double kDip_m = 0.004;
 constexpr double kDips_hz = 20;
 
-/// The object is a round patch of points. Its middle goes from the avatar's left to its right and back at an even
-/// speed, each point over the skin of its own height, and dips through the skin all the way. With the avatar's moves
-/// the way moves.
+/// The object is a round patch of points. Its middle moves from the avatar's left to its right and back at constant
+/// speed. Each point follows the skin at its own height, and dips through the skin all the way. The path moves with the
+/// avatar.
 class Slide final : public ColliderSource {
  public:
   Slide(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings)
@@ -38,7 +38,7 @@ class Slide final : public ColliderSource {
     for (std::uint32_t id = 0; id < settings.count; ++id) {
       const glm::dvec2 place = kObjectRadius_m * body_.metre() * disc_place(id, settings.count);
       const int row = row_ + (view_.cell_m() > 0 ? static_cast<int>(std::round(place.y / view_.cell_m())) : 0);
-      // Every row's track is followed at most once; where there is none, the point stays level with the middle.
+      // Every row's track is computed at most once. Without a track, the point stays level with the middle.
       if (!tracks_.contains(row)) {
         const Track track = track_at(row);
         tracks_[row] = track.cells.empty() ? tracks_.at(row_) : track;
@@ -70,19 +70,19 @@ class Slide final : public ColliderSource {
   }
 
  private:
-  /// Cells of one row of the view, side by side.
+  /// The adjacent cells of one row of the view.
   struct Track {
     std::vector<SkinPoint> cells;
     double first_x_m = 0;
   };
   struct Point {
-    double ahead_m;  // of the object's middle, towards the avatar's left
+    double ahead_m;  // distance ahead of the object's middle, towards the avatar's left
     const Track* track;
   };
 
   double middle_x_m() const { return 0.5 * (view_.box_m().low.x + view_.box_m().high.x); }
 
-  /// The chest's height, or the nearest at which there is skin in the middle.
+  /// Finds the chest's height, or the nearest height at which there is skin in the middle.
   void find_chest() {
     if (!(view_.cell_m() > 0)) return;
     const int chest = view_.row_of(glm::mix(view_.box_m().low.y, view_.box_m().high.y, kChest));
@@ -100,7 +100,7 @@ class Slide final : public ColliderSource {
     }
   }
 
-  /// From the middle to both sides, as far as the skin goes on.
+  /// Returns the track from the middle to both sides, as far as the skin continues.
   Track track_at(int row) const {
     const int middle = view_.column_of(middle_x_m());
     if (view_.at(middle, row) == nullptr) return {};
@@ -140,7 +140,7 @@ class Slide final : public ColliderSource {
   int row_ = 0;
   bool has_chest_ = false;
   std::map<int, Track> tracks_;  // by row
-  double from_x_m_ = 0;          // the middle's way, at rest
+  double from_x_m_ = 0;          // path of the middle, at rest
   double to_x_m_ = 0;
   std::vector<Point> points_;
 };

@@ -13,14 +13,14 @@ namespace vestige {
 
 namespace {
 
-constexpr std::size_t kInstants = 256;  // at most so many poses are looked at
-constexpr std::size_t kCandidates = 4;  // of which the point of skin that moves farthest against itself is taken
-constexpr double kAround_s = 1.0 / 60;  // before and after an instant: what the skin does there
-constexpr double kSlowest_m = 1e-5;     // in that time; less is no sweep
+constexpr std::size_t kInstants = 256;  // most poses that are examined
+constexpr std::size_t kCandidates = 4;  // the one that moves farthest along its normal is taken
+constexpr double kAround_s = 1.0 / 60;  // time before and after an instant in which the skin's motion is measured
+constexpr double kSlowest_m = 1e-5;     // least motion in that time; less is not a sweep
 constexpr double kBesideResting_m = 0.01;
 
-/// A collider rests where some point of the skin will be at some instant of the animation, so that the skin sweeps over
-/// it. Beside an avatar that does not move it rests 1 cm off the skin.
+/// A collider rests at a place where some point of the skin will be at some instant of the animation, so that the skin
+/// sweeps over the collider. Beside an avatar that does not move, it rests 1 cm off the skin.
 class Still final : public ColliderSource {
  public:
   Still(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings) {
@@ -29,7 +29,7 @@ class Still final : public ColliderSource {
     const std::size_t instants = std::min<std::size_t>(settings.count, kInstants);
     resting_.resize(settings.count);
     for (std::size_t instant = 0; instant < instants; ++instant) {
-      // Spread over the loop; the first and last moments are left out, since the skin may jump between them.
+      // Spread over the loop, without its first and last moments, because the skin may jump between them.
       Random when(settings.seed, instant);
       const double share = (static_cast<double>(instant) + when.uniform(0, 1)) / static_cast<double>(instants);
       const double around_s = std::min(kAround_s, 0.25 * body.loop_s());

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kShortestPassage_s = 0.3;  // from one turn to the next
 constexpr double kLongestPassage_s = 0.8;
-constexpr double kBeyond = 0.35;  // a turn lies this many body sizes beyond the aim
+constexpr double kBeyond = 0.35;  // a turn lies this fraction of the body's size beyond the aim
 
 /// One straight flight through the body.
 struct Passage {
@@ -30,10 +30,10 @@ class Swarm final : public ColliderSource {
     const glm::dvec3 centre = 0.5 * (body_.box_m().low + body_.box_m().high);
     flyers_.reserve(settings.count);
     for (std::uint32_t id = 0; id < settings.count; ++id) {
-      // A generator of its own: a collider's way does not depend on how many others there are.
+      // Each collider has its own generator, so its path does not depend on the number of other colliders.
       Flyer flyer{Random(settings.seed, id), {}};
       flyer.passage.to = centre + body_.size_m() * kBeyond * 1.5 * flyer.random.direction();
-      // Times before 0, so that the swarm is in full flight when the trace begins.
+      // Starts before time 0, so that the swarm is in full flight at the beginning of the trace.
       flyer.passage.end_s = -flyer.random.uniform(0, kShortestPassage_s);
       flyers_.push_back(flyer);
     }
@@ -62,7 +62,8 @@ class Swarm final : public ColliderSource {
     passage.end_s = passage.start_s + flyer.random.uniform(kShortestPassage_s, kLongestPassage_s);
     passage.from = flyer.passage.to;
     const std::size_t vertex = flyer.random.index(body_.avatar().position_bind.size());
-    // The aim is reached about when the passage is half over; where it then is decides the way.
+    // The collider reaches the aim about halfway through the passage, so the aim's position at that time determines the
+    // path.
     const double aim_s = 0.5 * (passage.start_s + passage.end_s);
     const glm::dvec3 aim = skin_vertex(body_.avatar(), body_.palette(aim_s), vertex);
     const double distance = glm::length(aim - passage.from);

@@ -7,7 +7,7 @@
 
 namespace vestige {
 
-/// The box along the axes that holds a set of points, in their unit.
+/// The axis-aligned bounding box of a set of points, in the points' unit.
 struct Box {
   glm::dvec3 low;
   glm::dvec3 high;
@@ -16,7 +16,7 @@ struct Box {
   double longest_side() const { return std::max({extent().x, extent().y, extent().z}); }
 };
 
-/// `points` is not empty.
+/// Precondition: `points` is not empty.
 inline Box box_around(std::span<const glm::dvec3> points) {
   Box box = {points.front(), points.front()};
   for (const glm::dvec3& point : points) box = {glm::min(box.low, point), glm::max(box.high, point)};

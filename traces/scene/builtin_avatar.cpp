@@ -2,7 +2,7 @@
 
 #include <span>
 
-// The three files stand in the program as they are.
+// The three files are embedded in the program unchanged.
 #define VESTIGE_EMBED(symbol, file)                                                                        \
   asm(".pushsection .rodata\n" #symbol "_begin:\n.incbin \"" VESTIGE_MANNEQUIN_DIR "/" file "\"\n" #symbol \
       "_end:\n"                                                                                            \

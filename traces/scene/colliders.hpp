@@ -14,7 +14,7 @@ struct TimeSpan {
   double last_s = std::numeric_limits<double>::infinity();
 };
 
-/// Where colliders are over time: a built-in scenario or a file.
+/// The positions of colliders over time, from a built-in scenario or a file.
 class ColliderSource {
  public:
   ColliderSource() = default;
@@ -22,16 +22,18 @@ class ColliderSource {
   ColliderSource(const ColliderSource&) = delete;
   ColliderSource& operator=(const ColliderSource&) = delete;
 
-  /// The colliders present at `time_s`, relative to the scene's origin. Times must not decrease.
+  /// Returns in `out` the colliders present at `time_s`, relative to the scene's origin. Times must not decrease
+  /// between calls.
   virtual void sample(double time_s, std::vector<ColliderSample>& out) = 0;
 
-  /// Those that jumped to where the last `sample` found them: no segment leads there.
+  /// The ids of colliders that jumped to their position in the last `sample`. Their path is not a line segment and must
+  /// not be tested.
   const std::vector<std::uint32_t>& teleported() const { return teleported_; }
 
-  /// When there are samples: first and last time. A scenario has no bounds.
+  /// First and last time of the samples. A scenario has no bounds.
   virtual TimeSpan span_s() const { return {}; }
 
-  /// Why there may be less to see than expected, one sentence each.
+  /// Reasons why fewer colliders or contacts than expected may appear, one sentence each.
   virtual std::vector<std::string> warnings() const { return {}; }
 
  protected:

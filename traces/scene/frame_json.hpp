@@ -7,7 +7,7 @@
 
 namespace vestige {
 
-// The parts of a frame as JSON. Numbers are written as in traces/base/number_text.hpp.
+// The parts of a frame as JSON. traces/base/number_text.hpp describes the number format.
 
 /// `{"origin": [x, y, z], "nodes": [[tx, ty, tz, rx, ry, rz, rw, sx, sy, sz], …]}`
 void append_json(std::string& out, const Pose& pose);

@@ -10,7 +10,8 @@ namespace vestige {
 
 namespace {
 
-/// Where a time lies among the keys: between `key` and `key + 1`, `fraction` of the way. Outside it is on a key.
+/// The place of a time among the keys: between `key` and `key + 1`, at `fraction` of the interval. A time outside the
+/// keys lies on the first or last key.
 struct KeyPosition {
   std::size_t key = 0;
   double fraction = 0;
@@ -40,7 +41,7 @@ glm::dquat load<glm::dquat>(const float* numbers) {
   return {numbers[3], numbers[0], numbers[1], numbers[2]};
 }
 
-/// A spline between opposite rotations can pass through zero, which has no direction: `fallback` then.
+/// A spline between opposite rotations can pass through zero, which has no direction. In that case returns `fallback`.
 glm::dquat normalized(const glm::dquat& q, const glm::dquat& fallback) {
   const double length = glm::length(q);
   return length > 0 ? q / length : fallback;
@@ -66,7 +67,7 @@ glm::dquat between(const glm::dquat& from, const glm::dquat& to, double t) {
     b = -b;
     cosine = -cosine;
   }
-  // Below this angle the sines are the angles themselves, to a double's last bit.
+  // Above this cosine, the sine of the angle equals the angle to the last bit of a double.
   constexpr double kNearlyOne = 1 - 1e-15;
   if (cosine > kNearlyOne) return (1 - t) * a + t * b;
   const double angle = std::acos(cosine);
@@ -74,7 +75,7 @@ glm::dquat between(const glm::dquat& from, const glm::dquat& to, double t) {
 }
 
 /// The cubic Hermite spline of glTF 2.0, Appendix C.5. `keys` points to the in-tangent, value and out-tangent of the
-/// key before; `stride` floats each.
+/// key before the time; each of them has `stride` floats.
 template <typename Value>
 Value spline(const float* keys, std::size_t stride, const KeyPosition& at) {
   const double t = at.fraction;

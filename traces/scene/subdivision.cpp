@@ -18,7 +18,7 @@ struct Weighted {
   double weight = 0;
 };
 
-/// Does not depend on which end comes first: the ends of a seam's edge may be met either way round.
+/// Symmetric in its arguments, because an edge at a seam may be visited in either direction.
 Influences mean_of(const Influences& a, const Influences& b) {
   std::vector<Weighted> all;
   all.reserve(2 * kMaxInfluences);
@@ -39,7 +39,7 @@ Influences mean_of(const Influences& a, const Influences& b) {
   std::ranges::sort(all, {}, &Weighted::palette);
   double sum = 0;
   for (const Weighted& one : all) sum += one.weight;
-  // A weight that rounds to 0 would stand before others that do not, and be counted in their place.
+  // A weight that rounds to 0 would precede others that do not, and would be counted in their place.
   std::erase_if(all, [sum](const Weighted& one) { return static_cast<float>(one.weight / sum) == 0; });
   Influences mean;
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -49,7 +49,7 @@ Influences mean_of(const Influences& a, const Influences& b) {
   return mean;
 }
 
-/// Adds each edge's middle once.
+/// Adds the middle of each edge once.
 class Middles {
  public:
   explicit Middles(Avatar& avatar) : avatar_(avatar) {}
@@ -63,7 +63,7 @@ class Middles {
 
  private:
   void add(std::uint32_t a, std::uint32_t b) {
-    // Halves are added, since the sum of two huge coordinates may leave fp32.
+    // Halve before adding, because the sum of two huge coordinates may overflow fp32.
     avatar_.position_bind.push_back(0.5F * avatar_.position_bind[a] + 0.5F * avatar_.position_bind[b]);
     avatar_.texture_coordinate.push_back(0.5F * avatar_.texture_coordinate[a] + 0.5F * avatar_.texture_coordinate[b]);
     avatar_.influences.push_back(mean_of(avatar_.influences[a], avatar_.influences[b]));

@@ -10,25 +10,27 @@
 
 namespace vestige {
 
-/// A collider is a point with an id that stays the same over the whole trace.
+/// A collider: a point with an id that stays the same over the whole trace.
 struct ColliderSample {
   std::uint32_t id = 0;
   glm::dvec3 position_m = glm::dvec3(0);  ///< world
 };
 
-/// A trace numbers its frames in 32 bits.
+/// Most frames of a trace, which numbers them in 32 bits.
 inline constexpr double kMostTraceFrames = 4294967295.0;
 
 /// One frame: the avatar and every collider present at `time_ns`.
 struct TraceFrame {
-  std::uint64_t index = 0;   ///< counts from 0 (MCAP's sequence)
+  std::uint64_t index = 0;   ///< counts from 0 (MCAP's `sequence`)
   std::int64_t time_ns = 0;  ///< since the start of the trace, never decreasing
   Pose pose;
   std::vector<ColliderSample> colliders;  ///< any order, each id at most once
-  std::vector<std::uint32_t> teleported;  ///< ids that jumped here since the last frame: their segment tests nothing
+  std::vector<std::uint32_t> teleported;  ///< ids that jumped here since the last frame: their segment is not tested
+
+  double time_s() const { return static_cast<double>(time_ns) / 1e9; }
 };
 
-/// What the metadata record `session` says: format_version, argv, commit, machine, clock, wall_start, sha256 of each
+/// Content of the metadata record `session`: format_version, argv, commit, machine, clock, wall_start, sha256 of each
 /// attachment, ….
 using Session = std::map<std::string, std::string>;
 

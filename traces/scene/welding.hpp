@@ -7,8 +7,8 @@
 
 namespace vestige {
 
-/// For each of `count` vertices the first one with the same `key(vertex)`, which stands for all of them. Keys must have
-/// an order.
+/// Returns, for each of `count` vertices, the first vertex with the same `key(vertex)`, which represents all of them.
+/// Keys must have an order.
 template <typename Key>
 std::vector<std::uint32_t> weld(std::size_t count, const Key& key) {
   std::vector<std::uint32_t> order(count);

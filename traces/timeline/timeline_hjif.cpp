@@ -71,7 +71,7 @@ void TimelineHjif::commit() {
   const Json perception = {
       {"id", 0},        {"perception_modality", "Vibrotactile"}, {"description", "Duties of the actuators, 1 is full"},
       {"avatar_id", 1}, {"effect_library", Json::array()},       {"channels", std::move(channels)}};
-  // syncs, timescale and body_part_mask are optional in the schema, but readers ask for them.
+  // syncs, timescale and body_part_mask are optional in the schema, but readers require them.
   const Json file = {{"version", "2023"},
                      {"profile", "Simple Parametric"},
                      {"level", 1},
@@ -81,7 +81,7 @@ void TimelineHjif::commit() {
                      {"avatars", Json::array({{{"id", 1}, {"lod", 0}, {"type", "Vibration"}}})},
                      {"perceptions", Json::array({perception})},
                      {"syncs", Json::array()}};
-  // Names come from files, and need not be UTF-8.
+  // Names come from files and may not be valid UTF-8.
   file_.write(file.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n');
   file_.commit();
 }

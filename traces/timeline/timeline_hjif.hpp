@@ -9,15 +9,17 @@
 
 namespace vestige {
 
-/// Writes MPEG haptics as JSON (ISO/IEC 23090-31:2023, profile "Simple Parametric", level 1): one vibrotactile
-/// perception with a channel for each actuator, in each one linear curve of amplitudes duty / 255.
+/// Writes MPEG haptics as JSON (ISO/IEC 23090-31:2023, profile "Simple Parametric", level 1). The file has one
+/// vibrotactile perception with one channel for each actuator. Each channel has one linear curve of amplitudes duty /
+/// 255.
 ///
-/// Time is whole milliseconds since the first frame, and every curve lasts until the last frame. A duty's step is two
-/// keyframes a millisecond apart, so at each frame's millisecond the curve is exactly that frame's duty. Of frames
-/// within one millisecond the largest duty counts. In memory until `commit`: keyframes grow with changes, not frames.
+/// Times are whole milliseconds since the first frame, and every curve lasts until the last frame. A step of a duty is
+/// two keyframes one millisecond apart, so at each frame's millisecond the curve equals that frame's duty. Of several
+/// frames within one millisecond, the largest duty counts. All keyframes stay in memory until `commit`; their number
+/// grows with changes, not with frames.
 class TimelineHjif final : public TimelineFile {
  public:
-  /// At least one actuator: the format has no perception without a channel.
+  /// Precondition: at least one actuator, because the format has no perception without a channel.
   TimelineHjif(const std::filesystem::path& path, Overwrite overwrite, std::vector<std::string> actuator_names);
   void write(const ActuatorFrame& frame) override;
   void commit() override;
@@ -34,8 +36,8 @@ class TimelineHjif final : public TimelineFile {
   std::vector<std::string> actuator_names_;
   std::vector<std::vector<Keyframe>> curves_;  // one for each actuator
   std::optional<double> start_s_;
-  std::int64_t time_ms_ = 0;        // of the last frame
-  std::vector<std::uint8_t> duty_;  // in that millisecond
+  std::int64_t time_ms_ = 0;        // time of the last frame
+  std::vector<std::uint8_t> duty_;  // largest duties in that millisecond
 };
 
 }  // namespace vestige

@@ -23,12 +23,12 @@ void take_summary(const mcap::ByteSource& source, Definitions& definitions) {
       definitions.channels.try_emplace(channel.id, std::move(channel));
     definitions.statistics = std::move(result.summary->statistics);
   } catch (const Error&) {
-    // The beginning is broken, which does not matter here.
+    // A broken beginning does not matter here.
     return;
   }
 }
 
-/// The compression that a Chunk names in its first fields.
+/// Returns the compression that a Chunk's first fields name.
 std::optional<mcap::Compression> compression_of(const mcap::ByteSource& source, const mcap::RecordPlace& place) {
   constexpr std::uint64_t kEnoughBytes = 64;
   mcap::RawBuffer buffer;
@@ -68,7 +68,7 @@ Definitions gather_definitions(const mcap::ByteSource& source) {
         definitions.compression = compression_of(source, place);
       }
     } catch (const Malformed&) {
-      continue;  // there may be another copy
+      continue;  // the file may hold another copy
     }
   }
   definitions.schemas.erase(0);

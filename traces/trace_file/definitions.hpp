@@ -9,17 +9,18 @@
 
 namespace vestige {
 
-/// What a file says about its messages, wherever in the file it says so.
+/// A file's definitions of its messages, from anywhere in the file.
 struct Definitions {
   std::optional<mcap::Header> header;
   std::map<std::uint16_t, mcap::Schema> schemas;
   std::map<std::uint16_t, mcap::Channel> channels;
-  std::optional<mcap::Statistics> statistics;         ///< of a summary whose CRC holds
-  std::optional<mcap::Compression> compression = {};  ///< of the first chunk; nothing: there is no chunk
+  std::optional<mcap::Statistics> statistics;         ///< from a summary whose CRC matches
+  std::optional<mcap::Compression> compression = {};  ///< of the first chunk; nothing: the file has no chunk
 };
 
-/// Gathers definitions outside chunks from the whole file, damaged or not. A summary whose CRC holds is believed before
-/// the data section, in which no CRC vouches for a single definition. Throws `Error`: empty, reading failed.
+/// Gathers definitions outside chunks from the whole file, damaged or not. A summary whose CRC matches takes precedence
+/// over the data section, where no CRC covers a single definition. Throws `Error` if the source is empty or reading
+/// fails.
 Definitions gather_definitions(const mcap::ByteSource& source);
 
 }  // namespace vestige

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLargestChunkBytes = std::size_t{16} << 20;
 constexpr std::size_t kFullChunkBytes = std::size_t{1} << 20;
-constexpr std::size_t kMostSchemaBytes = std::size_t{256} << 20;  ///< they are kept, to be written again in the summary
+constexpr std::size_t kMostSchemaBytes = std::size_t{256} << 20;  ///< schemas stay in memory, for the summary
 
 }  // namespace
 
@@ -33,7 +33,8 @@ void McapOutput::write_definitions() {
 
 void McapOutput::add(mcap::Schema schema) {
   if (schema.id == 0) return;
-  // A channel that was written without its schema stays without: what was written of it would change its meaning.
+  // A channel that was written without its schema stays so. Adding the schema later would change the meaning of the
+  // messages already written.
   if (schemas_lacking_.contains(schema.id)) return;
   const auto [known, is_new] = definitions_.schemas.try_emplace(schema.id, std::move(schema));
   if (is_new) learn(known->second);

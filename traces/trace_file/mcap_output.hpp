@@ -11,30 +11,30 @@
 
 namespace vestige {
 
-/// Writes a file anew from another one's records: definitions outside chunks, each once and before what needs it;
-/// chunks as large as they were, 16 MiB at most.
+/// Writes a new file from the records of another one. Definitions go outside chunks, each once and before its first
+/// use. Chunks are as large as in the original, but 16 MiB at most.
 class McapOutput {
  public:
-  /// `profile` of the new file's header. Schemas and channels of `definitions` are known from the beginning, and
-  /// written as soon as something needs them or `write_definitions` is called.
+  /// `profile` goes into the new file's header. Schemas and channels of `definitions` are known from the beginning.
+  /// They are written at their first use or by `write_definitions`.
   McapOutput(mcap::Writer::Sink sink, const std::string& profile, mcap::Compression compression,
              Definitions definitions);
 
-  /// All that are known so far.
+  /// Writes all definitions known so far.
   void write_definitions();
-  /// A definition found on the way. Where there is one already, it stays. Throws `Error` when all schemas together take
-  /// more than 256 MiB.
+  /// Adds a definition found while reading. An existing definition with the same id stays. Throws `Error` if all
+  /// schemas together take more than 256 MiB.
   void add(mcap::Schema schema);
   void add(mcap::Channel channel);
 
-  /// Returns whether the message's channel is known; otherwise nothing is written.
+  /// Writes a message. Returns false and writes nothing if its channel is unknown.
   bool write(const mcap::Message& message);
   void write(const mcap::Attachment& attachment) { writer_.write(attachment); }
   void write(const mcap::Metadata& metadata) { writer_.write(metadata); }
 
-  /// A chunk of the original ends here: the new one is closed before the next message.
+  /// Marks the end of a chunk of the original. The new chunk is closed before the next message.
   void end_chunk() { chunk_ended_ = true; }
-  /// For messages that come from no chunk, or from several: ends a chunk of 1 MiB or more.
+  /// Ends the open chunk if it has 1 MiB or more, for messages that come from no chunk or from several.
   void end_full_chunk();
   void finish() { writer_.finish(); }
 
@@ -54,7 +54,7 @@ class McapOutput {
   std::size_t schema_bytes_ = 0;
   std::set<std::uint16_t> schemas_written_;
   std::set<std::uint16_t> channels_written_;
-  std::set<std::uint16_t> schemas_lacking_;  ///< ids of schemas without which a channel was written
+  std::set<std::uint16_t> schemas_lacking_;  ///< ids of missing schemas whose channels were written without them
   bool chunk_ended_ = false;
 };
 

@@ -14,17 +14,18 @@ using mcap::Malformed;
 using mcap::Opcode;
 using trace_format::Stream;
 
-// Outside chunks no CRC vouches for a definition, and in a damaged file its copies may differ: what is recognised as
-// ours stays.
+// Outside chunks no single CRC covers a definition, and in a damaged file its copies may differ. A definition
+// recognised as Vestige's own is therefore never replaced.
 
 void StreamTable::add(mcap::Schema schema) {
   const std::uint16_t id = schema.id;
   const auto known = schemas_.find(id);
   if (known != schemas_.end() && trace_format::is_ours(known->second)) return;
   const bool is_ours = trace_format::is_ours(schema);
-  schema.data = {};  // of which a file may have any amount
+  schema.data = {};  // dropped, because it may have any size
   schemas_.insert_or_assign(id, std::move(schema));
-  // A file may define 65535 of both: each channel is looked at once, when a schema of ours comes after it.
+  // A file may define 65535 schemas and as many channels. So a channel is only looked at again if a Vestige schema with
+  // its schema id comes after it.
   if (!is_ours) return;
   for (auto use = channels_of_schema_.lower_bound({id, 0}); use != channels_of_schema_.end() && use->first == id; ++use)
     update(channels_.at(use->second));
@@ -78,7 +79,7 @@ bool MessageStream::next(TraceMessage& message) {
 
 void MessageStream::open_chunk(const MessagePlace& place) {
   try {
-    // Not by the length in the file: that may be broken, and mended in `place`.
+    // The length in the file may be broken; `place` has the corrected length.
     const std::uint64_t content = place.begin + mcap::kRecordHeadBytes;
     source_.read_at(content, content_.reset(static_cast<std::size_t>(place.end - content)));
     chunk_ = mcap::Cursor(mcap::expand_chunk(mcap::decode_chunk(content_.bytes()), expanded_));
@@ -109,7 +110,7 @@ bool MessageStream::next_in_chunk(TraceMessage& message) {
       const mcap::InnerRecord record = mcap::next_record(chunk_);
       if (!mcap::belongs_in_chunks(record.opcode)) continue;
       if (!mcap::fits_its_fields(record)) {
-        // Once for a chunk, which may hold millions.
+        // Reports once for each chunk, which may hold millions of misfits.
         if (!std::exchange(misfit_told_, true))
           report_({chunk_offset_, 0, "records in a Chunk: their fields do not fit into them"});
         continue;

@@ -16,14 +16,14 @@
 
 namespace vestige {
 
-/// Which of a file's channels are ours. Files that others rewrote may define channels inside chunks only, so this grows
-/// while reading.
+/// Which of a file's channels are Vestige's own. A file rewritten by another program may define channels inside chunks
+/// only, so this table grows while reading.
 class StreamTable {
  public:
   void add(mcap::Schema schema);
   void add(mcap::Channel channel);
   trace_format::Stream stream_of(std::uint16_t channel_id) const { return streams_[channel_id]; }
-  /// Null until it is known.
+  /// Returns the stream's channel, or null until it is known.
   const mcap::Channel* find(trace_format::Stream stream) const;
 
  private:
@@ -32,34 +32,35 @@ class StreamTable {
   std::map<std::uint16_t, mcap::Schema> schemas_;
   std::map<std::uint16_t, mcap::Channel> channels_;
   std::set<std::pair<std::uint16_t, std::uint16_t>> channels_of_schema_;  ///< schema's id, channel's id
-  std::map<trace_format::Stream, std::uint16_t> channel_of_;  ///< the lowest id, where several are recognised
+  std::map<trace_format::Stream, std::uint16_t> channel_of_;  ///< the lowest id, if several channels are recognised
   std::vector<trace_format::Stream> streams_ = std::vector(1 << 16, trace_format::Stream::kForeign);  ///< by channel id
 };
 
-/// A message of one of our streams.
+/// A message of one of Vestige's own streams.
 struct TraceMessage {
   trace_format::Stream stream = trace_format::Stream::kForeign;
-  std::uint64_t offset = 0;  ///< in the file, of the message or of its chunk
+  std::uint64_t offset = 0;  ///< in the file: of the message, or of the chunk that holds it
   mcap::Message message;
 };
 
-/// Where messages stand in a file: a chunk, or a run of them outside chunks, of which a file may have millions.
+/// A place in a file that holds messages: a chunk, or a run of messages outside chunks. A file may have millions of
+/// messages outside chunks.
 struct MessagePlace {
   bool in_chunk = false;
-  std::uint64_t begin = 0;  ///< of the chunk's or the first message's record
+  std::uint64_t begin = 0;  ///< start of the record of the chunk or of the first message
   std::uint64_t end = 0;
 };
 
-/// Delivers the messages of our streams in file order, from the places that hold them.
+/// Delivers the messages of Vestige's own streams in file order, from the places that hold them.
 class MessageStream {
  public:
   using Report = std::function<void(const mcap::Damage&)>;
 
-  /// All must stay. `report` is told of what cannot be read, which is skipped.
+  /// Keeps references to `source`, `places` and `table`. Damage is skipped and passed to `report`.
   MessageStream(const mcap::ByteSource& source, const std::vector<MessagePlace>& places, StreamTable& table,
                 Report report);
 
-  /// False at the end. The message's data is valid until the next call.
+  /// Reads the next message; its data are valid until the next call. Returns false at the end.
   bool next(TraceMessage& message);
   void rewind();
 
@@ -75,9 +76,9 @@ class MessageStream {
   Report report_;
   std::size_t next_place_ = 0;
   std::uint64_t chunk_offset_ = 0;
-  bool misfit_told_ = false;  ///< of this chunk
+  bool misfit_told_ = false;  ///< whether this chunk's misfits were reported
   mcap::Cursor chunk_ = mcap::Cursor({});
-  MessagePlace run_;  ///< what is left of it
+  MessagePlace run_;  ///< the rest of the current run
   mcap::RawBuffer content_;
   mcap::RawBuffer expanded_;
 };

@@ -6,7 +6,7 @@
 
 namespace vestige {
 
-/// What the metadata record `recovered` of a file says, as one clause: "was recovered from a damaged file: 12 messages
+/// Describes the metadata record `recovered` of a file as one clause: "was recovered from a damaged file: 12 messages
 /// lost, 3 that no CRC vouches for".
 std::string describe_recovered(const mcap::StringMap& metadata);
 

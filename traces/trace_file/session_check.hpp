@@ -13,8 +13,8 @@ struct SessionProblem {
   std::string consequence;
 };
 
-/// Where a file contradicts its session: another format version than ours, or attachments whose SHA-256 is another than
-/// when they were recorded. `sha256`: of the attachments that are there, by name.
+/// Returns the contradictions between a file and its session: an unknown format version, or attachments whose SHA-256
+/// differs from the recorded one. `sha256` holds the hashes of the attachments present, by name.
 std::vector<SessionProblem> check_session(const Session& session, const std::map<std::string, std::string>& sha256);
 
 }  // namespace vestige

@@ -11,21 +11,21 @@
 ///     Header      profile "vestige", library "vestige VERSION"
 ///     Metadata    "session": format_version, sha256 of each attachment ("sha256:NAME"), and what the recorder adds
 ///     Attachments avatar.glb, then actuator_map.png and actuator_map.json where there is a map
-///     Schemas, Channels   outside chunks, so that no damaged chunk takes them along
+///     Schemas, Channels   outside chunks, so that a damaged chunk does not lose them
 ///     Chunks      a frame's messages stand together in one chunk: [events], /pose, /colliders
 ///     Summary     with everything that MCAP offers
 ///
 /// The head, up to Channels, is synced before any frame.
 ///
 /// Messages are FlatBuffers (schemas/*.fbs). log_time is the frame's time in nanoseconds from 0, sequence its index,
-/// publish_time equals log_time. /events exists only when something happened.
+/// publish_time equals log_time. /events exists only if something happened.
 namespace vestige::trace_format {
 
 inline constexpr std::string_view kProfile = "vestige";
 inline constexpr std::string_view kVersion = "1";
 inline constexpr std::string_view kVersionKey = "format_version";
 inline constexpr std::string_view kSessionName = "session";
-inline constexpr std::string_view kRecoveredName = "recovered";  // what `recover` lost
+inline constexpr std::string_view kRecoveredName = "recovered";  // what `recover` could not save
 inline constexpr std::string_view kSha256Prefix = "sha256:";
 inline constexpr std::string_view kAvatarName = "avatar.glb";
 inline constexpr std::string_view kMapImageName = "actuator_map.png";
@@ -33,7 +33,7 @@ inline constexpr std::string_view kMapTextName = "actuator_map.json";
 inline constexpr std::string_view kEncoding = "flatbuffer";  ///< of schemas and of messages
 inline constexpr std::string_view kNodesKey = "nodes";       ///< of /pose's metadata: a JSON array of node names
 
-inline constexpr double kFarthest_m = 1e9;  ///< where a position is beyond it, it is taken for a mistake
+inline constexpr double kFarthest_m = 1e9;  ///< a position beyond this distance counts as a mistake
 
 inline constexpr std::string_view kTeleportKind = "teleport";
 inline constexpr std::string_view kDroppedKind = "dropped";
@@ -41,10 +41,10 @@ inline constexpr std::string_view kMarkerKind = "marker";
 
 enum class Stream : std::uint8_t { kPose, kColliders, kEvents, kForeign };
 
-/// One of our channels; schema and channel have the same id.
+/// One of Vestige's own channels. Its schema and its channel have the same id.
 struct StreamFormat {
   Stream stream;
-  std::uint16_t id;  ///< in files that we write; readers go by topic and schema
+  std::uint16_t id;  ///< in files that Vestige writes; readers go by topic and schema
   std::string_view topic;
   std::string_view schema;
 };
@@ -55,14 +55,14 @@ inline constexpr std::array<StreamFormat, 3> kStreams = {{
     {Stream::kEvents, 3, "/events", "vestige.trace.Event"},
 }};
 
-/// The schema record of a stream of ours, with its compiled FlatBuffers schema.
+/// Returns the schema record of a stream, with its compiled FlatBuffers schema.
 mcap::Schema schema_of(Stream stream);
-/// Its channel record; /pose gets its nodes from the writer.
+/// Returns the channel record of a stream. The writer adds the node names to /pose.
 mcap::Channel channel_of(Stream stream);
 
 bool is_ours(const mcap::Schema& schema);
 
-/// Which stream of ours a channel carries; kForeign if none. `schema` may be null.
+/// Returns the stream that a channel carries, or kForeign if it carries none of ours. `schema` may be null.
 Stream recognise(const mcap::Channel& channel, const mcap::Schema* schema);
 
 }  // namespace vestige::trace_format

@@ -41,7 +41,7 @@ void take_attachment(mcap::Bytes content, TraceIndex& index) {
   target->assign(attachment.data.begin(), attachment.data.end());
 }
 
-/// Whether the summary leads to everything, so that nothing is missed by not scanning.
+/// Whether the summary lists everything, so that scanning the file would find nothing more.
 bool covers_everything(const mcap::ByteSource& source, const mcap::Summary& summary) {
   if (!summary.header || !summary.statistics) return false;
   return summary.statistics->schema_count == summary.schemas.size() &&
@@ -147,7 +147,7 @@ TraceIndex read_index(const mcap::ByteSource& source) {
   const mcap::SummaryResult result = mcap::read_summary(source);
   if (result.summary && covers_everything(source, *result.summary)) return from_summary(source, *result.summary);
   TraceIndex index = by_scanning(source);
-  if (index.has_footer && !result.summary && index.damages.empty())  // else that is why
+  if (index.has_footer && !result.summary && index.damages.empty())  // otherwise the damages explain it
     index.damages.add({source.size(), 0, fmt::format("the file's end: {}", result.problem)});
   return index;
 }

@@ -12,7 +12,7 @@
 
 namespace vestige {
 
-/// Everything about a trace file that is known before its frames are read.
+/// The content of a trace file that is read before its frames.
 struct TraceIndex {
   bool profile_is_ours = false;
   Session session;
@@ -27,8 +27,8 @@ struct TraceIndex {
   mcap::DamageList damages;
 };
 
-/// By the summary where there is a complete one, else by scanning the file. Throws `Error`: no MCAP file, reading
-/// failed.
+/// Reads the index from the summary if that is complete, otherwise by scanning the file. Throws `Error` if the file is
+/// not an MCAP file or reading fails.
 TraceIndex index_trace(const mcap::ByteSource& source);
 
 /// "FILE: at byte 123: a Chunk: its CRC is wrong; 456 bytes are lost".

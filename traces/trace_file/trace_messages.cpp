@@ -23,7 +23,7 @@ std::string_view text_of(const flatbuffers::String* text) {
   return text == nullptr ? std::string_view() : std::string_view(text->c_str(), text->size());
 }
 
-/// An id that is there twice, if there is one. `ids` is sorted on the way.
+/// Returns an id that occurs twice, if there is one. Sorts `ids`.
 std::optional<std::uint32_t> find_duplicate(std::vector<std::uint32_t>& ids) {
   std::sort(ids.begin(), ids.end());
   const auto twice = std::adjacent_find(ids.begin(), ids.end());

@@ -11,7 +11,7 @@
 
 namespace vestige {
 
-/// What a message on /events says (schemas/event.fbs).
+/// The content of a message on /events (schemas/event.fbs).
 struct TraceEvent {
   std::int64_t time_ns = 0;
   std::string_view kind;
@@ -20,10 +20,11 @@ struct TraceEvent {
   std::string_view text;
 };
 
-/// The topic that an event of kind `dropped` names. Files of others may name anything there: 200 bytes of it at most.
+/// Returns the topic that an event of kind `dropped` names, at most 200 bytes of it, because a foreign file may hold
+/// any text there.
 std::string dropped_topic(const TraceEvent& event);
 
-/// Makes the messages of a trace. What each call returns is valid until the next.
+/// Encodes the messages of a trace. The result of a call is valid until the next call.
 class MessageEncoder {
  public:
   MessageEncoder();
@@ -40,26 +41,26 @@ class MessageEncoder {
   std::unique_ptr<Builder> builder_;
 };
 
-/// Reads the messages of a trace, which may come from anyone: each is verified before it is looked at. Throws
+/// Decodes the messages of a trace. They may come from anyone, so each is verified before it is read. Throws
 /// `mcap::Malformed`.
 class MessageDecoder {
  public:
-  /// Returns the number of nodes.
+  /// Decodes a pose and returns its number of nodes.
   std::size_t pose(mcap::Bytes message, Pose& pose);
-  /// As above, without decoding the nodes.
+  /// Returns the number of nodes without decoding them.
   std::size_t pose_node_count(mcap::Bytes message);
   std::int64_t pose_time_ns(mcap::Bytes message);
   std::int64_t colliders_time_ns(mcap::Bytes message);
-  /// An id that occurs twice is malformed.
+  /// Throws `mcap::Malformed` if an id occurs twice.
   void colliders(mcap::Bytes message, std::vector<ColliderSample>& colliders);
-  /// The text in it is valid until the next call.
+  /// Decodes an event, whose text is valid until the next call.
   TraceEvent event(mcap::Bytes message);
 
  private:
   template <typename Table>
   const Table& verified(mcap::Bytes message);
 
-  std::vector<std::uint64_t> aligned_;  ///< a message begins anywhere in its chunk; FlatBuffers want alignment
+  std::vector<std::uint64_t> aligned_;  ///< aligned copy: a message may begin anywhere, FlatBuffers need alignment
   std::vector<std::uint32_t> ids_;
 };
 

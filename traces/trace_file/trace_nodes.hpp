@@ -10,11 +10,12 @@
 
 namespace vestige {
 
-/// The nodes that a /pose channel's metadata names, in the order of its poses; nothing where it does not say.
+/// Returns the node names in a /pose channel's metadata, in the order of its poses. Returns nothing if the metadata
+/// does not name them.
 std::optional<std::vector<std::string>> parse_node_names(const mcap::Channel& pose_channel);
 
-/// How many nodes a binary glTF file has (glTF 2.0 §4.4: 12 bytes of header, then a JSON chunk); nothing when it is
-/// none, which whoever parses the avatar explains better.
+/// Returns the number of nodes of a binary glTF file (glTF 2.0 §4.4: 12 bytes of header, then a JSON chunk). Returns
+/// nothing if the bytes are not such a file; the avatar's parser explains that error better.
 std::optional<std::size_t> glb_node_count(std::span<const std::byte> glb);
 
 }  // namespace vestige

@@ -24,7 +24,7 @@ using mcap::Malformed;
 using trace_format::Stream;
 
 constexpr std::size_t kMostWarnings = 1000;
-constexpr std::size_t kMostColliders = 1'000'000;  ///< in a trace; and teleports in a frame
+constexpr std::size_t kMostColliders = 1'000'000;  ///< in a trace; also the most teleports in a frame
 constexpr std::string_view kRecover = "`vestige recover` may still find some of it";
 
 }  // namespace
@@ -56,7 +56,7 @@ class TraceReader::Implementation {
  private:
   enum class PoseDecoding { kFull, kNodeCount };
 
-  /// Puts messages together to frames.
+  /// Assembles frames from messages.
   class Frames {
    public:
     Frames(Implementation& owner, PoseDecoding decoding)
@@ -67,7 +67,7 @@ class TraceReader::Implementation {
 
     bool next(TraceFrame& frame);
     void rewind();
-    /// Reads on to the next message, and with it the definitions before it.
+    /// Reads the next message, and with it the definitions before it.
     bool skip_message() { return messages_.next(message_); }
     std::uint64_t dropped() const { return dropped_; }
 
@@ -83,7 +83,7 @@ class TraceReader::Implementation {
     MessageStream messages_;
     MessageDecoder decoder_;
     TraceMessage message_;
-    bool held_ = false;  ///< message_ is still to be taken
+    bool held_ = false;  ///< message_ was read but not yet used
     bool pose_taken_ = false;
     bool colliders_taken_ = false;
     std::optional<std::uint32_t> last_sequence_;

@@ -13,16 +13,16 @@
 
 namespace vestige {
 
-/// Reads a trace: by its index where it has one, by scanning it where the footer is missing or the summary broken.
-/// Damaged chunks are skipped, which shows as a gap in `TraceFrame::index`, as a warning with its byte offset, and in
+/// Reads a trace by its index, or by scanning it if the footer is missing or the summary is broken. Damaged chunks are
+/// skipped. A skipped chunk shows as a gap in `TraceFrame::index`, as a warning with its byte offset, and in
 /// `complete()`.
 ///
-/// Every function throws `Error` naming the file and offset: no MCAP file, no trace of ours, no avatar or a damaged
-/// one, a frame that contradicts the rest (frames out of order, time running back, another number of nodes than the
-/// avatar has, a collider twice), more than a million colliders.
+/// Every function throws `Error` with the name of the file and the offset. Causes: not an MCAP file, not a Vestige
+/// trace, no avatar or a damaged one, more than a million colliders. Also a frame that contradicts the rest: frames out
+/// of order, time running backwards, another number of nodes than the avatar has, a collider twice.
 class TraceReader {
  public:
-  /// "-" is standard input, kept in a temporary file without a name.
+  /// "-" is standard input, which is copied to a nameless temporary file.
   explicit TraceReader(const std::filesystem::path& path);
   ~TraceReader();
   TraceReader(const TraceReader&) = delete;
@@ -32,28 +32,28 @@ class TraceReader {
   std::span<const std::byte> avatar_glb() const;
   std::span<const std::byte> actuator_map_png() const;   ///< empty: the trace has none
   std::span<const std::byte> actuator_map_json() const;  ///< empty: the trace has none
-  /// The avatar's nodes, in order; each frame's pose has as many.
+  /// The names of the avatar's nodes, in order. Each frame's pose has as many nodes.
   const std::vector<std::string>& node_names() const;
 
-  /// The ids of all colliders in the trace, ascending. The first call, of this or of the next two, reads the whole
-  /// trace once without decoding poses; `next` goes on where it was.
+  /// The ids of all colliders in the trace, ascending. The first call of this or the next two functions reads the whole
+  /// trace once, without decoding poses. `next` still continues where it was.
   const std::vector<std::uint32_t>& collider_ids();
-  /// How many frames `next` delivers in all.
+  /// The total number of frames that `next` delivers.
   std::uint64_t frame_count();
-  /// How many messages the recorder noted as lost.
+  /// The number of messages that the recorder noted as lost.
   std::uint64_t dropped();
 
-  /// The next frame in order; false at the end. Memory of `frame` is used again. `frame.time_ns` is the message's
-  /// log_time.
+  /// Reads the next frame in order. Returns false at the end. Reuses the memory of `frame`. `frame.time_ns` is the
+  /// message's log_time.
   bool next(TraceFrame& frame);
   void rewind();
 
-  /// The trace has a footer, and nothing that was read so far was damaged: final once `next` has returned false or
+  /// Whether the trace has a footer and everything read so far was undamaged. Final once `next` has returned false or
   /// `frame_count` has been called.
   bool complete() const;
-  /// What is wrong with the file, one sentence each, with byte offset. Grows while reading; nothing is said twice.
+  /// Faults of the file, one sentence each, with byte offset. The list grows while reading and holds each fault once.
   const std::vector<std::string>& warnings() const;
-  /// What `recover` noted in the file if it wrote it from a damaged one: see `describe_recovered`. Else empty.
+  /// The note that `recover` left if it wrote this file from a damaged one: see `describe_recovered`. Otherwise empty.
   const std::string& recovered() const;
 
  private:
@@ -61,11 +61,11 @@ class TraceReader {
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Throws `Error` where the trace holds no frame at all, and says why.
+/// Throws `Error` with the reason if the trace holds no frame.
 void require_frames(TraceReader& trace, const std::string& name);
 
-/// What is wrong with a trace that is not `complete()`: its warnings, or else that; `name` stands in it. Empty for one
-/// that is.
+/// Returns the faults of a trace that is not `complete()`: its warnings, or one sentence with `name` if there are no
+/// warnings. Empty for a complete trace.
 std::vector<std::string> damage_of(const TraceReader& trace, std::string_view name);
 
 }  // namespace vestige

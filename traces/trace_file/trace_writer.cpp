@@ -39,7 +39,7 @@ std::vector<mcap::Attachment> list_attachments(const TraceAttachments& from) {
   return all;
 }
 
-/// A JSON array; bytes of a name that are no UTF-8 become U+FFFD.
+/// Returns the node names as a JSON array. Bytes that are not valid UTF-8 become U+FFFD.
 std::string node_names(const Avatar& avatar) {
   nlohmann::json names = nlohmann::json::array();
   for (const Node& node : avatar.nodes) names.push_back(node.name);
@@ -54,7 +54,7 @@ mcap::WriterOptions writer_options(const TraceWriterOptions& options) {
 
 class TraceWriter::Implementation {
  public:
-  /// An event until it is written.
+  /// An event that is not written yet.
   struct Note {
     std::string_view kind;  ///< a constant of trace_format
     std::uint64_t count = 0;
@@ -96,8 +96,8 @@ class TraceWriter::Implementation {
   std::optional<VizEncoder> viz_;
   std::int64_t next_viz_ns_ = 0;
   std::size_t node_count_;
-  std::vector<std::uint32_t> ids_;  ///< of one frame, sorted
-  std::vector<Note> notes_;         ///< that wait for their frame
+  std::vector<std::uint32_t> ids_;  ///< collider ids of one frame, sorted
+  std::vector<Note> notes_;         ///< notes that wait for the next frame
   Clock::time_point chunk_opened_;
   std::uint64_t frame_count_ = 0;
   std::uint32_t sequence_ = 0;  ///< of the last frame
@@ -170,7 +170,7 @@ void TraceWriter::Implementation::write_message(Stream stream, mcap::Bytes data)
   write_message(trace_format::kStreams.at(static_cast<std::size_t>(stream)).id, data);
 }
 
-/// At the first frame of each sixtieth of a second.
+/// Writes viewer messages at the first frame of each sixtieth of a second.
 void TraceWriter::Implementation::write_viz(const TraceFrame& frame) {
   if (!viz_ || frame.time_ns < next_viz_ns_) return;
   const double slots = std::floor(static_cast<double>(frame.time_ns) / kNanosecondsPerSecond * viz_format::kRate_hz);
@@ -238,11 +238,11 @@ void TraceWriter::Implementation::close_chunk() {
 }
 
 std::uint64_t TraceWriter::Implementation::bytes_if_finished_with(const TraceFrame& frame) const {
-  // A FlatBuffer, its message's record and its index entry around what is counted apart.
+  // Size of a FlatBuffer, its message record and its index entry, without the parts counted below.
   constexpr std::uint64_t kMessageBytes = 192;
   constexpr std::uint64_t kNodeBytes = 40;
   constexpr std::uint64_t kColliderBytes = 32;
-  constexpr std::uint64_t kEventsChannelBytes = 4096;  // its schema, twice
+  constexpr std::uint64_t kEventsChannelBytes = 4096;  // holds its schema twice
   std::uint64_t bytes = writer_.bytes_if_finished() + 1024;
   bytes += 2 * kMessageBytes + kNodeBytes * frame.pose.nodes.size() + kColliderBytes * frame.colliders.size();
   bytes += kMessageBytes * frame.teleported.size();
@@ -267,7 +267,7 @@ void TraceWriter::Implementation::abandon() noexcept {
     write_notes();
     write_open_chunk();
   } catch (const std::exception&) {
-    // AppendFile has kept what it could; there is nobody left to tell.
+    // AppendFile has kept what it could; a destructor cannot report the error.
     usable_ = false;
   }
 }

@@ -21,7 +21,7 @@ namespace {
 
 constexpr const char* kWorld = "world";
 constexpr const char* kAvatar = "avatar";
-constexpr double kCollider_m = 0.02;  ///< diameter: a point has none, but must be seen
+constexpr double kCollider_m = 0.02;  ///< diameter: a point has none, but must be visible
 constexpr double kBone_m = 0.008;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
@@ -35,13 +35,13 @@ foxglove::Time time_of(std::int64_t time_ns) {
   return {static_cast<std::uint32_t>(time_ns / kSecond_ns), static_cast<std::uint32_t>(time_ns % kSecond_ns)};
 }
 
-/// A node's frame: where it is and how it is turned, in its tree's.
+/// A node's frame: its position and its rotation, in the coordinates of its tree.
 struct Placement {
   glm::dvec3 position = glm::dvec3(0);
   glm::dquat rotation = glm::dquat(1, 0, 0, 0);
 };
 
-/// A node that is scaled to nothing, or mirrored, is not turned at all.
+/// Ignores the rotation of a node that is scaled to zero, or mirrored.
 Placement placement_of(const glm::dmat4& matrix) {
   Placement placement = {.position = glm::dvec3(matrix[3])};
   const glm::dmat3 axes(matrix);
@@ -96,7 +96,7 @@ std::vector<mcap::Channel> channels() {
 struct VizEncoder::Builder {
   flatbuffers::FlatBufferBuilder buffer;
 
-  // A reader with schemas of its own takes its own defaults: everything is written.
+  // A reader with its own schemas uses its own default values, so every field is written.
   Builder() { buffer.ForceDefaults(true); }
 
   auto vector(const glm::dvec3& v) { return foxglove::CreateVector3(buffer, v.x, v.y, v.z); }

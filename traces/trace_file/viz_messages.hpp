@@ -12,8 +12,8 @@
 
 namespace vestige {
 
-/// What viewers draw of a trace: foxglove.FrameTransforms on /viz/tf, foxglove.SceneUpdate on /viz/scene
-/// (traces/FORMAT.md). Readers of traces pass them over.
+/// The messages that viewers draw: foxglove.FrameTransforms on /viz/tf and foxglove.SceneUpdate on /viz/scene
+/// (traces/FORMAT.md). Readers of traces ignore them.
 namespace viz_format {
 inline constexpr std::uint16_t kTransformsId = 16;
 inline constexpr std::uint16_t kSceneId = 17;
@@ -25,24 +25,24 @@ std::vector<mcap::Schema> schemas();
 std::vector<mcap::Channel> channels();
 }  // namespace viz_format
 
-/// Makes those messages. What each call returns is valid until the next.
+/// Encodes these messages. The result of a call is valid until the next call.
 class VizEncoder {
  public:
-  /// Names and tree of the avatar's nodes are copied.
+  /// Copies the names and the tree of the avatar's nodes.
   explicit VizEncoder(const Avatar& avatar);
   ~VizEncoder();
   VizEncoder(const VizEncoder&) = delete;
   VizEncoder& operator=(const VizEncoder&) = delete;
 
-  /// Where the avatar stands in `world`, and every node in its parent; parents before children. Frames are named like
-  /// the nodes; one without a name, or with that of another, gets its number added. Scale moves what it must: a frame
-  /// has none.
+  /// Returns the transform of the avatar in `world`, and of every node in its parent, parents before children. Frames
+  /// have the names of the nodes. A frame gets its number appended if its node has no name or shares its name with
+  /// another frame. Frames have no scale, so scale only affects positions.
   mcap::Bytes transforms(const TraceFrame& frame);
-  /// The skeleton as lines between its nodes, and a sphere named by its id for every collider; those of the message
-  /// before that are gone are deleted.
+  /// Returns the skeleton as lines between its nodes, and each collider as a sphere named by the collider's id. Deletes
+  /// the spheres of colliders that have gone since the last message.
   mcap::Bytes scene(const TraceFrame& frame);
 
-  /// More than both messages take.
+  /// Upper bound of the size of both messages together.
   std::uint64_t most_bytes(const TraceFrame& frame) const;
 
  private:
@@ -50,7 +50,7 @@ class VizEncoder {
   void place_nodes(const TraceFrame& frame);
 
   std::unique_ptr<Builder> builder_;
-  Avatar skeleton_;  ///< nodes and their order only
+  Avatar skeleton_;  ///< only its nodes and their order
   std::vector<std::string> frames_;
   std::vector<glm::dmat4> world_;
   std::set<std::uint32_t> shown_;  ///< colliders of the last message

@@ -1,4 +1,4 @@
-// What goes over the wire: COBS(payload, CRC low byte, CRC high byte) and one 0x00. README.md lists the payloads.
+// Frames on the wire: COBS(payload, CRC low byte, CRC high byte) and one 0x00. README.md lists the payloads.
 #ifndef VESTIGE_FIRMWARE_WIRE_H
 #define VESTIGE_FIRMWARE_WIRE_H
 
@@ -12,14 +12,14 @@ enum {
 
 typedef enum { kNothing, kFrame, kDamaged } Received;
 
-// Takes one byte of the line. kFrame: a frame has come whole, and `payload()` and `payload_length()` say what is in it
-// until the next byte is taken. kDamaged: one has come that must not be believed. A lone delimiter is kNothing.
+// Takes one byte of the line. kFrame: a frame is complete, and `payload()` and `payload_length()` return its content
+// until the next byte is taken. kDamaged: an invalid frame is complete. A lone delimiter is kNothing.
 Received receive(uint8_t byte);
 const uint8_t* payload(void);
 uint16_t payload_length(void);
 
-// Writes the frame of `length` bytes, at most kAnswerPayloadMax, to `frame`, which has room for kAnswerMax; returns its
-// size.
+// Encodes `length` bytes, at most kAnswerPayloadMax, into `frame`, which has room for kAnswerMax bytes. Returns the
+// size of the frame.
 uint8_t encode(const uint8_t* bytes, uint8_t length, uint8_t* frame);
 
 #endif

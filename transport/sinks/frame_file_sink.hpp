@@ -10,14 +10,15 @@
 
 namespace vestige {
 
-/// Writes frames as they go to a board over the wire (`transport/wire/vest_frame.hpp`), one after another, without
-/// times.
+/// Writes frames as they would go to a board over the wire (`transport/wire/vest_frame.hpp`), one after another,
+/// without times.
 ///
-/// A file is complete or absent: it is there after `commit`. "-" (standard output), a device or a pipe gets each frame
-/// at once, so that another program can pass it on.
+/// A file is complete or absent: it exists after `commit`. "-" (standard output), a device or a pipe gets each frame at
+/// once, so that another program can pass it on.
 class FrameFileSink final : public ActuatorSink {
  public:
-  /// What the levels are, and how long a board obeys one: `ttl`, in 10 ms. The errors of `OutputFile`.
+  /// `quantity` is the meaning of the levels. `ttl`, in 10 ms, is how long a board obeys a frame. Throws as
+  /// `OutputFile` does.
   FrameFileSink(const std::filesystem::path& path, Overwrite overwrite, Quantity quantity, std::uint8_t ttl);
 
   std::string name() const override { return file_.path().string(); }
@@ -25,7 +26,7 @@ class FrameFileSink final : public ActuatorSink {
   void send_off(std::uint8_t sequence) override;
   std::uint64_t bytes_sent() const override { return bytes_sent_; }
 
-  /// To be called when the stream has ended, by itself or by the user.
+  /// Call this when the stream has ended, by itself or by the user.
   void commit() { file_.commit(); }
 
  private:

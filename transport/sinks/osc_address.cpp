@@ -13,7 +13,7 @@ namespace vestige {
 
 namespace {
 
-/// Whether a character may stand in a part of an address between slashes (OSC 1.0, "OSC Messages").
+/// Whether a character may occur in a part of an address between slashes (OSC 1.0, "OSC Messages").
 bool may_stand_in_part(char c) {
   constexpr std::string_view kForbidden = " #*,/?[]{}";
   return c > ' ' && c <= '~' && kForbidden.find(c) == std::string_view::npos;
@@ -57,7 +57,7 @@ std::string expand(std::string_view address_template, std::size_t index, const s
 }
 
 void check_address(const std::string& address) {
-  constexpr std::size_t kMostBytes = 1000;  // one must fit into a datagram
+  constexpr std::size_t kMostBytes = 1000;  // an address must fit into a datagram
   const auto refuse = [&](const char* cause) {
     throw UsageError("--osc-address", fmt::format("'{}' {}", address, cause),
                      fmt::format("it looks like '{}'", kOscAddressTemplate));

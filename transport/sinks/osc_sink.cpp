@@ -20,7 +20,7 @@ namespace vestige {
 
 namespace {
 
-/// An Ethernet packet of 1500 bytes, less what IPv6, UDP and a tunnel add.
+/// An Ethernet packet of 1500 bytes, less the headers of IPv6, UDP and a tunnel.
 constexpr std::size_t kMostDatagramBytes = 1400;
 
 struct FreeBundle {
@@ -49,7 +49,7 @@ lo_message new_message(OscValue value, std::uint8_t level) {
   return message;
 }
 
-/// Errors that say that there is no way to the host now, and there may be one later.
+/// Whether an error says that there is no route to the host now, but may be one later.
 bool is_passing(int error_number) {
   return error_number == ENETUNREACH || error_number == EHOSTUNREACH || error_number == ENETDOWN ||
          error_number == ENOBUFS;
@@ -73,7 +73,7 @@ OscSink::OscSink(OscOptions options, const std::vector<std::string>& actuator_na
   if (chosen == nullptr) chosen = found;
   std::memcpy(&host_, chosen->ai_addr, chosen->ai_addrlen);
   host_bytes_ = chosen->ai_addrlen;
-  // Never connected: so nobody's absence comes back as an error of the next frame.
+  // Never connected, so a missing receiver does not cause an error in the next frame.
   socket_ = ::socket(chosen->ai_family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   if (socket_ < 0) throw Error(name(), fmt::format("could not open a socket: {}", std::strerror(errno)), "");
   const int allowed = 1;
@@ -89,7 +89,7 @@ void OscSink::send(const ActuatorFrame& frame, std::uint8_t) {
 }
 
 void OscSink::send_off(std::uint8_t) {
-  for (int i = 0; i < 3; ++i) {  // no frame follows that would mend a lost one
+  for (int i = 0; i < 3; ++i) {  // no later frame corrects a lost one
     if (i != 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
     send_levels({});
   }
@@ -117,7 +117,7 @@ void OscSink::send_levels(std::span<const std::uint8_t> level) {
 }
 
 void OscSink::send_datagram(std::span<const std::byte> bytes) {
-  // liblo encodes; its own sending knows no IPv6, and takes whichever address of a name comes first.
+  // liblo only encodes. Its own sending does not support IPv6, and uses the first address of a name.
   const auto* const host = reinterpret_cast<const sockaddr*>(&host_);
   while (::sendto(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL, host, host_bytes_) < 0) {
     const int error = errno;
@@ -146,7 +146,7 @@ bool OscSink::is_refused() const {
 }
 
 int OscSink::connected_socket() const {
-  // Connecting a datagram socket sends nothing: it looks for a way to the host.
+  // Connecting a datagram socket sends nothing: it only looks up a route to the host.
   Descriptor made(::socket(host_.ss_family, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (made.value() < 0 || ::connect(made.value(), reinterpret_cast<const sockaddr*>(&host_), host_bytes_) != 0)
     return -1;

@@ -32,7 +32,7 @@ Error permission_error(const std::string& path) {
   constexpr mode_t kGroupMay = S_IRGRP | S_IWGRP;
   struct stat status {};
   const bool known = ::stat(path.c_str(), &status) == 0;
-  // Nobody should join the group root for a serial port.
+  // A user should not join the group root for a serial port.
   if (!known || (status.st_mode & kGroupMay) != kGroupMay || status.st_gid == 0)
     return {path, "you may not open it", fmt::format("give it to yourself: sudo chown $USER {}", path)};
   const std::string group = group_name(status.st_gid);

@@ -64,12 +64,12 @@ void set_raw(const std::string& path, int descriptor, std::uint32_t baud, speed_
   wanted.c_iflag &= static_cast<tcflag_t>(~(IXON | IXOFF | IXANY | INPCK));
   wanted.c_cflag &= static_cast<tcflag_t>(~(CSTOPB | CRTSCTS | HUPCL));
   wanted.c_cflag |= CREAD | CLOCAL;
-  // With a minimum of 0, a line on which nothing has come would look like one that is lost.
+  // With a minimum of 0, a line without new bytes would look like a lost one.
   wanted.c_cc[VMIN] = 1;
   wanted.c_cc[VTIME] = 0;
   if (::cfsetispeed(&wanted, speed) != 0 || ::cfsetospeed(&wanted, speed) != 0) throw refuse();
   if (::tcsetattr(descriptor, TCSANOW, &wanted) != 0) throw refuse();
-  // tcsetattr is content when a part of it was taken.
+  // tcsetattr succeeds even if it applied only a part.
   termios taken{};
   constexpr tcflag_t kShape = CSIZE | PARENB | CSTOPB | CRTSCTS;
   if (::tcgetattr(descriptor, &taken) != 0 || ::cfgetospeed(&taken) != speed ||
@@ -77,7 +77,8 @@ void set_raw(const std::string& path, int descriptor, std::uint32_t baud, speed_
     throw refuse();
 }
 
-/// FTDI's converters hold what comes for 16 ms otherwise. Drivers that know no such setting refuse it, and need none.
+/// FTDI's converters otherwise hold received bytes for 16 ms. Drivers without this setting refuse it, and do not need
+/// it.
 void ask_for_low_latency(int descriptor) {
   serial_struct settings{};
   if (::ioctl(descriptor, TIOCGSERIAL, &settings) != 0) return;
@@ -87,14 +88,14 @@ void ask_for_low_latency(int descriptor) {
 
 int open_port(const std::string& path, std::uint32_t baud) {
   const speed_t speed = speed_constant(baud);
-  // Looked at first: opening alone does something to some files.
+  // Checked first, because merely opening some files has side effects.
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) throw serial_open_error(path, errno);
   if (!S_ISCHR(status.st_mode)) throw not_serial_error(path);
   Descriptor port(::open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC));
   if (port.value() < 0) throw serial_open_error(path, errno);
   if (::isatty(port.value()) == 0) throw errno == ENOTTY ? not_serial_error(path) : serial_open_error(path, errno);
-  // The first keeps out ourselves and root, the second everybody else.
+  // flock keeps out this program and root, TIOCEXCL all others.
   if (::flock(port.value(), LOCK_EX | LOCK_NB) != 0) throw serial_busy_error(path);
   if (::ioctl(port.value(), TIOCEXCL) != 0) throw serial_open_error(path, errno);
   set_raw(path, port.value(), baud, speed);
@@ -103,7 +104,7 @@ int open_port(const std::string& path, std::uint32_t baud) {
   return port.release();
 }
 
-/// PCs have nodes for ports that nobody built in: the kernel calls their type unknown, 0.
+/// PCs have device nodes for ports that do not exist. The kernel gives them the type 0, unknown.
 bool is_built_in(const std::string& name) {
   std::ifstream file("/sys/class/tty/" + name + "/type");
   std::string type;
@@ -134,7 +135,7 @@ SerialPort::SerialPort(const std::string& path, std::uint32_t baud, milliseconds
     : path_(path), patience_(patience), descriptor_(open_port(path, baud)) {}
 
 SerialPort::~SerialPort() {
-  // Closing would wait for half a minute.
+  // Plain closing would wait for half a minute.
   const auto deadline = steady_clock::now() + patience_;
   while (pending_bytes() > 0 && steady_clock::now() < deadline) ::poll(nullptr, 0, 1);
   if (pending_bytes() > 0) ::tcflush(descriptor_, TCOFLUSH);
@@ -163,7 +164,7 @@ void SerialPort::write(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<std::uint8_t> SerialPort::read() {
-  constexpr std::size_t kAtOnce_bytes = 65536;  // a line that never ends must not keep us here
+  constexpr std::size_t kAtOnce_bytes = 65536;  // limits one call, because a line may never stop sending
   std::vector<std::uint8_t> bytes;
   std::array<std::uint8_t, 4096> piece{};
   while (bytes.size() < kAtOnce_bytes) {
@@ -174,7 +175,7 @@ std::vector<std::uint8_t> SerialPort::read() {
     }
     if (count < 0 && errno == EINTR) continue;
     if (count < 0 && errno == EAGAIN) break;
-    // What came before the line went is worth having; the next call finds the line lost again.
+    // Return the bytes received before the line was lost. The next call reports the loss.
     if (!bytes.empty()) break;
     throw lost(path_, count == 0 ? "the line is lost: the other end hung up"
                                  : fmt::format("the line is lost: {}", std::generic_category().message(errno)));

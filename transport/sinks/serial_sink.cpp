@@ -50,8 +50,8 @@ bool SerialSink::ready() {
 }
 
 double SerialSink::pending_bytes() const {
-  // Converters keep bytes that their driver counts as sent, and a pseudo-terminal counts none: what cannot have left at
-  // this baud is pending too.
+  // Converters keep bytes that their driver counts as sent, and a pseudo-terminal counts none. So bytes that cannot
+  // have left yet at this baud are pending, too.
   const std::chrono::duration<double> busy_s = line_is_free_ - Clock::now();
   return std::max(static_cast<double>(port_->pending_bytes()), busy_s.count() * options_.baud / kBitsPerByte);
 }
@@ -71,7 +71,7 @@ void SerialSink::send_off(std::uint8_t sequence) {
 void SerialSink::write(std::span<const std::uint8_t> frame) {
   std::vector<std::uint8_t> wrapped;
   if (options_.xbee) {
-    radio_frame_ = static_cast<std::uint8_t>(radio_frame_ % 255U + 1U);  // 0 would mean: say nothing of its delivery
+    radio_frame_ = static_cast<std::uint8_t>(radio_frame_ % 255U + 1U);  // 0 would mean: do not report its delivery
     wrapped = xbee_wrap(*options_.xbee, radio_frame_, frame);
     frame = wrapped;
   }
@@ -111,7 +111,7 @@ bool SerialSink::reconnect() {
   try {
     open();
   } catch (const Error&) {
-    port_.reset();  // not there yet, or not ours yet: a device node gets its group a moment after it appears
+    port_.reset();  // not there or not accessible yet: a device node gets its group a moment after it appears
     return false;
   }
   ask_again_ = true;

@@ -5,16 +5,16 @@
 namespace vestige {
 
 namespace {
-/// A block of 254 bytes without a zero after it: the longest there is.
+/// A block of 254 bytes without a zero after it: the longest possible block.
 constexpr std::uint8_t kFullBlock = 0xFF;
 }  // namespace
 
 std::vector<std::uint8_t> cobs_encode(std::span<const std::uint8_t> payload) {
   std::vector<std::uint8_t> frame{1};
   frame.reserve(payload.size() + payload.size() / 254 + 1);
-  std::size_t block = 0;  // where the length of the block stands that is being written
+  std::size_t block = 0;  // index of the length of the block being written
   for (const std::uint8_t byte : payload) {
-    // Begun only when a byte follows: a payload that ends with a full block has nothing after it.
+    // A new block begins only if a byte follows: nothing comes after a payload that ends with a full block.
     if (frame[block] == kFullBlock) {
       block = frame.size();
       frame.push_back(1);

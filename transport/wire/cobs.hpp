@@ -7,13 +7,13 @@
 
 namespace vestige {
 
-// Consistent Overhead Byte Stuffing (Cheshire and Baker, SIGCOMM 1997): frames without a zero in them, so that a zero
-// ends a frame whatever came before it. One byte more for every 254 begun.
+// Consistent Overhead Byte Stuffing (Cheshire and Baker, SIGCOMM 1997). Frames contain no zero, so a zero ends a frame
+// whatever came before it. Adds one byte for every 254 bytes begun.
 
-/// The frame without the zero that ends it.
+/// Returns the frame without the zero that ends it.
 std::vector<std::uint8_t> cobs_encode(std::span<const std::uint8_t> payload);
 
-/// The payload of a frame that stood before a zero; none when no payload gives this frame.
+/// Returns the payload of a frame (without its final zero), or nothing if no payload encodes to this frame.
 std::optional<std::vector<std::uint8_t>> cobs_decode(std::span<const std::uint8_t> frame);
 
 }  // namespace vestige

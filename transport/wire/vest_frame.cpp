@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kCrc_bytes = 2;
 constexpr std::size_t kAcknowledgement_bytes = 4;
 constexpr std::size_t kGreeting_bytes = 5;
-/// On the line, without the zero: COBS adds one byte to what is this short.
+/// Length on the line, without the zero; COBS adds one byte to such short payloads.
 constexpr std::size_t kLongestAnswer_bytes = 1 + kGreeting_bytes + kCrc_bytes;
 
 constexpr std::uint8_t kInFailSafe = 1U << 0U;

@@ -9,50 +9,51 @@
 
 namespace vestige {
 
-// The frames that go to the vest's board and come from it: COBS(payload, CRC-16 of the payload, low byte first), then a
-// zero. Payloads, a letter first:
+// The frames to and from the vest's board: COBS(payload, CRC-16 of the payload, low byte first), then a zero. Payloads,
+// beginning with a letter:
 //   to the board     S sequence ttl n duty[n]      P sequence ttl n pressure[n]      X sequence 0 0      H sequence
 //   from the board   A sequence flags receive_errors      H sequence version n flags
-// Levels are absolute; actuators beyond n are off. ttl, in 10 ms units: without a newer frame the board switches all
-// off after it. X switches all off. H asks who is there.
+// Levels are absolute; actuators beyond n are off. ttl is in units of 10 ms: the board switches all off if no newer
+// frame arrives within it. X switches all off. H asks the board to identify itself.
 
-/// n is one byte.
+/// The number of actuators is one byte.
 inline constexpr std::size_t kMaxActuators = 255;
 inline constexpr int kTtlUnit_ms = 10;
-/// What `encode_state` takes. Throws `UsageError` naming --ttl for what is no multiple of 10 from 10 to 2550.
+/// Converts a ttl to the unit of `encode_state`. Throws `UsageError` with --ttl unless `ttl_ms` is a multiple of 10
+/// from 10 to 2550.
 std::uint8_t ttl_units(int ttl_ms);
-/// A zero alone ends whatever stood half-sent on the line before, and is no frame.
+/// A zero alone ends a half-sent frame on the line, and is not a frame itself.
 inline constexpr std::uint8_t kFrameEnd = 0;
 
-/// Frames with their zero, ready for the line. `level`: 0 … 255 for each actuator, at most `kMaxActuators`, else throws
-/// `Error`. `ttl`: 1 … 255, of 10 ms each.
+/// These functions return frames with their zero, ready for the line. `level` has 0 … 255 for each actuator; throws
+/// `Error` for more than `kMaxActuators`. `ttl` is 1 … 255, in units of 10 ms.
 std::vector<std::uint8_t> encode_state(Quantity quantity, std::span<const std::uint8_t> level, std::uint8_t sequence,
                                        std::uint8_t ttl);
 std::vector<std::uint8_t> encode_off(std::uint8_t sequence);
 std::vector<std::uint8_t> encode_hello(std::uint8_t sequence);
 
-/// What a board says of itself when it is asked with a hello.
+/// A board's description of itself, in answer to a hello.
 struct Greeting {
-  std::uint8_t sequence = 0;        ///< of the hello
-  std::uint8_t version = 0;         ///< of the board's program, as its own documentation counts
-  std::uint8_t actuator_count = 0;  ///< how many it drives; further levels of a frame are ignored
-  bool was_in_fail_safe = false;    ///< as in `Acknowledgement`: also true after a start, until a frame sets it going
+  std::uint8_t sequence = 0;        ///< sequence of the hello
+  std::uint8_t version = 0;         ///< version of the board's program, by its own count
+  std::uint8_t actuator_count = 0;  ///< number of actuators; further levels of a frame are ignored
+  bool was_in_fail_safe = false;    ///< as in `Acknowledgement`; also true after a start, until the first frame
   bool overrun = false;             ///< as in `Acknowledgement`
 };
 
 using VestAnswer = std::variant<Acknowledgement, Greeting>;
 
-/// Finds the board's answers in what comes over the line, in whatever pieces. Nothing that fails its CRC, is unknown,
-/// or has not exactly the length of its kind is taken.
+/// Finds the board's answers in bytes from the line, in pieces of any size. Ignores a frame whose CRC is wrong, that is
+/// unknown, or whose length is not exactly that of its kind.
 class VestAnswerDecoder {
  public:
-  /// The answers that these bytes complete, in order.
+  /// Returns the answers that these bytes complete, in order.
   std::vector<VestAnswer> push(std::span<const std::uint8_t> bytes);
-  /// Frames that were not taken. Two zeros with nothing between them are no frame.
+  /// Number of frames ignored. Two zeros with nothing between them are not a frame.
   std::uint64_t damaged() const { return damaged_; }
 
  private:
-  std::vector<std::uint8_t> frame_;  // so far; never longer than the longest answer and one byte
+  std::vector<std::uint8_t> frame_;  // bytes so far; at most one byte longer than the longest answer
   std::uint64_t damaged_ = 0;
 };
 

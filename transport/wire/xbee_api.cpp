@@ -17,7 +17,7 @@ constexpr std::uint8_t kEscapeMask = 0x20;
 /// Start, length and checksum.
 constexpr std::size_t kHeader_bytes = 3;
 constexpr std::size_t kChecksum_bytes = 1;
-/// Longer than any frame that a module sends; a longer length is a damaged one.
+/// Longer than any frame that a module sends; a greater length is a damaged one.
 constexpr std::size_t kLongestData_bytes = 320;
 
 bool must_be_escaped(std::uint8_t byte) {
@@ -46,7 +46,7 @@ std::vector<std::uint8_t> request_header(const XbeeOptions& options, std::uint8_
   } else {
     data = {0x10, frame_number};
     append_number(data, options.address, 8);
-    append_number(data, 0xFFFE, 2);  // the 16-bit address: unknown
+    append_number(data, 0xFFFE, 2);  // 16-bit address: unknown
     data.push_back(0);               // any number of hops
   }
   data.push_back(0);  // no options
@@ -61,7 +61,7 @@ struct Candidate {
   std::vector<std::uint8_t> data;  ///< of a whole frame
 };
 
-/// What stands behind `bytes[0]`, which is 7E.
+/// Reads the frame that begins at `bytes[0]`, which is 7E.
 Candidate look(std::span<const std::uint8_t> bytes, XbeeEscaping escaping) {
   std::vector<std::uint8_t> plain{kStart};
   plain.reserve(bytes.size());
@@ -199,7 +199,7 @@ void XbeeUnwrapper::take(std::span<const std::uint8_t> data, std::vector<std::ui
       status_at(2);
       break;  // type, frame, status
     default:
-      break;  // the module speaks of itself
+      break;  // the module reports about itself
   }
 }
 

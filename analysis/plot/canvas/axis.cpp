@@ -17,7 +17,7 @@ constexpr Pen kAxisPen = {kInk, 0.6, Dash::kSolid};
 constexpr double kTickPt = 3;
 constexpr double kShortTickPt = 1.8;
 constexpr int kTitleTypePt = 8;
-/// Adds of floating-point steps land a hair beside the round number.
+/// Sums of floating-point steps end slightly beside the round number.
 constexpr double kSlack = 1e-9;
 
 double tick_length_pt(const Tick& tick) {

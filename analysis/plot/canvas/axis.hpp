@@ -9,7 +9,7 @@ namespace vestige::plot {
 
 enum class Scale { kLinear, kLog };
 
-/// Maps values in [low, high] to places in [begin_pt, end_pt] (which may run downwards).
+/// Maps values in [low, high] to places in [begin_pt, end_pt]. Places may run downwards.
 struct Axis {
   Scale scale = Scale::kLinear;
   double low = 0;
@@ -22,26 +22,28 @@ struct Axis {
 
 struct Tick {
   double value = 0;
-  std::string label;  ///< empty: a short tick without one
+  std::string label;  ///< empty: a short tick without label
 };
 
-/// The largest number 1, 2 or 5 times a power of ten that is not above `value`, and the smallest not below it.
+/// These return the largest number not above `value`, and the smallest number not below `value`, that is 1, 2 or 5
+/// times a power of ten.
 double round_down_125(double value);
 double round_up_125(double value);
 
-/// Ticks at round steps, about `wanted` of them; `least_step` 1 for things that are counted.
-/// `high` - `low` is at least a millionth of both.
+/// Returns about `wanted` ticks at round steps. `least_step` is 1 for things that are counted. `high` - `low` must be
+/// at least a millionth of both.
 std::vector<Tick> linear_ticks(double low, double high, int wanted, double least_step = 0);
-/// Labelled at powers of ten (at 2 and 5 times them too where the axis is short), unlabelled between.
+/// Returns ticks with labels at powers of ten, and also at 2 and 5 times them if the axis is short. Ticks in between
+/// have no label.
 std::vector<Tick> log_ticks(double low, double high);
 
-/// 12345 as "12 345", with narrow spaces.
+/// Returns digits in groups with narrow spaces: 12345 as "12 345".
 std::string grouped(double value);
 
-/// What their labels are set in.
+/// The type size of tick labels.
 inline constexpr int kTickTypePt = 7;
 
-/// The lower and left axis of `box` with their ticks and titles; `x` and `y` must map to `box`.
+/// These draw the lower and the left axis of `box` with ticks and titles. `x` and `y` must map to `box`.
 void draw_x_axis(Canvas& canvas, const Box& box, const Axis& x, const std::vector<Tick>& ticks, std::string_view title);
 void draw_y_axis(Canvas& canvas, const Box& box, const Axis& y, const std::vector<Tick>& ticks, std::string_view title);
 

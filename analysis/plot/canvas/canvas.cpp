@@ -116,7 +116,7 @@ void Canvas::stroke(std::span<const Place> places) {
   context_.GetDevice()->DrawPoly(coordinates.data(), static_cast<int>(places.size()));
 }
 
-/// VTK's own dashes have another length in every format and at every resolution.
+/// VTK's own dashes differ in length between formats and resolutions.
 void Canvas::dash(std::span<const Place> places, double drawn_pt, double left_out_pt) {
   std::vector<Place> piece = {places.front()};
   bool drawing = true;
@@ -150,7 +150,7 @@ void Canvas::polygon(std::span<const Place> corners, Colour colour) {
     coordinates.push_back(dots(corner.x_pt));
     coordinates.push_back(dots(corner.y_pt));
   }
-  // The context would draw an outline as well, with whatever the pen is.
+  // The context would also draw an outline with the current pen.
   context_.GetDevice()->DrawPolygon(coordinates.data(), static_cast<int>(corners.size()));
 }
 

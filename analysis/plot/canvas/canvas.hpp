@@ -19,7 +19,7 @@ struct Colour {
   std::uint8_t alpha = 255;
 };
 
-/// `colour` with another opacity (0..1).
+/// Returns `colour` with this opacity (0..1).
 Colour faded(Colour colour, double opacity);
 
 /// A place on the page in points (1/72 inch), from the lower left corner.
@@ -41,7 +41,7 @@ struct Box {
 
 enum class Dash { kSolid, kDashed, kDotted };
 enum class Anchor { kLeft, kCentre, kRight };
-/// Which part of the capitals is at the given height: their foot, middle or top.
+/// The part of the capitals that is at the given height: their foot, middle or top.
 enum class Level { kFoot, kMiddle, kTop };
 enum class Weight { kRegular, kBold };
 enum class Mark { kCircle, kSquare, kDiamond, kTriangleUp };
@@ -52,8 +52,8 @@ struct Pen {
   Dash dash = Dash::kSolid;
 };
 
-/// How far letters such as g reach below the line they stand on, and capitals above it, as a part of the type size
-/// (Liberation Sans).
+/// How far letters such as g reach below the base line, and capitals above it, as a share of the type size (Liberation
+/// Sans).
 inline constexpr double kDescent = 0.212;
 inline constexpr double kCapitalHeight = 0.729;
 
@@ -66,7 +66,7 @@ struct TextStyle {
   double turned_degrees = 0;  ///< counterclockwise
 };
 
-/// Dots per inch of the PNG, and of the pictures inside the SVG.
+/// Dots per inch of the PNG file, and of pictures inside the SVG file.
 inline constexpr double kPrintDotsPerInch = 300;
 
 /// A picture of opaque pixels, rows from the top.
@@ -84,27 +84,27 @@ class Raster {
   std::vector<Colour> pixels_;
 };
 
-/// The printed dots along `length_pt`. Boxes for pictures have their edges at multiples of 6 pt, which are whole dots,
-/// so that a raster of as many pixels comes out sharp.
+/// Returns the number of printed dots along `length_pt`. The edges of boxes for pictures lie at multiples of 6 pt,
+/// which are whole dots, so that a raster of as many pixels is sharp.
 std::size_t print_dots(double length_pt);
 
-/// The longest such length up to `length_pt`, at least one step.
+/// Returns the longest multiple of 6 pt up to `length_pt`, at least 6 pt.
 double whole_dots_pt(double length_pt);
 
-/// The same on every canvas.
+/// Returns the width of a text. It is the same on every canvas.
 double text_width_pt(std::string_view text, const TextStyle& style);
 
-/// Its words in lines that are no wider than that, unless a word alone is.
+/// Returns the words of `text` in lines of at most `width_pt`. A word that is wider alone has its own line.
 std::vector<std::string> wrapped(const std::string& text, const TextStyle& style, double width_pt);
 
-/// As much of it as fits, with an ellipsis where something is left out.
+/// Returns as much of the text as fits, with an ellipsis if something is left out.
 std::string shortened(std::string text, const TextStyle& style, double width_pt);
 
-/// What a figure is drawn with: lengths in points, text in Liberation Sans. Draws through VTK, into a window (PNG) or
-/// an SVG document alike.
+/// The surface that a figure is drawn on. Lengths are in points, text is in Liberation Sans. Draws through VTK, either
+/// into a window (PNG) or into an SVG document.
 class Canvas {
  public:
-  /// `context` is one that VTK is drawing with; `dots_per_inch` is its window's.
+  /// `context` must be active in VTK. `dots_per_inch` is that of its window.
   Canvas(vtkContext2D& context, double dots_per_inch);
 
   void line(Place from, Place to, const Pen& pen);

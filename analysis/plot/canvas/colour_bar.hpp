@@ -8,13 +8,14 @@
 
 namespace vestige::plot {
 
-/// Colours for 0..1.
+/// Returns the colour of a value in 0..1.
 using Ramp = Colour (*)(double part);
 
-/// A key to `ramp`: `box` filled from low (bottom) to high (top), both labelled on its right, `title` above it.
+/// Draws a key to `ramp`: `box` filled from low (bottom) to high (top), with both values on its right and `title` above
+/// it.
 void draw_colour_bar(Canvas& canvas, const Box& box, Ramp ramp, double low, double high, std::string_view title);
 
-/// The same from 0 to `high`, labelled at `ticks`.
+/// Draws a key from 0 to `high`, labelled at `ticks`.
 void draw_colour_bar(Canvas& canvas, const Box& box, Ramp ramp, const std::vector<Tick>& ticks, double high,
                      std::string_view title);
 

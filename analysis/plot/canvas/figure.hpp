@@ -6,13 +6,13 @@
 
 namespace vestige::plot {
 
-/// One drawing, the same for every file format.
+/// A drawing that is the same in every file format.
 class Figure {
  public:
   virtual ~Figure() = default;
   virtual double width_pt() const = 0;
   virtual double height_pt() const = 0;
-  /// One sentence, for readers that cannot see the picture.
+  /// Returns one sentence for readers who cannot see the picture.
   virtual std::string description() const = 0;
   virtual void draw(Canvas& canvas) const = 0;
 };

@@ -42,8 +42,8 @@ void set_page(vtkRenderWindow& window, const Figure& figure, double dots_per_inc
   window.SetDPI(static_cast<int>(dots_per_inch));
 }
 
-/// VTK writes text sizes in pt (whatever the page's units are), its height by an attribute that viewers ignore, "right"
-/// where SVG says "end", and turns the wrong way.
+/// Corrects VTK's SVG text. VTK writes sizes in pt whatever the page's units are, gives the height by an attribute that
+/// viewers ignore, says "right" where SVG says "end", and turns text the wrong way.
 void mend_text(vtkXMLDataElement& element) {
   if (std::strcmp(element.GetName(), "text") == 0) {
     const double size_pt = std::strtod(element.GetAttribute("font-size"), nullptr);

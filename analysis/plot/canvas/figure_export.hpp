@@ -6,10 +6,10 @@
 
 namespace vestige::plot {
 
-/// The figure as an SVG document, width and height in points. Needs no OpenGL.
+/// Returns the figure as an SVG document with width and height in points. Does not need OpenGL.
 std::string svg_of(const Figure& figure);
 
-/// The figure as a PNG file at `kPrintDotsPerInch`. Throws `GlUnavailable`.
+/// Returns the figure as a PNG file at `kPrintDotsPerInch`. Throws `GlUnavailable` if there is no OpenGL context.
 std::string png_of(const Figure& figure);
 
 }  // namespace vestige::plot

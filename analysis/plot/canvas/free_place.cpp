@@ -12,7 +12,7 @@ bool overlap(const Box& one, const Box& other) {
          other.bottom_pt < one.top_pt;
 }
 
-/// Cuts the segment by the box's four sides in turn (Liang and Barsky, 1984); true when something remains.
+/// Clips the segment by the box's four sides in turn (Liang and Barsky, 1984). Returns whether a part remains.
 bool crosses(const Box& box, Place from, Place to) {
   double begin = 0;
   double end = 1;
@@ -54,7 +54,7 @@ void spread(std::span<double> heights, double gap, double low, double high) {
   std::vector<std::size_t> order(heights.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t index) { return heights[index]; });
-  // Labels that would touch form a group, which sits where its members' mean would have it.
+  // Labels that would touch form a group, placed at the mean of its members' wishes.
   struct Group {
     double first;
     int count;

@@ -7,7 +7,7 @@
 
 namespace vestige::plot {
 
-/// Finds room for labels between what is drawn already.
+/// Finds room for labels between what is already drawn.
 class FreePlace {
  public:
   /// Labels stay inside `page`.
@@ -17,7 +17,8 @@ class FreePlace {
   void take(std::span<const Place> line);
 
   bool is_free(const Box& box) const;
-  /// The first of `candidates` that is free, else the first of all (a label on a line is better than none). Taken then.
+  /// Returns the first free box of `candidates`, otherwise the first of all: a label on a line is better than no label.
+  /// The returned box is then taken.
   Box take_first(std::span<const Box> candidates);
 
  private:
@@ -31,8 +32,8 @@ class FreePlace {
   std::vector<Segment> segments_;
 };
 
-/// Moves heights as little as needed so that each is `gap` above the one before it and all lie within [low, high]
-/// (where there is room at all). The order of `heights` by value is kept.
+/// Moves heights as little as needed, so that each is at least `gap` above the one before it and all lie within [low,
+/// high] (if there is enough room). Keeps the order of `heights` by value.
 void spread(std::span<double> heights, double gap, double low, double high);
 
 }  // namespace vestige::plot

@@ -15,7 +15,7 @@ namespace vestige::plot {
 
 namespace {
 
-/// EGL is opened at run time, so that the program starts, and still writes SVG, where it is not installed.
+/// EGL is opened at run time, so that the program also starts, and writes SVG, without EGL.
 class EglContext {
  public:
   EglContext() : library_(::dlopen("libEGL.so.1", RTLD_NOW | RTLD_LOCAL)) {
@@ -111,7 +111,7 @@ class EglRenderWindow : public vtkGenericOpenGLRenderWindow {
     if (Initialized || context_ == nullptr) return;
     MakeCurrent();
     glewExperimental = GL_TRUE;
-    // Debian's GLEW asks GLX last, which has no display here; by then OpenGL's own entry points are loaded.
+    // Debian's GLEW asks GLX last, which has no display here. By then, the entry points of OpenGL itself are loaded.
     const GLenum result = glewInit();
     if (result != GLEW_OK && result != GLEW_ERROR_NO_GLX_DISPLAY)
       throw GlUnavailable(fmt::format("GLEW found no OpenGL ({})", result));

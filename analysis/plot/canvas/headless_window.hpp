@@ -8,17 +8,18 @@ class vtkRenderWindow;
 
 namespace vestige::plot {
 
-/// No OpenGL context can be had here: no EGL library, or no driver behind it. `what()` says which step failed.
+/// An OpenGL context is not available: the EGL library or a driver behind it is missing. `what()` says which step
+/// failed.
 class GlUnavailable : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// A VTK render window without a screen, X or Wayland: it draws into its own buffers through an EGL context of our own
-/// (surfaceless where the driver has it). Debian's VTK has no window class for that.
+/// A VTK render window without a screen, X or Wayland. It draws into its own buffers through its own EGL context
+/// (surfaceless if the driver supports that). Debian's VTK has no window class for that.
 class HeadlessWindow {
  public:
-  /// Throws `GlUnavailable`.
+  /// Throws `GlUnavailable` if there is no OpenGL context.
   HeadlessWindow();
   ~HeadlessWindow();
   HeadlessWindow(const HeadlessWindow&) = delete;

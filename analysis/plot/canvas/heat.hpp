@@ -4,24 +4,24 @@
 
 namespace vestige::plot {
 
-/// How far contacts are spread, in the body's largest extent: 2.5 cm for a grown person.
+/// The σ over which contacts are spread, as a share of the body's largest extent: 2.5 cm on an adult.
 inline constexpr double kHeatSigma = 1.0 / 70;
 
-/// From skin without contacts to the most, 0..1: darker throughout.
+/// Returns the colour of a density: 0 is skin without contacts, 1 the highest density. It becomes darker throughout.
 Colour heat_ramp(double part);
 
-/// The unit of area that suits a body, in metres along its side.
+/// A unit of area that suits a body, and the length of its side in metres.
 struct AreaUnit {
   const char* name;
   double side_m;
 };
 AreaUnit unit_for(double extent_m);
 
-/// Where a scale from 0 to at least `highest` ends.
+/// Returns the end of a scale that begins at 0 and reaches at least `highest`.
 double heat_bar_high(double highest);
 
-/// The key to a picture of contacts' density: from 0 to `high` contacts per unit of area, below `top_left` with its
-/// title.
+/// Draws the key to a picture of contact density: from 0 to `high` contacts per unit of area, with its title, below
+/// `top_left`.
 void draw_heat_bar(Canvas& canvas, Place top_left, double height_pt, double high, double extent_m);
 
 }  // namespace vestige::plot

@@ -12,7 +12,7 @@
 
 namespace vestige::plot {
 
-// Okabe and Ito, "Color Universal Design" (2008): told apart with every common colour blindness.
+// Okabe and Ito, "Color Universal Design" (2008): distinguishable with every common colour blindness.
 inline constexpr Colour kBlack = {0, 0, 0};
 inline constexpr Colour kOrange = {230, 159, 0};
 inline constexpr Colour kSkyBlue = {86, 180, 233};
@@ -21,11 +21,11 @@ inline constexpr Colour kBlue = {0, 114, 178};
 inline constexpr Colour kVermillion = {213, 94, 0};
 inline constexpr Colour kPurple = {204, 121, 167};
 
-/// Lines on white: without yellow, which is too pale, and black (the published points).
+/// Colours for lines on white. They exclude yellow, which is too pale, and black, which marks the published points.
 inline constexpr std::array<Colour, 6> kLineColours = {kBlue, kVermillion, kGreen, kPurple, kOrange, kSkyBlue};
 
-/// A line's colour for each: a detector has the same in every figure, and where it stands twice, the second takes one
-/// that is free.
+/// Returns a line colour for each detector. A detector has the same colour in every figure. If a detector occurs twice,
+/// the second line takes a colour that is free, and so does a detector without a colour of its own.
 inline std::vector<Colour> line_colours(const std::vector<std::string>& detectors) {
   constexpr std::array<std::string_view, kLineColours.size()> kOwners = {"paper",  "geometry",       "cpu",
                                                                          "embree", "embree_default", "exact"};
@@ -52,7 +52,7 @@ inline std::vector<Colour> line_colours(const std::vector<std::string>& detector
   return colours;
 }
 
-/// Actuators, told apart on white; grey is for unmapped skin.
+/// Colours for actuators on white. Grey is for unmapped skin.
 inline constexpr std::array<Colour, 7> kActuatorColours = {kBlue,    kOrange, kGreen, kVermillion,
                                                            kSkyBlue, kPurple, kBlack};
 inline constexpr Colour kUnmapped = {150, 150, 150};
@@ -62,14 +62,14 @@ inline constexpr Colour kSmallPrint = {105, 105, 105};
 inline constexpr Colour kGrid = {225, 225, 225};
 inline constexpr Colour kWhite = {255, 255, 255};
 
-/// The sRGB channel that shows so much light, 0..1 (IEC 61966-2-1).
+/// Returns the sRGB channel value for an amount of light, 0..1 (IEC 61966-2-1).
 inline std::uint8_t srgb_channel(double light) {
   const double value = std::clamp(light, 0.0, 1.0);
   const double shown = value <= 0.0031308 ? value * 12.92 : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
   return static_cast<std::uint8_t>(std::lround(shown * 255));
 }
 
-/// `part` 0 gives `from`, 1 gives `to`.
+/// Returns `from` for `part` 0 and `to` for `part` 1.
 inline Colour blend(Colour from, Colour to, double part) {
   const auto channel = [part](std::uint8_t low, std::uint8_t high) {
     return static_cast<std::uint8_t>(std::lround(std::lerp(low, high, part)));
@@ -77,14 +77,15 @@ inline Colour blend(Colour from, Colour to, double part) {
   return {channel(from.red, to.red), channel(from.green, to.green), channel(from.blue, to.blue)};
 }
 
-/// Amounts, 0..1: from next to nothing to dark, evenly, and so in grey print too.
+/// Returns the colour of an amount, 0..1. It goes evenly from almost white to dark, and so also works in grey print.
 inline Colour amount_ramp(double part) {
   constexpr Colour kPale = {238, 241, 245};
   constexpr Colour kDark = {8, 29, 66};
   return part < 0.6 ? blend(kPale, kBlue, part / 0.6) : blend(kBlue, kDark, (part - 0.6) / 0.4);
 }
 
-/// Numbers of many things, 0..1: each visible on white, neighbours alike, darker throughout.
+/// Returns the colour of a number among many, 0..1. Each colour is visible on white, neighbours are similar, and
+/// colours become darker throughout.
 inline Colour number_ramp(double part) {
   constexpr Colour kMiddle = {122, 30, 98};
   constexpr Colour kDark = {10, 14, 60};

@@ -4,7 +4,7 @@
 
 namespace vestige::plot {
 
-/// A bar of a round length, at most `most_pt` long, beginning at `left`, with its length written on its right.
+/// Draws a bar of a round length, at most `most_pt` long, that begins at `left`. Its length is written on its right.
 /// `metre_per_pt` is the drawing's scale.
 void draw_scale_bar(Canvas& canvas, Place left, double metre_per_pt, double most_pt);
 

@@ -8,12 +8,13 @@ namespace vestige::plot {
 
 /// One detector with one method at one rate of the trace.
 struct AccuracyPoint {
-  double rate_hz = 0;       ///< above 0
-  double load = 0;          ///< median run time of a frame times the rate: seconds for a second of motion; above 0
-  double missed_share = 0;  ///< of the true contact events, 0 … 1
+  double rate_hz = 0;  ///< above 0
+  /// Median run time of a frame times the rate: seconds for a second of motion. Above 0.
+  double load = 0;
+  double missed_share = 0;  ///< share of the true contact events, 0 … 1
 };
 
-/// Points by rising rate, at least one.
+/// Has at least one point. Points are by rising rate.
 struct AccuracySeries {
   std::string detector;
   std::string method;
@@ -29,7 +30,7 @@ struct AccuracyPanel {
 };
 
 struct AccuracyResult {
-  std::vector<AccuracyPanel> panels;  ///< with the same series in the same order
+  std::vector<AccuracyPanel> panels;  ///< all have the same series in the same order
   double truth_rate_hz = 0;
   std::string animation;
   std::string avatar;
@@ -38,7 +39,7 @@ struct AccuracyResult {
   std::string commit;
 };
 
-/// Reads accuracy.json and run.json of a folder. Throws `Error` naming file and field.
+/// Reads accuracy.json and run.json of a folder. Throws `Error` with file and field.
 AccuracyResult read_accuracy(const std::filesystem::path& folder);
 
 }  // namespace vestige::plot

@@ -7,13 +7,13 @@
 
 namespace vestige::plot {
 
-/// What a frame costs at one size.
+/// The cost of a frame at one size.
 struct GrowthPoint {
-  double size = 0;  ///< colliders or triangles, at least 1
+  double size = 0;  ///< number of colliders or triangles, at least 1
   double us = 0;    ///< mean microseconds of a frame, above 0
 };
 
-/// One line of a panel; points by rising size.
+/// One line of a panel. Points are by rising size.
 struct GrowthLine {
   std::string detector;
   std::string context;  ///< empty without OpenGL
@@ -26,17 +26,17 @@ struct GrowthPanel {
   std::vector<GrowthLine> lines;
 };
 
-/// growth.json, as far as it is drawn.
+/// The part of growth.json that is drawn.
 struct GrowthResult {
   std::array<GrowthPanel, 2> panels;  ///< against colliders and against triangles
   std::string renderer;               ///< empty without OpenGL
   std::string machine;
   std::string avatar;
   std::string commit;
-  double colliders = 0;  ///< of the second panel
+  double colliders = 0;  ///< number of colliders in the second panel
 };
 
-/// Reads FOLDER/growth.json. Throws `Error` naming file and field.
+/// Reads FOLDER/growth.json. Throws `Error` with file and field.
 GrowthResult read_growth(const std::filesystem::path& folder);
 
 }  // namespace vestige::plot

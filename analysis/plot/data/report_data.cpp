@@ -40,7 +40,7 @@ std::size_t length(const JsonField& field) {
   return field.value().size();
 }
 
-/// A name that files have: it leads to no other folder.
+/// Reads a name for files. The name must not lead to another folder.
 std::string file_name(const JsonField& field) {
   std::string name = field.text();
   if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
@@ -96,7 +96,7 @@ void read_ranking(const std::filesystem::path& file, ReportData& data) {
   for (std::size_t i = 0; i < ranking.count(); ++i) data.ranking.push_back(read_candidate(ranking.at(i), data.metrics));
 }
 
-/// As it could be typed again.
+/// Returns a word as a user could type it in a shell.
 std::string quoted(const std::string& word) {
   if (!word.empty() && word.find_first_of(" \t\n'\"\\$&;|<>()*?[]{}~#!`") == std::string::npos) return word;
   std::string inside;
@@ -138,7 +138,7 @@ void read_provenance(const JsonField& run, ReportData& data) {
   }
 }
 
-/// What folders of earlier versions lack is as it was then.
+/// A folder of an earlier version lacks these fields. Their values are then as they were in that version.
 void read_law_options(const JsonField& options, ReportData& data) {
   if (options.has("hold_ms")) data.law_options.hold_s = options.at("hold_ms").within(0, kMost) / 1e3;
   if (options.has("full_speed_m_per_s"))

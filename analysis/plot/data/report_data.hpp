@@ -15,11 +15,12 @@
 
 namespace vestige::plot {
 
-/// What mends a file of the folder that is damaged.
+/// The remedy for a damaged file of the folder.
 inline constexpr std::string_view kFileRemedy =
     "run the same 'vestige batch' (or 'batch merge') again: it writes the file anew";
 
-/// A mean over traces and its 95 % interval; nothing where a batch has none (no value, fewer than two traces).
+/// A mean over traces and its 95 % interval. A value is absent if the batch has none (no trace has a value, or for the
+/// interval fewer than two traces have one).
 struct Estimate {
   std::optional<double> mean;
   std::optional<double> low;
@@ -38,9 +39,9 @@ struct ReportMetric {
   std::string source;
 };
 
-/// A map with a law, and how it did.
+/// A map with a law, and its results.
 struct Candidate {
-  std::optional<std::size_t> rank;  ///< from 1; none: it has no value on any trace
+  std::optional<std::size_t> rank;  ///< from 1; none: no trace has a value
   std::string map;
   std::string law;
   Estimate headline;
@@ -66,37 +67,37 @@ struct ReportTrace {
   std::vector<std::string> damage;
 };
 
-/// What 'vestige batch -o DIR' wrote, apart from contacts, maps and avatar.
+/// What 'vestige batch -o DIR' wrote, except contacts, maps and avatar.
 struct ReportData {
-  std::size_t headline = 0;  ///< which of `metrics`
-  std::string interval;      ///< how intervals were made, in the batch's own words
+  std::size_t headline = 0;  ///< index into `metrics`
+  std::string interval;      ///< how intervals were made, in the batch's words
   std::vector<ReportMetric> metrics;
   std::vector<Candidate> ranking;  ///< best first
   std::vector<ReportTrace> traces;
   std::vector<ReportFailure> failures;
-  std::map<std::string, std::vector<std::string>> map_warnings;  ///< of the maps, as the batch was given them
-  std::string avatar_sha256;                                     ///< of avatar.glb; empty: not said
+  std::map<std::string, std::vector<std::string>> map_warnings;  ///< by map, as the batch was given them
+  std::string avatar_sha256;                                     ///< of avatar.glb; empty: unknown
   std::map<std::string, std::string> map_sha256;                 ///< of the judged maps: PNG, then sidecar
   std::vector<std::string> laws;                                 ///< in the order of the batch
-  LawOptions law_options;                                        ///< of all of them
-  std::string actuator;                                          ///< where the motors are from; empty: ideal ones
-  std::string actuator_sha256;                                   ///< of actuator.json; empty: not said
-  std::shared_ptr<const ActuatorModel> actuators;                ///< those motors
+  LawOptions law_options;                                        ///< options of all laws
+  std::string actuator;                                          ///< file of the motors; empty: ideal motors
+  std::string actuator_sha256;                                   ///< of actuator.json; empty: unknown
+  std::shared_ptr<const ActuatorModel> actuators;                ///< the motors
   bool complete = true;                                          ///< false: the batch was stopped
   std::string shard;                                             ///< "1 of 3"; empty: the whole batch
-  std::vector<std::pair<std::string, std::string>> provenance;   ///< name and value, as they are shown
+  std::vector<std::pair<std::string, std::string>> provenance;   ///< name and value, as shown
 
-  /// Names of the ranked maps, best first.
+  /// Returns the names of the ranked maps, best first.
   std::vector<std::string> maps() const;
-  /// Of the ranked maps, the first candidate.
+  /// Returns the best candidate of a ranked map.
   const Candidate& best_of(const std::string& map) const;
 };
 
-/// Throws `Error` where `file` is not what was judged. `judged`: the SHA-256 in run.json; empty: not said.
+/// Throws `Error` if `file` is not what was judged. `judged` is the SHA-256 in run.json, or empty if unknown.
 void require_judged(const std::string& file, const std::string& sha256, const std::string& judged);
 
-/// Reads ranking.json, run.json and actuator.json. Throws `Error` naming file and field; of a folder without a ranking
-/// it says what to run.
+/// Reads ranking.json, run.json and actuator.json. Throws `Error` with file and field. For a folder without a ranking,
+/// the error says which command to run.
 ReportData read_report(const std::filesystem::path& folder);
 
 }  // namespace vestige::plot

@@ -22,7 +22,7 @@ std::vector<FrameTime> evenly(const std::vector<FrameTime>& times, std::size_t c
   const double first_s = times.front().time_s;
   const double duration_s = times.back().time_s - first_s;
   for (std::size_t i = 1; i <= count; ++i) {
-    // The first frame has no past to show; the last has all.
+    // The first frame has no past to show. The last frame has all of it.
     const double wish_s = first_s + duration_s * static_cast<double>(i) / static_cast<double>(count);
     auto found = std::ranges::lower_bound(times, wish_s - 1e-9, {}, &FrameTime::time_s);
     if (found == times.end()) --found;
@@ -31,7 +31,7 @@ std::vector<FrameTime> evenly(const std::vector<FrameTime>& times, std::size_t c
   return chosen;
 }
 
-/// Of a path, whatever the frame rate: about as many as a page can show.
+/// The most stops of a path, at any frame rate: about as many as a page can show.
 constexpr double kMostStops = 400;
 
 /// Colliders' recent places, by id.
@@ -77,7 +77,8 @@ class Trails {
     trails_.erase(found);
   }
 
-  /// Before the next stop: the last one begins the segment that is tested then, the one before it may be one too many.
+  /// Called before a stop is added. The last stop begins the segment that is tested next; the stop before it may be
+  /// dropped.
   void thin(Path& trail) const {
     const std::size_t count = trail.stops.size();
     if (count < 3) return;
@@ -85,7 +86,7 @@ class Trails {
       trail.stops.erase(trail.stops.end() - 2);
   }
 
-  /// The segment to the newest place stays, however long ago it began.
+  /// Forgets old stops. The segment to the newest place stays, however old its beginning is.
   void forget(Path& trail, double time_s) const {
     const auto is_young = [&](const Path::Stop& stop) { return time_s - stop.age_s <= length_s_ + 1e-9; };
     auto first = std::ranges::find_if(trail.stops, is_young);

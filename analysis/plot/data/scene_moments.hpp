@@ -13,23 +13,23 @@
 
 namespace vestige::plot {
 
-/// Which moments of a trace are looked at.
+/// The moments of a trace to draw.
 struct MomentChoice {
   std::size_t count = 8;
   double from_s = -std::numeric_limits<double>::infinity();
   double to_s = std::numeric_limits<double>::infinity();
-  double trail_s = 0.1;  ///< how far back paths reach
+  double trail_s = 0.1;  ///< length of the paths, back in time
 };
 
-/// Where one collider was, without a gap or a jump: at least one place. The last two, of a path that ends at the
-/// moment, are the segment that is tested.
+/// The path of one collider without a gap or a jump. It has at least one stop. If the path ends at the moment, its last
+/// two stops are the segment that is tested.
 struct Path {
   struct Stop {
-    double age_s = 0;  ///< before the moment
+    double age_s = 0;  ///< time before the moment
     glm::dvec3 position_m = glm::dvec3(0);
   };
-  bool is_current = false;  ///< the collider is there at the moment
-  std::vector<Stop> stops;  ///< oldest first; thinned out where they are many
+  bool is_current = false;  ///< the collider exists at the moment
+  std::vector<Stop> stops;  ///< oldest first; thinned out if there are many
 };
 
 /// One frame of a trace and the paths that led to it.
@@ -38,7 +38,7 @@ struct Moment {
   double time_s = 0;
   Pose pose;
   std::vector<Path> paths;
-  std::vector<RecordedContact> contacts;  ///< of the time that the paths cover
+  std::vector<RecordedContact> contacts;  ///< contacts in the time that the paths cover
 };
 
 struct FrameTime {
@@ -46,12 +46,13 @@ struct FrameTime {
   double time_s = 0;
 };
 
-/// All frames of a trace, which is then at its beginning again. Throws `Error` naming `name` where there is none.
+/// Returns the times of all frames, and rewinds the trace. Throws `Error` with `name` if the trace has no frame.
 std::vector<FrameTime> frame_times(TraceReader& trace, std::string_view name);
 
-/// Reads the moments among `times`, the trace's frames: evenly over the chosen time or, where contacts are given,
-/// frames with contacts, evenly over these. Fewer than asked where there are fewer frames. `contacts` may be in any
-/// order. Throws `Error` or `UsageError` naming `name`: no frame in that time, no contact in it.
+/// Reads the moments. `times` are the trace's frames. Without contacts, the moments are evenly spaced over the chosen
+/// time. With contacts, they are evenly spaced among the frames that have contacts. Returns fewer moments than asked
+/// for if there are fewer frames. `contacts` may be in any order. Throws `Error` or `UsageError` with `name` if that
+/// time has no frame or no contact.
 std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, std::vector<FrameTime> times,
                                  const MomentChoice& choice, std::span<const RecordedContact> contacts);
 

@@ -6,7 +6,7 @@
 
 namespace vestige::plot {
 
-/// What one detector answered to one family at one magnitude.
+/// How one detector answered one family at one magnitude.
 struct StressCell {
   std::string detector;
   std::string method;
@@ -18,7 +18,7 @@ struct StressCell {
   double error_rate() const { return (missed + false_contacts + elsewhere) / cases; }
 };
 
-/// A family at one magnitude, and all who were attacked with it.
+/// A family at one magnitude, and the answers of all detectors to it.
 struct StressLine {
   std::string name;
   std::string variant;
@@ -33,7 +33,7 @@ struct StressResult {
   std::string commit;
 };
 
-/// Reads DIR/stress.json, and DIR/run.json where it is there. Throws `Error` naming file and field.
+/// Reads DIR/stress.json, and DIR/run.json if it exists. Throws `Error` with file and field.
 StressResult read_stress(const std::filesystem::path& folder);
 
 }  // namespace vestige::plot

@@ -11,29 +11,29 @@ namespace vestige::plot {
 struct SweepPoint {
   double colliders = 0;  ///< at least 1
   double hz = 0;         ///< frames / total time, above 0
-  /// Both ends of the 95 % bootstrap interval of `hz`; absent in files that hold none.
+  /// The ends of the 95 % bootstrap interval of `hz`. Absent if the file does not have them.
   std::optional<double> hz_low;
   std::optional<double> hz_high;
 };
 
-/// One line of the figure; points by rising number of colliders, at least one.
+/// One line of the figure. It has at least one point, by rising number of colliders.
 struct SweepSeries {
   std::string detector;
   std::string context;  ///< empty without OpenGL
   std::string skip;
   std::string method;
-  std::string renderer;   ///< "on": measured beside one
-  std::size_t sweep = 0;  ///< which file it came from
+  std::string renderer;   ///< "on": measured while a renderer was drawing
+  std::size_t sweep = 0;  ///< index of the file
   std::vector<SweepPoint> points;
 };
 
-/// What the small print says about one file.
+/// The small print about one file.
 struct SweepSource {
-  std::string renderer;  ///< with version and context, empty without OpenGL
+  std::string renderer;  ///< with version and context; empty without OpenGL
   std::string machine;
   std::string avatar;
   std::string commit;
-  std::string surface;  ///< "mapped": of the mapped triangles only
+  std::string surface;  ///< "mapped": only the mapped triangles were tested
   bool complete = true;
 };
 
@@ -42,7 +42,7 @@ struct Sweeps {
   std::vector<SweepSeries> series;
 };
 
-/// Reads sweep results ("DIR" stands for DIR/sweep.json) into one figure. Throws `Error` naming file and field.
+/// Reads sweep results into one figure. A path "DIR" stands for DIR/sweep.json. Throws `Error` with file and field.
 Sweeps read_sweeps(const std::vector<std::filesystem::path>& paths);
 
 }  // namespace vestige::plot

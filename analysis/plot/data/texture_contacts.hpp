@@ -10,7 +10,7 @@ namespace vestige::plot {
 /// One texel of the collision textures that holds a contact.
 struct TextureContact {
   std::uint32_t frame = 0;
-  std::uint32_t collider = 0;  ///< the rank of its id
+  std::uint32_t collider = 0;  ///< rank of the collider's id
   std::uint16_t actuator = 0;  ///< 0: skin without an actuator
 };
 
@@ -18,12 +18,12 @@ struct TextureContacts {
   std::uint32_t frames = 0;
   std::uint32_t colliders = 0;
   std::vector<TextureContact> contacts;  ///< by frame, then collider
-  std::vector<std::string> names;        ///< of actuators 1, 2, …; the file holds none
+  std::vector<std::string> names;        ///< names of actuators 1, 2, …; not filled from the file
 };
 
-/// Reads the plane `actuator` of an OpenEXR file as 'vestige replay --textures' writes it: width = colliders, height =
-/// frames, +inf where there is no contact. Throws `Error`: missing, no OpenEXR, cut off, no such plane, no actuator
-/// number.
+/// Reads the plane `actuator` of an OpenEXR file that 'vestige replay --textures' wrote: width = colliders, height =
+/// frames, +inf where there is no contact. Throws `Error` if the file is missing, is not OpenEXR, is cut off, lacks the
+/// plane, or has a value that is not an actuator number.
 TextureContacts read_texture_contacts(const std::filesystem::path& path);
 
 }  // namespace vestige::plot

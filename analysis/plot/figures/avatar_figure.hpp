@@ -10,19 +10,20 @@
 
 namespace vestige::plot {
 
-/// What a contact sheet shows of an avatar: the poses of each animation, evenly over its duration.
+/// The content of a contact sheet of an avatar: the poses of each animation, evenly spaced over its duration.
 struct ContactSheet {
   Subject subject;
-  std::vector<const Animation*> animations;  ///< of the subject's avatar; null: its rest pose
-  std::size_t poses = 6;                     ///< of each animation
+  std::vector<const Animation*> animations;  ///< of the subject's avatar; null: the rest pose
+  std::size_t poses = 6;                     ///< number for each animation
 
-  /// `animation`: a name, an index, "none" (the rest pose) or empty: all, of which there may be none. Throws
-  /// `UsageError` listing what there is.
+  /// Returns the animations to show. `animation` is a name, an index, "none" (the rest pose), or empty: all animations,
+  /// or the rest pose if the avatar has none. Throws `UsageError` that lists the animations if there is no such
+  /// animation.
   static std::vector<const Animation*> choose(const Avatar& avatar, const std::string& animation);
 };
 
-/// Poses from the left to the right, each from the front, from half-left, from the left and from behind, all to one
-/// scale, standing on one ground.
+/// Draws poses from left to right, each from the front, from half-left, from the left and from behind. All have one
+/// scale and stand on one ground.
 std::unique_ptr<Figure> avatar_figure(const ContactSheet& sheet);
 
 }  // namespace vestige::plot

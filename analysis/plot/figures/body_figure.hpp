@@ -12,11 +12,11 @@ namespace vestige::plot {
 struct Body {
   Subject subject;
   bool has_contacts = false;
-  std::vector<RecordedContact> contacts;  ///< of the avatar's triangles
+  std::vector<RecordedContact> contacts;  ///< on the avatar's triangles
 };
 
-/// The avatar at rest, from the front and from behind (of one that is longer than wide, both sides): the regions of its
-/// map, texel by texel as the detectors look them up, and where contacts lie and how dense.
+/// Draws the avatar at rest from the front and from behind, or from both sides if it is longer than wide. Shows the
+/// regions of its map, texel by texel as the detectors look them up, and where and how densely contacts lie.
 std::unique_ptr<Figure> body_figure(Body body);
 
 }  // namespace vestige::plot

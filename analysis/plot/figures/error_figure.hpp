@@ -8,15 +8,15 @@
 
 namespace vestige::plot {
 
-/// How far from where it is each contact of a trace is felt, under one law.
+/// The distance between where each contact of a trace is and where it is felt, under one law.
 struct ErrorSeries {
   std::string law;
-  std::vector<double> time_s;   ///< of each contact, ascending
+  std::vector<double> time_s;   ///< time of each contact, ascending
   std::vector<float> error_mm;  ///< NaN: not felt
 };
 
-/// Laws side by side on the same axes: a dot for each contact, the running median over it, and below, where time has
-/// contacts that are not felt. `series`: at least one; all of one trace.
+/// Draws laws side by side on the same axes. Each contact is a dot, with the running median over the dots. Below, a
+/// strip shows when contacts are not felt. `series` has at least one entry, and all entries are of one trace.
 std::unique_ptr<Figure> error_figure(std::vector<ErrorSeries> series, double begin_s, double end_s);
 
 }  // namespace vestige::plot

@@ -7,8 +7,9 @@
 
 namespace vestige::plot {
 
-/// How cost grows: microseconds a frame against colliders and, beside it, against triangles, both axes logarithmic. A
-/// colour for each detector and context; dashed where nothing is skipped and there is a line with skipping too.
+/// Draws how cost grows: microseconds of a frame against colliders and, beside it, against triangles. Both axes are
+/// logarithmic. Each detector with its context has a colour. A line without skipping is dashed if there is also a line
+/// with skipping.
 std::unique_ptr<Figure> growth_figure(GrowthResult result);
 
 }  // namespace vestige::plot

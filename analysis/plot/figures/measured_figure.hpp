@@ -7,9 +7,10 @@
 
 namespace vestige::plot {
 
-/// What each actuator was told, as an area, and what was measured at its pin, as a line over it. The board counts its
-/// time from its own start, so `measured` is shifted until the first actuator that goes on does so in both at once.
-/// Throws `Error` where the two have other numbers of actuators, or nothing ever goes on in one; `name` stands in it.
+/// Draws what each actuator was told as an area, and what was measured at its pin as a line over it. The board's clock
+/// begins at the board's own start. So `measured` is shifted until the first actuator that switches on does so in both
+/// at the same time. Throws `Error`, with `name` in it, if the numbers of actuators differ, or if in one of the two
+/// nothing ever switches on.
 std::unique_ptr<Figure> measured_figure(Timeline commanded, Timeline measured, const std::string& name);
 
 }  // namespace vestige::plot

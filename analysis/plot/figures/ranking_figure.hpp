@@ -7,8 +7,8 @@
 
 namespace vestige::plot {
 
-/// The best `most` candidates from the top, each with its headline score and 95 % interval; those that cannot be told
-/// from the first are filled, the others hollow. `data` must stay.
+/// Draws the best `most` candidates from the top, each with its headline score and 95 % interval. Candidates that
+/// cannot be distinguished from the first are filled, the others hollow. `data` must outlive the figure.
 std::unique_ptr<Figure> ranking_figure(const ReportData& data, std::size_t most);
 
 }  // namespace vestige::plot

@@ -11,13 +11,13 @@ namespace vestige::plot {
 
 struct Scene {
   Subject subject;
-  std::vector<Moment> moments;  ///< at least one, of this very avatar
+  std::vector<Moment> moments;  ///< at least one; all of the subject's avatar
   double trail_s = 0.1;
   bool has_contacts = false;
 };
 
-/// A film strip: the avatar at each moment from half-left, with the paths that the colliders took, the segments that
-/// are tested, and contacts where they lie on the skin. What the body hides is pale.
+/// Draws a film strip: the avatar at each moment from half-left, with the paths of the colliders, the segments that are
+/// tested, and the contacts on the skin. What the body hides is pale.
 std::unique_ptr<Figure> scene_figure(const Scene& scene);
 
 }  // namespace vestige::plot

@@ -7,7 +7,7 @@
 
 namespace vestige::plot {
 
-/// A heat map of errors: a row for each family and magnitude, a column for each detector and method.
+/// Draws a heat map of errors, with a row for each family and magnitude, and a column for each detector and method.
 std::unique_ptr<Figure> stress_figure(StressResult result);
 
 }  // namespace vestige::plot

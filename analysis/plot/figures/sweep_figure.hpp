@@ -7,8 +7,8 @@
 
 namespace vestige::plot {
 
-/// Detection frequency over the number of colliders: the paper's Figure 2, with its three published points beside what
-/// was measured.
+/// Draws the detection frequency over the number of colliders: the paper's Figure 2, with its three published points
+/// beside the measured points.
 std::unique_ptr<Figure> sweep_figure(Sweeps sweeps);
 
 }  // namespace vestige::plot

@@ -7,8 +7,8 @@
 
 namespace vestige::plot {
 
-/// The collision textures as a picture: frames downwards, colliders to the right, each contact in its actuator's
-/// colour. A contact is never smaller than what can be seen, however many frames there are.
+/// Draws the collision textures: frames downwards, colliders to the right, each contact in its actuator's colour. A
+/// contact is always large enough to be seen, however many frames there are.
 std::unique_ptr<Figure> texture_figure(TextureContacts textures);
 
 }  // namespace vestige::plot

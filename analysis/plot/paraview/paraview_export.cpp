@@ -6,9 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/run/detection_run.hpp"
 #include "detector/actuators/actuator_layout.hpp"
 #include "detector/detector.hpp"
-#include "detector/frame.hpp"
+#include "detector/detectors/make_detectors.hpp"
 
 namespace vestige::plot {
 
@@ -64,7 +65,7 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
   if (actuators > 0)
     law =
         make_law(options.law, std::make_shared<const ActuatorLayout>(subject.avatar, subject.map), options.law_options);
-  FrameBuilder builder(subject.avatar, ids, detector->method());
+  DetectionRun detection(subject.avatar, ids, *detector);
   StepClock clock(options);
   Pending pending;
   pending.amplitude.assign(actuators, 0);
@@ -81,11 +82,11 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
 
   trace.rewind();
   TraceFrame frame;
-  ContactRow row;
   while (trace.next(frame)) {
-    const Frame& built = builder.next(frame);
+    detection.step(frame);
+    const Frame& built = detection.frame();
+    const ContactRow& row = detection.row();
     if (is_due && built.time_s > last_s) write_last();
-    detector->detect(built, row);
     for (std::size_t column = 0; column < row.size(); ++column) {
       const Contact& contact = row[column];
       if (!contact.hit()) continue;

@@ -15,8 +15,8 @@ namespace vestige::plot {
 struct ParaviewOptions {
   std::string law = "binary";
   LawOptions law_options;
-  double rate_hz = 60;                 ///< at most so many steps a second, above 0
-  std::optional<std::uint64_t> every;  ///< instead of a rate: one step for so many frames, at least 1
+  double rate_hz = 60;                 ///< most steps a second, above 0
+  std::optional<std::uint64_t> every;  ///< instead of a rate: one step every so many frames, at least 1
 };
 
 struct ParaviewResult {
@@ -25,10 +25,10 @@ struct ParaviewResult {
   bool interrupted = false;
 };
 
-/// Runs the trace through the CPU detector and the law, frame by frame, and hands steps to `series`. Nothing between
-/// two steps is lost: a step has all contacts since the one before, and of each actuator the highest amplitude. The
-/// last frame is a step. Frames at one time belong to one step. `progress` is told the share done and returns false to
-/// stop; what was written until then is whole. Throws `Error`.
+/// Runs the trace through the CPU detector and the law, frame by frame, and passes steps to `series`. A step has all
+/// contacts since the previous step, and the highest amplitude of each actuator, so nothing between two steps is lost.
+/// The last frame is a step. Frames at the same time belong to one step. `progress` receives the share done and returns
+/// false to stop. The steps written until then are complete. Throws `Error`.
 ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, const ParaviewOptions& options,
                                   ParaviewSeries& series, const std::function<bool(double)>& progress);
 

@@ -16,18 +16,18 @@ class vtkPolyData;
 
 namespace vestige::plot {
 
-/// A contact in the world.
+/// A contact in world coordinates.
 struct PlacedContact {
   double time_s = 0;
   glm::dvec3 position_m = glm::dvec3(0);
-  std::uint32_t collider = 0;  ///< its id
+  std::uint32_t collider = 0;  ///< the collider's id
   std::uint32_t triangle = 0;
   std::uint16_t actuator = 0;  ///< 0: skin that no actuator covers
   std::int8_t side = 0;        ///< +1 entering, -1 leaving, 0 coplanar
   double speed_m_per_s = 0;
 };
 
-/// One time step. Contacts and amplitudes are those since the step before.
+/// One time step. Contacts and amplitudes are those since the previous step.
 struct SeriesStep {
   double time_s = 0;
   const Pose* pose = nullptr;
@@ -36,26 +36,26 @@ struct SeriesStep {
   std::span<const PlacedContact> contacts;
 };
 
-/// A time series that ParaView opens: STEM.pvd lists the files of the folder STEM, of which each step has three (VTK
-/// XML PolyData, zlib):
-///   avatar_NNNNNN.vtp     the skin, world metres; cell data actuator (by the texel under each triangle's middle, 0:
-///   none),
-///                         amplitude (0 … 1, of that actuator), contacts (in this step); texture coordinates with v
-///                         upwards, as VTK has it; field data actuator_name
+/// A time series that ParaView opens. STEM.pvd lists the files of the folder STEM. Each step has three files (VTK XML
+/// PolyData, zlib):
+///   avatar_NNNNNN.vtp     the skin, world metres; cell data actuator (at the texel under each triangle's middle, or
+///                         0), amplitude (0 … 1, of that actuator), contacts (in this step); texture coordinates with
+///                         v upwards, as in VTK; field data actuator_name
 ///   colliders_NNNNNN.vtp  a point for each collider; point data collider (id)
-///   contacts_NNNNNN.vtp   a point for each contact; point data collider, triangle, actuator, side, speed_m_per_s,
-///   time_s
-/// Memory is that of one step. Without `commit` nothing is left behind.
+///   contacts_NNNNNN.vtp   a point for each contact; point data collider, triangle, actuator, side,
+///                         speed_m_per_s, time_s
+/// Holds one step in memory. Without `commit`, no file remains.
 ///
-/// Every function throws `Error` naming the file: it exists (and `Overwrite::kRefuse`), no such folder, disk full.
+/// Functions throw `Error` with the file's name if the file exists (with `Overwrite::kRefuse`), if the folder does not
+/// exist, or if the disk is full.
 class ParaviewSeries {
  public:
-  /// `subject` must stay. `stem`: without .pvd.
+  /// `subject` must outlive this object. `stem` is without .pvd.
   ParaviewSeries(std::filesystem::path stem, Overwrite overwrite, const Subject& subject);
 
-  /// Times must rise.
+  /// Writes a step. Times must rise.
   void write(const SeriesStep& step);
-  /// The list is written last, so that it names no file that is not there.
+  /// Moves the files into place. The list is written last, so that it names only files that exist.
   void commit();
 
   std::size_t steps() const { return times_s_.size(); }

@@ -15,25 +15,25 @@
 
 namespace vestige::plot {
 
-/// Pictures of many maps on one body, from two sides each, that compare: one light, one scale for all numbers of
-/// contacts. The body is lit once.
+/// Pictures of many maps on one body, from two sides each. They are comparable: they share one light and one scale for
+/// numbers of contacts. The body is lit only once.
 class MapPictures {
  public:
-  /// `contacts`: of all traces, on the avatar's triangles.
+  /// `contacts` are those of all traces, on the avatar's triangles.
   MapPictures(const Avatar& avatar, std::vector<RecordedContact> contacts);
   ~MapPictures();
   MapPictures(const MapPictures&) = delete;
   MapPictures& operator=(const MapPictures&) = delete;
 
   std::size_t contact_count() const { return contacts_.size(); }
-  /// Contacts on skin that no actuator of `map` covers: nothing is felt of them, under any law.
+  /// Returns the number of contacts on skin that no actuator of `map` covers. No law makes these contacts felt.
   std::size_t unfelt_count(const ActuatorMap& map) const;
 
-  /// The regions of a map, numbered.
+  /// Draws the regions of a map, with their numbers.
   std::unique_ptr<Figure> regions(const ActuatorMap& map) const;
-  /// How dense contacts are, with the outlines of the regions.
+  /// Draws the density of contacts, with the outlines of the regions.
   std::unique_ptr<Figure> contacts(const ActuatorMap& map) const;
-  /// The same of those contacts that are not felt.
+  /// Draws the density of the contacts that are not felt.
   std::unique_ptr<Figure> unfelt(const ActuatorMap& map) const;
 
  private:
@@ -50,7 +50,7 @@ class MapPictures {
   double cell_height_pt_ = 0;
   double m_per_pt_ = 1;
   double bar_high_ = 1;
-  std::vector<StudioShot> shots_;  ///< one a side
+  std::vector<StudioShot> shots_;  ///< one for each side
 };
 
 }  // namespace vestige::plot

@@ -10,10 +10,10 @@ namespace vestige::plot {
 
 /// A picture of the report.
 struct PageFigure {
-  std::string stem;     ///< its files' name, without extension
-  std::string svg;      ///< of `svg_of`
-  std::string label;    ///< what is read out instead of it
-  std::string caption;  ///< below it
+  std::string stem;     ///< name of its files, without extension
+  std::string svg;      ///< made by `svg_of`
+  std::string label;    ///< read out by screen readers instead of the picture
+  std::string caption;  ///< shown below the picture
 };
 
 struct PageActuator {
@@ -21,19 +21,19 @@ struct PageActuator {
   std::size_t contacts = 0;
 };
 
-/// What the report shows of a map.
+/// The part of the report about one map.
 struct MapSection {
   std::string map;
   std::vector<PageActuator> actuators;
   std::size_t contacts = 0;
-  std::size_t unfelt = 0;  ///< of them, on skin without an actuator
+  std::size_t unfelt = 0;  ///< contacts on skin without an actuator
   std::vector<std::string> warnings;
-  std::vector<PageFigure> bodies;     ///< pairs of front and back
-  std::vector<PageFigure> errors;     ///< over time, laws side by side
+  std::vector<PageFigure> bodies;     ///< pairs of front and back views
+  std::vector<PageFigure> errors;     ///< errors over time, laws side by side
   std::vector<PageFigure> timelines;  ///< the map's best law first
 };
 
-/// How much of the contacts a map leaves unfelt, for maps without pictures too.
+/// The share of contacts that a map leaves unfelt. Maps without pictures have it too.
 struct UnfeltShare {
   std::string map;
   std::size_t contacts = 0;
@@ -45,10 +45,11 @@ struct ReportPage {
   std::vector<PageFigure> ranking;
   std::vector<MapSection> maps;  ///< best first
   std::vector<UnfeltShare> unfelt;
-  std::string shown_trace;  ///< whose timelines and errors are drawn; empty: no trace has contacts
+  /// The trace whose timelines and errors are drawn. Empty: no trace has contacts.
+  std::string shown_trace;
 };
 
-/// The report: one HTML document that refers to nothing outside itself and needs no script.
+/// Returns the report: one HTML document that refers to nothing outside itself and needs no script.
 std::string report_html(const ReportPage& page);
 
 }  // namespace vestige::plot

@@ -4,7 +4,7 @@
 
 namespace vestige::plot {
 
-/// The report's style sheet: light and dark, print, any width from a phone's up. Figures keep their white paper.
+/// The report's style sheet: light and dark, print, any width from a phone's up. Figures keep a white background.
 inline constexpr std::string_view kReportStyle = R"css(
 :root {
   color-scheme: light dark;

@@ -8,14 +8,13 @@
 
 namespace vestige::plot {
 
-/// Looks at a world whose y is up and where an avatar faces +z, from infinitely far: what is equally long is drawn
-/// equally long.
+/// A camera infinitely far away, so that equal lengths look equal. The world's y is up, and an avatar faces +z.
 struct Camera {
   glm::dvec3 right = {1, 0, 0};
   glm::dvec3 up = {0, 1, 0};
-  glm::dvec3 toward = {0, 0, 1};  ///< the viewer
+  glm::dvec3 toward = {0, 0, 1};  ///< towards the viewer
 
-  /// Azimuth 0 sees an avatar's front, 90 its left side, 180 its back. Elevation 90 looks down.
+  /// Azimuth 0 shows an avatar's front, 90 its left side, 180 its back. Elevation 90 looks down.
   static Camera from(double azimuth_degrees, double elevation_degrees) {
     const double azimuth = azimuth_degrees * std::numbers::pi / 180;
     const double elevation = elevation_degrees * std::numbers::pi / 180;
@@ -27,16 +26,16 @@ struct Camera {
     return camera;
   }
 
-  /// x to the right, y up, z towards the viewer, in the world's unit.
+  /// Returns the point in camera coordinates: x to the right, y up, z towards the viewer, in the world's unit.
   glm::dvec3 seen(const glm::dvec3& point) const {
     return {glm::dot(point, right), glm::dot(point, up), glm::dot(point, toward)};
   }
 };
 
-/// The rectangle of what a camera sees that becomes a picture.
+/// The rectangle of a camera's sight that becomes a picture.
 struct View {
   Camera camera;
-  double left = 0;  ///< as `Camera::seen`
+  double left = 0;  ///< in coordinates of `Camera::seen`
   double bottom = 0;
   double unit_per_dot = 1;
   std::size_t width = 1;  ///< dots

@@ -11,27 +11,29 @@
 
 namespace vestige::plot {
 
-/// Contacts per area of a surface, smoothed along it by a Gaussian: each contact is spread over the skin around it that
-/// faces the same way, and counts one in all, at hems as anywhere. The distance is the straight one.
+/// Contacts per area of a surface, smoothed along it by a Gaussian. Each contact spreads over the nearby skin that
+/// faces the same way. Each contact counts one in total, also at the edge of an open surface. Distances are straight
+/// lines.
 class ContactDensity {
  public:
-  /// `sigma` is the Gaussian's, in the surface's unit. The density is computed at places half of it apart, between
-  /// which contacts are shared and densities interpolated: peaks come out lower by up to a twentieth.
+  /// `sigma` is that of the Gaussian, in the surface's unit. The density is computed at places half of `sigma` apart.
+  /// Contacts are shared between these places, and densities are interpolated. So peaks are lower by up to a twentieth.
   ContactDensity(const Surface& surface, std::span<const RecordedContact> contacts, double sigma);
 
-  /// Contacts per square unit where the triangle's second and third vertex weigh u and v.
+  /// Returns the contacts per square unit at which the triangle's second and third vertex weigh u and v.
   double at(std::uint32_t triangle, double u, double v) const;
   double highest() const;
 
  private:
-  /// The places of a triangle: the corners of `parts`² equal ones into which it is cut, in rows along v.
+  /// The places of a triangle. The triangle is cut into `parts`² equal triangles, and their corners are the places, in
+  /// rows along v.
   struct Cut {
     std::size_t parts = 1;
-    std::size_t first = 0;  ///< its first place in `density_`
+    std::size_t first = 0;  ///< index of its first place in `density_`
     std::size_t place(std::size_t u, std::size_t v) const { return first + v * (parts + 1) - v * (v - 1) / 2 + u; }
   };
 
-  /// The three places around a point of a triangle, and what part each has in it.
+  /// The three places around a point of a triangle, and their weights.
   struct Spot {
     std::array<std::size_t, 3> place;
     std::array<double, 3> weight;

@@ -10,28 +10,29 @@
 
 namespace vestige::plot {
 
-/// An actuator's number and where it is written, in dots.
+/// An actuator's number and the place of its label, in dots.
 struct RegionLabel {
   std::size_t actuator = 0;
   double column = 0;
   double row = 0;
 };
 
-/// Which actuator's skin is seen at each dot of a picture.
+/// The actuator whose skin is visible at each dot of a picture.
 class RegionImage {
  public:
   using ActuatorAt = std::function<std::uint16_t(std::uint32_t triangle, double u, double v)>;
 
   RegionImage(const StudioShot& shot, const ActuatorAt& actuator_at);
 
-  /// A dark line where regions meet, so that they are told apart in grey too.
+  /// Draws a dark line where regions meet, so that regions differ in grey too.
   void outline(Raster& raster) const;
 
-  /// For every actuator that is seen, and not only as a sliver, a dot far from other regions and near its middle.
+  /// Returns a label for every visible actuator, except those of which only a sliver is visible. The label is at a dot
+  /// far from other regions and near the middle of the visible skin.
   std::vector<RegionLabel> labels() const;
 
  private:
-  static constexpr std::int32_t kNone = -1;  ///< beside the body
+  static constexpr std::int32_t kNone = -1;  ///< not on the body
 
   std::int32_t at(std::size_t column, std::size_t row) const { return region_[row * width_ + column]; }
   std::vector<float> distances() const;

@@ -10,30 +10,30 @@
 
 namespace vestige::plot {
 
-/// The actuator of the skin where the triangle's second and third vertex weigh u and v, by the very look-up that
-/// detectors use.
+/// Returns the actuator of the skin at which the triangle's second and third vertex weigh u and v, with the look-up
+/// that detectors use.
 std::uint16_t actuator_at(const Avatar& avatar, const ActuatorMap& map, std::uint32_t triangle, double u, double v);
 
-/// Who is drawn.
+/// The avatar that is drawn, with its map.
 struct Subject {
   std::string title;
   Avatar avatar;
-  ActuatorMap map;  ///< without actuators where there is none
+  ActuatorMap map;  ///< has no actuators if there is no map
 
   std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const {
     return plot::actuator_at(avatar, map, triangle, u, v);
   }
 };
 
-/// "builtin", "none", a layout's name (as it lies on `avatar`), or a PNG file, whose sidecar is the .json of the same
-/// name, if there is one. Throws `Error`.
+/// Reads a map. `map` is "builtin", "none", a layout's name (laid onto `avatar`), or a PNG file. A PNG file's sidecar
+/// is the .json file of the same name, if it exists. Throws `Error`.
 ActuatorMap read_map(const std::string& map, const Avatar& avatar);
 
-/// `avatar`: "builtin" or a glTF file. `map`: as for `read_map`; empty: "builtin" for the built-in avatar, else "none".
-/// Throws `Error`.
+/// Reads an avatar with its map. `avatar` is "builtin" or a glTF file. `map` is as in `read_map`; if empty, it is
+/// "builtin" for the built-in avatar and "none" for others. Throws `Error`.
 Subject read_subject(const std::string& avatar, const std::string& map);
 
-/// The avatar of a trace, with the trace's map or, unless it is empty, with `map`. Throws `Error`.
+/// Returns the avatar of a trace with the trace's map, or with `map` if `map` is not empty. Throws `Error`.
 Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map);
 
 }  // namespace vestige::plot

@@ -12,28 +12,29 @@ namespace vestige::plot {
 
 /// An avatar in one pose, as it is drawn.
 struct Surface {
-  std::vector<glm::vec3> position;                       ///< of every vertex, in metres from the origin it was posed at
-  std::vector<glm::uvec3> triangles;                     ///< the avatar's, in its order
+  std::vector<glm::vec3> position;                       ///< of every vertex, metres from the origin of the pose
+  std::vector<glm::uvec3> triangles;                     ///< the avatar's triangles in the avatar's order
   std::vector<std::array<glm::vec3, 3>> corner_normals;  ///< of every triangle: unit length, smooth across soft edges
-  glm::dvec3 low = glm::dvec3(0);                        ///< what the triangles lie between
+  glm::dvec3 low = glm::dvec3(0);                        ///< lower corner of the triangles' bounding box
   glm::dvec3 high = glm::dvec3(0);
 
   double height() const { return high.y - low.y; }
-  /// The point of `triangle` where its second and third vertex weigh `u` and `v`.
+  /// Returns the point of `triangle` at which its second and third vertex weigh `u` and `v`.
   glm::dvec3 point(std::uint32_t triangle, double u, double v) const;
   glm::dvec3 normal(std::uint32_t triangle, double u, double v) const;
 };
 
-/// Poses an avatar. Edges sharper than 50 degrees stay sharp; seams of the texture do not show.
+/// Poses an avatar. Edges sharper than 50 degrees stay sharp. Texture seams are not visible.
 class SurfacePoser {
  public:
-  /// `avatar` must stay.
+  /// `avatar` must outlive this object.
   explicit SurfacePoser(const Avatar& avatar);
   Surface pose(const Pose& pose, const glm::dvec3& origin_m) const;
 
  private:
   const Avatar& avatar_;
-  std::vector<std::uint32_t> place_;  ///< of every vertex: the same for vertices at one place that move as one
+  /// The place of every vertex. Vertices at one position that move as one share a place.
+  std::vector<std::uint32_t> place_;
   std::size_t place_count_ = 0;
 };
 

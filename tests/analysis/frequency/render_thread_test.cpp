@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/scene_renderer.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/scene_run.hpp"

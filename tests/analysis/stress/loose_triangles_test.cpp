@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/skinning.hpp"
 
 namespace vestige {

@@ -14,6 +14,7 @@
 #include "analysis/stress/stress_report.hpp"
 #include "analysis/stress/winding_number.hpp"
 #include "detector/detectors/embree_detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/skinning.hpp"
 #include "tests/support/skin_geometry.hpp"
 #include "tests/support/small_avatar.hpp"

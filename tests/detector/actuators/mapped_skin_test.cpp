@@ -8,6 +8,7 @@
 #include <set>
 
 #include "detector/detectors/contact_description.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"

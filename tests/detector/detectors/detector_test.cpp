@@ -8,6 +8,7 @@
 
 #include "analysis/run/comparison.hpp"
 #include "analysis/run/skinning_error.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"

@@ -15,6 +15,7 @@
 
 #include "analysis/base/provenance.hpp"
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/pairs/adversarial_pairs.hpp"
 

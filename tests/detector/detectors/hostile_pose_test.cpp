@@ -11,6 +11,7 @@
 #include <string>
 
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "tests/support/builtin_avatar.hpp"
@@ -25,7 +26,7 @@ using test::builtin_avatar;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kColliders = 12;
-constexpr std::size_t kFrames = 8;
+constexpr std::size_t kHostileFrames = 8;
 constexpr std::size_t kHostileFrame = 4;
 
 const ActuatorMap& no_map() {
@@ -35,7 +36,7 @@ const ActuatorMap& no_map() {
 
 /// Colliders that go through the walking avatar in every frame.
 std::vector<TraceFrame> calm_scene() {
-  return test::scene("hug", builtin_avatar(), kColliders, static_cast<int>(kFrames), 5);
+  return test::scene("hug", builtin_avatar(), kColliders, static_cast<int>(kHostileFrames), 5);
 }
 
 std::unique_ptr<Detector> make_skipping_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
@@ -104,7 +105,7 @@ void expect_everywhere(const std::vector<TraceFrame>& scene, Method method, cons
     const test::SceneRun found = run(scene, method, make);
     check(found);
     EXPECT_EQ(found.first_non_finite, kHostileFrame);
-    for (std::size_t frame = 0; frame < kFrames; ++frame)
+    for (std::size_t frame = 0; frame < kHostileFrames; ++frame)
       EXPECT_EQ(hash_of(found.rows[frame]), hash_of(expected[frame])) << frame;
   }
 }
@@ -184,7 +185,7 @@ TEST_P(FinitePose, HoweverStrangeIsDecidedToTheSameBitsAsTheTruth) {
   const test::SceneRun drawn_skipping = run(hostile, method, make_skipping_geometry);
   const test::SceneRun truth = run(hostile, method, make_exact_detector);
   EXPECT_FALSE(found.first_non_finite);
-  for (std::size_t frame = 0; frame < kFrames; ++frame) {
+  for (std::size_t frame = 0; frame < kHostileFrames; ++frame) {
     EXPECT_EQ(hash_of(found.rows[frame]), hash_of(truth.rows[frame])) << frame;
     EXPECT_EQ(hash_of(skipping.rows[frame]), hash_of(truth.rows[frame])) << frame;
     EXPECT_EQ(hash_of(drawn.rows[frame]), hash_of(truth.rows[frame])) << frame;

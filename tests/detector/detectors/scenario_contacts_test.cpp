@@ -11,6 +11,7 @@
 #include <set>
 
 #include "detector/detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/skin_geometry.hpp"
 #include "traces/scenarios/scenarios.hpp"

@@ -11,15 +11,16 @@
 
 namespace vestige::test {
 
-/// Triangles and segments of which every pair is close to the border between a contact and a miss.
+/// Triangles and segments. Every pair of a triangle and a segment is close to the border between a contact and a miss.
 struct AdversarialPairs {
   std::vector<LooseTriangle> before;
   std::vector<LooseTriangle> now;
   std::vector<Segment> segments;
 };
 
-/// Draws `AdversarialPairs`: near-copies, a few ulp apart, of one triangle of any shape, size and place, and segments
-/// aimed at its corners, edges, inside and plane, that end, start, pass, rest or lie there, or within a few ulp.
+/// Draws `AdversarialPairs`. The triangles are near-copies, a few ulp apart, of one triangle of any shape, size and
+/// place. The segments are aimed at its corners, edges, inside and plane. They end, start, pass, rest or lie exactly
+/// there, or within a few ulp.
 class AdversarialSource {
  public:
   explicit AdversarialSource(std::uint64_t seed) : random_(seed) {}
@@ -44,7 +45,7 @@ class AdversarialSource {
       }
     }
     for (std::uint32_t i = 0; i < segments; ++i) {
-      // Aimed at where the triangle is at time t, so that moving triangles are hit too.
+      // Aims at the position of the triangle at time t, so that moving triangles are hit too.
       const float t = pick<float>({0, 1, 1, 1, unit()});
       LooseTriangle target;
       for (std::size_t corner = 0; corner < 3; ++corner)
@@ -71,7 +72,7 @@ class AdversarialSource {
     return v;
   }
 
-  /// No change, or some coordinates by one to three ulp.
+  /// Changes nothing, or changes some coordinates by one to three ulp.
   void nudge(glm::vec3& v) {
     if (random_() % 2 == 0) return;
     for (int axis = 0; axis < 3; ++axis) {
@@ -87,7 +88,7 @@ class AdversarialSource {
       case 0:  // needle
         triangle[2] = triangle[1] + 1e-4F * scale * any_vector();
         break;
-      case 1:  // without area, but for rounding
+      case 1:  // no area, except for rounding
         triangle[2] = triangle[0] + unit() * (triangle[1] - triangle[0]);
         break;
       case 2:
@@ -102,7 +103,7 @@ class AdversarialSource {
     return triangle;
   }
 
-  /// A segment through, to, from, at or beside a point of the triangle.
+  /// Returns a segment through, to, from, at or beside a point of the triangle.
   Segment aimed(const LooseTriangle& triangle, float scale) {
     const glm::vec3 ab = triangle[1] - triangle[0];
     const glm::vec3 ac = triangle[2] - triangle[0];

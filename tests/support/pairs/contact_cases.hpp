@@ -9,21 +9,22 @@
 
 namespace vestige::test {
 
-/// A point's way and a triangle that moves, to be asked about with `ccd`; with `static` the triangle is `after`.
+/// A point's way and a moving triangle, for `ccd`. For `static`, the triangle is `after`.
 struct ContactCase {
   Way way;
   Corners before;
   Corners after;
 };
 
-/// What is hard about a case. Some families change cases of the others: ulp, scale, offset.
+/// Returns the names of the case families. A family says what makes its cases hard. The families ulp, scale and offset
+/// change cases of other families.
 std::span<const std::string_view> case_families();
 
-/// Seeded cases of one family: the same seed gives the same cases, on every machine. Half of them hold fp32 numbers
-/// only. All numbers are finite, but not all their differences are: `extreme` has exponents of every size.
+/// Generates seeded cases of one family. The same seed gives the same cases on every machine. Half of the cases hold
+/// fp32 numbers only. All numbers are finite, but their differences may not be: `extreme` has exponents of every size.
 class CaseGenerator {
  public:
-  /// Throws `std::invalid_argument` where no family has this name.
+  /// Throws `std::invalid_argument` if no family has this name.
   CaseGenerator(std::string_view family, std::uint64_t seed);
 
   ContactCase next();

@@ -10,7 +10,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What glTF forbids around its JSON (§4.4.3.2) but does no harm.
+/// Removes characters around the JSON that glTF forbids (§4.4.3.2) but that do no harm.
 std::string_view trim(std::string_view text, Report& report) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) {
@@ -24,7 +24,7 @@ std::string_view trim(std::string_view text, Report& report) {
   return text;
 }
 
-/// Its grammar is known to be sound.
+/// Precondition: the grammar of `text` was checked.
 json parse(std::string_view text, std::string_view path, const Report& report) {
   try {
     return json::parse(text);

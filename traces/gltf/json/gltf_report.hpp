@@ -7,19 +7,19 @@
 
 namespace vestige::gltf {
 
-/// What there is to say about one glTF file: it either fails, or collects what was odd.
+/// The findings about one glTF file: either a failure, or a list of oddities.
 class Report {
  public:
   explicit Report(std::string_view name) : name_(name) {}
 
   /// Throws `Error` at "NAME: PATH". `path` is a JSON path such as "accessors[3].bufferView", or a byte offset; empty
-  /// for the file as a whole. Without a remedy, the usual one for a broken file is given.
+  /// for the file as a whole. An empty remedy stands for the usual one for a broken file.
   [[noreturn]] void fail(std::string_view path, std::string_view cause, std::string_view remedy = {}) const;
 
-  /// Notes something odd but harmless. The same `what` at many places becomes one sentence, naming the first.
+  /// Notes something odd but harmless. The same `what` at many places becomes one sentence that names the first place.
   void warn(std::string_view path, std::string_view what);
 
-  /// One sentence for each kind of oddness, in the order in which they were found.
+  /// Returns one sentence for each kind of oddity, in the order in which they were found.
   std::vector<std::string> warnings() const;
 
   const std::string& name() const { return name_; }

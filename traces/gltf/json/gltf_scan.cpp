@@ -14,20 +14,20 @@ namespace vestige::gltf {
 
 namespace {
 
-// glTF itself needs 9 levels; only extras and extensions go deeper, and those are dropped.
+// glTF itself needs 9 levels. Only extras and extensions go deeper, and they are dropped.
 constexpr int kDeepestNesting = 128;
 
 bool is_digit(char character) {
   return character >= '0' && character <= '9';
 }
 
-/// ASCII that stands for itself inside a text.
+/// Whether an ASCII character represents itself inside a JSON text.
 bool is_plain(char character) {
   return character >= 0x20 && character != '"' && character != '\\';
 }
 
-/// Whether a property is read, by its name and the depth of its object: 1 the document, 3 an element of one of its
-/// lists (a node), 5 an element of a list in that (a primitive).
+/// Whether a property is read, by its name and the depth of its object. Depth 1 is the document, 3 an element of one of
+/// its lists (a node), 5 an element of a list in that (a primitive).
 bool is_read(std::string_view key, int depth, std::string_view list) {
   constexpr std::array<std::string_view, 5> kUnreadLists = {"materials", "textures", "images", "samplers", "cameras"};
   if (key == "extras") return false;
@@ -80,7 +80,7 @@ class Scanner {
     return found;
   }
 
-  /// Appends the value to `out`, without what is not read.
+  /// Appends the value to `out`, without the parts that are not read.
   void reduce(int depth, std::string_view list, std::string_view path, std::string& out) {
     const std::size_t start = at_;
     if (peek() == '{') {
@@ -122,7 +122,7 @@ class Scanner {
  private:
   static constexpr std::string_view kShortened = "\"data:\"";
 
-  /// Nothing relies on an accessor's bounds, so numbers beyond double there do no harm: they become null.
+  /// Nothing relies on an accessor's bounds, so numbers there that exceed double do no harm; they become null.
   void reduce_bound(std::string& out) {
     const std::size_t start = at_;
     skip_value(4);
@@ -130,12 +130,12 @@ class Scanner {
     out += nlohmann::json::accept(bound) ? bound : "null";
   }
 
-  /// Without escapes, the text as it stands is the URI.
+  /// Without escapes, the raw text is the URI.
   static bool is_plain_data_uri(std::string_view value) {
     return value.starts_with("\"data:") && value.find('\\') == std::string_view::npos;
   }
 
-  /// The end of the text reads as a zero, which JSON has nowhere.
+  /// Returns zero at the end of the text; JSON never contains a zero.
   char peek() const { return at_ < text_.size() ? text_[at_] : '\0'; }
 
   void skip_space() {
@@ -156,7 +156,7 @@ class Scanner {
     skip_space();
   }
 
-  /// Calls `action` with each key, decoded and as it stands; it has to move past the value.
+  /// Calls `action` with each key, both decoded and raw; `action` must move past the value.
   template <typename Action>
   void each_member(int depth, const Action& action) {
     enter(depth);

@@ -23,10 +23,10 @@ enum class Type {
   kAny,
   kBoolean,
   kString,
-  kLabel,  ///< a text that only people read
+  kLabel,  ///< a text for people only
   kStrings,
   kNumbers,  ///< each fits into a float
-  kBounds,   ///< numbers on which nothing relies; null where they could not be read
+  kBounds,   ///< numbers on which nothing relies; null if unreadable
   kUnsigned,
   kIndex,
   kIndices,
@@ -309,7 +309,7 @@ class Checker {
 
   void check_unsigned(json& value, std::uint64_t at_least, std::uint64_t at_most) {
     if (!value.is_number()) fail("is not a number");
-    // JSON does not tell 3.0 from 3; tinygltf does.
+    // JSON does not distinguish 3.0 from 3, but tinygltf does.
     constexpr double kExact = 9007199254740992.0;
     if (value.is_number_float()) {
       const auto number = value.get<double>();
@@ -318,7 +318,7 @@ class Checker {
         report_.warn(path(), "is a whole number written as a decimal");
       }
     }
-    if (value == 0) value = std::uint64_t{0};  // it may be written as -0
+    if (value == 0) value = std::uint64_t{0};  // the text may be -0
     if (!value.is_number_unsigned()) fail(fmt::format("{} is no whole number from 0 up", value.dump()));
     const auto number = value.get<std::uint64_t>();
     if (number < at_least || number > at_most) fail(fmt::format("{} is not in {} … {}", number, at_least, at_most));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kDataScheme = "data:";
 
-/// The six bits of a base64 digit, or -1.
+/// Returns the six bits of a base64 digit, or -1.
 int base64_value(char digit) {
   if (digit >= 'A' && digit <= 'Z') return digit - 'A';
   if (digit >= 'a' && digit <= 'z') return digit - 'a' + 26;
@@ -24,14 +24,14 @@ int base64_value(char digit) {
   return -1;
 }
 
-/// `word` is in lower case.
+/// Precondition: `word` is in lower case.
 bool starts_with_any_case(std::string_view text, std::string_view word) {
   return text.size() >= word.size() && std::equal(word.begin(), word.end(), text.begin(), [](char a, char b) {
            return a == (b >= 'A' && b <= 'Z' ? static_cast<char>(b - 'A' + 'a') : b);
          });
 }
 
-/// The byte that "%4a" at `at` stands for, or -1.
+/// Returns the byte of an escape such as "%4a" at `at`, or -1.
 int escaped_byte(std::string_view text, std::size_t at) {
   const int high = at + 2 < text.size() ? hex_value(text[at + 1]) : -1;
   const int low = at + 2 < text.size() ? hex_value(text[at + 2]) : -1;
@@ -43,7 +43,7 @@ std::string shorten(std::string_view uri) {
   return uri.size() <= kShown ? std::string(uri) : fmt::format("{}…", uri.substr(0, kShown));
 }
 
-/// RFC 3986. `uri` stands in errors.
+/// Decodes percent escapes (RFC 3986). Errors name `uri`.
 std::string unescape(std::string_view text, std::string_view uri, std::string_view path, const Report& report) {
   std::string result;
   result.reserve(text.size());
@@ -60,7 +60,7 @@ std::string unescape(std::string_view text, std::string_view uri, std::string_vi
   return result;
 }
 
-/// RFC 4648, padding optional; bits left over after the last byte are not looked at.
+/// Decodes base64 (RFC 4648) with optional padding. Ignores bits left over after the last byte.
 std::vector<std::byte> decode_base64(std::string_view digits, std::string_view path, const Report& report) {
   const std::size_t written = digits.size();
   for (int padding = 0; padding < 2 && digits.ends_with('='); ++padding) digits.remove_suffix(1);

@@ -16,15 +16,17 @@ class MessageIndexCheck {
  public:
   explicit MessageIndexCheck(ProblemList& problems) : problems_(problems) {}
 
-  /// A chunk begins; what is known of the last one is forgotten.
+  /// Begins a new chunk and forgets the previous one.
   void begin_chunk() { begin(Subject::kReadChunk); }
-  /// The chunk cannot be read, or something was skipped: the next indexes cannot be judged.
+  /// Call this if the chunk cannot be read or bytes were skipped. The MessageIndex records that follow are then not
+  /// judged.
   void begin_unknown() { begin(Subject::kUnknown); }
-  /// A message of the chunk.
+  /// Adds a message of the chunk.
   void take_message(const Message& message, std::uint64_t offset_in_chunk);
-  /// A MessageIndex, whose fields fit.
+  /// Checks a MessageIndex. Precondition: its fields fit into the record.
   void take_index(const RecordPlace& place, const MessageIndex& index);
-  /// Another record, or the end: whatever indexes there are have been seen.
+  /// Ends the chunk's group of MessageIndex records: another kind of record or the end of the file follows. Reports
+  /// channels that have no index.
   void end();
 
  private:

@@ -16,7 +16,8 @@ bool begins_with(Bytes bytes, std::array<unsigned char, 4> magic) {
   return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
 }
 
-/// The compression that the name says, or, where the name is damaged, that the data begins like.
+/// Returns the compression called `name`. If the name is damaged, returns the compression whose magic bytes begin
+/// `data`.
 std::string_view likely_compression(std::string_view name, Bytes data) {
   for (const Compression known : {Compression::kNone, Compression::kLz4, Compression::kZstd})
     if (name == name_of(known)) return name_of(known);
@@ -25,10 +26,10 @@ std::string_view likely_compression(std::string_view name, Bytes data) {
   return name;
 }
 
-/// Those that `belongs_in_chunks`.
+/// The opcodes for which `belongs_in_chunks` is true.
 constexpr std::array kInner = {Opcode::kSchema, Opcode::kChannel, Opcode::kMessage};
 
-/// Where the first such byte stands from `position` on; the size where there is none.
+/// Returns the offset of the first byte equal to `opcode` from `position` on, or the size if there is no such byte.
 std::size_t find(Bytes bytes, Opcode opcode, std::size_t position) {
   const void* found = std::memchr(bytes.data() + position, static_cast<int>(opcode), bytes.size() - position);
   if (found == nullptr) return bytes.size();
@@ -54,12 +55,12 @@ ChunkRemains salvage_chunk(Bytes content, RawBuffer& out) {
   try {
     return {.records = expand_chunk(chunk, out), .trust = Trust::kVerified};
   } catch (const Malformed&) {
-    // What follows takes what it can.
+    // The code below expands as much as it can.
   }
   const std::string_view compression = likely_compression(chunk.compression, chunk.records);
   const std::uint64_t claimed = std::min(chunk.uncompressed_size, kMaxChunkBytes - 1);
   Bytes records = decompress_beginning(compression, chunk.records, static_cast<std::size_t>(claimed + 1), out);
-  // Where it goes on beyond the size it claims, the claim is what is damaged.
+  // If the data expands to more than the claimed size, the claim is what is damaged.
   if (records.size() > claimed) records = decompress_beginning(compression, chunk.records, kMaxChunkBytes, out);
   const bool whole = chunk.uncompressed_crc != 0 && crc32(records) == chunk.uncompressed_crc;
   return {.records = records, .trust = whole ? Trust::kVerified : Trust::kUnverified};
@@ -78,8 +79,8 @@ bool is_whole_chunk(Bytes content, RawBuffer& out) {
   }
 }
 
-/// The first place from `position` on where a record may begin by its opcode. What is found further on is kept, so that
-/// no byte is looked at twice for one opcode.
+/// Returns the first place from `position` on where the opcode byte is one that may begin a record. Remembers later
+/// finds, so that no byte is searched twice for the same opcode.
 std::size_t SalvagedRecords::next_opcode(std::size_t position) {
   if (position == records_.size() || belongs_in_chunks(opcode_at(position))) return position;
   std::size_t nearest = records_.size();
@@ -105,7 +106,7 @@ bool SalvagedRecords::is_head(std::size_t offset) const {
   return length <= kMaxChunkBytes && length >= least_content_bytes(opcode).value_or(0);
 }
 
-/// Of what is no record, its length gives most away.
+/// Judges mainly by the length field: random bytes rarely give a length that fits.
 bool SalvagedRecords::is_believable(std::size_t offset) const {
   const std::size_t rest = records_.size() - offset;
   if (rest < kRecordHeadBytes) return false;

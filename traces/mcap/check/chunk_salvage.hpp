@@ -8,25 +8,26 @@
 
 namespace vestige::mcap {
 
-/// Whether a CRC vouches for bytes, or the file has none for them; or whether they only decode.
+/// How far decoded bytes can be trusted. kVerified: a CRC matches, or the file has no CRC for them. kUnverified: they
+/// decode, and nothing more is known.
 enum class Trust { kVerified, kUnverified };
 
-/// What is left of a chunk.
+/// The part of a chunk that could still be expanded.
 struct ChunkRemains {
-  Bytes records;  ///< expanded, as far as they go; kVerified: all of them
+  Bytes records;  ///< the uncompressed records, up to the damage; kVerified: all of them
   Trust trust = Trust::kUnverified;
 };
 
-/// Expands what can be expanded of a Chunk's content, which may be damaged or cut anywhere. `records` is in `out` or in
-/// `content`. Empty where not even its first fields are there.
+/// Expands as much of a Chunk's content as possible; the content may be damaged or cut anywhere. `records` of the
+/// result lies in `out` or in `content`. It is empty if the chunk's own fields are incomplete.
 ChunkRemains salvage_chunk(Bytes content, RawBuffer& out);
 
-/// Whether `content` is a whole chunk with a CRC that holds, whatever its opcode says.
+/// Whether `content` is a complete chunk whose CRC matches, regardless of the record's opcode.
 bool is_whole_chunk(Bytes content, RawBuffer& out);
 
-/// Steps through a chunk's expanded records where some may be damaged, or the end is missing. A record is believed when
-/// its kind may stand in a chunk, it fits, and what follows looks like another; otherwise the next such place is looked
-/// for. Takes linear time.
+/// Steps through a chunk's uncompressed records if some of them may be damaged, or the last ones are missing. Accepts a
+/// record if its kind may stand in a chunk, its length fits, and the bytes after it look like another record. Otherwise
+/// searches forward for the next such place. Takes linear time.
 class SalvagedRecords {
  public:
   explicit SalvagedRecords(Bytes records) : records_(records) {}
@@ -42,7 +43,7 @@ class SalvagedRecords {
 
   Bytes records_;
   std::size_t position_ = 0;
-  std::array<std::size_t, 3> next_ = {};  ///< by opcode, where it stands next, if that is not behind
+  std::array<std::size_t, 3> next_ = {};  ///< by inner opcode: next known position, if not behind `position_`
 };
 
 }  // namespace vestige::mcap

@@ -52,7 +52,7 @@ class Check {
   void take_data_end(const RecordPlace& place, Bytes content);
   void take_definition(const CheckedRecord& record, const Schema& schema);
   void take_definition(const CheckedRecord& record, const Channel& channel);
-  /// A schema, channel or message, in a chunk or not. Throws `Malformed`.
+  /// Takes a schema, channel or message, inside or outside a chunk. Throws `Malformed`.
   void take_content(const CheckedRecord& record);
   void take_message(const CheckedRecord& record);
   void add_to_crc(const RecordPlace& place, Bytes content);
@@ -70,9 +70,9 @@ class Check {
   RawBuffer content_;
   RawBuffer expanded_;
   Section section_ = Section::kData;
-  std::uint64_t data_end_ = kMagicBytes;  ///< of the last record that surely belongs to the data section
+  std::uint64_t data_end_ = kMagicBytes;  ///< end of the last record that certainly belongs to the data section
   std::uint32_t data_crc_ = crc32(std::as_bytes(std::span(kMagic)));
-  std::uint64_t crc_end_ = kMagicBytes;  ///< up to where data_crc_ reaches
+  std::uint64_t crc_end_ = kMagicBytes;  ///< the end of the bytes that data_crc_ covers
   bool crc_whole_ = true;                ///< nothing was skipped
 };
 
@@ -384,7 +384,7 @@ void Check::take_attachment(const RecordPlace& place, Bytes content) {
 void Check::take_data_end(const RecordPlace& place, Bytes content) {
   section_ = Section::kSummary;
   const std::uint32_t expected = decode_data_end(content).data_section_crc;
-  // After broken framing the sum has a hole, and that is a problem of its own already.
+  // After broken framing the CRC misses bytes, and that problem was already reported.
   if (expected == 0 || !crc_whole_ || place.offset != crc_end_ || data_crc_ == expected) return;
   problems_.add({.offset = 0,
                  .bytes = place.end(),

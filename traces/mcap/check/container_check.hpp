@@ -10,18 +10,18 @@
 
 namespace vestige::mcap {
 
-/// A record that a check came by: undamaged as far as anything vouches for it.
+/// A record that the check visits. Nothing that can be verified says that it is damaged.
 struct CheckedRecord {
   Opcode opcode = Opcode::kMessage;
-  Bytes content;                                      ///< valid during the call
-  std::uint64_t offset = 0;                           ///< in the file; inside a chunk, the chunk's
-  std::uint64_t bytes = 0;                            ///< of the record, or of the chunk
-  std::optional<std::uint64_t> offset_in_chunk = {};  ///< from the start of the chunk's expanded records
+  Bytes content;             ///< valid during the call
+  std::uint64_t offset = 0;  ///< in the file; for a record inside a chunk, the offset of the chunk
+  std::uint64_t bytes = 0;   ///< size of the record, or of the chunk around it
+  std::optional<std::uint64_t> offset_in_chunk = {};  ///< from the start of the chunk's uncompressed records
 };
 
-/// What a file turned out to hold.
+/// What the check found in a file.
 struct ContainerFacts {
-  bool begins_as_mcap = false;  ///< with the magic bytes
+  bool begins_as_mcap = false;  ///< the file begins with the magic bytes
   bool has_footer = false;
   std::uint64_t records = 0;  ///< outside chunks
   std::uint64_t messages = 0;
@@ -31,13 +31,13 @@ struct ContainerFacts {
   std::uint64_t metadata = 0;
 };
 
-/// Reads everything in a file, damaged or not, and adds to `problems` whatever breaks MCAP's rules or contradicts
-/// itself: framing, every CRC, compression, definitions, message indexes, summary, footer. `visit` is given every
-/// Header, Schema, Channel, Message, Attachment and Metadata of the data section. `progress` is told
-/// the share done and returns false to stop.
+/// Reads a whole file, damaged or not. Adds to `problems` everything that breaks MCAP's rules or contradicts itself:
+/// framing, every CRC, compression, definitions, message indexes, summary, footer. Calls `visit` with every Header,
+/// Schema, Channel, Message, Attachment and Metadata of the data section. Calls `progress` with the fraction done; it
+/// returns false to stop the check.
 ///
-/// Needs as much memory as the largest record and chunk, and some 200 bytes a chunk. Throws `Error`: the source is
-/// empty, reading failed, stopped.
+/// Needs as much memory as the largest record and chunk, plus some 200 bytes a chunk. Throws `Error` if the source is
+/// empty, reading fails, or the check was stopped.
 ContainerFacts check_container(const ByteSource& source, ProblemList& problems,
                                const std::function<void(const CheckedRecord&)>& visit,
                                const std::function<bool(double)>& progress);

@@ -8,10 +8,10 @@
 
 namespace vestige::mcap {
 
-/// Something wrong with a file, and what follows from it.
+/// A fault in a file, and its consequence.
 struct Problem {
-  std::uint64_t offset = 0;  ///< in the file: of the record, of the chunk, of the first lost byte
-  std::uint64_t bytes = 0;   ///< that are concerned, from there on
+  std::uint64_t offset = 0;  ///< in the file: start of the record or chunk, or the first lost byte
+  std::uint64_t bytes = 0;   ///< number of affected bytes from `offset` on
   std::optional<std::uint64_t> offset_in_chunk = {};  ///< of a record, from the start of its chunk's expanded records
   std::string what;                                   ///< "Chunk: its CRC is wrong"
   std::string consequence;                            ///< "none of its messages is read"

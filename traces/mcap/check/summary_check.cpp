@@ -27,12 +27,12 @@ std::uint64_t offset_of(const DataFacts::ChunkFacts& chunk) {
   return chunk.index.chunk_start_offset;
 }
 
-/// Those of `facts` whose offset is not among `listed`.
+/// Returns the elements of `facts` whose offset is not in `listed`.
 template <typename Facts, typename OffsetOf>
 std::vector<const Facts*> unlisted(const std::vector<Facts>& facts, std::vector<std::uint64_t>& listed,
                                    OffsetOf offset_of) {
   std::vector<const Facts*> missing;
-  if (listed.empty()) return missing;  // a file may do without this index
+  if (listed.empty()) return missing;  // a file may lack this index altogether
   std::sort(listed.begin(), listed.end());
   for (const Facts& fact : facts)
     if (!std::binary_search(listed.begin(), listed.end(), offset_of(fact))) missing.push_back(&fact);
@@ -190,7 +190,7 @@ void SummaryCheck::take(const RecordPlace& place, const Statistics& statistics) 
   compare(place, "chunk_count", std::uint64_t{statistics.chunk_count}, std::uint64_t{counted.chunk_count});
   compare(place, "message_start_time", statistics.message_start_time, counted.message_start_time);
   compare(place, "message_end_time", statistics.message_end_time, counted.message_end_time);
-  // A writer may list channels that have no message, or leave them out.
+  // A writer may list channels without messages, or omit them.
   auto claimed = statistics.channel_message_counts;
   std::erase_if(claimed, [](const auto& entry) { return entry.second == 0; });
   compare(place, "channel_message_counts", claimed, counted.channel_message_counts);

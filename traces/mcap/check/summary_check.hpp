@@ -12,10 +12,10 @@
 
 namespace vestige::mcap {
 
-/// What the data section of a file turned out to hold, in the words of the records that should say the same.
+/// What the data section of a file contains, in the form of the summary records that should say the same.
 struct DataFacts {
   struct ChunkFacts {
-    ChunkIndex index;       ///< what its ChunkIndex should say
+    ChunkIndex index;       ///< the content its ChunkIndex should have
     bool readable = false;  ///< false: only place and length are known
   };
   std::vector<ChunkFacts> chunks;  ///< by offset
@@ -24,20 +24,20 @@ struct DataFacts {
   std::map<std::uint16_t, Schema> schemas;
   std::map<std::uint16_t, Channel> channels;
   Statistics counted;
-  bool whole = true;  ///< nothing was skipped, so that the counts are right
+  bool whole = true;  ///< nothing was skipped, so the counts are exact
 };
 
-/// Compares a summary section, record by record, with the data before it.
+/// Compares a summary section, record by record, with the data section before it.
 class SummaryCheck {
  public:
-  /// Both must stay.
+  /// Keeps references to both arguments.
   SummaryCheck(const DataFacts& facts, ProblemList& problems) : facts_(facts), problems_(problems) {}
 
-  /// There is no DataEnd, so that nothing tells where the summary begins.
+  /// Call this if the file has no DataEnd, so the start of the summary is unknown.
   void begin_unknown() { begin_known_ = false; }
-  /// A record between DataEnd and Footer whose fields fit.
+  /// Checks a record between DataEnd and Footer. Precondition: its fields fit into the record.
   void take(const RecordPlace& place, Bytes content);
-  /// The footer, after everything else.
+  /// Checks the footer. Call this last.
   void finish(const RecordPlace& place, Bytes content, const ByteSource& source);
 
  private:
@@ -67,7 +67,8 @@ class SummaryCheck {
   std::vector<std::uint64_t> listed_metadata_;
 };
 
-/// A schema with the SHA-256 of its data in place of the data, which a file may have any amount of: enough to compare.
+/// Returns a copy of `schema` with the SHA-256 of its data in place of the data. That suffices to compare schemas, and
+/// schema data may be of any size.
 Schema without_data(const Schema& schema);
 
 }  // namespace vestige::mcap

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+
+#include "detector/actuator_map.hpp"
+#include "detector/detector.hpp"
+#include "traces/scene/avatar.hpp"
+
+namespace vestige {
+
+class GlContext;
+
+/// Runs on the CPU: fp32 skinning by the contract, boxes that reject pairs, exact decisions for the rest.
+std::unique_ptr<Detector> make_cpu_detector(const Avatar& avatar, const ActuatorMap& map,
+                                            const DetectorOptions& options);
+
+/// The slow reference: decides every pair in exact arithmetic.
+std::unique_ptr<Detector> make_exact_detector(const Avatar& avatar, const ActuatorMap& map,
+                                              const DetectorOptions& options);
+
+/// The published method: HAVE 2010 §III. Needs OpenGL 4.5. Throws `Error` with the driver's own message
+/// otherwise.
+std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+                                              const ActuatorMap& map, const DetectorOptions& options);
+
+/// A geometry shader proves misses and captures the pairs that it cannot prove to miss. The CPU decides those pairs
+/// exactly. Needs OpenGL 4.5. Throws `Error` with the driver's own message otherwise.
+std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+                                                 const ActuatorMap& map, const DetectorOptions& options);
+
+}  // namespace vestige
