@@ -26,16 +26,28 @@ void add_common_options(CLI::App& command, Options& options, const char* output_
   command.set_help_flag("-h,--help", "Print this help");
 }
 
+/// Adds INPUT, which must be given once.
+void add_input(CLI::App& command, Options& options, const char* type, const std::string& what) {
+  command.add_option("INPUT", options.inputs, what)->type_name(type)->expected(1)->required();
+}
+
+void add_naming_map(CLI::App& command, Options& options) {
+  command.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
+      ->type_name("builtin|LAYOUT|FILE.png");
+}
+
+void add_other_map(CLI::App& command, Options& options) {
+  command.add_option("--map", options.map, "Actuator map instead of the trace's")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
+}
+
 /// Draws the folder that the verb of the same name wrote.
 CLI::App& add_results(CLI::App& app, Options& options, const char* name, const char* what, const char* output_help) {
   CLI::App& command = add_command(app, name, what,
                                   fmt::format("  vestige plot {0} results/{0}\n"
                                               "  vestige plot {0} results/{0} -o figures\n",
                                               name));
-  command.add_option("INPUT", options.inputs, fmt::format("The folder that 'vestige {} -o DIR' wrote", name))
-      ->type_name("DIR")
-      ->expected(1)
-      ->required();
+  add_input(command, options, "DIR", fmt::format("The folder that 'vestige {} -o DIR' wrote", name));
   add_common_options(command, options, "DIR", output_help);
   return command;
 }
@@ -57,12 +69,8 @@ CLI::App& add_timeline(CLI::App& app, Options& options) {
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
                                    "  vestige plot timeline timeline.csv --map builtin -o figures/timeline\n");
-  timeline.add_option("INPUT", options.inputs, "What 'vestige replay --timeline FILE.csv' wrote")
-      ->type_name("CSV")
-      ->expected(1)
-      ->required();
-  timeline.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
-      ->type_name("builtin|LAYOUT|FILE.png");
+  add_input(timeline, options, "CSV", "What 'vestige replay --timeline FILE.csv' wrote");
+  add_naming_map(timeline, options);
   timeline.add_option("--measured", options.measured, "What a board's pins did meanwhile, as CSV like a timeline")
       ->type_name("CSV");
   add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
@@ -74,12 +82,8 @@ CLI::App& add_textures(CLI::App& app, Options& options) {
       add_command(app, "textures", "Collision textures: which actuator each collider touched, and when",
                   "  vestige plot textures textures.exr\n"
                   "  vestige plot textures textures.exr --map builtin -o figures/textures\n");
-  textures.add_option("INPUT", options.inputs, "What 'vestige replay --textures FILE.exr' wrote")
-      ->type_name("EXR")
-      ->expected(1)
-      ->required();
-  textures.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
-      ->type_name("builtin|LAYOUT|FILE.png");
+  add_input(textures, options, "EXR", "What 'vestige replay --textures FILE.exr' wrote");
+  add_naming_map(textures, options);
   add_common_options(textures, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
   return textures;
 }
@@ -107,7 +111,7 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
       add_command(app, "scene", "A film strip of a trace: the avatar, the colliders and their paths",
                   "  vestige plot scene man.mcap\n"
                   "  vestige plot scene man.mcap --contacts contacts.csv --frames 4 --from 0.1 --to 0.2\n");
-  scene.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
+  add_input(scene, options, "MCAP", "The trace");
   scene.add_option("--frames", options.moments.count, "How many frames are drawn")
       ->capture_default_str()
       ->check(CLI::Range(1, 24));
@@ -125,8 +129,7 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
       .add_option("--contacts", options.contacts,
                   "What 'vestige replay --contacts FILE.csv' wrote; the frames drawn are then ones with contacts")
       ->type_name("CSV");
-  scene.add_option("--map", options.map, "Actuator map instead of the trace's")
-      ->type_name("builtin|none|LAYOUT|FILE.png");
+  add_other_map(scene, options);
   add_common_options(scene, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -scene]");
   return scene;
 }
@@ -135,10 +138,7 @@ CLI::App& add_avatar(CLI::App& app, Options& options) {
   CLI::App& avatar = add_command(app, "avatar", "An avatar from four sides, in poses over its animations",
                                  "  vestige plot avatar builtin\n"
                                  "  vestige plot avatar man.glb --animation walk -o figures/walk\n");
-  avatar.add_option("INPUT", options.inputs, "The built-in avatar, or a glTF file (.glb, .gltf, .vrm)")
-      ->type_name("builtin|FILE")
-      ->expected(1)
-      ->required();
+  add_input(avatar, options, "builtin|FILE", "The built-in avatar, or a glTF file (.glb, .gltf, .vrm)");
   avatar
       .add_option("--animation", options.animation,
                   "One animation: a name, an index, or none for the rest pose [default: all]")
@@ -154,10 +154,7 @@ CLI::App& add_report(CLI::App& app, Options& options) {
   CLI::App& report = add_command(app, "report", "A page that compares the maps and laws of a batch (report.html)",
                                  "  vestige plot report compared\n"
                                  "  vestige plot report compared --top 3 -o page\n");
-  report.add_option("INPUT", options.inputs, "The folder that 'vestige batch -o DIR' wrote")
-      ->type_name("DIR")
-      ->expected(1)
-      ->required();
+  add_input(report, options, "DIR", "The folder that 'vestige batch -o DIR' wrote");
   report.add_option("--top", options.top, "How many maps get pictures, from the best on")
       ->capture_default_str()
       ->type_name("N")
@@ -170,9 +167,8 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
   CLI::App& paraview = add_command(app, "paraview", "A trace as a time series for ParaView (.pvd and .vtp)",
                                    "  vestige plot paraview man.mcap\n"
                                    "  vestige plot paraview man.mcap --every 1 -o paraview/man.pvd\n");
-  paraview.add_option("INPUT", options.inputs, "The trace")->type_name("MCAP")->expected(1)->required();
-  paraview.add_option("--map", options.map, "Actuator map instead of the trace's")
-      ->type_name("builtin|none|LAYOUT|FILE.png");
+  add_input(paraview, options, "MCAP", "The trace");
+  add_other_map(paraview, options);
   paraview.add_option("--law", options.law, "How strong a contact makes the actuators")
       ->capture_default_str()
       ->type_name("binary|speed|phantom|gaussian");
