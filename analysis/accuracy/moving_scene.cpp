@@ -7,7 +7,7 @@
 namespace vestige {
 
 const TraceFrame& SceneSampler::next() {
-  sample_frame(scene_.avatar, scene_.animation, *colliders_, rate_hz_, next_++, glm::dvec3(0), frame_);
+  sample_frame({scene_.avatar, scene_.animation, *colliders_}, rate_hz_, next_++, frame_);
   return frame_;
 }
 

@@ -53,7 +53,7 @@ class Truth {
           method_ == Method::kCcd ? exact::ccd_contact(way, before, now) : exact::static_contact(way, now);
       if (!found || found->t >= first.t) continue;  // ascending triangles: a tie goes to the smallest number
       const Corners at_contact = method_ == Method::kCcd ? corners_at(before, now, found->t) : now;
-      first = describe_contact(subject_.avatar, subject_.map, triangle, way, at_contact, *found, frame_.duration_s);
+      first = describe_contact(subject_.avatar, subject_.map, {triangle, way, at_contact, *found}, frame_.duration_s);
     }
     return first;
   }

@@ -57,9 +57,9 @@ void check_live_choice(const CLI::App& verb, const LiveChoice& choice) {
     throw UsageError("--origin", "each line says where avatar and colliders stand", "leave it out");
 }
 
-LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, double rate_hz,
-                       std::optional<double> duration_s, const glm::dvec3& origin_m, Verbosity verbosity) {
-  const LiveSettings settings = {.rate_hz = rate_hz, .duration_s = duration_s, .asked = asked};
+LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, LiveSettings settings,
+                       const glm::dvec3& origin_m, Verbosity verbosity) {
+  settings.asked = asked;
   LiveCounts counts;
   if (choice.is_lines()) {
     LiveNdjson lines(scene.avatar);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,9 +24,9 @@ void add_live_options(CLI::App& verb, LiveChoice& choice);
 /// Throws `UsageError` if the source is not valid, or for flags of `verb` that would have no effect beside it.
 void check_live_choice(const CLI::App& verb, const LiveChoice& choice);
 
-/// Records until the source ends, `duration_s` ends, the recorder is full, or the user stops it. Warns of lost data.
-/// Does not finish the recorder. Throws `Error` if no frame arrived.
-LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, double rate_hz,
-                       std::optional<double> duration_s, const glm::dvec3& origin_m, Verbosity verbosity);
+/// Records until the source ends, the duration ends, the recorder is full, or the user stops it. Ignores
+/// `settings.asked`. Warns of lost data. Does not finish the recorder. Throws `Error` if no frame arrived.
+LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, LiveSettings settings,
+                       const glm::dvec3& origin_m, Verbosity verbosity);
 
 }  // namespace vestige::cli

@@ -119,17 +119,65 @@ void remove_files(const std::vector<std::string>& paths) {
   }
 }
 
+/// Returns the exit code of vestige-plot.
+int export_for_paraview(const ExportOptions& options) {
+  check_outputs({options.output}, {options.file}, options.common);
+  std::vector<std::string> arguments = {"paraview", options.file, "-o", options.output};
+  if (options.rate_hz) arguments.insert(arguments.end(), {"--rate", fmt::format("{}", *options.rate_hz)});
+  if (options.common.force) arguments.emplace_back("--force");
+  if (options.common.quiet) arguments.emplace_back("-q");
+  return run_plot(arguments);
+}
+
+std::vector<std::unique_ptr<FrameFile>> make_files(const ExportOptions& options, const std::string& format,
+                                                   const std::optional<CsvFolder>& folder, OpenTrace& trace) {
+  TraceReader& reader = trace.reader;
+  const Overwrite overwrite = options.common.overwrite();
+  std::vector<std::unique_ptr<FrameFile>> files;
+  if (folder) {
+    files.push_back(make_pose_csv(folder->poses, overwrite, reader.node_names()));
+    files.push_back(make_collider_csv(folder->colliders, overwrite));
+  } else if (format == "csv") {
+    files.push_back(options.what == "poses" ? make_pose_csv(options.output, overwrite, reader.node_names())
+                                            : make_collider_csv(options.output, overwrite));
+  } else if (format == "ndjson") {
+    files.push_back(make_frame_ndjson(options.output, overwrite));
+  } else if (format == "hdf5") {
+    files.push_back(make_frame_hdf5(options.output, overwrite, reader));
+  } else {
+    files.push_back(
+        make_frame_gltf(options.output, overwrite, trace.avatar, reader.avatar_glb(), reader.collider_ids()));
+  }
+  return files;
+}
+
+/// Returns how many frames each file has.
+std::uint64_t write_frames(TraceReader& reader, const std::vector<std::unique_ptr<FrameFile>>& files,
+                           const ExportOptions& options) {
+  std::optional<FrameThinning> thinning;
+  if (options.rate_hz) thinning.emplace(*options.rate_hz);
+  const auto total = static_cast<double>(reader.frame_count());
+  std::uint64_t read = 0;
+  std::uint64_t written = 0;
+  Progress progress("Exporting", options.common.verbosity());
+  TraceFrame frame;
+  while (reader.next(frame)) {
+    ++read;
+    if (!thinning || thinning->keep(frame)) {
+      for (const auto& file : files) file->write(frame);
+      ++written;
+    }
+    if (!progress.update(static_cast<double>(read) / total)) throw Error(options.output, "exporting was stopped", "");
+  }
+  return written;
+}
+
 void run_export(const ExportOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::string format = format_of(options);
   check_flags(options, format);
   if (format == "paraview") {
-    check_outputs({options.output}, {options.file}, options.common);
-    std::vector<std::string> arguments = {"paraview", options.file, "-o", options.output};
-    if (options.rate_hz) arguments.insert(arguments.end(), {"--rate", fmt::format("{}", *options.rate_hz)});
-    if (options.common.force) arguments.emplace_back("--force");
-    if (options.common.quiet) arguments.emplace_back("-q");
-    invocation.exit_code = run_plot(arguments);
+    invocation.exit_code = export_for_paraview(options);
     return;
   }
   const bool is_folder = format == "csv" && options.what == "all";
@@ -150,40 +198,8 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   catch_interrupts();
   require_frames(reader, options.file);
   const std::uint64_t total = reader.frame_count();
-  const Overwrite overwrite = options.common.overwrite();
-  std::vector<std::unique_ptr<FrameFile>> files;
-  if (is_folder) {
-    files.push_back(make_pose_csv(folder->poses, overwrite, reader.node_names()));
-    files.push_back(make_collider_csv(folder->colliders, overwrite));
-  } else if (format == "csv") {
-    files.push_back(options.what == "poses" ? make_pose_csv(options.output, overwrite, reader.node_names())
-                                            : make_collider_csv(options.output, overwrite));
-  } else if (format == "ndjson") {
-    files.push_back(make_frame_ndjson(options.output, overwrite));
-  } else if (format == "hdf5") {
-    files.push_back(make_frame_hdf5(options.output, overwrite, reader));
-  } else {
-    files.push_back(
-        make_frame_gltf(options.output, overwrite, trace.avatar, reader.avatar_glb(), reader.collider_ids()));
-  }
-
-  std::optional<FrameThinning> thinning;
-  if (options.rate_hz) thinning.emplace(*options.rate_hz);
-  std::uint64_t read = 0;
-  std::uint64_t written = 0;
-  {
-    Progress progress("Exporting", verbosity);
-    TraceFrame frame;
-    while (reader.next(frame)) {
-      ++read;
-      if (!thinning || thinning->keep(frame)) {
-        for (const auto& file : files) file->write(frame);
-        ++written;
-      }
-      if (!progress.update(static_cast<double>(read) / static_cast<double>(total)))
-        throw Error(options.output, "exporting was stopped", "");
-    }
-  }
+  const std::vector<std::unique_ptr<FrameFile>> files = make_files(options, format, folder, trace);
+  const std::uint64_t written = write_frames(reader, files, options);
   std::vector<std::string> losses;
   for (const auto& file : files) {
     const auto some = file->losses();

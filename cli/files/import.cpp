@@ -43,6 +43,12 @@ struct ImportOptions {
 
 /// Gives frame after frame: first whoever knows index, time and pose, then whoever knows the colliders.
 struct Frames {
+  bool next(TraceFrame& frame) const {
+    if (!next_pose(frame)) return false;
+    add_colliders(frame);
+    return true;
+  }
+
   std::function<bool(TraceFrame&)> next_pose;
   std::function<void(TraceFrame&)> add_colliders = [](TraceFrame&) {};
   std::function<void()> finish = [] {};
@@ -172,6 +178,34 @@ void require_names(const std::string& file, const std::vector<std::string>& name
               "poses must have the nodes of avatar.glb, in their order");
 }
 
+/// The scene of an .h5, whose frames follow.
+Scene read_hdf5(const std::string& path, Frames& frames, Verbosity verbosity) {
+  const auto file = std::make_shared<TraceHdf5>(path);
+  Scene scene =
+      make_scene(file->avatar_glb(), {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
+                 {path + ", avatar.glb", path + ", actuator_map.png"}, verbosity);
+  require_names(path, file->node_names(), scene.avatar);
+  frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
+  frames.share = [file] { return file->share(); };
+  return scene;
+}
+
+void read_poses(const std::string& path, const Avatar& avatar, Frames& frames, Verbosity verbosity) {
+  const auto reader = std::make_shared<PoseCsvReader>(path, avatar);
+  warn_of_names(path, "these nodes of the avatar keep their rest", reader->resting(), verbosity);
+  frames.next_pose = [reader](TraceFrame& frame) { return reader->next(frame); };
+  frames.share = [reader] { return reader->share(); };
+}
+
+TraceWriterOptions writing_of(const ImportOptions& options) {
+  TraceWriterOptions writing;
+  writing.overwrite = options.common.overwrite();
+  writing.unfinished = Unfinished::kRemoved;
+  if (options.compression == "lz4") writing.compression = Compression::kLz4;
+  if (options.compression == "none") writing.compression = Compression::kNone;
+  return writing;
+}
+
 void run_import(ImportOptions options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   if (!options.from.empty()) refuse_parts(options);
@@ -185,17 +219,8 @@ void run_import(ImportOptions options, Invocation& invocation) {
   if (options.output == "-") refuse_terminal("-o -");
 
   Frames frames;
-  Scene scene;
-  if (from_hdf5) {
-    const auto file = std::make_shared<TraceHdf5>(options.from);
-    scene = make_scene(file->avatar_glb(), {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
-                       {options.from + ", avatar.glb", options.from + ", actuator_map.png"}, verbosity);
-    require_names(options.from, file->node_names(), scene.avatar);
-    frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
-    frames.share = [file] { return file->share(); };
-  } else {
-    scene = load_scene(options.avatar, options.map, verbosity);
-  }
+  Scene scene =
+      from_hdf5 ? read_hdf5(options.from, frames, verbosity) : load_scene(options.avatar, options.map, verbosity);
   std::optional<LoadedMotion> motion;
   Session session = provenance_texts(invocation.argv);
   session["colliders"] = options.colliders;
@@ -205,34 +230,23 @@ void run_import(ImportOptions options, Invocation& invocation) {
     session["animation"] = options.motion;
     session["rate_hz"] = fmt::format("{}", options.rate_hz.value_or(1 / motion->frame_time_s));
   } else if (!from_hdf5) {
-    const auto reader = std::make_shared<PoseCsvReader>(options.poses, scene.avatar);
-    warn_of_names(options.poses, "these nodes of the avatar keep their rest", reader->resting(), verbosity);
-    frames.next_pose = [reader](TraceFrame& frame) { return reader->next(frame); };
-    frames.share = [reader] { return reader->share(); };
+    read_poses(options.poses, scene.avatar, frames, verbosity);
     session["animation"] = options.poses;
   }
   read_colliders(options, frames);
 
-  TraceWriterOptions writing;
-  writing.overwrite = options.common.overwrite();
-  writing.unfinished = Unfinished::kRemoved;
-  if (options.compression == "lz4") writing.compression = Compression::kLz4;
-  if (options.compression == "none") writing.compression = Compression::kNone;
   catch_interrupts();
   TraceFrame frame;
   // The first frame is read before a file is begun: most mistakes show there.
-  bool more = frames.next_pose(frame);
-  if (more) frames.add_colliders(frame);
+  bool more = frames.next(frame);
   bool any_collider = false;
-  TraceWriter trace(options.output, session, scene.avatar, scene.attachments(), writing);
+  TraceWriter trace(options.output, session, scene.avatar, scene.attachments(), writing_of(options));
   {
     Progress progress("Importing", verbosity);
-    while (more) {
+    for (; more; more = frames.next(frame)) {
       trace.write(frame);
       any_collider = any_collider || !frame.colliders.empty();
       if (!progress.update(frames.share())) throw Error(options.output, "importing was stopped", "");
-      more = frames.next_pose(frame);
-      if (more) frames.add_colliders(frame);
     }
   }
   frames.finish();

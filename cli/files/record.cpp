@@ -145,7 +145,8 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   LiveCounts lost;
   if (options.live.is_live()) {
     const auto duration_s = options.has_duration ? std::optional(settings.duration_s) : std::nullopt;
-    lost = record_live(options.live, scene, recorder, settings.rate_hz, duration_s, settings.origin_m, verbosity);
+    lost = record_live(options.live, scene, recorder, {.rate_hz = settings.rate_hz, .duration_s = duration_s},
+                       settings.origin_m, verbosity);
   } else {
     record_scene(options, scene, animation, *colliders, settings, recorder);
   }

@@ -129,6 +129,30 @@ class BatchWatch {
   std::size_t told_ = 0;
 };
 
+/// run.json of a batch that begins.
+nlohmann::ordered_json begun_record(const nlohmann::ordered_json& identity, const Shard& shard, std::size_t jobs,
+                                    const BatchOptions& batch, const Invocation& invocation) {
+  nlohmann::ordered_json run = provenance(invocation.argv);
+  run["batch"] = identity;
+  run["shard"] = {{"number", shard.number}, {"count", shard.count}};
+  run["rank_by"] = batch.rank_by;
+  run["complete"] = false;
+  run["jobs"] = jobs;
+  return run;
+}
+
+BatchOutcome detect(const BatchPlan& plan, const Shard& shard, const BatchFolder& folder, std::size_t jobs,
+                    const BatchOptions& batch) {
+  const ActuatorMap no_map;  // contacts are recorded for all maps at once
+  BatchWatch watch(batch.common.verbosity());
+  return run_batch(
+      plan, shard, folder, jobs,
+      [&] {
+        return make_detector(plan.detector, batch.choice.context, batch.choice, plan.avatar, no_map, kRecordedPlanes);
+      },
+      [&](const BatchProgress& now) { return watch.update(now); });
+}
+
 void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   const auto start = std::chrono::steady_clock::now();
   const BatchOptions& batch = options.batch;
@@ -151,29 +175,14 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   const nlohmann::ordered_json identity = to_json(plan);
   const BatchFolder folder(batch.output, identity, shard,
                            batch.common.force ? OtherBatch::kReplace : OtherBatch::kRefuse);
-  nlohmann::ordered_json run = provenance(invocation.argv);
-  run["batch"] = identity;
-  run["shard"] = {{"number", shard.number}, {"count", shard.count}};
-  run["rank_by"] = batch.rank_by;
-  run["complete"] = false;
-  run["jobs"] = jobs;
+  nlohmann::ordered_json run = begun_record(identity, shard, jobs, batch, invocation);
   run.update(input_warnings(plan));
   warn_of_inputs(run, verbosity);
   folder.remove_results(run);                    // which may be another batch's
   write_json_file(folder.top("run.json"), run);  // before the first item, so that the folder is known as this batch's
   write_inputs(plan, folder);
 
-  BatchOutcome outcome;
-  const ActuatorMap no_map;  // contacts are recorded for all maps at once
-  {
-    BatchWatch watch(verbosity);
-    outcome = run_batch(
-        plan, shard, folder, jobs,
-        [&] {
-          return make_detector(plan.detector, batch.choice.context, batch.choice, plan.avatar, no_map, kRecordedPlanes);
-        },
-        [&](const BatchProgress& now) { return watch.update(now); });
-  }
+  const BatchOutcome outcome = detect(plan, shard, folder, jobs, batch);
   failures.insert(failures.end(), outcome.failures.begin(), outcome.failures.end());
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
   run["wall_s"] = spent.count();

@@ -13,9 +13,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "cli/vest/sink_choice.hpp"
-#include "detector/actuators/actuator_drive.hpp"
 #include "detector/actuators/actuator_map_watch.hpp"
-#include "detector/actuators/pressure.hpp"
 #include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
@@ -34,6 +32,9 @@ struct StreamOptions {
   std::string map;
   LawFlags law;
   std::string log;
+
+  /// Returns whether the map is a file that may change during the playback.
+  bool is_map_watched() const { return !map.empty() && map != "builtin" && !is_layout(map); }
 };
 
 /// Writes what became of each changed state: `time_s,state,written_us,actuator_1,…`.
@@ -66,43 +67,6 @@ struct Streamed {
   PlaybackResult playback;
   SenderStatistics sender;
   std::uint64_t maps_reloaded = 0;
-};
-
-/// What the trace's contacts become, run by run: pressures where the sink asks for them, else what --law says.
-class LawMaker {
- public:
-  LawMaker(const StreamOptions& options, const OpenTrace& trace)
-      : hold_s_(options.law.hold_ms / 1e3 * options.playback.rate), actuator_count_(trace.map.actuator_count) {
-    if (options.sink.quantity() != Quantity::kPressure)
-      drives_.emplace(options.law, trace.avatar, trace.map, options.playback.rate);
-  }
-
-  PlaneSet planes() const { return drives_ ? drives_->planes() : kHashedPlanes | Plane::kPressure; }
-  bool needs_layout() const { return drives_ && drives_->has_layout(); }
-  nlohmann::ordered_json to_json() const { return drives_ ? drives_->to_json() : nlohmann::ordered_json("pressure"); }
-
-  PlaybackCalls::Law make() {
-    if (!drives_)
-      return [law = std::make_shared<PressureLaw>(actuator_count_, hold_s_)](
-                 double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
-    drive_ = drives_->make();
-    return [drive = drive_](double time_s, const ContactRow& row) -> const ActuatorFrame& {
-      return drive->next(time_s, row);
-    };
-  }
-
-  /// Goes on with another map's layout, in this run and those that follow.
-  void use(const std::shared_ptr<const ActuatorLayout>& layout) {
-    if (!layout) return;
-    drives_->use(layout);
-    if (drive_) drive_->law().change_layout(layout);
-  }
-
- private:
-  double hold_s_;
-  std::size_t actuator_count_;
-  std::optional<DriveMaker> drives_;
-  std::shared_ptr<ActuatorDrive> drive_;  ///< of the run that goes on
 };
 
 nlohmann::ordered_json to_json(const LatencyHistogram& latency) {
@@ -194,10 +158,7 @@ int report_losses(const Streamed& streamed, const OpenSink& sink, Verbosity verb
   return code;
 }
 
-void run_stream(const StreamOptions& options, Invocation& invocation) {
-  const Verbosity verbosity = options.common.verbosity();
-  const std::vector<std::string> outputs = {options.log, options.common.json, options.sink.output_path()};
-  check_outputs(outputs, {options.trace, options.map, options.law.actuator}, options.common);
+void check_flags(const StreamOptions& options) {
   options.law.check();
   if (options.sink.quantity() == Quantity::kPressure && options.law.any())
     throw UsageError(options.law.actuator.empty() ? "--law" : "--actuator",
@@ -207,27 +168,47 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
                      "leave one of the two out");
   if (options.map == "none")
     throw UsageError("--map", "'none' has no actuator to switch", "name a map, or leave it out for the trace's own");
-  const bool watched = !options.map.empty() && options.map != "builtin" && !is_layout(options.map);
-  if (watched && options.choice.detector == "paper")
+  if (options.is_map_watched() && options.choice.detector == "paper")
     throw UsageError("--map", "may change while it is felt, which --detector paper cannot follow",
                      "choose another detector");
+}
+
+/// Puts the map of --map in the place of the trace's own, if one is named. Throws `Error` if there is no actuator.
+void choose_map(OpenTrace& trace, const StreamOptions& options) {
+  if (!options.map.empty()) {
+    trace.map = parse_actuator_map(read_map_files(trace.avatar, options.map), trace.avatar, options.map);
+    for (const std::string& warning : trace.map.warnings) warn(warning, options.common.verbosity());
+  }
+  if (trace.map.actuator_count == 0)
+    throw Error(options.trace, "holds no actuator map, so that nothing would be felt", "name one: --map FILE.png");
+}
+
+/// Returns laws for pressures if the sink asks for them, else those of --law.
+LawMaker make_laws(const StreamOptions& options, const OpenTrace& trace) {
+  const double rate = options.playback.rate;
+  if (options.sink.quantity() == Quantity::kPressure)
+    return {trace.map.actuator_count, options.law.options(rate).hold_s};
+  return LawMaker(DriveMaker(options.law, trace.avatar, trace.map, rate));
+}
+
+void run_stream(const StreamOptions& options, Invocation& invocation) {
+  const Verbosity verbosity = options.common.verbosity();
+  const std::vector<std::string> outputs = {options.log, options.common.json, options.sink.output_path()};
+  check_outputs(outputs, {options.trace, options.map, options.law.actuator}, options.common);
+  check_flags(options);
+  const bool watched = options.is_map_watched();
   const std::string map_stamp = watched ? ActuatorMapWatch::stamp(options.map) : "";
 
   OpenTrace trace(options.trace, verbosity);
-  if (!options.map.empty()) {
-    trace.map = parse_actuator_map(read_map_files(trace.avatar, options.map), trace.avatar, options.map);
-    for (const std::string& warning : trace.map.warnings) warn(warning, verbosity);
-  }
+  choose_map(trace, options);
   const std::size_t actuator_count = trace.map.actuator_count;
-  if (actuator_count == 0)
-    throw Error(options.trace, "holds no actuator map, so that nothing would be felt", "name one: --map FILE.png");
   require_frames(trace.reader, options.trace);
   const std::size_t colliders = trace.reader.collider_ids().size();
   const std::string name =
       options.choice.detector == "auto"
           ? pick_path(trace.avatar.triangles.size(), colliders, options.choice.skip_kind()).detector
           : options.choice.detector;
-  LawMaker laws(options, trace);
+  LawMaker laws = make_laws(options, trace);
   const auto detector =
       make_detector(name, options.choice.context, options.choice, trace.avatar, trace.map, laws.planes());
 

@@ -81,8 +81,10 @@ inline void bound_node(std::span<const RestBox> boxes, const BoundTransform* now
   }
 }
 
-void bound_nodes(const Meshlets& meshlets, std::size_t level, std::size_t first, const BoundTransform* now,
-                 const BoundTransform* other, Method method, const glm::vec4& pad, std::span<SkinBox> out) {
+void bound_nodes(const Meshlets& meshlets, std::size_t level, std::size_t first, const BoundMotion& motion,
+                 std::span<SkinBox> out) {
+  // A copy: otherwise the compiler reads the members again after each box that is written.
+  const auto [now, other, method, pad] = motion;
   for (std::size_t i = 0; i < out.size(); ++i) {
     const std::span<const RestBox> rest = meshlets.rest_boxes(level, first + i);
     if (rest.empty()) {
@@ -189,7 +191,7 @@ void MeshletBounds::begin(const Frame& frame, Method method) {
 
 void MeshletBounds::boxes(std::size_t level, std::size_t first, std::span<SkinBox> out) const {
   if (bounded_) {
-    HWY_DYNAMIC_DISPATCH(bound_nodes)(meshlets_, level, first, now_.data(), other_.data(), method_, pad_, out);
+    HWY_DYNAMIC_DISPATCH(bound_nodes)(meshlets_, level, first, {now_.data(), other_.data(), method_, pad_}, out);
   } else {
     std::ranges::fill(out, SkinBox{glm::vec4(-kInfinity), glm::vec4(kInfinity)});
   }

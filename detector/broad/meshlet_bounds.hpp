@@ -20,6 +20,14 @@ struct alignas(16) BoundTransform {
   std::array<glm::vec4, 3> magnitude;
 };
 
+/// The motion of the skin in a frame, as far as its bounds need it.
+struct BoundMotion {
+  const BoundTransform* now;    ///< of each palette entry
+  const BoundTransform* other;  ///< kCcd: before; kCarried: what changed since
+  Method method;
+  const glm::vec4& pad;  ///< margin that covers the error of the computed boxes
+};
+
 /// Boxes around the nodes of `Meshlets` within a frame, computed from the palette alone: nothing is skinned. A segment
 /// that misses a node's box surely misses all of its triangles, as the CPU computes them. A segment that meets the box
 /// may meet them or not.

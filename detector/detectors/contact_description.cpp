@@ -37,8 +37,8 @@ glm::dvec2 barycentric_of(const glm::dvec3& x, const Corners& triangle) {
   return {1 - s, s};
 }
 
-Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, std::uint32_t triangle, const Way& way,
-                         const Corners& at_contact, const FirstContact& first, double duration_s) {
+Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, const Meeting& meeting, double duration_s) {
+  const auto& [triangle, way, at_contact, first] = meeting;
   Contact contact;
   contact.triangle = triangle;
   contact.t = first.t;

@@ -14,10 +14,16 @@ namespace vestige {
 /// to the triangle. For a triangle without area, the point is the nearest point of the longest edge.
 glm::dvec2 barycentric_of(const glm::dvec3& x, const Corners& triangle);
 
+/// A way and a triangle that meet at time t.
+struct Meeting {
+  std::uint32_t triangle;
+  Way way;
+  Corners at_contact;  ///< the triangle at time t
+  FirstContact first;
+};
+
 /// Returns everything about a contact that follows from the pair and t. All detectors use this one fp64 function
-/// (detector/CONTRACT.md, 7 and 8). `at_contact` is the triangle at time t, and `duration_s` is the duration of the
-/// frame.
-Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, std::uint32_t triangle, const Way& way,
-                         const Corners& at_contact, const FirstContact& first, double duration_s);
+/// (detector/CONTRACT.md, 7 and 8). `duration_s` is the duration of the frame.
+Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, const Meeting& meeting, double duration_s);
 
 }  // namespace vestige

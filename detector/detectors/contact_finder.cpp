@@ -21,7 +21,7 @@ void ContactFinder::offer(const Frame& frame, const MovingCorners& corners, cons
   if (t > winner.t || (t == winner.t && triangle > winner.triangle)) return;
   const Corners at_contact = method_ == Method::kCcd ? corners_at(before, now, t) : now;
   const Contact contact =
-      describe_contact(avatar_, map_, triangle, way, at_contact, *decision.contact, frame.duration_s);
+      describe_contact(avatar_, map_, {triangle, way, at_contact, *decision.contact}, frame.duration_s);
   if (surface_ == Surface::kMapped && contact.actuator == 0) return;
   winner = contact;
 }

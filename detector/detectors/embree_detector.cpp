@@ -171,7 +171,7 @@ class EmbreeDetector final : public Detector {
     const double along =
         glm::dot(glm::cross(corners.b - corners.a, corners.c - corners.a), way.start - way.end);  // > 0: from the front
     const std::int8_t side = along > 0 ? 1 : (along < 0 ? -1 : 0);
-    return describe_contact(avatar_, map_, triangle, way, corners, {t + 0.0F, side}, frame_->duration_s);
+    return describe_contact(avatar_, map_, {triangle, way, corners, {t + 0.0F, side}}, frame_->duration_s);
   }
 
   /// Embree calls this for each contact to ask whether it counts.

@@ -57,7 +57,7 @@ class ExactDetector final : public Detector {
       found = exact::static_contact(way, now);
     }
     if (!found) return {};
-    return describe_contact(avatar_, map_, triangle, way, at_contact, *found, frame.duration_s);
+    return describe_contact(avatar_, map_, {triangle, way, at_contact, *found}, frame.duration_s);
   }
 
   const Avatar& avatar_;

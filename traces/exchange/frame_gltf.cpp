@@ -182,13 +182,25 @@ class FrameGltf final : public FrameFile {
     return all;
   }
 
+  using Columns = std::vector<std::size_t>;  ///< in the order in which the GLB has them
+  /// A column that moves a node.
+  struct Channel {
+    int node;
+    std::size_t column;
+    const char* path;
+    const char* interpolation = "LINEAR";
+  };
+
   void append_node(std::size_t index, NodeLocal node);
   void note_what_varies();
   void place_nodes(Builder& builder) const;
   std::optional<int> add_origin_node(Builder& builder) const;
-  void add_channels(Builder& builder, std::vector<std::size_t>& order, int node, std::size_t column, const char* path,
-                    const char* interpolation, int input) const;
+  std::vector<int> add_colliders(Builder& builder) const;
+  Columns add_animation(Builder& builder, std::optional<int> origin, const std::vector<int>& colliders) const;
+  int begin_animation(Builder& builder) const;
+  void add_channel(Builder& builder, Columns& columns, int input, const Channel& channel) const;
   Json& scene_of(Builder& builder) const;
+  void write_glb(Builder& builder, const Columns& columns);
 
   OutputFile file_;
   std::filesystem::path path_;
@@ -328,50 +340,24 @@ std::optional<int> FrameGltf::add_origin_node(Builder& builder) const {
   return node;
 }
 
-void FrameGltf::add_channels(Builder& builder, std::vector<std::size_t>& order, int node, std::size_t column,
-                             const char* path, const char* interpolation, int input) const {
-  if (!varies_[column]) return;
-  const std::uint64_t offset = builder.json["bufferViews"].back()["byteLength"].get<std::uint64_t>();
-  const std::size_t width = columns_.width(column);
-  const int output = builder.add("accessors", {{"bufferView", builder.json["bufferViews"].size() - 1},
-                                               {"byteOffset", offset},
-                                               {"componentType", kFloat},
-                                               {"count", columns_.rows()},
-                                               {"type", width == 4 ? "VEC4" : "VEC3"}});
-  builder.json["bufferViews"].back()["byteLength"] = offset + columns_.rows() * width * sizeof(float);
-  order.push_back(column);
-  Json& animation = builder.json["animations"].back();
-  animation["samplers"].push_back({{"input", input}, {"interpolation", interpolation}, {"output", output}});
-  animation["channels"].push_back(
-      {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", node}, {"path", path}}}});
+/// Returns the nodes of the colliders.
+std::vector<int> FrameGltf::add_colliders(Builder& builder) const {
+  std::vector<int> nodes;
+  if (ids_.empty()) return nodes;
+  const int sphere = add_sphere(builder);
+  for (std::size_t i = 0; i < ids_.size(); ++i) {
+    const float* numbers = &first_row_[4 + 10 * avatar_.nodes.size() + 6 * i];
+    nodes.push_back(builder.add("nodes", {{"name", fmt::format("collider {}", ids_[i])},
+                                          {"mesh", sphere},
+                                          {"translation", {numbers[0], numbers[1], numbers[2]}},
+                                          {"scale", {numbers[3], numbers[4], numbers[5]}}}));
+    scene_of(builder)["nodes"].push_back(nodes.back());
+  }
+  return nodes;
 }
 
-void FrameGltf::commit() {
-  if (columns_.rows() == 0) throw Error(path_.string(), "there is no frame to export", "");
-  columns_.finish();
-  Builder builder(glb_);
-  Json& json = builder.json;
-  json["asset"]["generator"] = fmt::format("vestige {}", kVersion);
-  json.erase("animations");
-  place_nodes(builder);
-  const std::optional<int> origin = add_origin_node(builder);
-  std::vector<int> colliders;
-  if (!ids_.empty()) {
-    const int sphere = add_sphere(builder);
-    for (std::size_t i = 0; i < ids_.size(); ++i) {
-      const std::size_t place = 4 + 10 * avatar_.nodes.size() + 6 * i;
-      const float* numbers = &first_row_[place];
-      colliders.push_back(builder.add("nodes", {{"name", fmt::format("collider {}", ids_[i])},
-                                                {"mesh", sphere},
-                                                {"translation", {numbers[0], numbers[1], numbers[2]}},
-                                                {"scale", {numbers[3], numbers[4], numbers[5]}}}));
-      scene_of(builder)["nodes"].push_back(colliders.back());
-    }
-  }
-  scene_of(builder)["extras"]["origin_m"] = {base_m_.x, base_m_.y, base_m_.z};
-
-  // One view after all of the avatar's data: the times, then a column for each channel.
-  std::vector<std::size_t> order = {kTime};
+/// Adds an animation without channels, and the view of its columns. Returns the accessor of the times.
+int FrameGltf::begin_animation(Builder& builder) const {
   const std::uint64_t time_bytes = columns_.rows() * sizeof(float);
   const int view =
       builder.add("bufferViews", {{"buffer", 0}, {"byteOffset", builder.bin.size()}, {"byteLength", time_bytes}});
@@ -381,31 +367,77 @@ void FrameGltf::commit() {
                                               {"type", "SCALAR"},
                                               {"min", {first_row_[kTime]}},
                                               {"max", {last_row_[kTime]}}});
-  json["animations"] = Json::array({{{"name", "trace"}, {"channels", Json::array()}, {"samplers", Json::array()}}});
-  if (origin) add_channels(builder, order, *origin, kOrigin, "translation", "LINEAR", input);
+  builder.json["animations"] =
+      Json::array({{{"name", "trace"}, {"channels", Json::array()}, {"samplers", Json::array()}}});
+  return input;
+}
+
+/// Adds a channel to the animation and its column to `columns`, unless the column never varies.
+void FrameGltf::add_channel(Builder& builder, Columns& columns, int input, const Channel& channel) const {
+  if (!varies_[channel.column]) return;
+  const std::uint64_t offset = builder.json["bufferViews"].back()["byteLength"].get<std::uint64_t>();
+  const std::size_t width = columns_.width(channel.column);
+  const int output = builder.add("accessors", {{"bufferView", builder.json["bufferViews"].size() - 1},
+                                               {"byteOffset", offset},
+                                               {"componentType", kFloat},
+                                               {"count", columns_.rows()},
+                                               {"type", width == 4 ? "VEC4" : "VEC3"}});
+  builder.json["bufferViews"].back()["byteLength"] = offset + columns_.rows() * width * sizeof(float);
+  columns.push_back(channel.column);
+  Json& animation = builder.json["animations"].back();
+  animation["samplers"].push_back({{"input", input}, {"interpolation", channel.interpolation}, {"output", output}});
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", channel.node}, {"path", channel.path}}}});
+}
+
+/// Adds the animation: one view after all of the avatar's data, with the times, then a column for each channel.
+FrameGltf::Columns FrameGltf::add_animation(Builder& builder, std::optional<int> origin,
+                                            const std::vector<int>& colliders) const {
+  Columns columns = {kTime};
+  const int input = begin_animation(builder);
+  const auto add = [&](const Channel& channel) { add_channel(builder, columns, input, channel); };
+  if (origin) add({*origin, kOrigin, "translation"});
   for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
     if (avatar_.nodes[i].fixed_matrix) continue;
     const int node = static_cast<int>(i);
-    add_channels(builder, order, node, node_column(i), "translation", "LINEAR", input);
-    add_channels(builder, order, node, node_column(i) + 1, "rotation", "LINEAR", input);
-    add_channels(builder, order, node, node_column(i) + 2, "scale", "LINEAR", input);
+    add({node, node_column(i), "translation"});
+    add({node, node_column(i) + 1, "rotation"});
+    add({node, node_column(i) + 2, "scale"});
   }
   for (std::size_t i = 0; i < ids_.size(); ++i) {
-    add_channels(builder, order, colliders[i], collider_column(i), "translation", "LINEAR", input);
-    add_channels(builder, order, colliders[i], collider_column(i) + 1, "scale", "STEP", input);
+    add({colliders[i], collider_column(i), "translation"});
+    add({colliders[i], collider_column(i) + 1, "scale", "STEP"});
   }
+  Json& json = builder.json;
   if (json["animations"][0]["channels"].empty()) {
     // If nothing moves there is no animation, because glTF forbids one without channels.
     json.erase("animations");
     json["accessors"].erase(json["accessors"].size() - 1);
     json["bufferViews"].erase(json["bufferViews"].size() - 1);
-    order.clear();
+    columns.clear();
   }
+  return columns;
+}
+
+void FrameGltf::commit() {
+  if (columns_.rows() == 0) throw Error(path_.string(), "there is no frame to export", "");
+  columns_.finish();
+  Builder builder(glb_);
+  builder.json["asset"]["generator"] = fmt::format("vestige {}", kVersion);
+  builder.json.erase("animations");
+  place_nodes(builder);
+  const std::optional<int> origin = add_origin_node(builder);
+  const std::vector<int> colliders = add_colliders(builder);
+  scene_of(builder)["extras"]["origin_m"] = {base_m_.x, base_m_.y, base_m_.z};
+  write_glb(builder, add_animation(builder, origin, colliders));
+}
+
+void FrameGltf::write_glb(Builder& builder, const Columns& columns) {
   std::uint64_t column_bytes = 0;
-  for (const std::size_t column : order) column_bytes += columns_.rows() * columns_.width(column) * sizeof(float);
+  for (const std::size_t column : columns) column_bytes += columns_.rows() * columns_.width(column) * sizeof(float);
   const std::uint64_t bin_bytes = builder.bin.size() + column_bytes;
-  json["buffers"][0]["byteLength"] = bin_bytes;
-  std::string text = json.dump();
+  builder.json["buffers"][0]["byteLength"] = bin_bytes;
+  std::string text = builder.json.dump();
   text.resize((text.size() + 3) / 4 * 4, ' ');
   const std::uint64_t total = 12 + 8 + text.size() + 8 + bin_bytes;
   if (total > kMostGlbBytes)
@@ -424,7 +456,7 @@ void FrameGltf::commit() {
   put(bin_bytes);
   put(0x004E4942);  // "BIN"
   file_.write(std::span<const std::byte>(builder.bin));
-  for (const std::size_t column : order)
+  for (const std::size_t column : columns)
     columns_.read(column, [&](std::span<const float> block) { file_.write(std::as_bytes(block)); });
   file_.commit();
 }

@@ -81,10 +81,19 @@ std::string accessor_path(std::size_t index, std::string_view property = {}) {
   return fmt::format("accessors[{}]{}", index, property);
 }
 
-/// Checks that `count` elements from `offset` on lie inside the view, and the view inside its buffer. All numbers are
-/// below 2³³, so no product or sum here can overflow 64 bits.
-void check_range(const Document& document, int view_index, std::uint64_t offset, std::uint64_t count,
-                 std::uint64_t stride, std::uint64_t size, const std::string& path, const Report& report) {
+/// The place of elements in a view, in bytes.
+struct Elements {
+  std::uint64_t offset;
+  std::uint64_t count;
+  std::uint64_t stride;
+  std::uint64_t size;
+};
+
+/// Checks that the elements lie inside the view, and the view inside its buffer. All numbers are below 2³³, so no
+/// product or sum here can overflow 64 bits.
+void check_range(const Document& document, int view_index, const Elements& elements, const std::string& path,
+                 const Report& report) {
+  const auto& [offset, count, stride, size] = elements;
   const auto index = static_cast<std::size_t>(view_index);
   const BufferView& view = document.views[index];
   check_inside_buffer(view.offset, view.length, view.buffer, document.buffers[view.buffer].size(),
@@ -115,9 +124,9 @@ void check_sparse(const Document& document, const Accessor& accessor, std::size_
     report.fail(accessor_path(index, ".sparse.indices.componentType"), "is no unsigned integer type");
   const std::string indices = accessor_path(index, ".sparse.indices");
   const std::string values = accessor_path(index, ".sparse.values");
-  check_range(document, sparse.indices_view, sparse.indices_offset, sparse.count, type.bytes, type.bytes, indices,
+  check_range(document, sparse.indices_view, {sparse.indices_offset, sparse.count, type.bytes, type.bytes}, indices,
               report);
-  check_range(document, sparse.values_view, sparse.values_offset, sparse.count, size, size, values, report);
+  check_range(document, sparse.values_view, {sparse.values_offset, sparse.count, size, size}, values, report);
   check_alignment(document, sparse.indices_view, sparse.indices_offset, type.bytes, indices, report);
   check_alignment(document, sparse.values_view, sparse.values_offset, component_type(accessor.component_type).bytes,
                   values, report);
@@ -161,7 +170,7 @@ void check_accessors(const Document& document, Report& report) {
       if (stride < size)
         report.fail(accessor_path(i),
                     fmt::format("elements of {} bytes overlap at a byteStride of {}", size, view.stride));
-      check_range(document, accessor.view, accessor.offset, accessor.count, stride, size, accessor_path(i), report);
+      check_range(document, accessor.view, {accessor.offset, accessor.count, stride, size}, accessor_path(i), report);
       check_alignment(document, accessor.view, accessor.offset, type.bytes, accessor_path(i), report);
     } else if (accessor.offset != 0) {
       report.warn(accessor_path(i, ".byteOffset"), "means nothing without a bufferView");

@@ -20,7 +20,7 @@ enum class LiveRequest : std::uint8_t { kGoOn, kSnapshot, kStop };
 struct LiveSettings {
   double rate_hz = 1000;             ///< rate of frames made from a state
   std::optional<double> duration_s;  ///< nothing: until the source ends or `asked` stops the recording
-  std::function<LiveRequest()> asked;
+  std::function<LiveRequest()> asked = {};
 };
 
 struct LiveCounts {

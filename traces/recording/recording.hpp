@@ -19,10 +19,16 @@ struct RecordingSettings {
 /// Returns the number of frames of a recording: rate times duration, rounded, at least 1.
 std::uint64_t frame_count(const RecordingSettings& settings);
 
-/// Returns in `out` pose and colliders at time index / rate. The animation loops; null means the rest pose. The times
-/// requested from one `colliders` must not decrease.
-void sample_frame(const Avatar& avatar, const Animation* animation, ColliderSource& colliders, double rate_hz,
-                  std::uint64_t index, const glm::dvec3& origin_m, TraceFrame& out);
+/// A scene that frames are sampled from. The times requested from one `colliders` must not decrease.
+struct SampledScene {
+  const Avatar& avatar;
+  const Animation* animation;  ///< loops; null means the rest pose
+  ColliderSource& colliders;
+  glm::dvec3 origin_m = glm::dvec3(0);
+};
+
+/// Returns in `out` pose and colliders at time index / rate.
+void sample_frame(const SampledScene& scene, double rate_hz, std::uint64_t index, TraceFrame& out);
 
 /// Receives a frame. Returns false if it accepts no more frames.
 using FrameSink = std::function<bool(const TraceFrame&)>;

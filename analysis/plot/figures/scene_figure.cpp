@@ -192,15 +192,15 @@ class SceneFigure : public Figure {
     for (std::size_t i = 1; i < path.stops.size(); ++i) {
       const Path::Stop& from = path.stops[i - 1];
       const Path::Stop& to = path.stops[i];
-      paths.line(from.position_m - origin_m, to.position_m - origin_m, width, opacity(from.age_s), opacity(to.age_s),
-                 kHidden, tolerance);
+      paths.line({from.position_m - origin_m, opacity(from.age_s)}, {to.position_m - origin_m, opacity(to.age_s)},
+                 width, kHidden, tolerance);
     }
     if (!path.is_current) return;
     const glm::dvec3 head = path.stops.back().position_m - origin_m;
     segments.dot(head, dots_of(many ? 1.2 : 2.2), 1, kHidden, tolerance);
     if (path.stops.size() < 2) return;
     const glm::dvec3 tail = path.stops[path.stops.size() - 2].position_m - origin_m;
-    segments.line(tail, head, dots_of(many ? 0.8 : 1.4), 1, 1, kHidden, tolerance);
+    segments.line({tail, 1}, {head, 1}, dots_of(many ? 0.8 : 1.4), kHidden, tolerance);
   }
 
   void draw_key(Canvas& canvas) const {

@@ -198,16 +198,15 @@ void StudioShot::light(const Surface& surface, std::optional<double> ground_y) {
 
 StudioShot::Overlay::Overlay(const StudioShot& shot, Colour colour) : shot_(shot), colour_(colour) {}
 
-void StudioShot::Overlay::line(const glm::dvec3& from, const glm::dvec3& to, double width_dots, double from_opacity,
-                               double to_opacity, double hidden, double tolerance) {
+void StudioShot::Overlay::line(const End& from, const End& to, double width_dots, double hidden, double tolerance) {
   const View& fine = shot_.fine_;
   const auto placed = [&](const glm::dvec3& point) {
     const glm::dvec3 seen = fine.camera.seen(point);
     return glm::dvec3((seen.x - fine.left) / fine.unit_per_dot,
                       static_cast<double>(fine.height) - (seen.y - fine.bottom) / fine.unit_per_dot, seen.z);
   };
-  const glm::dvec3 a = placed(from);
-  const glm::dvec3 b = placed(to);
+  const glm::dvec3 a = placed(from.point);
+  const glm::dvec3 b = placed(to.point);
   const double radius = width_dots * static_cast<double>(kFineness) / 2;
   const auto last = [](std::size_t count) { return static_cast<double>(count) - 1; };
   const double left = std::max(0.0, std::floor(std::min(a.x, b.x) - radius));
@@ -226,7 +225,7 @@ void StudioShot::Overlay::line(const glm::dvec3& from, const glm::dvec3& to, dou
       if (glm::dot(beside, beside) > radius * radius) continue;
       const std::size_t i = row * fine.width + column;
       const double depth = std::lerp(a.z, b.z, part);
-      double opacity = std::lerp(from_opacity, to_opacity, part);
+      double opacity = std::lerp(from.opacity, to.opacity, part);
       if (depth + tolerance < double{shot_.samples_[i].depth}) opacity *= hidden;
       opacity_[i] = std::max(opacity_[i], static_cast<float>(opacity));
     }
@@ -244,7 +243,7 @@ void StudioShot::Overlay::dot(const glm::dvec3& centre, double width_dots, doubl
     if (nearest >= depth) return;
     nearest = depth;
   }
-  line(centre, centre, width_dots, opacity, opacity, hidden, tolerance);
+  line({centre, opacity}, {centre, opacity}, width_dots, hidden, tolerance);
 }
 
 Raster StudioShot::picture(const Paint& paint, const std::vector<Overlay>& overlays) const {

@@ -38,8 +38,11 @@ class StudioShot {
   class Overlay {
    public:
     Overlay(const StudioShot& shot, Colour colour);
-    void line(const glm::dvec3& from, const glm::dvec3& to, double width_dots, double from_opacity, double to_opacity,
-              double hidden, double tolerance);
+    struct End {
+      glm::dvec3 point;
+      double opacity;
+    };
+    void line(const End& from, const End& to, double width_dots, double hidden, double tolerance);
     /// Draws a dot. All dots of an overlay must be alike. If several centres fall into one dot of the picture, only the
     /// nearest is drawn.
     void dot(const glm::dvec3& centre, double width_dots, double opacity, double hidden, double tolerance);

@@ -29,6 +29,7 @@
 #include "detector/detectors/contact_description.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/motion/animation_choice.hpp"
+#include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
@@ -78,7 +79,7 @@ class Winners {
     if (!decision.contact) return;
     const float t = decision.contact->t;
     if (t > winner.t || (t == winner.t && triangle > winner.triangle)) return;
-    winner = describe_contact(avatar_, map_, triangle, way, now, *decision.contact, frame.duration_s);
+    winner = describe_contact(avatar_, map_, {triangle, way, now, *decision.contact}, frame.duration_s);
   }
   const ContactRow& row() const { return row_; }
 

@@ -1,0 +1,218 @@
+#include "cli/plot/verbs.hpp"
+
+#include <fmt/format.h>
+
+#include <string>
+
+#include "cli/help/help_text.hpp"
+#include "cli/help/validators.hpp"
+#include "cli/plot/draw.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+CLI::App& add_command(CLI::App& app, const char* name, const char* what, const std::string& examples) {
+  CLI::App& command = *app.add_subcommand(name, what);
+  command.formatter(std::make_shared<help::HelpFormatter>(examples));
+  command.group("Verbs");
+  return command;
+}
+
+void add_common_options(CLI::App& command, Options& options, const char* output_name, const char* output_help) {
+  command.add_option("-o", options.output, output_help)->type_name(output_name);
+  command.add_flag("--force", options.force, "Overwrite existing files");
+  command.add_flag("-q,--quiet", options.quiet, "Print errors only");
+  command.set_help_flag("-h,--help", "Print this help");
+}
+
+/// Adds INPUT, which must be given once.
+void add_input(CLI::App& command, Options& options, const char* type, const std::string& what) {
+  command.add_option("INPUT", options.inputs, what)->type_name(type)->expected(1)->required();
+}
+
+void add_naming_map(CLI::App& command, Options& options) {
+  command.add_option("--map", options.map, "The actuator map that names the actuators [default: numbers alone]")
+      ->type_name("builtin|LAYOUT|FILE.png");
+}
+
+void add_other_map(CLI::App& command, Options& options) {
+  command.add_option("--map", options.map, "Actuator map instead of the trace's")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
+}
+
+/// Draws the folder that the verb of the same name wrote.
+CLI::App& add_results(CLI::App& app, Options& options, const char* name, const char* what, const char* output_help) {
+  CLI::App& command = add_command(app, name, what,
+                                  fmt::format("  vestige plot {0} results/{0}\n"
+                                              "  vestige plot {0} results/{0} -o figures\n",
+                                              name));
+  add_input(command, options, "DIR", fmt::format("The folder that 'vestige {} -o DIR' wrote", name));
+  add_common_options(command, options, "DIR", output_help);
+  return command;
+}
+
+CLI::App& add_sweep(CLI::App& app, Options& options) {
+  CLI::App& sweep = add_command(app, "sweep", "Detection frequency over the number of colliders (frequency.svg, .png)",
+                                "  vestige plot sweep results/sweep\n"
+                                "  vestige plot sweep gpu/sweep.json software/sweep.json -o figures\n");
+  sweep
+      .add_option("INPUT", options.inputs,
+                  "The sweep.json to draw, or the folder that holds it; several go into one figure")
+      ->type_name("DIR|JSON")
+      ->required();
+  add_common_options(sweep, options, "DIR", "Folder for the figures [default: beside the first input]");
+  return sweep;
+}
+
+CLI::App& add_timeline(CLI::App& app, Options& options) {
+  CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
+                                   "  vestige plot timeline timeline.csv\n"
+                                   "  vestige plot timeline timeline.csv --map builtin -o figures/timeline\n");
+  add_input(timeline, options, "CSV", "What 'vestige replay --timeline FILE.csv' wrote");
+  add_naming_map(timeline, options);
+  timeline.add_option("--measured", options.measured, "What a board's pins did meanwhile, as CSV like a timeline")
+      ->type_name("CSV");
+  add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
+  return timeline;
+}
+
+CLI::App& add_textures(CLI::App& app, Options& options) {
+  CLI::App& textures =
+      add_command(app, "textures", "Collision textures: which actuator each collider touched, and when",
+                  "  vestige plot textures textures.exr\n"
+                  "  vestige plot textures textures.exr --map builtin -o figures/textures\n");
+  add_input(textures, options, "EXR", "What 'vestige replay --textures FILE.exr' wrote");
+  add_naming_map(textures, options);
+  add_common_options(textures, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
+  return textures;
+}
+
+CLI::App& add_body(CLI::App& app, Options& options) {
+  CLI::App& body =
+      add_command(app, "body", "An avatar with the regions of its actuator map, contacts and their density",
+                  "  vestige plot body man.mcap --contacts contacts.csv\n"
+                  "  vestige plot body --avatar man.glb --map regions.png -o figures/regions\n");
+  body.add_option("INPUT", options.inputs, "A trace, whose avatar and map are drawn")->type_name("MCAP")->expected(1);
+  body.add_option("--avatar", options.avatar, "Instead of a trace: the built-in avatar, or a glTF file")
+      ->type_name("builtin|FILE");
+  body.add_option(
+          "--map", options.map,
+          "The actuator map, a greyscale PNG whose FILE.json names the actuators if it exists, or a layout ('vestige "
+          "map make' lists them) [default: the trace's]")
+      ->type_name("builtin|none|LAYOUT|FILE.png");
+  body.add_option("--contacts", options.contacts, "What 'vestige replay --contacts FILE.csv' wrote")->type_name("CSV");
+  add_common_options(body, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -body]");
+  return body;
+}
+
+CLI::App& add_scene(CLI::App& app, Options& options) {
+  CLI::App& scene =
+      add_command(app, "scene", "A film strip of a trace: the avatar, the colliders and their paths",
+                  "  vestige plot scene man.mcap\n"
+                  "  vestige plot scene man.mcap --contacts contacts.csv --frames 4 --from 0.1 --to 0.2\n");
+  add_input(scene, options, "MCAP", "The trace");
+  scene.add_option("--frames", options.moments.count, "How many frames are drawn")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 24));
+  scene.add_option("--from", options.moments.from_s, "Leave out what is before [default: the trace's beginning]")
+      ->type_name("SECONDS")
+      ->check(help::kFinite);
+  scene.add_option("--to", options.moments.to_s, "Leave out what is after [default: the trace's end]")
+      ->type_name("SECONDS")
+      ->check(help::kFinite);
+  scene.add_option("--trail", options.trail_ms, "How far back paths and contacts are shown")
+      ->capture_default_str()
+      ->type_name("MS")
+      ->check(help::between(0.001, 10000));
+  scene
+      .add_option("--contacts", options.contacts,
+                  "What 'vestige replay --contacts FILE.csv' wrote; the frames drawn are then ones with contacts")
+      ->type_name("CSV");
+  add_other_map(scene, options);
+  add_common_options(scene, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -scene]");
+  return scene;
+}
+
+CLI::App& add_avatar(CLI::App& app, Options& options) {
+  CLI::App& avatar = add_command(app, "avatar", "An avatar from four sides, in poses over its animations",
+                                 "  vestige plot avatar builtin\n"
+                                 "  vestige plot avatar man.glb --animation walk -o figures/walk\n");
+  add_input(avatar, options, "builtin|FILE", "The built-in avatar, or a glTF file (.glb, .gltf, .vrm)");
+  avatar
+      .add_option("--animation", options.animation,
+                  "One animation: a name, an index, or none for the rest pose [default: all]")
+      ->type_name("NAME|INDEX|none");
+  avatar.add_option("--poses", options.poses, "Poses of each animation")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 12));
+  add_common_options(avatar, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -avatar]");
+  return avatar;
+}
+
+CLI::App& add_report(CLI::App& app, Options& options) {
+  CLI::App& report = add_command(app, "report", "A page that compares the maps and laws of a batch (report.html)",
+                                 "  vestige plot report compared\n"
+                                 "  vestige plot report compared --top 3 -o page\n");
+  add_input(report, options, "DIR", "The folder that 'vestige batch -o DIR' wrote");
+  report.add_option("--top", options.top, "How many maps get pictures, from the best on")
+      ->capture_default_str()
+      ->type_name("N")
+      ->check(help::whole_number(1, 1000));
+  add_common_options(report, options, "DIR", "Folder for report.html and figures/ [default: the input]");
+  return report;
+}
+
+CLI::App& add_paraview(CLI::App& app, Options& options) {
+  CLI::App& paraview = add_command(app, "paraview", "A trace as a time series for ParaView (.pvd and .vtp)",
+                                   "  vestige plot paraview man.mcap\n"
+                                   "  vestige plot paraview man.mcap --every 1 -o paraview/man.pvd\n");
+  add_input(paraview, options, "MCAP", "The trace");
+  add_other_map(paraview, options);
+  paraview.add_option("--law", options.law, "How strong a contact makes the actuators")
+      ->capture_default_str()
+      ->type_name("binary|speed|phantom|gaussian");
+  paraview.add_option("--hold", options.hold_ms, "How long a contact is felt")
+      ->capture_default_str()
+      ->type_name("MS")
+      ->check(help::between(0, 10000));
+  CLI::Option* every =
+      paraview.add_option("--every", options.every, "One time step for so many frames, instead of --rate")
+          ->type_name("N")
+          ->check(help::whole_number(1, 1000000000));
+  paraview
+      .add_option("--rate", options.rate_hz,
+                  "At most so many time steps a second; each has the contacts since the one before, and the highest "
+                  "amplitudes")
+      ->capture_default_str()
+      ->type_name("HZ")
+      ->check(help::between(0.001, 1e6))
+      ->excludes(every);
+  add_common_options(paraview, options, "DIR|FILE.pvd",
+                     "Write DIR/NAME.pvd and the folder DIR/NAME, or FILE.pvd and FILE [default: beside the trace]");
+  return paraview;
+}
+
+}  // namespace
+
+std::vector<Verb> add_verbs(CLI::App& app, Options& options) {
+  return {{&add_sweep(app, options), draw_sweep},
+          {&add_results(app, options, "accuracy", "Contacts missed over run time (accuracy.svg, .png)",
+                        "Folder for the figure [default: the input]"),
+           draw_accuracy},
+          {&add_results(app, options, "growth", "Cost over colliders and over triangles (growth.svg, .png)",
+                        "Folder for the figure [default: the input]"),
+           draw_growth},
+          {&add_results(app, options, "stress", "What each detector gets wrong, by family of hostile cases",
+                        "Folder for the figures [default: the input]"),
+           draw_stress},
+          {&add_timeline(app, options), draw_timeline},
+          {&add_textures(app, options), draw_textures},
+          {&add_body(app, options), draw_body},
+          {&add_scene(app, options), draw_scene},
+          {&add_avatar(app, options), draw_avatar},
+          {&add_report(app, options), draw_report},
+          {&add_paraview(app, options), draw_paraview}};
+}
+
+}  // namespace vestige::plot
