@@ -299,6 +299,20 @@ int report_verification(const ReplayOptions& options, const ReplayResult& result
   return same ? kDone : kCheckFailed;
 }
 
+/// Says why there may be fewer contacts than expected.
+void warn_of_gaps(const ReplayResult& result, const std::vector<TimedMap>& timed_maps, const ReplayOptions& options) {
+  const Verbosity verbosity = options.common.verbosity();
+  if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
+  for (std::size_t i = result.map_changes; i < timed_maps.size() && !result.interrupted; ++i)
+    warn(fmt::format("--map-at {}={}: the trace ends before that", timed_maps[i].time_s, timed_maps[i].file),
+         verbosity);
+  if (result.non_finite_frames + result.non_finite_segments != 0)
+    warn(fmt::format(
+             "{}: {} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
+             options.trace, result.non_finite_frames, result.non_finite_segments, *result.first_non_finite),
+         verbosity);
+}
+
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
@@ -363,15 +377,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (contacts) contacts->commit();
   if (texture_file) texture_file->commit();
   if (timeline) timeline->commit();
-  if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
-  for (std::size_t i = result.map_changes; i < timed_maps.size() && !result.interrupted; ++i)
-    warn(fmt::format("--map-at {}={}: the trace ends before that", timed_maps[i].time_s, timed_maps[i].file),
-         verbosity);
-  if (result.non_finite_frames + result.non_finite_segments != 0)
-    warn(fmt::format(
-             "{}: {} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
-             options.trace, result.non_finite_frames, result.non_finite_segments, *result.first_non_finite),
-         verbosity);
+  warn_of_gaps(result, timed_maps, options);
 
   print_summary(summary(result, run), outputs, options.common);
   write_json(options.common.json, to_json(result, run, invocation), options.common);
