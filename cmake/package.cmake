@@ -62,6 +62,7 @@ endif()
 include(CPack)
 set(deb_stamp ${PROJECT_BINARY_DIR}/packages/deb.stamp)
 add_custom_command(OUTPUT ${deb_stamp}
+  COMMAND sh -c "rm -f ${PROJECT_BINARY_DIR}/packages/*.deb"  # of other versions
   COMMAND ${CMAKE_CPACK_COMMAND} -G DEB --config ${PROJECT_BINARY_DIR}/CPackConfig.cmake
   COMMAND ${CMAKE_COMMAND} -E touch ${deb_stamp}
   DEPENDS ${deb_depends} ${PROJECT_SOURCE_DIR}/cmake/package.cmake ${PROJECT_SOURCE_DIR}/README.md
