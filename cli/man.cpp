@@ -5,6 +5,7 @@
 
 #include "cli/help/command_table.hpp"
 #include "cli/help/manual.hpp"
+#include "cli/help/markdown.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/output_file.hpp"
@@ -16,7 +17,8 @@ namespace {
 
 struct ManOptions {
   std::string verb;
-  std::string folder;
+  std::string man_folder;
+  std::string markdown_folder;
   bool force = false;
 };
 
@@ -24,18 +26,29 @@ std::string page(const help::CommandTable& command) {
   return help::manual_page(command, help::VerbPages::kOwn, kVersion, kCommitDate);
 }
 
+void write_page(const std::string& folder, const std::string& name, const std::string& text, Overwrite overwrite) {
+  OutputFile file(std::filesystem::path(folder) / name, overwrite);
+  file.write(text);
+  file.commit();
+}
+
 /// Every page but that of `plot`, which vestige-plot prints.
 void write_pages(const help::CommandTable& program, const ManOptions& options) {
-  make_output_folder(options.folder);
-  const std::filesystem::path folder = options.folder;
-  const auto write = [&](const help::CommandTable& command) {
-    OutputFile file(folder / (help::page_name(command) + ".1"), options.force ? Overwrite::kAllow : Overwrite::kRefuse);
-    file.write(page(command));
-    file.commit();
-  };
-  write(program);
-  for (const help::CommandTable& verb : program.verbs)
-    if (verb.verb != "plot") write(verb);
+  const bool is_markdown = !options.markdown_folder.empty();
+  const std::string& folder = is_markdown ? options.markdown_folder : options.man_folder;
+  const Overwrite overwrite = options.force ? Overwrite::kAllow : Overwrite::kRefuse;
+  make_output_folder(folder);
+  if (is_markdown)
+    write_page(folder, "README.md", help::markdown_index(program), overwrite);
+  else
+    write_page(folder, help::page_name(program) + ".1", page(program), overwrite);
+  for (const help::CommandTable& verb : program.verbs) {
+    if (verb.verb == "plot") continue;
+    if (is_markdown)
+      write_page(folder, help::markdown_name(verb), help::markdown_page(verb), overwrite);
+    else
+      write_page(folder, help::page_name(verb) + ".1", page(verb), overwrite);
+  }
 }
 
 }  // namespace
@@ -47,14 +60,19 @@ void add_man(CLI::App& program, Invocation& invocation) {
                             "  vestige man --pages man1\n");
   verb->group(kShellVerbs);
   verb->add_option("VERB", options->verb, "The verb [default: the page of vestige itself]");
-  verb->add_option("--pages", options->folder, "Write vestige.1 and the page of every verb into this folder")
+  verb->add_option("--pages", options->man_folder, "Write vestige.1 and the page of every verb into this folder")
       ->type_name("DIR");
-  verb->add_flag("--force", options->force, "Overwrite existing files");
+  verb->add_option("--markdown", options->markdown_folder,
+                   "Write README.md and a page for every verb, as Markdown, into this folder; 'vestige-plot man "
+                   "--markdown' prints plot.md")
+      ->type_name("DIR");
+  verb->add_flag("--force", options->force, "With --pages or --markdown: overwrite existing files");
   verb->get_option("--pages")->excludes(verb->get_option("VERB"));
-  verb->get_option("--force")->needs(verb->get_option("--pages"));
+  verb->get_option("--markdown")->excludes(verb->get_option("VERB"))->excludes(verb->get_option("--pages"));
   verb->callback([options, &program, &invocation] {
     const help::CommandTable table = help::command_table(program);
-    if (!options->folder.empty()) return write_pages(table, *options);
+    if (!options->man_folder.empty() || !options->markdown_folder.empty()) return write_pages(table, *options);
+    if (options->force) throw UsageError("--force", "there is nothing to overwrite", "add --pages or --markdown");
     if (options->verb.empty()) return fmt::print("{}", page(table));
     if (options->verb == "plot") {
       invocation.exit_code = run_plot({"man"});

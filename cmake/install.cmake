@@ -35,6 +35,14 @@ if(TARGET vestige-plot)
   install(DIRECTORY ${folder}/ DESTINATION ${CMAKE_INSTALL_DATAROOTDIR} COMPONENT vestige-plot)
 endif()
 
+# The reference, as the programs write it.
+set(reference ${PROJECT_SOURCE_DIR}/docs/reference)
+if(TARGET vestige-plot)
+  set(plot_page COMMAND vestige-plot man --markdown > ${reference}/plot.md)
+endif()
+add_custom_target(reference COMMAND vestige man --markdown ${reference} --force ${plot_page}
+  COMMENT "Writing docs/reference" VERBATIM)
+
 # The bundle: `vestige` with its libraries, for a machine where nothing is installed.
 set(vestige_bundle ${PROJECT_BINARY_DIR}/bundle/vestige-${PROJECT_VERSION}-x86_64)
 find_program(PATCHELF patchelf)

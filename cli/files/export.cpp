@@ -242,12 +242,12 @@ void add_export(CLI::App& program, Invocation& invocation) {
       ->required()
       ->type_name("OUT|-");
   verb->add_option("--format", options->format,
-                   "The format [default: by the name's end]:\n"
+                   "The format:\n"
                    "  csv       poses, a row a frame; colliders, a row each and frame; lossless\n"
                    "  ndjson    a line of JSON a frame, as 'record --live' reads it; lossless\n"
                    "  hdf5      (.h5) for Python, MATLAB and others; lossless\n"
                    "  gltf      (.glb) the avatar's animation and a sphere for each collider; fp32\n"
-                   "  paraview  (.pvd) posed surfaces, which vestige-plot writes")
+                   "  paraview  (.pvd) posed surfaces, which vestige-plot writes [default: by the name's end]")
       ->check(CLI::IsMember({"csv", "ndjson", "hdf5", "gltf", "paraview"}));
   verb->add_option("--what", options->what, "Which of the two tables; CSV only")
       ->capture_default_str()

@@ -277,7 +277,8 @@ void add_import(CLI::App& program, Invocation& invocation) {
                             "  vestige import --motion walk.bvh -o walk.mcap\n"
                             "  vestige import man_csv -o man_again.mcap\n");
   verb->add_option("FROM", options->from,
-                   "What 'vestige export' wrote: a folder of CSV files, or an .h5: poses, colliders, avatar and map");
+                   "What 'vestige export' wrote: a folder of CSV files, or an .h5: poses, colliders, avatar and map")
+      ->type_name("DIR|FILE.h5");
   verb->add_option("--motion", options->motion,
                    "Motion capture (BVH), which the avatar follows as far as the joints' names tell, frame by frame")
       ->type_name("FILE.bvh");

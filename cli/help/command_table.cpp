@@ -68,7 +68,9 @@ FlagTable flag_table(const CLI::Option& option) {
 CommandTable command_table(const CLI::App& app) {
   CommandTable table;
   table.verb = app.get_name();
-  table.name = app.get_parent() == nullptr ? table.verb : app.get_parent()->get_name() + " " + table.verb;
+  table.name = table.verb;
+  for (const CLI::App* parent = app.get_parent(); parent != nullptr; parent = parent->get_parent())
+    table.name = parent->get_name() + " " + table.name;
   table.summary = app.get_description();
   table.footer = app.get_footer();
   table.group = app.get_group();
@@ -97,12 +99,20 @@ std::vector<FixedValue> fixed_values(const FlagTable& flag) {
   return values;
 }
 
-bool takes_path(const FlagTable& flag) {
-  const std::string& words = flag.positional && flag.value == "TEXT" ? flag.names.front() : flag.value;
-  return std::ranges::any_of(split(words, '|'), [](const std::string& word) {
-    return word.starts_with("FILE") || word.starts_with("OUT") || word == "DIR" || word == "TRACE" || word == "MCAP" ||
-           word == "JSON" || word == "CSV" || word == "EXR";
+std::vector<std::string> path_words(const FlagTable& flag) {
+  std::vector<std::string> words =
+      split(flag.positional && flag.value == "TEXT" ? flag.names.front() : flag.value, '|');
+  std::erase_if(words, [](const std::string& full) {
+    const std::string word = full.substr(full.find('=') + 1);
+    return !word.starts_with("FILE") && !word.starts_with("OUT") && word != "DIR" && word != "TRACE" &&
+           word != "MCAP" && word != "JSON" && word != "CSV" && word != "EXR";
   });
+  return words;
+}
+
+bool takes_path(const FlagTable& flag) {
+  return std::ranges::any_of(path_words(flag),
+                             [](const std::string& word) { return word.find('=') == std::string::npos; });
 }
 
 }  // namespace vestige::help

@@ -22,7 +22,7 @@ struct FlagTable {
 
 /// A program or one of its verbs.
 struct CommandTable {
-  std::string name;  ///< as the user calls it: "vestige record"
+  std::string name;  ///< as the user calls it: "vestige record", "vestige map make"
   std::string verb;  ///< its last word
   std::string summary;
   std::string examples;  ///< lines, each indented by two blanks
@@ -44,6 +44,10 @@ struct FixedValue {
 /// Returns the lower-case words of a flag's "auto|paper|FILE", and the words that its description explains, one on each
 /// line.
 std::vector<FixedValue> fixed_values(const FlagTable& flag);
+
+/// Returns the words of a flag's "builtin|FILE.png|TIME=FILE.png" that stand for, or hold, the name of a file or
+/// folder.
+std::vector<std::string> path_words(const FlagTable& flag);
 
 /// Returns whether a flag's value may be the name of a file or a folder.
 bool takes_path(const FlagTable& flag);

@@ -86,13 +86,18 @@ std::string usage(const CommandTable& command) {
   return command.verbs.empty() ? text : text + " VERB ...";
 }
 
-std::string full_description(const FlagTable& flag) {
+std::string notes_of(const FlagTable& flag) {
   std::vector<std::string> notes;
   if (!flag.range.empty()) notes.push_back(flag.range);
   if (flag.required && !flag.positional) notes.emplace_back("required");
   if (!flag.needs.empty()) notes.push_back("with " + flag.needs);
   if (!flag.default_value.empty()) notes.push_back("default: " + flag.default_value);
-  return notes.empty() ? flag.description : fmt::format("{} [{}]", flag.description, fmt::join(notes, "; "));
+  return fmt::format("{}", fmt::join(notes, "; "));
+}
+
+std::string full_description(const FlagTable& flag) {
+  const std::string notes = notes_of(flag);
+  return notes.empty() ? flag.description : fmt::format("{} [{}]", flag.description, notes);
 }
 
 std::vector<std::string> groups_of(const CommandTable& command) {

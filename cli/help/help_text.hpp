@@ -30,6 +30,9 @@ std::string spelling(const FlagTable& flag);
 /// "vestige sweep [OPTIONS] -o DIR [TRACE]": names every required flag and all positional arguments.
 std::string usage(const CommandTable& command);
 
+/// Returns range, default and needed flag: "1 to 9; default: 3".
+std::string notes_of(const FlagTable& flag);
+
 /// Returns the description, followed by range, default and needed flag in brackets.
 std::string full_description(const FlagTable& flag);
 

@@ -117,8 +117,8 @@ std::string manual_page(const CommandTable& command, VerbPages verb_pages, const
   text += flags_of(command);
   text += ".SH EXIT STATUS\n";
   for (const auto& [code, meaning] : kExitCodes) text += tagged(bold(std::to_string(code)), meaning);
-  text += fmt::format(".SH ENVIRONMENT\n{}",
-                      tagged(bold("NO_COLOR"), "When set, progress bars on a terminal have no colour."));
+  text += ".SH ENVIRONMENT\n";
+  for (const auto& [variable, meaning] : kEnvironment) text += tagged(bold(variable), meaning);
   return text + fmt::format(".SH SEE ALSO\n{}", see_also(command, verb_pages));
 }
 

@@ -19,6 +19,11 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {{
     {4, "a check failed"},
 }};
 
+/// The environment variables that the program reads, and what each does.
+inline constexpr std::array<std::pair<const char*, const char*>, 1> kEnvironment = {{
+    {"NO_COLOR", "When set, progress bars on a terminal have no colour."},
+}};
+
 /// Returns a man page of section 1 (roff with the man macros). Verbs of `command` without a page of their own are
 /// described on it. `version` is as "0.1.0"; `date` is as "2026-11-21", or empty.
 enum class VerbPages { kOwn, kNone };

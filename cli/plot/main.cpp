@@ -13,6 +13,7 @@
 #include "cli/help/completion.hpp"
 #include "cli/help/help_text.hpp"
 #include "cli/help/manual.hpp"
+#include "cli/help/markdown.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/plot/verbs.hpp"
 #include "cli/terminal.hpp"
@@ -25,12 +26,15 @@ namespace {
 using vestige::plot::Options;
 namespace help = vestige::help;
 
-/// What `vestige` asks of its helper, to answer for `vestige plot`.
+/// What `vestige` and the reference ask of this program: completion, and pages of `vestige plot`.
 void answer(const std::string& word, const CLI::App& app, const std::vector<std::string>& words) {
   const help::CommandTable table = help::command_table(app);
-  fmt::print("{}", word == "complete"
-                       ? help::completions(table, words)
-                       : help::manual_page(table, help::VerbPages::kNone, vestige::kVersion, vestige::kCommitDate));
+  if (word == "complete")
+    fmt::print("{}", help::completions(table, words));
+  else if (words == std::vector<std::string>{"--markdown"})
+    fmt::print("{}", help::markdown_page(table));
+  else
+    fmt::print("{}", help::manual_page(table, help::VerbPages::kNone, vestige::kVersion, vestige::kCommitDate));
   if (std::fflush(stdout) != 0) throw vestige::system_error("standard output", "could not write", errno);
 }
 

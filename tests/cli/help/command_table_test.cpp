@@ -8,6 +8,7 @@
 #include "cli/help/completion.hpp"
 #include "cli/help/help_text.hpp"
 #include "cli/help/manual.hpp"
+#include "cli/help/markdown.hpp"
 
 namespace vestige::help {
 namespace {
@@ -61,6 +62,36 @@ TEST_F(Tables, ManPagesEscapeWhatRoffWouldObey) {
   EXPECT_THAT(page, HasSubstr("\n\\&.hidden things first"));
   EXPECT_THAT(page, HasSubstr("prog draw \\(aqit\\(aq\\(aqs\\(aq \\-o \\ex\n"));
   EXPECT_THAT(page, HasSubstr("What to draw:\n.br\ndot    small and round\n.br\nline   long\n.br\nor a file"));
+}
+
+TEST_F(Tables, MarkdownPagesEscapeWhatWouldBeMarkup) {
+  program_.get_subcommand("draw")->add_option("--shape", kind_, "<a*b>, snake_case and _this_, `x|y`");
+  const CommandTable draw = command_table(*program_.get_subcommand("draw"));
+  const std::string page = markdown_page(draw);
+  EXPECT_THAT(page, HasSubstr("\n  \\<a\\*b\\>, snake_case and \\_this\\_, \\`x\\|y\\`\n"));
+  EXPECT_THAT(page, HasSubstr("\n# prog draw\n\nDraw a thing.\n\n```\nprog draw [OPTIONS] -o OUT\n```\n"));
+  EXPECT_THAT(page, HasSubstr("\n```sh\nprog draw -o x\nprog draw 'it''s' -o \\x\n```\n"));
+  EXPECT_THAT(page, Not(HasSubstr("secret")));
+}
+
+TEST_F(Tables, MarkdownPagesListOptionsWithRangeDefaultAndValues) {
+  const std::string page = markdown_page(command_table(*program_.get_subcommand("draw")));
+  EXPECT_THAT(page, HasSubstr("\n- `--count N` (1 to 9; default: 3)\\\n  How many\n"));
+  EXPECT_THAT(page, HasSubstr("\n- `--kind KIND|FILE` (default: dot)\\\n  What to draw:\n"
+                              "  - `dot`: small and round\n  - `line`: long\n\n  or a file\n"));
+}
+
+TEST_F(Tables, TheMarkdownIndexLeadsToThePagesAndTellsWhatIsReadAndWritten) {
+  CLI::App* undo = program_.get_subcommand("draw")->add_subcommand("undo", "Take a | back");
+  undo->add_option("DIR", kind_, "Where")->required();
+  const std::string index = markdown_index(command_table(program_));
+  EXPECT_THAT(index, HasSubstr("| [draw](draw.md) | Draw a thing |\n"));
+  EXPECT_THAT(index, HasSubstr("| [draw](draw.md) | `--kind FILE` | `--output OUT` |\n"));
+  EXPECT_THAT(index, HasSubstr("| [draw undo](draw.md#prog-draw-undo) | `DIR` |  |\n"));
+  EXPECT_THAT(index, HasSubstr("| 2 | wrong usage |\n"));
+  const std::string page = markdown_page(command_table(*program_.get_subcommand("draw")));
+  EXPECT_THAT(page, HasSubstr("| [undo](#prog-draw-undo) | Take a \\| back |\n"));
+  EXPECT_THAT(page, HasSubstr("\n## prog draw undo\n"));
 }
 
 }  // namespace

@@ -18,6 +18,7 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
+using ::testing::Key;
 using ::testing::Not;
 using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
@@ -160,6 +161,42 @@ TEST_F(Help, ManPagesAreNotOverwrittenWithoutForce) {
   EXPECT_EQ(read_text_file(folder_ / "man1/vestige.1"), "mine\n");
   EXPECT_EQ(run("vestige man --pages man1 --force").exit_code, 0);
   EXPECT_EQ(run("vestige man frobnicate").exit_code, 2);
+}
+
+TEST_F(Help, TheReferenceInDocsIsWhatTheProgramWrites) {
+  constexpr const char* kRemedy =
+      "\nTo write the reference anew: cmake --build BUILD -t reference. A page that no verb has is to be removed.";
+  ASSERT_EQ(run("vestige man --markdown written").exit_code, 0);
+  const bool with_plot = has_plot();
+  if (with_plot) {
+    ASSERT_EQ(run("vestige-plot man --markdown > written/plot.md").exit_code, 0);
+  }
+  const auto pages_in = [&](const std::filesystem::path& folder) {
+    std::map<std::string, std::string> pages;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (with_plot || entry.path().filename() != "plot.md")
+        pages[entry.path().filename()] = read_text_file(entry.path());
+    return pages;
+  };
+  const auto committed = pages_in(std::filesystem::path(VESTIGE_SOURCE_DIR) / "docs/reference");
+  const auto written = pages_in(folder_ / "written");
+  EXPECT_THAT(written, AllOf(Contains(Key("README.md")), Contains(Key("record.md")), Contains(Key("man.md"))));
+  for (const auto& [name, page] : written) {
+    ASSERT_TRUE(committed.contains(name)) << "docs/reference/" << name << " is missing." << kRemedy;
+    EXPECT_EQ(committed.at(name), page) << "docs/reference/" << name << " is not what the program writes." << kRemedy;
+  }
+  for (const auto& [name, page] : committed)
+    EXPECT_TRUE(written.contains(name)) << "docs/reference/" << name << " is not written by the program." << kRemedy;
+}
+
+TEST_F(Help, MarkdownPagesAreNotOverwrittenWithoutForce) {
+  ASSERT_EQ(run("mkdir pages && echo mine > pages/README.md").exit_code, 0);
+  EXPECT_EQ(run("vestige man --markdown pages").exit_code, 1);
+  EXPECT_EQ(read_text_file(folder_ / "pages/README.md"), "mine\n");
+  EXPECT_EQ(run("vestige man --markdown pages --force").exit_code, 0);
+  EXPECT_THAT(read_text_file(folder_ / "pages/README.md"), HasSubstr("(record.md)"));
+  EXPECT_EQ(run("vestige man --markdown pages --pages man1").exit_code, 2);
+  EXPECT_EQ(run("vestige man --force").exit_code, 2);
 }
 
 class Completion : public Help {
