@@ -111,8 +111,8 @@ step accuracy vestige accuracy $accuracy_flags --no-figure -o "$out/accuracy"
 step stress vestige stress $stress_flags --no-figure -o "$out/stress"
 step claims vestige claims "$out" -o "$out/README.md"
 
-[ -z "$differs" ] || echo "Contacts differ in:$differs" >>"$out/README.md"
-[ -z "$failed" ] || echo "FAILED:$failed" >>"$out/README.md"
+[ -z "$differs" ] || printf '\nContacts differ in:%s\n' "$differs" >>"$out/README.md"
+[ -z "$failed" ] || printf '\nFAILED:%s\n' "$failed" >>"$out/README.md"
 if command -v tar >/dev/null && command -v gzip >/dev/null; then
   tar -C "$(dirname -- "$out")" -czf "$out.tar.gz" "$(basename -- "$out")" || failed="$failed tar"
   echo "Packed: $out.tar.gz"

@@ -478,10 +478,10 @@ TEST_F(CommandLine, FiresEveryActuatorOfARealAvatarsMap) {
 TEST_F(CommandLine, ClaimsGoToPeopleOrToPrograms) {
   record_small();
   ASSERT_EQ(run("mkdir r && vestige replay small.mcap --json r/replay.json").exit_code, 0);
-  EXPECT_THAT(run("vestige claims r").standard_output, HasSubstr("| claim | command |"));
+  EXPECT_THAT(run("vestige claims r").standard_output, HasSubstr("## How fast?"));
   const auto claims = json_of("vestige claims r --json -")["claims"];
-  ASSERT_EQ(claims.size(), 1U);
-  EXPECT_EQ(claims[0]["file"], "replay.json");
+  ASSERT_FALSE(claims.empty());
+  for (const auto& claim : claims) EXPECT_EQ(claim["file"], "replay.json");
   expect_failure("vestige claims r --json - -o -", 2, {"standard output"});
 }
 

@@ -1,0 +1,280 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "analysis/claims/claims.hpp"
+#include "analysis/claims/wording.hpp"
+
+namespace vestige {
+
+namespace {
+
+std::string code(const nlohmann::json& word) {
+  return "`" + word.get<std::string>() + "`";
+}
+
+/// What detectors say in the same words stands together.
+using Rows = std::vector<std::pair<std::string, std::vector<Contestant>>>;
+
+void add_to(Rows& rows, const std::string& text, const Contestant& contestant) {
+  auto row = std::ranges::find(rows, text, &Rows::value_type::first);
+  if (row == rows.end()) row = rows.insert(rows.end(), {text, {}});
+  row->second.push_back(contestant);
+}
+
+Claim claim_of(std::string text, std::vector<std::string> files) {
+  return {Question::kHowRight, "", std::move(text), std::move(files)};
+}
+
+/// How many contacts of replays differ from those of another detector. Replays that agree stand together.
+void add_verified(const std::vector<Result>& run, std::vector<Claim>& claims) {
+  struct Sum {
+    std::uint64_t differing = 0;
+    std::uint64_t expected = 0;
+    std::vector<std::string> methods;
+    std::vector<std::string> files;
+  };
+  std::map<std::tuple<std::string, std::string, bool>, Sum> sums;
+  for_each(ResultKind::kReplay, run, [&](const nlohmann::json& replay, const std::string& file) {
+    if (!replay.contains("verify") || !replay["verify"].contains("differing")) return;
+    const auto& verify = replay["verify"];
+    const auto differing = verify["differing"].get<std::uint64_t>();
+    const std::string who = code(replay.at("detector")) + on_renderer(replay.at("gl"), ContextName::kSaid);
+    Sum& sum = sums[{who, code(verify.at("against")), differing > 0}];
+    sum.differing += differing;
+    sum.expected += verify.at("expected").get<std::uint64_t>();
+    const std::string method = code(replay.at("method"));
+    if (std::ranges::find(sum.methods, method) == sum.methods.end()) sum.methods.push_back(method);
+    sum.files.push_back(file);
+  });
+  for (const auto& [key, sum] : sums) {
+    const auto& [who, against, differs] = key;
+    const std::string replays = sum.files.size() > 1 ? fmt::format(" in {} replays", sum.files.size()) : "";
+    claims.push_back(claim_of(fmt::format("{} by {}: {} of {} contacts differ from those of {}{}", who,
+                                          listed(sum.methods), sum.differing, sum.expected, against, replays),
+                              sum.files));
+  }
+}
+
+/// Which detectors write the same texture.
+void add_equal_textures(const std::vector<Result>& run, std::vector<Claim>& claims) {
+  struct Texture {
+    std::vector<Contestant> writers;
+    std::string method;
+    std::vector<std::string> files;
+  };
+  std::map<std::string, Texture> textures;
+  for_each(ResultKind::kReplay, run, [&](const nlohmann::json& replay, const std::string& file) {
+    Texture& texture = textures[replay.at("texture_hash").get<std::string>()];
+    const Contestant writer = {replay.at("detector").get<std::string>(),
+                               on_renderer(replay.at("gl"), ContextName::kSaid)};
+    if (std::ranges::find(texture.writers, writer) == texture.writers.end()) texture.writers.push_back(writer);
+    texture.method = code(replay.at("method"));
+    texture.files.push_back(file);
+  });
+  std::map<std::string, std::pair<std::set<std::string>, std::vector<std::string>>> by_writers;
+  for (const auto& [hash, texture] : textures) {
+    if (texture.writers.size() < 2) continue;
+    auto& [methods, files] = by_writers[listed(texture.writers)];
+    methods.insert(texture.method);
+    files.insert(files.end(), texture.files.begin(), texture.files.end());
+  }
+  for (const auto& [writers, shown] : by_writers) {
+    claims.push_back(claim_of(fmt::format("{} write the same texture, bit for bit, by {}", writers,
+                                          listed(std::vector<std::string>(shown.first.begin(), shown.first.end()))),
+                              shown.second));
+    claims.back().links = 2;
+  }
+}
+
+/// How far skinned vertices lie from the double reference, and whether they have the CPU's bits.
+void add_skinning(const std::vector<Result>& run, std::vector<Claim>& claims) {
+  struct Skinning {
+    double error = -1;
+    std::uint64_t identical = 0;
+    std::uint64_t vertices = 0;
+    std::vector<std::string> files;  ///< the one with the largest error first
+  };
+  std::map<std::string, Skinning> skinnings;
+  for_each(ResultKind::kReplay, run, [&](const nlohmann::json& replay, const std::string& file) {
+    Skinning& skinning = skinnings[on_renderer(replay.at("gl"))];
+    const auto& measured = replay.at("skinning");
+    const auto error = measured.at("largest_error_of_height").get<double>();
+    skinning.files.insert(error > skinning.error ? skinning.files.begin() : skinning.files.end(), file);
+    skinning.error = std::max(skinning.error, error);
+    skinning.identical += measured.at("identical_to_cpu").get<std::uint64_t>();
+    skinning.vertices += measured.at("vertices").get<std::uint64_t>();
+  });
+  if (skinnings.empty()) return;
+  std::vector<std::string> texts;
+  std::vector<std::string> files;
+  for (const auto& [renderer, skinning] : skinnings) {
+    texts.push_back(fmt::format("{:.2g}{}", skinning.error, renderer.empty() ? " on the CPU" : renderer));
+    if (!renderer.empty())
+      texts.back() += fmt::format(", with the CPU's bits in {} of {}", skinning.identical, skinning.vertices);
+    // The worst of each first.
+    files.insert(files.begin(), skinning.files.front());
+    files.insert(files.end(), skinning.files.begin() + 1, skinning.files.end());
+  }
+  claims.push_back(claim_of(
+      fmt::format("Skinned vertices lie near the double reference, within this share of the avatar's height: {}",
+                  fmt::join(texts, "; ")),
+      files));
+  claims.back().links = skinnings.size();
+}
+
+void add_agreement(const std::vector<Result>& run, std::vector<Claim>& claims) {
+  struct Sum {
+    std::uint64_t pairs = 0;
+    std::uint64_t differences = 0;
+    std::vector<std::string> files;
+  };
+  std::map<std::string, Sum> sums;
+  for_each(ResultKind::kAgreement, run, [&](const nlohmann::json& agreement, const std::string& file) {
+    Sum& sum = sums[agreement.at("method").get<std::string>()];
+    sum.files.push_back(file);
+    for (const auto& family : agreement.at("families")) {
+      sum.pairs += family.at("pairs").get<std::uint64_t>();
+      sum.differences += family.at("differences").get<std::uint64_t>();
+    }
+  });
+  if (sums.empty()) return;
+  std::vector<std::string> texts;
+  std::vector<std::string> files;
+  for (const auto& [method, sum] : sums) {
+    texts.push_back(fmt::format("{} of {} pairs by `{}`", sum.differences, in_words(sum.pairs), method));
+    files.insert(files.end(), sum.files.begin(), sum.files.end());
+  }
+  claims.push_back(claim_of(
+      "The deciding code differs from the slow truth, which is rational arithmetic, in " + listed(texts), files));
+}
+
+void add_geometry_agreement(const std::vector<Result>& run, std::vector<Claim>& claims) {
+  struct Sum {
+    std::uint64_t pairs = 0;
+    std::uint64_t missed = 0;
+    std::uint64_t winners_differing = 0;
+    std::vector<std::string> methods;
+  };
+  for_each(ResultKind::kGeometryAgreement, run, [&](const nlohmann::json& agreement, const std::string& file) {
+    std::map<std::tuple<std::string, std::string, bool>, Sum> sums;  // detector, renderer, skipping
+    for (const auto& method : agreement.at("methods")) {
+      Sum& sum = sums[{method.value("detector", "geometry"), on_renderer(method, ContextName::kSaid),
+                       method.value("skip", false)}];
+      sum.pairs += method.at("pairs").get<std::uint64_t>();
+      sum.missed += method.at("missed").get<std::uint64_t>();
+      sum.winners_differing += method.at("winners_differing").get<std::uint64_t>();
+      sum.methods.push_back(code(method.at("method")));
+    }
+    Rows rows;
+    for (const auto& [who, sum] : sums)
+      add_to(rows,
+             fmt::format("{} by {}, against `cpu` on {} adversarial pairs: {} missed, {} winners differ",
+                         std::get<2>(who) ? " with skipping" : "", listed(sum.methods), in_words(sum.pairs), sum.missed,
+                         sum.winners_differing),
+             {std::get<0>(who), std::get<1>(who)});
+    for (const auto& [text, contestants] : rows) claims.push_back(claim_of(listed(contestants) + text, {file}));
+  });
+}
+
+void add_queries(const std::vector<Result>& run, std::vector<Claim>& claims) {
+  for_each(ResultKind::kQuery, run, [&](const nlohmann::json& query, const std::string& file) {
+    const auto& total = query.at("total");
+    const auto count = [&total](const char* field) { return total.at(field).get<std::uint64_t>(); };
+    const auto detector = query.at("detector").get<std::string>();
+    claims.push_back(claim_of(
+        fmt::format("`{}`{} answers {} queries of known truth by `{}` ({}) with {} false negatives and {} false "
+                    "positives; {} in the median, {} at most",
+                    detector, on_renderer(gl_used_by(detector, query.value("gl", nlohmann::json()))), count("queries"),
+                    query.at("method").get<std::string>(), query.at("arithmetic").get<std::string>(),
+                    count("false_negatives"), count("false_positives"), duration(total.at("median_us").get<double>()),
+                    duration(total.at("max_us").get<double>())),
+        {file}));
+  });
+}
+
+/// Returns "8.2 to 11.0 %", or "0.0 %", for the shares missed at all rates.
+std::string range_missed(const nlohmann::json& points) {
+  std::vector<double> percent;
+  for (const auto& point : points) percent.push_back(100 * point.at("missed_share").get<double>());
+  if (percent.empty()) return "nothing measured";
+  const auto [least, most] = std::ranges::minmax(percent);
+  const std::string highest = fmt::format("{:.1f}", most);
+  const std::string lowest = fmt::format("{:.1f}", least);
+  return lowest == highest ? highest + " %" : fmt::format("{} to {} %", lowest, highest);
+}
+
+/// What the detectors of one scene miss by each method.
+struct Scene {
+  std::string name;
+  Rows missed;                  ///< "8.2 to 11.0 % by `static`", and which detectors
+  std::set<std::string> rates;  ///< one, unless the detectors were measured at different ones
+  std::string detectors;        ///< which detectors each method has; "" if those of one method do not agree
+};
+
+Scene read_scene(const nlohmann::json& json, const nlohmann::json& gl) {
+  Scene scene;
+  scene.name = fmt::format("{}, of {} true contacts", json.at("colliders").get<std::string>(),
+                           json.at("truth").at("events").get<std::uint64_t>());
+  Rows methods;
+  for (const auto& series : json.at("series")) {
+    const auto detector = series.at("detector").get<std::string>();
+    const Contestant contestant = {detector, on_renderer(gl_used_by(detector, gl))};
+    const std::string method = code(series.at("method"));
+    add_to(scene.missed, fmt::format("{} by {}", range_missed(series.at("points")), method), contestant);
+    add_to(methods, method, contestant);
+    std::vector<std::string> rates;
+    for (const auto& point : series["points"]) rates.push_back(fmt::format("{}", point.at("rate_hz").get<double>()));
+    scene.rates.insert(listed(rates));
+  }
+  if (scene.missed.size() != methods.size()) return scene;
+  std::vector<std::string> names;
+  for (const auto& [method, contestants] : methods)
+    names.push_back(fmt::format("{} of {}", method, listed(contestants)));
+  scene.detectors = fmt::format("{}", fmt::join(names, "; "));
+  return scene;
+}
+
+/// What detectors miss on a moving avatar. If those with the same method miss the same in all scenes, a row of its own
+/// names them.
+void add_accuracy(const nlohmann::json& accuracy, const std::string& file, std::vector<Claim>& claims) {
+  std::vector<Scene> scenes;
+  std::set<std::string> rates;
+  for (const auto& scene : accuracy.at("scenes")) {
+    scenes.push_back(read_scene(scene, accuracy.value("gl", nlohmann::json())));
+    rates.insert(scenes.back().rates.begin(), scenes.back().rates.end());
+  }
+  if (scenes.empty()) return;
+  const std::string topic = fmt::format("Contacts missed on a moving avatar, at {} Hz", fmt::join(rates, " or "));
+  const std::string& detectors = scenes[0].detectors;
+  const bool agree = std::ranges::all_of(
+      scenes, [&](const Scene& scene) { return !detectors.empty() && scene.detectors == detectors; });
+  for (const Scene& scene : scenes) {
+    std::vector<std::string> missed;
+    for (const auto& [text, contestants] : scene.missed)
+      missed.push_back(agree ? text : fmt::format("{} ({})", text, listed(contestants)));
+    claims.push_back({Question::kHowRight, topic, fmt::format("{}: {}", scene.name, fmt::join(missed, "; ")), {file}});
+  }
+  if (agree)
+    claims.push_back({Question::kHowRight, topic, "The same for every detector with the method: " + detectors, {file}});
+}
+
+}  // namespace
+
+std::vector<Claim> claims_how_right(const std::vector<Result>& run) {
+  std::vector<Claim> claims;
+  add_agreement(run, claims);
+  add_geometry_agreement(run, claims);
+  add_verified(run, claims);
+  add_equal_textures(run, claims);
+  add_skinning(run, claims);
+  add_queries(run, claims);
+  for_each(ResultKind::kAccuracy, run,
+           [&](const nlohmann::json& accuracy, const std::string& file) { add_accuracy(accuracy, file, claims); });
+  return claims;
+}
+
+}  // namespace vestige
