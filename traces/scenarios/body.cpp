@@ -44,7 +44,7 @@ double smooth(double share) {
   return s * s * (3 - 2 * s);
 }
 
-Body::Body(const Avatar& avatar, const Animation* animation) : avatar_(avatar), animation_(animation) {
+MovingBody::MovingBody(const Avatar& avatar, const Animation* animation) : avatar_(avatar), animation_(animation) {
   std::vector<glm::dvec3> posed;
   skin_reference(avatar, looped_pose(avatar, animation, 0), glm::dvec3(0), posed);
   box_m_ = box_around(posed);
@@ -60,12 +60,12 @@ Body::Body(const Avatar& avatar, const Animation* animation) : avatar_(avatar), 
   ends_elsewhere_ = farthest_m > kJump * size_m_;
 }
 
-bool Body::jumps(double time_s) {
+bool MovingBody::jumps(double time_s) {
   const double from_s = std::exchange(last_s_, time_s);
   return ends_elsewhere_ && std::floor(from_s / loop_s_) != std::floor(time_s / loop_s_);
 }
 
-const std::vector<glm::dmat4>& Body::palette(double time_s) {
+const std::vector<glm::dmat4>& MovingBody::palette(double time_s) {
   const double clamped_s = std::max(time_s, 0.0);
   if (clamped_s != palette_s_) {
     palette_matrices(avatar_, looped_pose(avatar_, animation_, clamped_s), palette_);

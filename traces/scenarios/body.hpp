@@ -30,9 +30,9 @@ double smooth(double share);
 
 /// The properties of an avatar that scenarios need: its size, and its pose at any time. Keeps references to avatar and
 /// animation.
-class Body {
+class MovingBody {
  public:
-  Body(const Avatar& avatar, const Animation* animation);
+  MovingBody(const Avatar& avatar, const Animation* animation);
 
   const Avatar& avatar() const { return avatar_; }
   const Animation* animation() const { return animation_; }

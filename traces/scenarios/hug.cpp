@@ -61,7 +61,7 @@ class Hug final : public ColliderSource {
     double phase;
   };
 
-  Body body_;
+  MovingBody body_;
   Skin skin_;
   SkinWalk walk_;
   std::vector<Walker> walkers_;

@@ -60,7 +60,7 @@ class Orbit final : public ColliderSource {
     double turns_hz;  // negative: the other direction
   };
 
-  Body body_;
+  MovingBody body_;
   Room room_;
   std::vector<Circle> circles_;
 };

@@ -136,7 +136,7 @@ class Punch final : public ColliderSource {
                     smooth((since_s - kStop_s - kBack_s) / idle_s));
   }
 
-  Body body_;
+  MovingBody body_;
   Skin skin_;
   ScenarioSettings settings_;
   std::vector<SkinPoint> targets_;

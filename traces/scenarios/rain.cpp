@@ -47,7 +47,7 @@ class Rain final : public ColliderSource {
   }
 
  private:
-  Body body_;
+  MovingBody body_;
   Room room_;
   ScenarioSettings settings_;
   double top_m_ = 0;   // relative to the room's centre

@@ -17,7 +17,7 @@ constexpr std::size_t kVertices = 500;  // about this many vertices represent al
 
 }  // namespace
 
-Room::Room(Body& body) : loop_s_(body.loop_s()) {
+Room::Room(MovingBody& body) : loop_s_(body.loop_s()) {
   const Avatar& avatar = body.avatar();
   const std::size_t stride = std::max<std::size_t>(avatar.position_bind.size() / kVertices, 1);
   const auto intervals = static_cast<int>(std::clamp(std::ceil(loop_s_ * kRate_hz), 0.0, kMostIntervals));

@@ -11,7 +11,7 @@ namespace vestige {
 /// motion around that centre. Computed from some of the vertices, 30 times a second.
 class Room {
  public:
-  explicit Room(Body& body);
+  explicit Room(MovingBody& body);
 
   /// The mean of the vertices; before time 0, the mean at 0.
   glm::dvec3 centre_m(double time_s) const;

@@ -133,7 +133,7 @@ class Slide final : public ColliderSource {
             glm::mix(here.normal, next.normal, place - before)};
   }
 
-  Body body_;
+  MovingBody body_;
   Skin skin_;
   FrontView view_;
   double phase_;

@@ -24,7 +24,7 @@ constexpr double kBesideResting_m = 0.01;
 class Still final : public ColliderSource {
  public:
   Still(const Avatar& avatar, const Animation* animation, const ScenarioSettings& settings) {
-    Body body(avatar, animation);
+    MovingBody body(avatar, animation);
     const Skin skin(avatar);
     const std::size_t instants = std::min<std::size_t>(settings.count, kInstants);
     resting_.resize(settings.count);

@@ -72,7 +72,7 @@ class Swarm final : public ColliderSource {
     return passage;
   }
 
-  Body body_;
+  MovingBody body_;
   std::vector<Flyer> flyers_;
 };
 
