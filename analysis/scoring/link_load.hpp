@@ -6,7 +6,7 @@
 namespace vestige {
 
 /// Returns the bytes of one state on the serial line: letter, sequence, ttl, count and a level for each actuator; two
-/// bytes of CRC-16; COBS overhead of one byte in 254; and the zero at the end (README, the vest's frames).
+/// bytes of CRC-16; COBS overhead of one byte in 254; and the zero at the end (transport/firmware/README.md).
 std::size_t state_bytes(std::size_t actuator_count);
 
 /// A model of the line to the vest. The line has a mailbox of one slot, in which the latest state replaces the one
