@@ -13,6 +13,7 @@
 #include "cli/help/validators.hpp"
 #include "traces/base/error.hpp"
 #include "traces/exchange/collider_files.hpp"
+#include "traces/scenarios/scenarios.hpp"
 
 namespace vestige::cli {
 
