@@ -152,6 +152,7 @@ std::vector<Command> commands_of(const std::vector<Result>& run) {
       groups.push_back({{words}, {result.file}, key});
   }
   std::vector<Command> commands;
+  commands.reserve(groups.size());
   for (const Group& group : groups) commands.push_back({text_of(group), group.files});
   return commands;
 }
