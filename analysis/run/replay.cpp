@@ -88,6 +88,7 @@ class Replay {
         detectors_(detectors),
         plan_(plan),
         frame_count_(trace.frame_count()),
+        skinning_step_(std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames)),
         recorded_(plan.expectation.contacts != nullptr ? std::span(*plan.expectation.contacts)
                                                        : std::span<const RecordedContact>(),
                   trace.collider_ids()),
@@ -123,7 +124,7 @@ class Replay {
       const Frame& frame = builder_.next(trace_frame_);
       batch.add(frame);
       building_s_ += seconds(Clock::now() - read);
-      if (frames_read_ % std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames) == 0) {
+      if (frames_read_ % skinning_step_ == 0) {
         const auto check = Clock::now();
         result_.skinning.add(plan_.avatar, trace_frame_, frame, detectors_.first());
         checking_s_ += seconds(Clock::now() - check);
@@ -208,6 +209,7 @@ class Replay {
   DetectorTeam& detectors_;
   const ReplayPlan& plan_;
   std::uint64_t frame_count_;
+  std::uint64_t skinning_step_;  ///< of frames whose skinning is checked
   RecordedRows recorded_;
   FrameBuilder builder_;
   TraceFrame trace_frame_;
