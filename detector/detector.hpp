@@ -81,11 +81,11 @@ class Detector {
 
   /// Fills `row` (resized to frame.columns). This call contains the whole round trip: skinning or upload, test,
   /// read-back.
-  virtual DetectorWork detect(const Frame& frame, ContactRow& row) = 0;
+  virtual DetectorWork detect(const DetectorFrame& frame, ContactRow& row) = 0;
 
   /// Writes this detector's own skinned vertices to `out`, relative to the frame's origin, for comparison with the
   /// double-precision reference.
-  virtual void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) = 0;
+  virtual void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) = 0;
 };
 
 }  // namespace vestige

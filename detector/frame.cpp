@@ -34,7 +34,7 @@ FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> 
   frame_.columns = columns_.size();
 }
 
-const Frame& FrameBuilder::next(const TraceFrame& trace_frame) {
+const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame) {
   const double time_s = trace_frame.time_s();
   frame_.duration_s = started_ ? time_s - frame_.time_s : 0;
   frame_.time_s = time_s;

@@ -23,7 +23,7 @@ struct Segment {
 };
 
 /// The input of a detector: detector/CONTRACT.md, 1 to 3. All positions are relative to `origin_m`.
-struct Frame {
+struct DetectorFrame {
   std::uint64_t index = 0;
   double time_s = 0;
   double duration_s = 0;  ///< since the previous frame; 0 in the first frame
@@ -44,7 +44,7 @@ class FrameBuilder {
 
   /// Takes the next frame of the trace. If the indices leave a gap (a damaged trace), the frame tests nothing. The
   /// reference is valid until the next call.
-  const Frame& next(const TraceFrame& trace_frame);
+  const DetectorFrame& next(const TraceFrame& trace_frame);
 
   /// Number of frames whose pose is not finite or is close to the end of fp32's range. They test nothing.
   std::uint64_t non_finite_frames() const { return non_finite_frames_; }
@@ -73,7 +73,7 @@ class FrameBuilder {
   std::vector<glm::dmat4> world_before_;
   glm::dvec3 pose_origin_before_m_ = glm::dvec3(0);
   glm::dvec3 bind_extent_m_;
-  Frame frame_;
+  DetectorFrame frame_;
   bool started_ = false;
   bool before_was_in_reach_ = true;
   std::uint64_t non_finite_frames_ = 0;

@@ -20,7 +20,7 @@ bool goes_on(const ContactEvent& event, const ContactEvent& next) {
 
 }  // namespace
 
-void ContactEventFinder::add(const Frame& frame, const ContactRow& row) {
+void ContactEventFinder::add(const DetectorFrame& frame, const ContactRow& row) {
   open_.resize(row.size());
   for (std::size_t column = 0; column < row.size(); ++column) {
     const Contact& contact = row[column];

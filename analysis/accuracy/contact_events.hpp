@@ -32,7 +32,7 @@ struct ContactEvent {
 class ContactEventFinder {
  public:
   /// Adds a frame. Frames must ascend, and their rows must carry `Plane::kTime`.
-  void add(const Frame& frame, const ContactRow& row);
+  void add(const DetectorFrame& frame, const ContactRow& row);
 
   std::uint64_t contacts() const { return contacts_; }
 

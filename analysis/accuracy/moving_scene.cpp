@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "traces/recording/recording.hpp"
+#include "traces/recording/sampled_scene.hpp"
 
 namespace vestige {
 

@@ -9,7 +9,7 @@
 #include "traces/base/error.hpp"
 #include "traces/base/system_error.hpp"
 
-namespace vestige::plot {
+namespace vestige {
 
 namespace fs = std::filesystem;
 
@@ -47,4 +47,4 @@ void GrowingFolder::commit(const std::function<bool(const fs::path&)>& is_stale)
   }
 }
 
-}  // namespace vestige::plot
+}  // namespace vestige

@@ -5,7 +5,7 @@
 
 #include "traces/files/output_file.hpp"
 
-namespace vestige::plot {
+namespace vestige {
 
 /// A folder that is either complete or absent. Files are written into a hidden folder beside it, and `commit` moves
 /// them into place. Without `commit`, the destructor removes the hidden folder. With `Overwrite::kAllow`, an existing
@@ -30,4 +30,4 @@ class GrowingFolder {
   std::filesystem::path growing_;
 };
 
-}  // namespace vestige::plot
+}  // namespace vestige

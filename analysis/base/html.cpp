@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
-namespace vestige::plot {
+namespace vestige {
 
 namespace {
 
@@ -91,4 +91,4 @@ std::string inline_svg(std::string_view svg, std::string_view prefix, std::strin
          with_prefixed_ids(svg.substr(inside), prefix);
 }
 
-}  // namespace vestige::plot
+}  // namespace vestige

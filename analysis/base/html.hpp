@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-namespace vestige::plot {
+namespace vestige {
 
 /// Escapes `text` for use in an HTML element or in an attribute's quotes: nothing in the result is markup. Control
 /// characters become U+FFFD, except \n and \t.
@@ -14,4 +14,4 @@ std::string html_text(std::string_view text);
 /// `label` instead of the picture.
 std::string inline_svg(std::string_view svg, std::string_view prefix, std::string_view label);
 
-}  // namespace vestige::plot
+}  // namespace vestige

@@ -27,7 +27,7 @@
 #include "traces/base/system_error.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/motion/animation_choice.hpp"
-#include "traces/recording/recording.hpp"
+#include "traces/recording/sampled_scene.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 

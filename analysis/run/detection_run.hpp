@@ -28,7 +28,7 @@ class DetectionRun {
   }
 
   /// Precondition of both: `step` was called.
-  const Frame& frame() const { return *frame_; }
+  const DetectorFrame& frame() const { return *frame_; }
   const ContactRow& row() const { return row_; }
 
   /// Says how many frames and segments were not finite, and how often the origin changed.
@@ -37,7 +37,7 @@ class DetectionRun {
  private:
   Detector& detector_;
   FrameBuilder builder_;
-  const Frame* frame_ = nullptr;
+  const DetectorFrame* frame_ = nullptr;
   ContactRow row_;
 };
 

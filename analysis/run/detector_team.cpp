@@ -7,7 +7,7 @@
 
 namespace vestige {
 
-void FrameBatch::add(const Frame& frame) {
+void FrameBatch::add(const DetectorFrame& frame) {
   if (count == frames.size()) {
     frames.emplace_back();
     rows.emplace_back();

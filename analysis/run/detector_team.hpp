@@ -16,13 +16,13 @@ namespace vestige {
 
 /// Frames that are detected together, and their results. Memory is reused.
 struct FrameBatch {
-  std::vector<Frame> frames;  ///< only the first `count` are valid
+  std::vector<DetectorFrame> frames;  ///< only the first `count` are valid
   std::vector<ContactRow> rows;
   std::vector<DetectorWork> work;
   std::size_t count = 0;
 
   void clear() { count = 0; }
-  void add(const Frame& frame);
+  void add(const DetectorFrame& frame);
 };
 
 /// A team of equal detectors, one for each thread. Each detector is made and used by its own thread. A free thread

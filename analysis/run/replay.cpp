@@ -121,7 +121,7 @@ class Replay {
       const auto read = Clock::now();
       result_.reading_s += seconds(read - start);
       if (!more) return;
-      const Frame& frame = builder_.next(trace_frame_);
+      const DetectorFrame& frame = builder_.next(trace_frame_);
       batch.add(frame);
       building_s_ += seconds(Clock::now() - read);
       if (frames_read_ % skinning_step_ == 0) {
@@ -165,7 +165,7 @@ class Replay {
     }
   }
 
-  void take(const Frame& frame, const ContactRow& row, const DetectorWork& work) {
+  void take(const DetectorFrame& frame, const ContactRow& row, const DetectorWork& work) {
     result_.work += work;
     for (const Contact& contact : row) {
       if (!contact.hit()) continue;

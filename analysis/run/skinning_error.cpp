@@ -10,7 +10,8 @@
 
 namespace vestige {
 
-void SkinningError::add(const Avatar& avatar, const TraceFrame& trace_frame, const Frame& frame, Detector& detector) {
+void SkinningError::add(const Avatar& avatar, const TraceFrame& trace_frame, const DetectorFrame& frame,
+                        Detector& detector) {
   std::vector<glm::dvec3> reference;
   std::vector<glm::vec3> own;
   std::vector<glm::vec3> contract;

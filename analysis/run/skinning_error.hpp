@@ -19,7 +19,7 @@ struct SkinningError {
   double largest_cpu_m = 0;  ///< largest distance of the contract's fp32 skinning to the double reference
   double height_m = 0;       ///< longest side of the avatar's box, in the double reference
 
-  void add(const Avatar& avatar, const TraceFrame& trace_frame, const Frame& frame, Detector& detector);
+  void add(const Avatar& avatar, const TraceFrame& trace_frame, const DetectorFrame& frame, Detector& detector);
 };
 
 }  // namespace vestige

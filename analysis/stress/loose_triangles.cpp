@@ -48,9 +48,9 @@ Avatar loose_triangles(std::size_t count) {
   return avatar;
 }
 
-Frame loose_frame(std::span<const LooseTriangle> before, std::span<const LooseTriangle> now,
-                  std::vector<Segment> segments) {
-  Frame frame;
+DetectorFrame loose_frame(std::span<const LooseTriangle> before, std::span<const LooseTriangle> now,
+                          std::vector<Segment> segments) {
+  DetectorFrame frame;
   frame.index = 1;
   frame.time_s = 0.01;
   frame.duration_s = 0.01;

@@ -26,7 +26,7 @@ Avatar loose_triangles(std::size_t count);
 /// Returns a frame of 10 ms in which triangle i of `loose_triangles(now.size())` moves from `before[i]` to `now[i]`.
 /// The skinned vertices have exactly these bits, except that -0 becomes 0. `before` and `now` must have equal length.
 /// The columns of `segments` must ascend.
-Frame loose_frame(std::span<const LooseTriangle> before, std::span<const LooseTriangle> now,
-                  std::vector<Segment> segments);
+DetectorFrame loose_frame(std::span<const LooseTriangle> before, std::span<const LooseTriangle> now,
+                          std::vector<Segment> segments);
 
 }  // namespace vestige

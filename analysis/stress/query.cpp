@@ -39,7 +39,7 @@ struct Kernel {
     const LooseTriangle before = as_loose(query.before);
     const LooseTriangle after = as_loose(query.after);
     const Segment segment = {0, glm::vec3(query.way.start), glm::vec3(query.way.end)};
-    const Frame frame = loose_frame(std::span(&before, 1), std::span(&after, 1), {segment});
+    const DetectorFrame frame = loose_frame(std::span(&before, 1), std::span(&after, 1), {segment});
     const DetectorWork work = detector->detect(frame, row);
     return {row.front().hit(), work.unsure > 0};
   }

@@ -35,7 +35,7 @@ bool always_apart(const Way& way, const Corners& before, const Corners& now) {
 
 class Truth {
  public:
-  Truth(const StressSubject& subject, const Frame& frame, Method method)
+  Truth(const StressSubject& subject, const DetectorFrame& frame, Method method)
       : subject_(subject), frame_(frame), method_(method) {
     skin_.skin(subject.avatar, frame, method);
   }
@@ -60,7 +60,7 @@ class Truth {
 
  private:
   const StressSubject& subject_;
-  const Frame& frame_;
+  const DetectorFrame& frame_;
   Method method_;
   SkinMotion skin_;
 };
@@ -84,7 +84,7 @@ void count_row(const ContactRow& row, const ContactRow& truth, StressCount& coun
   }
 }
 
-void count_misses(const Frame& frame, const ContactRow& row, StressCount& count) {
+void count_misses(const DetectorFrame& frame, const ContactRow& row, StressCount& count) {
   count.contacts += frame.columns;
   for (const Contact& given : row)
     if (!given.hit()) ++count.false_negatives;
@@ -144,7 +144,7 @@ class Stress {
     ContactRow row;
     for (std::size_t i = 0; i < scene.frames.size(); ++i) {
       if (!keep_going()) return false;
-      const Frame& frame = scene.frames[i];
+      const DetectorFrame& frame = scene.frames[i];
       count.unsure += detector.detect(frame, row).unsure;
       count.cases += frame.columns;
       if (scene.judge == StressJudge::kMustHit) {
@@ -183,7 +183,7 @@ std::vector<StressFamily> stress_families() {
   return all;
 }
 
-void stress_truth(const StressSubject& subject, const Frame& frame, Method method, ContactRow& row) {
+void stress_truth(const StressSubject& subject, const DetectorFrame& frame, Method method, ContactRow& row) {
   row.assign(frame.columns, Contact());
   if (frame.segments.empty()) return;
   const Truth truth(subject, frame, method);

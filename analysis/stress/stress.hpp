@@ -16,7 +16,7 @@ std::vector<StressFamily> stress_families();
 
 /// Fills `row` with the true winner of each column, found by `exact::` pair by pair. Pairs that some axis separates all
 /// the time are skipped. The row carries all planes.
-void stress_truth(const StressSubject& subject, const Frame& frame, Method method, ContactRow& row);
+void stress_truth(const StressSubject& subject, const DetectorFrame& frame, Method method, ContactRow& row);
 
 /// A detector with a method. `make` is called once for each body.
 struct StressContestant {

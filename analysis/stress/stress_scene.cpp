@@ -24,8 +24,8 @@ StressSubject make_subject(StressBody body) {
   return subject;
 }
 
-Frame frame_after(const TraceFrame& before, const TraceFrame& now, const Avatar& avatar, std::size_t columns,
-                  Method method) {
+DetectorFrame frame_after(const TraceFrame& before, const TraceFrame& now, const Avatar& avatar, std::size_t columns,
+                          Method method) {
   std::vector<std::uint32_t> ids(columns);
   std::iota(ids.begin(), ids.end(), 0U);
   FrameBuilder builder(avatar, ids, method);

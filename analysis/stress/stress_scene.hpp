@@ -33,7 +33,7 @@ enum class StressJudge { kTruth, kMustHit };
 /// The cases of one family at one magnitude: a case is a column of a frame, with or without a segment.
 struct StressScene {
   StressJudge judge = StressJudge::kTruth;
-  std::vector<Frame> frames;
+  std::vector<DetectorFrame> frames;
 };
 
 /// The request for a scene of at least one case. The columns of all frames add up to `cases`.
@@ -46,7 +46,7 @@ struct StressOrder {
 };
 
 /// What a detector is given for `now`, one frame after `before`. A collider's id is its column: below `columns`.
-Frame frame_after(const TraceFrame& before, const TraceFrame& now, const Avatar& avatar, std::size_t columns,
-                  Method method);
+DetectorFrame frame_after(const TraceFrame& before, const TraceFrame& now, const Avatar& avatar, std::size_t columns,
+                          Method method);
 
 }  // namespace vestige

@@ -86,12 +86,12 @@ std::vector<Segment> segments_of(const ClosedSkin& skin, std::size_t count, Aim 
 }
 
 /// Frames through `FrameBuilder`: the avatar and the colliders stand far out in the world.
-void add_world_frames(const StressOrder& order, Aim aim, Random& random, std::vector<Frame>& frames) {
+void add_world_frames(const StressOrder& order, Aim aim, Random& random, std::vector<DetectorFrame>& frames) {
   const Avatar& avatar = order.subject->avatar;
   TraceFrame before;
   before.pose = rest_pose(avatar);
   before.pose.origin_m = glm::dvec3(order.magnitude);
-  const Frame first = FrameBuilder(avatar, {}, Method::kStatic).next(before);
+  const DetectorFrame first = FrameBuilder(avatar, {}, Method::kStatic).next(before);
   const ClosedSkin skin(avatar, first.palette, random);
   for (std::size_t done = 0; done < order.cases; done += kSegmentsAtOnce) {
     const std::size_t count = std::min(kSegmentsAtOnce, order.cases - done);
@@ -108,9 +108,9 @@ void add_world_frames(const StressOrder& order, Aim aim, Random& random, std::ve
 }
 
 /// Frames whose fp32 coordinates are themselves far from the origin. The skin is coarser there, but still closed.
-void add_float_frames(const StressOrder& order, Aim aim, Random& random, std::vector<Frame>& frames) {
+void add_float_frames(const StressOrder& order, Aim aim, Random& random, std::vector<DetectorFrame>& frames) {
   const Avatar& avatar = order.subject->avatar;
-  Frame frame;
+  DetectorFrame frame;
   frame.index = 1;
   frame.time_s = frame.duration_s = 0.01;
   std::vector<glm::dmat4> world;

@@ -5,7 +5,7 @@
 #include "analysis/base/provenance.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/terminal.hpp"
-#include "traces/recording/recording.hpp"
+#include "traces/recording/sampled_scene.hpp"
 #include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/colliders.hpp"
 

@@ -12,8 +12,8 @@
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/base/system_error.hpp"
-#include "traces/exchange/frame_file.hpp"
 #include "traces/exchange/frame_thinning.hpp"
+#include "traces/exchange/trace_export.hpp"
 #include "traces/files/output_file.hpp"
 
 namespace vestige::cli {
@@ -129,11 +129,11 @@ int export_for_paraview(const ExportOptions& options) {
   return run_plot(arguments);
 }
 
-std::vector<std::unique_ptr<FrameFile>> make_files(const ExportOptions& options, const std::string& format,
-                                                   const std::optional<CsvFolder>& folder, OpenTrace& trace) {
+std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& options, const std::string& format,
+                                                     const std::optional<CsvFolder>& folder, OpenTrace& trace) {
   TraceReader& reader = trace.reader;
   const Overwrite overwrite = options.common.overwrite();
-  std::vector<std::unique_ptr<FrameFile>> files;
+  std::vector<std::unique_ptr<TraceExport>> files;
   if (folder) {
     files.push_back(make_pose_csv(folder->poses, overwrite, reader.node_names()));
     files.push_back(make_collider_csv(folder->colliders, overwrite));
@@ -152,7 +152,7 @@ std::vector<std::unique_ptr<FrameFile>> make_files(const ExportOptions& options,
 }
 
 /// Returns how many frames each file has.
-std::uint64_t write_frames(TraceReader& reader, const std::vector<std::unique_ptr<FrameFile>>& files,
+std::uint64_t write_frames(TraceReader& reader, const std::vector<std::unique_ptr<TraceExport>>& files,
                            const ExportOptions& options) {
   std::optional<FrameThinning> thinning;
   if (options.rate_hz) thinning.emplace(*options.rate_hz);
@@ -198,7 +198,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   catch_interrupts();
   require_frames(reader, options.file);
   const std::uint64_t total = reader.frame_count();
-  const std::vector<std::unique_ptr<FrameFile>> files = make_files(options, format, folder, trace);
+  const std::vector<std::unique_ptr<TraceExport>> files = make_files(options, format, folder, trace);
   const std::uint64_t written = write_frames(reader, files, options);
   std::vector<std::string> losses;
   for (const auto& file : files) {
@@ -260,7 +260,7 @@ void add_export(CLI::App& program, Invocation& invocation) {
   verb->callback([options, &invocation] {
     try {
       run_export(*options, invocation);
-    } catch (const ReaderGone&) {
+    } catch (const PipeClosed&) {
       // Of text, `| head` has seen enough.
       const std::string format = format_of(*options);
       if (format != "csv" && format != "ndjson") throw;

@@ -19,7 +19,7 @@
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/recording/recorder.hpp"
-#include "traces/recording/recording.hpp"
+#include "traces/recording/sampled_scene.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige::cli {

@@ -10,9 +10,9 @@
 #include "cli/help/validators.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/output_file.hpp"
-#include "transport/sinks/frame_file_sink.hpp"
 #include "transport/sinks/osc_sink.hpp"
 #include "transport/sinks/serial_sink.hpp"
+#include "transport/sinks/wire_file_sink.hpp"
 
 namespace vestige::cli {
 
@@ -150,7 +150,7 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
     const std::string path = choice.output_path();
     if (path == "-") refuse_terminal("--port -");
     frame_bytes_ = state_bytes(choice, actuator_names.size());
-    auto file = std::make_unique<FrameFileSink>(path, options.overwrite(), choice.quantity(), ttl_units(choice.ttl_ms));
+    auto file = std::make_unique<WireFileSink>(path, options.overwrite(), choice.quantity(), ttl_units(choice.ttl_ms));
     file_ = file.get();
     sink_ = std::move(file);
     return;

@@ -13,7 +13,7 @@
 #include "transport/wire/vest_frame.hpp"
 
 namespace vestige {
-class FrameFileSink;
+class WireFileSink;
 class SerialSink;
 }  // namespace vestige
 
@@ -80,7 +80,7 @@ class OpenSink {
 
   SinkChoice choice_;
   std::unique_ptr<ActuatorSink> sink_;
-  FrameFileSink* file_ = nullptr;
+  WireFileSink* file_ = nullptr;
   SerialSink* serial_ = nullptr;
   std::optional<Greeting> greeting_;
   std::size_t frame_bytes_ = 0;  ///< size of a state frame on the line

@@ -119,14 +119,14 @@ class MappedSkinDetector final : public Detector {
   GlInfo gl_info() const override { return detector_->gl_info(); }
   std::size_t triangles_left_out() const override { return left_out_; }
 
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     const DetectorWork work = detector_->detect(frame, row);
     for (Contact& contact : row)
       if (contact.hit()) contact.triangle = numbers_[contact.triangle];
     return work;
   }
 
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     detector_->skinned_vertices(frame, out);
   }
 

@@ -168,7 +168,7 @@ MeshletBounds::MeshletBounds(const Avatar& avatar, const Meshlets& meshlets) : m
   underflow_m_ = static_cast<float>(0x1p-116 * (1 + largest));
 }
 
-void MeshletBounds::begin(const Frame& frame, Method method) {
+void MeshletBounds::begin(const DetectorFrame& frame, Method method) {
   method_ = method;
   const glm::vec4 reach = prepare(frame.palette, extents_, now_);
   bounded_ = within_reach(reach) && rounding_ < 1;

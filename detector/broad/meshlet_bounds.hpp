@@ -41,7 +41,7 @@ class MeshletBounds {
 
   /// Sets the frame that `boxes` refers to. For `kCcd` the boxes contain the nodes now, before, and at all times
   /// between. For `kCarried` the boxes grow by the displacement that may move a segment's start.
-  void begin(const Frame& frame, Method method);
+  void begin(const DetectorFrame& frame, Method method);
 
   /// Returns the boxes of nodes `first` and following in `out`. A box is unbounded (-infinity to infinity) if nothing
   /// is known of the node.

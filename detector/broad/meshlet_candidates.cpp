@@ -10,7 +10,7 @@ static_assert(kMeshletFanout <= SegmentBoxes::kMostTested);
 MeshletCandidates::MeshletCandidates(const Avatar& avatar, const Meshlets& meshlets)
     : meshlets_(meshlets), bounds_(avatar, meshlets), segments_of_level_(meshlets.levels() + 1) {}
 
-void MeshletCandidates::find(const Frame& frame, Method method) {
+void MeshletCandidates::find(const DetectorFrame& frame, Method method) {
   touched_.clear();
   segments_.clear();
   const std::size_t levels = meshlets_.levels();

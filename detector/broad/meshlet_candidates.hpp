@@ -28,12 +28,12 @@ class MeshletCandidates {
   /// Keeps a reference to `meshlets`.
   MeshletCandidates(const Avatar& avatar, const Meshlets& meshlets);
 
-  void find(const Frame& frame, Method method);
+  void find(const DetectorFrame& frame, Method method);
 
   /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
   std::span<const TouchedMeshlet> touched() const { return touched_; }
 
-  /// Numbers in Frame::segments, ascending.
+  /// Numbers in DetectorFrame::segments, ascending.
   std::span<const std::uint32_t> segments(const TouchedMeshlet& touched) const {
     return std::span(segments_).subspan(touched.first, touched.count);
   }

@@ -4,7 +4,7 @@
 
 namespace vestige {
 
-void SkinMotion::skin(const Avatar& avatar, const Frame& frame, Method method) {
+void SkinMotion::skin(const Avatar& avatar, const DetectorFrame& frame, Method method) {
   skin_vertices(avatar, frame.palette, now);
   if (method != Method::kStatic) skin_vertices(avatar, frame.palette_before, before);
 }
@@ -19,7 +19,7 @@ MovingCorners moving_corners(const Avatar& avatar, const SkinMotion& skin, Metho
   return {method == Method::kStatic ? now : corners_of(avatar, skin.before, triangle), now};
 }
 
-MovingCorners skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle) {
+MovingCorners skin_corners(const Avatar& avatar, const DetectorFrame& frame, Method method, std::uint32_t triangle) {
   const glm::uvec3& corner = avatar.triangles[triangle];
   const auto skinned = [&](const std::vector<SkinMatrix>& palette) -> Corners {
     return {glm::dvec3(skin_vertex(avatar, palette, corner.x)), glm::dvec3(skin_vertex(avatar, palette, corner.y)),

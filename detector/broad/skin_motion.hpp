@@ -17,7 +17,7 @@ struct SkinMotion {
   std::vector<glm::vec3> before;  ///< stays empty for `kStatic`
   std::vector<glm::vec3> now;
 
-  void skin(const Avatar& avatar, const Frame& frame, Method method);
+  void skin(const Avatar& avatar, const DetectorFrame& frame, Method method);
 };
 
 /// The corners of one triangle of the skin, in the previous frame and now. With `kStatic`, which does not use the
@@ -33,7 +33,7 @@ Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices,
 MovingCorners moving_corners(const Avatar& avatar, const SkinMotion& skin, Method method, std::uint32_t triangle);
 
 /// Skins only this triangle. Returns the same bits as `moving_corners`.
-MovingCorners skin_corners(const Avatar& avatar, const Frame& frame, Method method, std::uint32_t triangle);
+MovingCorners skin_corners(const Avatar& avatar, const DetectorFrame& frame, Method method, std::uint32_t triangle);
 
 /// Returns the triangle at time t of a frame in which its corners move linearly, in fp64.
 Corners corners_at(const Corners& before, const Corners& now, float t);

@@ -7,7 +7,7 @@
 
 namespace vestige {
 
-void ContactFinder::offer(const Frame& frame, const MovingCorners& corners, const Segment& segment,
+void ContactFinder::offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment,
                           std::uint32_t triangle, Contact& winner) {
   const auto& [before, now] = corners;
   Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};

@@ -20,7 +20,7 @@ class ContactFinder {
 
   /// Decides a pair, given the triangle's corners. `winner` is the best contact of this segment so far; a better
   /// contact replaces it.
-  void offer(const Frame& frame, const MovingCorners& corners, const Segment& segment, std::uint32_t triangle,
+  void offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment, std::uint32_t triangle,
              Contact& winner);
 
   /// Returns the number of offered pairs, since the last call, that really meet.

@@ -26,7 +26,7 @@ class CpuDetector final : public Detector {
   const char* name() const override { return "cpu"; }
   Method method() const override { return method_; }
 
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
     skin_.skin(avatar_, frame, method_);
@@ -41,7 +41,7 @@ class CpuDetector final : public Detector {
             .unsure = finder_.take_unsure()};
   }
 
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     skin_vertices(avatar_, frame.palette, out);
   }
 
@@ -67,7 +67,7 @@ class SkippingCpuDetector final : public Detector {
   const char* name() const override { return "cpu"; }
   Method method() const override { return method_; }
 
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
     candidates_.find(frame, method_);
@@ -85,12 +85,12 @@ class SkippingCpuDetector final : public Detector {
     return work;
   }
 
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     skin_vertices(avatar_, frame.palette, out);
   }
 
  private:
-  void test(const Frame& frame, const TouchedMeshlet& touched, ContactRow& row) {
+  void test(const DetectorFrame& frame, const TouchedMeshlet& touched, ContactRow& row) {
     meshlet_skin_.skin(touched.meshlet, frame.palette, now_);
     if (method_ != Method::kStatic) meshlet_skin_.skin(touched.meshlet, frame.palette_before, before_);
     triangles_.bound(now_, before_, method_);

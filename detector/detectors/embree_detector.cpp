@@ -111,7 +111,7 @@ class EmbreeDetector final : public Detector {
 
   const char* name() const override { return mode_ == EmbreeMode::kRobust ? "embree" : "embree_default"; }
 
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
     skin_.skin(avatar_, frame, Method::kStatic);
@@ -126,7 +126,7 @@ class EmbreeDetector final : public Detector {
             .triangles_tested = avatar_.triangles.size()};
   }
 
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     skin_vertices(avatar_, frame.palette, out);
   }
 
@@ -193,7 +193,7 @@ class EmbreeDetector final : public Detector {
   Handle<RTCGeometry> geometry_;
   glm::vec3* vertices_ = nullptr;  ///< Embree's own buffer, one entry for each vertex
   SkinMotion skin_;
-  const Frame* frame_ = nullptr;  ///< set while `detect` runs
+  const DetectorFrame* frame_ = nullptr;  ///< set while `detect` runs
   const Segment* segment_ = nullptr;
 };
 

@@ -18,7 +18,7 @@ class ExactDetector final : public Detector {
   const char* name() const override { return "exact"; }
   Method method() const override { return options_.method; }
 
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
     skin_.skin(avatar_, frame, options_.method);
@@ -27,12 +27,12 @@ class ExactDetector final : public Detector {
     return {.pairs_tested = pairs, .triangles_tested = avatar_.triangles.size()};
   }
 
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     skin_vertices(avatar_, frame.palette, out);
   }
 
  private:
-  Contact first_contact(const Frame& frame, const Segment& segment) const {
+  Contact first_contact(const DetectorFrame& frame, const Segment& segment) const {
     Contact first;
     for (std::uint32_t triangle = 0; triangle < avatar_.triangles.size(); ++triangle) {
       const Contact contact = contact_with(frame, segment, triangle);
@@ -42,7 +42,7 @@ class ExactDetector final : public Detector {
     return first;
   }
 
-  Contact contact_with(const Frame& frame, const Segment& segment, std::uint32_t triangle) const {
+  Contact contact_with(const DetectorFrame& frame, const Segment& segment, std::uint32_t triangle) const {
     const Corners now = corners_of(avatar_, skin_.now, triangle);
     Corners at_contact = now;
     Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};

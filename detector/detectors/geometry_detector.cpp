@@ -100,7 +100,7 @@ class GeometryDetector final : public Detector {
   Method method() const override { return method_; }
   GlInfo gl_info() const override { return context_->info(); }
 
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
     context_->make_current();
@@ -125,7 +125,7 @@ class GeometryDetector final : public Detector {
             .unsure = finder_.take_unsure()};
   }
 
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     context_->make_current();
     if (!skinning_program_) {
       skinning_program_.emplace(
@@ -155,7 +155,7 @@ class GeometryDetector final : public Detector {
   }
 
   /// Uploads this frame's palette, followed by that of the previous frame if the method uses it.
-  void upload_palette(const Frame& frame, const GlProgram& program) {
+  void upload_palette(const DetectorFrame& frame, const GlProgram& program) {
     float least_radius = least_radius_m(frame.palette, bind_extent_m_);
     gpu_palette_ = frame.palette;
     if (method_ != Method::kStatic) {
@@ -169,7 +169,7 @@ class GeometryDetector final : public Detector {
     gl_.ProgramUniform1f(program.name(), VESTIGE_UNIFORM_LEAST_RADIUS, least_radius);
   }
 
-  void upload_segments(const Frame& frame) {
+  void upload_segments(const DetectorFrame& frame) {
     gpu_segments_.clear();
     gpu_segments_.reserve(frame.segments.size());
     for (const Segment& segment : frame.segments)

@@ -76,7 +76,7 @@ class PaperDetector final : public Detector {
   const char* name() const override { return "paper"; }
   GlInfo gl_info() const override { return context_->info(); }
 
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     context_->make_current();
     row.assign(frame.columns, Contact());
     upload_frame(frame);
@@ -98,7 +98,7 @@ class PaperDetector final : public Detector {
     return {frame.segments.size() * avatar_.triangles.size(), avatar_.triangles.size()};
   }
 
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     context_->make_current();
     upload_frame(frame);
     if (!skinning_program_) {
@@ -133,7 +133,7 @@ class PaperDetector final : public Detector {
 
   /// Uploads the palette and the segments of this frame, and restores every binding that another detector of the
   /// context may have changed.
-  void upload_frame(const Frame& frame) {
+  void upload_frame(const DetectorFrame& frame) {
     palette_.upload(frame.palette.data(), frame.palette.size() * sizeof(SkinMatrix), GL_STREAM_DRAW);
     gpu_segments_.clear();
     for (const Segment& segment : frame.segments)

@@ -109,7 +109,7 @@ class SkippingGeometryDetector final : public Detector {
   Method method() const override { return method_; }
   GlInfo gl_info() const override { return context_->info(); }
 
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
     candidates_.find(frame, method_);
@@ -133,7 +133,7 @@ class SkippingGeometryDetector final : public Detector {
   }
 
   /// Returns the vertices that the detector works with, which the CPU skins.
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     skin_vertices(avatar_, frame.palette, out);
   }
 
@@ -155,7 +155,7 @@ class SkippingGeometryDetector final : public Detector {
                                 static_cast<GLuint>(corner * sizeof(glm::vec3)));
   }
 
-  void skin_touched(const Frame& frame, DetectorWork& work) {
+  void skin_touched(const DetectorFrame& frame, DetectorWork& work) {
     const std::span<const TouchedMeshlet> touched = candidates_.touched();
     now_.resize(touched.size());
     if (method_ != Method::kStatic) before_.resize(touched.size());
@@ -171,7 +171,7 @@ class SkippingGeometryDetector final : public Detector {
 
   /// Distributes the candidates to as many blocks as they need. A meshlet whose segments do not fit into one block
   /// continues in the next.
-  void fill_slots(const Frame& frame) {
+  void fill_slots(const DetectorFrame& frame) {
     draws_.clear();
     gpu_corners_.clear();
     const std::span<const TouchedMeshlet> touched = candidates_.touched();
@@ -230,7 +230,7 @@ class SkippingGeometryDetector final : public Detector {
   }
 
   /// Decides a captured pair. Returns 0 for the slots after the last meshlet's last triangle, otherwise 1.
-  std::uint64_t decide(const Frame& frame, const CapturedPair& pair, ContactRow& row) {
+  std::uint64_t decide(const DetectorFrame& frame, const CapturedPair& pair, ContactRow& row) {
     const std::size_t touched = pair.triangle / kMeshletTriangles;
     const std::size_t i = pair.triangle % kMeshletTriangles;
     const TouchedMeshlet& meshlet = candidates_.touched()[touched];

@@ -24,7 +24,8 @@ ContactsCsv::ContactsCsv(const std::filesystem::path& path, Overwrite overwrite)
   file_.write(fmt::format("{}\n", kHeader));
 }
 
-void ContactsCsv::write(const Frame& frame, const ContactRow& row, const std::vector<std::uint32_t>& collider_ids) {
+void ContactsCsv::write(const DetectorFrame& frame, const ContactRow& row,
+                        const std::vector<std::uint32_t>& collider_ids) {
   text_.clear();
   for (std::size_t column = 0; column < row.size(); ++column) {
     const Contact& contact = row[column];

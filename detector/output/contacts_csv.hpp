@@ -19,7 +19,7 @@ namespace vestige {
 class ContactsCsv {
  public:
   ContactsCsv(const std::filesystem::path& path, Overwrite overwrite);
-  void write(const Frame& frame, const ContactRow& row, const std::vector<std::uint32_t>& collider_ids);
+  void write(const DetectorFrame& frame, const ContactRow& row, const std::vector<std::uint32_t>& collider_ids);
   void commit() { file_.commit(); }
 
  private:

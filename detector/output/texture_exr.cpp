@@ -74,7 +74,7 @@ class MemoryStream final : public Imf::OStream {
 TextureExr::TextureExr(PlaneSet planes, std::size_t columns, std::map<std::string, std::string> attributes)
     : planes_(planes), columns_(columns), attributes_(std::move(attributes)) {}
 
-void TextureExr::add(const Frame& frame, const ContactRow& row) {
+void TextureExr::add(const DetectorFrame& frame, const ContactRow& row) {
   for (std::uint32_t column = 0; column < row.size(); ++column) {
     if (!row[column].hit()) continue;
     Contact contact = row[column];

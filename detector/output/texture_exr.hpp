@@ -24,7 +24,7 @@ class TextureExr {
 
   /// Adds a row. Only contacts are stored, so memory grows with the number of contacts, not with frames times
   /// colliders.
-  void add(const Frame& frame, const ContactRow& row);
+  void add(const DetectorFrame& frame, const ContactRow& row);
 
   /// Writes the whole image. Throws `Error` for a run without frames or without colliders, which has no image.
   void write(OutputFile& file) const;

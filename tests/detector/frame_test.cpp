@@ -31,7 +31,7 @@ class FrameBuilderTest : public ::testing::Test {
 TEST_F(FrameBuilderTest, GivesAColliderTheColumnOfItsRankAndASegmentFromItsLastPosition) {
   FrameBuilder builder(avatar_, ids_);
   EXPECT_TRUE(builder.next(frame_at(0, {{9, {0, 0, 1}}, {3, {1, 0, 0}}})).segments.empty());
-  const Frame& frame = builder.next(frame_at(1, {{9, {0, 0, 2}}, {3, {1, 0, 5}}}));
+  const DetectorFrame& frame = builder.next(frame_at(1, {{9, {0, 0, 2}}, {3, {1, 0, 5}}}));
   EXPECT_EQ(frame.columns, 3U);
   EXPECT_DOUBLE_EQ(frame.duration_s, 0.001);
   ASSERT_EQ(frame.segments.size(), 2U);
@@ -99,8 +99,8 @@ TEST_F(FrameBuilderTest, GivesTheSameBitsTenThousandKilometresAway) {
     TraceFrame shifted = frame;
     shifted.pose.origin_m += shift;
     shifted.colliders[0].position_m += shift;
-    const Frame& a = here.next(frame);
-    const Frame& b = there.next(shifted);
+    const DetectorFrame& a = here.next(frame);
+    const DetectorFrame& b = there.next(shifted);
     EXPECT_EQ(a.origin_m + shift, b.origin_m);
     ASSERT_EQ(a.segments.size(), b.segments.size());
     if (!a.segments.empty()) {

@@ -27,7 +27,7 @@ inline ContactRecording record_scenario(std::string_view scenario, const Avatar&
   ContactRecording recording;
   ContactRow row;
   for (const TraceFrame& trace_frame : scene(scenario, avatar, colliders, frames, rate_hz)) {
-    const Frame& frame = builder.next(trace_frame);
+    const DetectorFrame& frame = builder.next(trace_frame);
     detector->detect(frame, row);
     recording.add(frame.time_s, row);
   }

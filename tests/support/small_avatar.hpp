@@ -24,8 +24,8 @@ inline Avatar rigid_avatar(const std::vector<glm::vec3>& vertices, const std::ve
 }
 
 /// Returns a frame in which `avatar` is at rest and one collider moves along each segment.
-inline Frame frame_of(const Avatar& avatar, const std::vector<Segment>& segments) {
-  Frame frame;
+inline DetectorFrame frame_of(const Avatar& avatar, const std::vector<Segment>& segments) {
+  DetectorFrame frame;
   frame.index = 1;
   frame.time_s = 0.01;
   frame.duration_s = 0.01;

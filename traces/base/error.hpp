@@ -22,7 +22,7 @@ class UsageError : public Error {
 };
 
 /// The reader of the pipe that was written to has closed it.
-class ReaderGone : public Error {
+class PipeClosed : public Error {
  public:
   using Error::Error;
 };

@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "traces/base/number_text.hpp"
-#include "traces/exchange/frame_file.hpp"
+#include "traces/exchange/trace_export.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
@@ -19,7 +19,7 @@ constexpr std::string_view kFramesRemedy =
     "each row is frame,time_s,id,x,y,z,teleported: a whole number, seconds, a whole number, metres, 0 or 1";
 constexpr std::string_view kAloneRemedy = "export poses and colliders of the same trace, or leave out the column frame";
 
-class ColliderCsv final : public FrameFile {
+class ColliderCsv final : public TraceExport {
  public:
   ColliderCsv(const std::filesystem::path& path, Overwrite overwrite) : file_(path, overwrite) {
     file_.write(kColliderFramesHeader);
@@ -51,7 +51,7 @@ class ColliderCsv final : public FrameFile {
 
 }  // namespace
 
-std::unique_ptr<FrameFile> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite) {
+std::unique_ptr<TraceExport> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite) {
   return std::make_unique<ColliderCsv>(path, overwrite);
 }
 

@@ -14,7 +14,7 @@
 
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/exchange/frame_file.hpp"
+#include "traces/exchange/trace_export.hpp"
 #include "traces/files/column_file.hpp"
 #include "traces/gltf/glb_container.hpp"
 #include "traces/gltf/gltf_meshopt.hpp"
@@ -149,7 +149,7 @@ int add_sphere(Builder& builder) {
                                                    {"material", material}}})}});
 }
 
-class FrameGltf final : public FrameFile {
+class FrameGltf final : public TraceExport {
  public:
   FrameGltf(const std::filesystem::path& path, Overwrite overwrite, const Avatar& avatar,
             std::span<const std::byte> glb, std::vector<std::uint32_t> ids)
@@ -476,8 +476,9 @@ std::vector<std::string> FrameGltf::losses() const {
 
 }  // namespace
 
-std::unique_ptr<FrameFile> make_frame_gltf(const std::filesystem::path& path, Overwrite overwrite, const Avatar& avatar,
-                                           std::span<const std::byte> glb, std::vector<std::uint32_t> collider_ids) {
+std::unique_ptr<TraceExport> make_frame_gltf(const std::filesystem::path& path, Overwrite overwrite,
+                                             const Avatar& avatar, std::span<const std::byte> glb,
+                                             std::vector<std::uint32_t> collider_ids) {
   return std::make_unique<FrameGltf>(path, overwrite, avatar, glb, std::move(collider_ids));
 }
 

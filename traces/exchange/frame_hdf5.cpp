@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "traces/base/error.hpp"
-#include "traces/exchange/frame_file.hpp"
 #include "traces/exchange/hdf5_library.hpp"
+#include "traces/exchange/trace_export.hpp"
 #include "traces/files/scratch_file.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
@@ -125,7 +125,7 @@ class GrowingDataset {
   hsize_t rows_ = 0;
 };
 
-class FrameHdf5 final : public FrameFile {
+class FrameHdf5 final : public TraceExport {
  public:
   FrameHdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace)
       : file_(path, overwrite), path_(path), scratch_(path, ScratchName::kKept), ids_(trace.collider_ids()) {
@@ -263,7 +263,8 @@ class FrameHdf5 final : public FrameFile {
 
 }  // namespace
 
-std::unique_ptr<FrameFile> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace) {
+std::unique_ptr<TraceExport> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite,
+                                             TraceReader& trace) {
   return std::make_unique<FrameHdf5>(path, overwrite, trace);
 }
 

@@ -3,14 +3,14 @@
 #include <iterator>
 
 #include "traces/base/number_text.hpp"
-#include "traces/exchange/frame_file.hpp"
+#include "traces/exchange/trace_export.hpp"
 #include "traces/scene/frame_json.hpp"
 
 namespace vestige {
 
 namespace {
 
-class FrameNdjson final : public FrameFile {
+class FrameNdjson final : public TraceExport {
  public:
   FrameNdjson(const std::filesystem::path& path, Overwrite overwrite) : file_(path, overwrite) {}
 
@@ -37,7 +37,7 @@ class FrameNdjson final : public FrameFile {
 
 }  // namespace
 
-std::unique_ptr<FrameFile> make_frame_ndjson(const std::filesystem::path& path, Overwrite overwrite) {
+std::unique_ptr<TraceExport> make_frame_ndjson(const std::filesystem::path& path, Overwrite overwrite) {
   return std::make_unique<FrameNdjson>(path, overwrite);
 }
 

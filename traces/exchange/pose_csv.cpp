@@ -10,7 +10,7 @@
 #include <set>
 
 #include "traces/base/number_text.hpp"
-#include "traces/exchange/frame_file.hpp"
+#include "traces/exchange/trace_export.hpp"
 
 namespace vestige {
 
@@ -42,7 +42,7 @@ float& part_of(NodeLocal& node, std::size_t part) {
   }
 }
 
-class PoseCsv final : public FrameFile {
+class PoseCsv final : public TraceExport {
  public:
   PoseCsv(const std::filesystem::path& path, Overwrite overwrite, const std::vector<std::string>& node_names)
       : file_(path, overwrite) {
@@ -108,8 +108,8 @@ std::vector<std::string> pose_csv_nodes(const std::vector<std::string>& node_nam
   return nodes;
 }
 
-std::unique_ptr<FrameFile> make_pose_csv(const std::filesystem::path& path, Overwrite overwrite,
-                                         const std::vector<std::string>& node_names) {
+std::unique_ptr<TraceExport> make_pose_csv(const std::filesystem::path& path, Overwrite overwrite,
+                                           const std::vector<std::string>& node_names) {
   return std::make_unique<PoseCsv>(path, overwrite, node_names);
 }
 

@@ -39,7 +39,7 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const std::file
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0) {
       if (errno == EINTR) continue;
-      if (errno == EPIPE) throw ReaderGone(shown_name(path), "whoever read it has stopped", "");
+      if (errno == EPIPE) throw PipeClosed(shown_name(path), "whoever read it has stopped", "");
       throw system_error(path, "could not write", errno);
     }
     bytes = bytes.subspan(static_cast<std::size_t>(written));

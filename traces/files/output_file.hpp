@@ -64,7 +64,7 @@ void make_folder(const std::filesystem::path& folder);
 /// Throws `UsageError` if standard output is a terminal, because binary data would garble it.
 void refuse_terminal(std::string_view flag);
 
-/// Writes all of `bytes` to `descriptor`. Throws `Error` with the name of `path`, or `ReaderGone` if the pipe has no
+/// Writes all of `bytes` to `descriptor`. Throws `Error` with the name of `path`, or `PipeClosed` if the pipe has no
 /// reader.
 void write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& path);
 

@@ -84,7 +84,7 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
   TraceFrame frame;
   while (trace.next(frame)) {
     detection.step(frame);
-    const Frame& built = detection.frame();
+    const DetectorFrame& built = detection.frame();
     const ContactRow& row = detection.row();
     if (is_due && built.time_s > last_s) write_last();
     for (std::size_t column = 0; column < row.size(); ++column) {

@@ -21,7 +21,7 @@ constexpr int kNone = -1;
 /// One collider; for each frame the actuator that it touches at the frame's middle, or kNone.
 std::vector<ContactEvent> events_of(const std::vector<int>& actuators, std::uint64_t first_frame = 1) {
   ContactEventFinder finder;
-  Frame frame;
+  DetectorFrame frame;
   frame.duration_s = kFrame_s;
   for (std::size_t i = 0; i < actuators.size(); ++i) {
     frame.index = first_frame + i;
@@ -72,7 +72,7 @@ TEST(ContactEvents, AGapOfOneFrameAndAnotherActuatorEachEndAnEvent) {
 
 TEST(ContactEvents, CollidersDoNotShareEvents) {
   ContactEventFinder finder;
-  Frame frame;
+  DetectorFrame frame;
   frame.index = 5;
   Contact contact;
   contact.triangle = 1;

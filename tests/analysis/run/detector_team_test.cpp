@@ -48,14 +48,14 @@ TEST(DetectorTeamTest, FindsTheSameWithAnyNumberOfThreads) {
 class FailingDetector : public Detector {
  public:
   const char* name() const override { return "failing"; }
-  DetectorWork detect(const Frame&, ContactRow&) override { throw std::runtime_error("this detector fails"); }
-  void skinned_vertices(const Frame&, std::vector<glm::vec3>&) override {}
+  DetectorWork detect(const DetectorFrame&, ContactRow&) override { throw std::runtime_error("this detector fails"); }
+  void skinned_vertices(const DetectorFrame&, std::vector<glm::vec3>&) override {}
 };
 
 TEST(DetectorTeamTest, PassesOnWhatADetectorThrewOnAnyThread) {
   DetectorTeam team(3, [] { return std::make_unique<FailingDetector>(); });
   FrameBatch batch;
-  for (int i = 0; i < 20; ++i) batch.add(Frame());
+  for (int i = 0; i < 20; ++i) batch.add(DetectorFrame());
   team.start(batch);
   EXPECT_THROW(team.finish(), std::runtime_error);
 }

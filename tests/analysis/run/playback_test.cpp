@@ -21,14 +21,14 @@ using ::testing::ElementsAre;
 class AlwaysTouched : public Detector {
  public:
   const char* name() const override { return "always"; }
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     Contact contact;
     contact.triangle = 0;
     contact.actuator = 1;
     row.assign(frame.columns, contact);
     return {};
   }
-  void skinned_vertices(const Frame&, std::vector<glm::vec3>&) override {}
+  void skinned_vertices(const DetectorFrame&, std::vector<glm::vec3>&) override {}
 };
 
 struct Taken {

@@ -31,7 +31,7 @@ TEST(LooseTriangles, AreSkinnedToExactlyTheirCorners) {
     for (LooseTriangle& triangle : *triangles)
       for (glm::vec3& corner : triangle) corner = {any_float(random), any_float(random), any_float(random)};
   const Avatar avatar = loose_triangles(now.size());
-  const Frame frame = loose_frame(before, now, {});
+  const DetectorFrame frame = loose_frame(before, now, {});
   std::vector<glm::vec3> skinned_before;
   std::vector<glm::vec3> skinned_now;
   skin_vertices(avatar, frame.palette_before, skinned_before);

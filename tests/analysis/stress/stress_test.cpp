@@ -52,7 +52,7 @@ class WrongDetector final : public Detector {
         fault_(fault) {}
 
   const char* name() const override { return "wrong"; }
-  DetectorWork detect(const Frame& frame, ContactRow& row) override {
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     const DetectorWork work = right_->detect(frame, row);
     for (Contact& contact : row) {
       if (fault_ == Fault::kInvents && !contact.hit()) contact.triangle = 0;
@@ -64,7 +64,7 @@ class WrongDetector final : public Detector {
     }
     return work;
   }
-  void skinned_vertices(const Frame& frame, std::vector<glm::vec3>& out) override {
+  void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
     right_->skinned_vertices(frame, out);
   }
 
@@ -182,7 +182,8 @@ TEST(WindingNumber, CountsTheShellsAroundAPointAndRefusesTheSurface) {
 TEST(Embree, FindsAnOrdinaryContactInBothConfigurations) {
   const Avatar avatar = test::rigid_avatar({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   const ActuatorMap map;
-  const Frame frame = test::frame_of(avatar, {{0, {0.25F, 0.25F, 1}, {0.25F, 0.25F, -1}}, {1, {2, 2, 1}, {2, 2, -1}}});
+  const DetectorFrame frame =
+      test::frame_of(avatar, {{0, {0.25F, 0.25F, 1}, {0.25F, 0.25F, -1}}, {1, {2, 2, 1}, {2, 2, -1}}});
   for (const EmbreeMode mode : {EmbreeMode::kRobust, EmbreeMode::kDefault}) {
     const auto detector = make_embree_detector(mode, avatar, map, {});
     ContactRow row;
@@ -204,7 +205,7 @@ TEST(Embree, PassesThroughSkinWithoutAnActuatorWhereItIsTold) {
   map.width = 2;
   map.actuator = {0, 1};
   map.actuator_count = 1;
-  const Frame frame = test::frame_of(avatar, {{0, {0.1F, 0.1F, 1}, {0.1F, 0.1F, -1}}});
+  const DetectorFrame frame = test::frame_of(avatar, {{0, {0.1F, 0.1F, 1}, {0.1F, 0.1F, -1}}});
   ContactRow row;
   make_embree_detector(EmbreeMode::kRobust, avatar, map, {Surface::kAll, PlaneSet::all()})->detect(frame, row);
   EXPECT_EQ(row[0].triangle, 0U);

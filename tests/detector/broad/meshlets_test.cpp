@@ -144,7 +144,7 @@ class BoundedRig {
   test::RandomRig rig_{any_rig()};
   Meshlets meshlets_{rig_.avatar};
   MeshletBounds bounds_{rig_.avatar, meshlets_};
-  Frame frame_;
+  DetectorFrame frame_;
 };
 
 RC_GTEST_PROP(MeshletBounds, HoldEverySkinnedVertexOfAnyRig, ()) {
@@ -180,7 +180,7 @@ RC_GTEST_PROP(MeshletBounds, HoldEveryStartThatIsCarriedIntoATriangle, ()) {
 TEST(MeshletBounds, AreNoneWhereAPaletteMayOverflowOrAWeightIsNegative) {
   Avatar avatar = test::rigid_avatar({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}, {{0, 1, 2}});
   const Meshlets meshlets(avatar);
-  Frame frame = test::frame_of(avatar, {});
+  DetectorFrame frame = test::frame_of(avatar, {});
   const auto box = [&] {
     MeshletBounds bounds(avatar, meshlets);
     bounds.begin(frame, Method::kStatic);
@@ -333,7 +333,7 @@ TEST(MeshletTriangles, RejectMostOfWhatPassesCloseBy) {
   const Avatar avatar = test::rigid_avatar({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0.5F}}, {{0, 1, 2}});
   const Meshlets meshlets(avatar);
   const MeshletSkin skin(avatar, meshlets);
-  const Frame frame = test::frame_of(avatar, {});
+  const DetectorFrame frame = test::frame_of(avatar, {});
   MeshletCorners corners;
   skin.skin(0, frame.palette, corners);
   MeshletTriangles triangles;
@@ -358,7 +358,7 @@ TEST(MeshletCandidates, AreTheSameOnEveryInstructionSetAndLeaveOutNoPairWhoseBox
     std::size_t pairs = 0;
     std::size_t meshlet_pairs = 0;
     for (const TraceFrame& trace_frame : scene) {
-      const Frame& frame = builder.next(trace_frame);
+      const DetectorFrame& frame = builder.next(trace_frame);
       using Pair = std::pair<std::size_t, std::uint32_t>;  // meshlet, segment
       std::vector<std::vector<Pair>> found;
       test::on_every_simd_target([&](const char*) {

@@ -70,9 +70,10 @@ class Winners {
  public:
   Winners(const Avatar& avatar, const ActuatorMap& map) : avatar_(avatar), map_(map) {}
 
-  void begin(const Frame& frame) { row_.assign(frame.columns, Contact()); }
+  void begin(const DetectorFrame& frame) { row_.assign(frame.columns, Contact()); }
   template <typename Decide>
-  void offer(const Frame& frame, const Segment& segment, std::uint32_t triangle, const Corners& now, Decide&& decide) {
+  void offer(const DetectorFrame& frame, const Segment& segment, std::uint32_t triangle, const Corners& now,
+             Decide&& decide) {
     const Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
     Contact& winner = row_[segment.column];
     const Decision decision = decide(way, now);
@@ -96,7 +97,7 @@ class WholeFrame {
   WholeFrame(const Avatar& avatar, const ActuatorMap& map) : avatar_(avatar), winners_(avatar, map) {}
 
   template <typename Decide>
-  const ContactRow& detect(const Frame& frame, Decide&& decide) {
+  const ContactRow& detect(const DetectorFrame& frame, Decide&& decide) {
     winners_.begin(frame);
     skin_.skin(avatar_, frame, Method::kStatic);
     boxes_.build(avatar_, skin_, Method::kStatic);
@@ -122,7 +123,7 @@ class SkippingFrame {
       : winners_(avatar, map), meshlets_(avatar), candidates_(avatar, meshlets_), skin_(avatar, meshlets_) {}
 
   template <typename Decide>
-  const ContactRow& detect(const Frame& frame, Decide&& decide) {
+  const ContactRow& detect(const DetectorFrame& frame, Decide&& decide) {
     winners_.begin(frame);
     candidates_.find(frame, Method::kStatic);
     for (const TouchedMeshlet& touched : candidates_.touched()) {
@@ -160,7 +161,7 @@ nlohmann::ordered_json measure_frames(const Avatar& avatar, const ActuatorMap& m
   SceneSampler sampler(scene, 1000);
   FrameBuilder builder(avatar, scene.collider_ids);
   builder.next(sampler.next());
-  std::vector<Frame> frames;
+  std::vector<DetectorFrame> frames;
   frames.reserve(kFrames);
   for (std::uint64_t i = 0; i < kFrames; ++i) frames.push_back(builder.next(sampler.next()));
 

@@ -167,7 +167,7 @@ TEST_P(DetectorTest, PassesThroughUnmappedSkinOnlyWhenAsked) {
   for (std::size_t i = 3; i < 6; ++i) avatar.texture_coordinate[i] = {0.75F, 0.5F};
   for (std::size_t i = 0; i < 3; ++i) avatar.texture_coordinate[i] = {0.25F, 0.5F};
   const ActuatorMap map = half_map();
-  const Frame frame = test::frame_of(avatar, {{0, {0.25F, 0.25F, 1}, {0.25F, 0.25F, 0}}});
+  const DetectorFrame frame = test::frame_of(avatar, {{0, {0.25F, 0.25F, 1}, {0.25F, 0.25F, 0}}});
   ContactRow row;
   GetParam().make(avatar, map, options(Surface::kAll))->detect(frame, row);
   EXPECT_EQ(row[0].triangle, 0U);
@@ -180,7 +180,7 @@ TEST_P(DetectorTest, PassesThroughUnmappedSkinOnlyWhenAsked) {
 TEST_P(DetectorTest, GivesTheSameActuatorsWhateverPlanesAreAskedFor) {
   const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
   const ActuatorMap map = half_map();
-  const Frame frame =
+  const DetectorFrame frame =
       test::frame_of(avatar, {{0, {0.75F, 0.125F, 1}, {0.75F, 0.125F, -1}}, {2, {2, 2, 1}, {2, 2, -1}}});
   ContactRow row;
   GetParam().make(avatar, map, {Surface::kAll, PlaneSet()})->detect(frame, row);
@@ -196,7 +196,7 @@ TEST_P(DetectorTest, AnswersAFrameWithoutSegments) {
   const ActuatorMap map = half_map();
   const auto detector = GetParam().make(avatar, map, options());
   ContactRow row;
-  Frame frame = test::frame_of(avatar, {});
+  DetectorFrame frame = test::frame_of(avatar, {});
   detector->detect(frame, row);
   EXPECT_TRUE(row.empty());
   frame.columns = 5;
@@ -238,7 +238,7 @@ TEST_P(DetectorTest, SkinsWithinAMillionthOfTheAvatarsHeight) {
     const Avatar& avatar = named.second;
     const auto detector = GetParam().make(avatar, builtin_map(), options());
     SkinningError error;
-    swarm_over(avatar, 1, 5, 3, [&](const TraceFrame& trace_frame, const Frame& frame) {
+    swarm_over(avatar, 1, 5, 3, [&](const TraceFrame& trace_frame, const DetectorFrame& frame) {
       error.add(avatar, trace_frame, frame, *detector);
     });
     EXPECT_EQ(error.vertices, 5 * avatar.position_bind.size());
@@ -260,7 +260,7 @@ TEST_P(DetectorTest, FindsTheContactsThatTheCpuFinds) {
     Comparison comparison;
     ContactRow row;
     ContactRow expected;
-    swarm_over(avatar, 100, 60, 60, [&](const TraceFrame&, const Frame& frame) {
+    swarm_over(avatar, 100, 60, 60, [&](const TraceFrame&, const DetectorFrame& frame) {
       detector->detect(frame, row);
       cpu->detect(frame, expected);
       comparison.add(row, expected);
@@ -282,7 +282,7 @@ TEST(GlContext, SurvivesTwoContextsTakingTurnsOnOneThread) {
   const ActuatorMap map = half_map();
   const auto egl = paper_on_egl(avatar, map, {});
   const auto osmesa = paper_on_osmesa(avatar, map, {});
-  const Frame frame = test::frame_of(avatar, {{0, {0.75F, 0.125F, 1}, {0.75F, 0.125F, -1}}});
+  const DetectorFrame frame = test::frame_of(avatar, {{0, {0.75F, 0.125F, 1}, {0.75F, 0.125F, -1}}});
   ContactRow row;
   for (int i = 0; i < 20; ++i) {
     (i % 2 == 0 ? egl : osmesa)->detect(frame, row);

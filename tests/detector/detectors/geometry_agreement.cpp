@@ -45,7 +45,7 @@ struct Contestant {
   std::uint64_t missed = 0;
   std::uint64_t winners_differing = 0;
 
-  void detect(const Frame& frame, const ContactRow& expected, std::uint64_t expected_meeting) {
+  void detect(const DetectorFrame& frame, const ContactRow& expected, std::uint64_t expected_meeting) {
     ContactRow row;
     const DetectorWork work = detector->detect(frame, row);
     captured += work.pairs_captured;
@@ -72,7 +72,7 @@ nlohmann::ordered_json compare(Method method, const Settings& settings) {
   std::uint64_t meeting = 0;
   while (done < settings.pairs) {
     const test::AdversarialPairs drawn = source.draw(kTriangles, kSegments);
-    const Frame frame = loose_frame(drawn.before, drawn.now, drawn.segments);
+    const DetectorFrame frame = loose_frame(drawn.before, drawn.now, drawn.segments);
     const std::uint64_t met = cpu->detect(frame, expected).pairs_meeting;
     meeting += met;
     done += kTriangles * kSegments;

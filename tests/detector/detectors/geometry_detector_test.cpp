@@ -69,7 +69,7 @@ TEST_P(GeometryDetector, GivesTheBitsOfTheCpuInEveryScenario) {
     const std::uint32_t colliders = std::min(scenario.default_count, 40U);
     FrameBuilder builder = test::frame_builder(builtin_avatar(), colliders, method());
     for (const TraceFrame& trace_frame : test::scene(scenario.name, builtin_avatar(), colliders, 12, 15)) {
-      const Frame& frame = builder.next(trace_frame);
+      const DetectorFrame& frame = builder.next(trace_frame);
       const DetectorWork work = geometry->detect(frame, row);
       const DetectorWork expected_work = cpu->detect(frame, expected);
       EXPECT_EQ(work.pairs_meeting, expected_work.pairs_meeting);
@@ -104,7 +104,7 @@ TEST_P(GeometryDetector, CapturesEveryPairThatMeetsHoweverItWasAimed) {
   std::uint64_t captured = 0;
   for (int draw = 0; draw < 60; ++draw) {
     const test::AdversarialPairs pairs = source.draw(kTriangles, kSegments);
-    const Frame frame = loose_frame(pairs.before, pairs.now, pairs.segments);
+    const DetectorFrame frame = loose_frame(pairs.before, pairs.now, pairs.segments);
     const DetectorWork work = geometry->detect(frame, row);
     const DetectorWork expected_work = cpu->detect(frame, expected);
     ASSERT_EQ(work.pairs_meeting, expected_work.pairs_meeting) << "draw " << draw;
@@ -133,7 +133,7 @@ TEST_P(GeometryDetector, LosesNoPairWhereFarMoreMeetThanThereWasRoomFor) {
     const float x = 0.4F * static_cast<float>(i) / 100;
     segments.push_back({i, {x, 0.3F, 1}, {x, 0.3F, -1}});
   }
-  Frame frame = test::frame_of(avatar, segments);
+  DetectorFrame frame = test::frame_of(avatar, segments);
   frame.palette_before = frame.palette;
   ContactRow row;
   for (int i = 0; i < 2; ++i) {  // growing, and grown
@@ -162,7 +162,7 @@ TEST_P(GeometryDetector, FindsAllPairsWhereMeshletsAndSegmentsAreMany) {
     const float x = i < 300 ? 60.0F * static_cast<float>(i) : 17998.0F;
     segments.push_back({i, {x + 0.25F, 0.25F, 1}, {x + 0.25F, 0.25F, -1}});
   }
-  Frame frame = test::frame_of(avatar, segments);
+  DetectorFrame frame = test::frame_of(avatar, segments);
   frame.palette_before = frame.palette;
   ContactRow row;
   const DetectorWork work = geometry->detect(frame, row);
@@ -190,7 +190,7 @@ TEST_P(GeometryDetector, CapturesWhatItCannotComputeWith) {
 
 TEST_P(GeometryDetector, SkipsAFrameWhoseCollidersAreFarAway) {
   const auto geometry = make_geometry(builtin_avatar(), builtin_map());
-  Frame frame = test::frame_of(builtin_avatar(), {{0, {9, 9, 9}, {9, 9, 8}}});
+  DetectorFrame frame = test::frame_of(builtin_avatar(), {{0, {9, 9, 9}, {9, 9, 8}}});
   frame.palette_before = frame.palette;
   ContactRow row = {Contact()};
   row[0].triangle = 7;
@@ -217,7 +217,7 @@ TEST(GeometryDetectorAtRecordingRate, CapturesHardlyMoreThanWhatMeets) {
 }
 
 /// The bound of shaders/geometry.vert, computed anew in double. The shader's own vertices must lie within it.
-std::vector<glm::dvec3> skinning_radius(const Avatar& avatar, const Frame& frame) {
+std::vector<glm::dvec3> skinning_radius(const Avatar& avatar, const DetectorFrame& frame) {
   std::vector<glm::dvec3> radius;
   radius.reserve(avatar.position_bind.size());
   for (std::size_t i = 0; i < avatar.position_bind.size(); ++i) {
@@ -251,7 +251,7 @@ TEST(GeometryDetectorSkinning, LeavesMissesWithinItsBoundToTheCpuAndProvesThoseB
   avatar.palette.resize(2);
   avatar.influence_count = 2;
   for (Influences& influences : avatar.influences) influences = {{0, 1}, {0.5F, 0.5F}};
-  const Frame still = test::frame_of(avatar, {});
+  const DetectorFrame still = test::frame_of(avatar, {});
   ASSERT_NEAR(skinning_radius(avatar, still)[0].z, std::ldexp(5.0, -23), std::ldexp(1.0, -30));
   for (const char* context : {"egl", "osmesa"}) {
     const ActuatorMap map;
@@ -277,7 +277,7 @@ TEST(GeometryDetectorSkinning, LeavesMissesWithinItsOwnRoundingToTheCpu) {
   const auto geometry = make_geometry_detector(make_osmesa_context(), avatar, map, options(Method::kStatic));
   const auto captured = [&](float aside) {
     ContactRow row;
-    const Frame frame = test::frame_of(avatar, {{0, {-1000 - aside, 0, -1000}, {1000 - aside, 0, 1000}}});
+    const DetectorFrame frame = test::frame_of(avatar, {{0, {-1000 - aside, 0, -1000}, {1000 - aside, 0, 1000}}});
     const DetectorWork work = geometry->detect(frame, row);
     EXPECT_EQ(row[0].hit(), aside == 0) << aside;
     return work.pairs_captured;
@@ -305,7 +305,7 @@ TEST(GeometryDetectorSkinning, LiesWithinItsBoundOfTheCpusAndTheBoundIsMicrometr
     glm::dvec3 extent(0);
     FrameBuilder builder = test::frame_builder(avatar, 1, Method::kStatic);
     for (const TraceFrame& trace_frame : test::scene("swarm", avatar, 1, 5, 3)) {
-      const Frame& frame = builder.next(trace_frame);
+      const DetectorFrame& frame = builder.next(trace_frame);
       geometry->skinned_vertices(frame, vertices);
       skin_vertices(avatar, frame.palette, expected);
       const std::vector<glm::dvec3> radius = skinning_radius(avatar, frame);

@@ -63,7 +63,7 @@ std::vector<Touch> touches_of(std::string_view name, const Avatar& avatar, const
     trace_frame.pose = looped_pose(avatar, animation, k / kRate_hz);
     source->sample(k / kRate_hz, trace_frame.colliders);
     trace_frame.teleported = source->teleported();
-    const Frame& frame = builder.next(trace_frame);
+    const DetectorFrame& frame = builder.next(trace_frame);
     detector->detect(frame, row);
     for (std::uint32_t column = 0; column < row.size(); ++column)
       if (row[column].hit()) touches.push_back({k, column, frame.origin_m + row[column].position, row[column].side});

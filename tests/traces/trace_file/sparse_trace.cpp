@@ -17,7 +17,7 @@
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/motion/animation_choice.hpp"
-#include "traces/recording/recording.hpp"
+#include "traces/recording/sampled_scene.hpp"
 #include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/colliders.hpp"

@@ -15,11 +15,11 @@ namespace vestige {
 ///
 /// A file is complete or absent: it exists after `commit`. "-" (standard output), a device or a pipe gets each frame at
 /// once, so that another program can pass it on.
-class FrameFileSink final : public ActuatorSink {
+class WireFileSink final : public ActuatorSink {
  public:
   /// `quantity` is the meaning of the levels. `ttl`, in 10 ms, is how long a board obeys a frame. Throws as
   /// `OutputFile` does.
-  FrameFileSink(const std::filesystem::path& path, Overwrite overwrite, Quantity quantity, std::uint8_t ttl);
+  WireFileSink(const std::filesystem::path& path, Overwrite overwrite, Quantity quantity, std::uint8_t ttl);
 
   std::string name() const override { return file_.path().string(); }
   void send(const ActuatorFrame& frame, std::uint8_t sequence) override;

@@ -1,4 +1,4 @@
-#include "traces/recording/recording.hpp"
+#include "traces/recording/sampled_scene.hpp"
 
 #include <algorithm>
 #include <cmath>

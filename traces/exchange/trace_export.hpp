@@ -18,12 +18,12 @@ class TraceReader;
 
 /// A file of a trace's frames for other programs. The file is complete or absent: without `commit` it leaves nothing
 /// behind. Memory does not grow with the number of frames. Every function throws `Error` as `OutputFile` does.
-class FrameFile {
+class TraceExport {
  public:
-  FrameFile() = default;
-  virtual ~FrameFile() = default;
-  FrameFile(const FrameFile&) = delete;
-  FrameFile& operator=(const FrameFile&) = delete;
+  TraceExport() = default;
+  virtual ~TraceExport() = default;
+  TraceExport(const TraceExport&) = delete;
+  TraceExport& operator=(const TraceExport&) = delete;
 
   virtual void write(const TraceFrame& frame) = 0;
   virtual void commit() = 0;
@@ -32,15 +32,15 @@ class FrameFile {
 };
 
 /// Writes one line of JSON for each frame; FORMAT.md, "Frames as text". "-" is standard output.
-std::unique_ptr<FrameFile> make_frame_ndjson(const std::filesystem::path& path, Overwrite overwrite);
+std::unique_ptr<TraceExport> make_frame_ndjson(const std::filesystem::path& path, Overwrite overwrite);
 
 /// Writes one row for each frame: `frame,time_s,origin_x,origin_y,origin_z`, then ten columns for each node, as
 /// `pose_csv_nodes` names them. "-" is standard output.
-std::unique_ptr<FrameFile> make_pose_csv(const std::filesystem::path& path, Overwrite overwrite,
-                                         const std::vector<std::string>& node_names);
+std::unique_ptr<TraceExport> make_pose_csv(const std::filesystem::path& path, Overwrite overwrite,
+                                           const std::vector<std::string>& node_names);
 
 /// Writes one row for each collider in each frame: `frame,time_s,id,x,y,z,teleported`. "-" is standard output.
-std::unique_ptr<FrameFile> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite);
+std::unique_ptr<TraceExport> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite);
 
 /// Writes binary glTF 2.0. It holds the trace's avatar (`avatar` is the parsed `glb`) with the trace's motion as the
 /// only animation, LINEAR. Each of `collider_ids` is a small sphere named "collider ID" with an animated translation.
@@ -50,12 +50,14 @@ std::unique_ptr<FrameFile> make_collider_csv(const std::filesystem::path& path, 
 /// positions count from the first frame's origin (`extras.origin_m` of the scene). glTF has no teleports. A part that
 /// never moves has no channel. Holds 16 MiB of frames in memory, and the rest on disk beside `path`. Throws `Error` if
 /// the file would exceed the 4 GiB that a GLB can hold.
-std::unique_ptr<FrameFile> make_frame_gltf(const std::filesystem::path& path, Overwrite overwrite, const Avatar& avatar,
-                                           std::span<const std::byte> glb, std::vector<std::uint32_t> collider_ids);
+std::unique_ptr<TraceExport> make_frame_gltf(const std::filesystem::path& path, Overwrite overwrite,
+                                             const Avatar& avatar, std::span<const std::byte> glb,
+                                             std::vector<std::uint32_t> collider_ids);
 
 /// Writes HDF5, which holds a whole trace: `TraceHdf5` reads it back to the bit, except markers and counts of drops.
 /// FORMAT.md describes the layout. Holds a few chunks in memory. Opens the library at run time, and throws `Error` if
 /// it is missing.
-std::unique_ptr<FrameFile> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace);
+std::unique_ptr<TraceExport> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite,
+                                             TraceReader& trace);
 
 }  // namespace vestige

@@ -1,4 +1,4 @@
-#include "transport/sinks/frame_file_sink.hpp"
+#include "transport/sinks/wire_file_sink.hpp"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -20,11 +20,11 @@ std::string text_of(const std::vector<std::uint8_t>& bytes) {
   return {bytes.begin(), bytes.end()};
 }
 
-TEST(FrameFileSink, WritesTheBytesOfTheWire) {
+TEST(WireFileSink, WritesTheBytesOfTheWire) {
   const test::TemporaryFolder folder;
   const auto path = folder / "frames";
   {
-    FrameFileSink sink(path, Overwrite::kRefuse, Quantity::kDuty, 20);
+    WireFileSink sink(path, Overwrite::kRefuse, Quantity::kDuty, 20);
     EXPECT_EQ(sink.name(), path.string());
     sink.send({0, {255, 0}}, 7);
     sink.send_off(8);
@@ -40,28 +40,28 @@ TEST(FrameFileSink, WritesTheBytesOfTheWire) {
   EXPECT_EQ(frames.back(), '\0');
 }
 
-TEST(FrameFileSink, WritesPressuresWhereTheLevelsAreThose) {
+TEST(WireFileSink, WritesPressuresWhereTheLevelsAreThose) {
   const test::TemporaryFolder folder;
-  FrameFileSink sink(folder / "frames", Overwrite::kRefuse, Quantity::kPressure, 20);
+  WireFileSink sink(folder / "frames", Overwrite::kRefuse, Quantity::kPressure, 20);
   sink.send({0, {1, 2}}, 7);
   sink.commit();
   EXPECT_EQ(read_text_file(folder / "frames").substr(1, 6), "P\x07\x14\x02\x01\x02"s);
 }
 
-TEST(FrameFileSink, LeavesNothingWithoutCommitAndOverwritesNothing) {
+TEST(WireFileSink, LeavesNothingWithoutCommitAndOverwritesNothing) {
   const test::TemporaryFolder folder;
-  FrameFileSink(folder / "frames", Overwrite::kRefuse, Quantity::kDuty, 20).send({0, {1}}, 0);
+  WireFileSink(folder / "frames", Overwrite::kRefuse, Quantity::kDuty, 20).send({0, {1}}, 0);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
-  FrameFileSink(folder / "frames", Overwrite::kRefuse, Quantity::kDuty, 20).commit();
-  EXPECT_THROW(FrameFileSink(folder / "frames", Overwrite::kRefuse, Quantity::kDuty, 20), Error);
+  WireFileSink(folder / "frames", Overwrite::kRefuse, Quantity::kDuty, 20).commit();
+  EXPECT_THROW(WireFileSink(folder / "frames", Overwrite::kRefuse, Quantity::kDuty, 20), Error);
 }
 
-TEST(FrameFileSink, GivesAPipeEachFrameAtOnce) {
+TEST(WireFileSink, GivesAPipeEachFrameAtOnce) {
   const test::TemporaryFolder folder;
   const auto path = folder / "pipe";
   ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
   const int reader = ::open(path.c_str(), O_RDONLY | O_NONBLOCK);
-  FrameFileSink sink(path, Overwrite::kRefuse, Quantity::kDuty, 20);
+  WireFileSink sink(path, Overwrite::kRefuse, Quantity::kDuty, 20);
   char bytes[100];
   for (std::uint8_t sequence = 0; sequence < 3; ++sequence) {
     sink.send({0, {255}}, sequence);
@@ -73,13 +73,13 @@ TEST(FrameFileSink, GivesAPipeEachFrameAtOnce) {
   ::close(reader);
 }
 
-TEST(FrameFileSink, StandardOutputGetsEachFrameAtOnce) {
+TEST(WireFileSink, StandardOutputGetsEachFrameAtOnce) {
   int ends[2] = {-1, -1};
   ASSERT_EQ(::pipe(ends), 0);
   const int standard_output = ::dup(STDOUT_FILENO);
   ::dup2(ends[1], STDOUT_FILENO);
   {
-    FrameFileSink sink("-", Overwrite::kRefuse, Quantity::kDuty, 20);
+    WireFileSink sink("-", Overwrite::kRefuse, Quantity::kDuty, 20);
     sink.send_off(1);
   }
   ::dup2(standard_output, STDOUT_FILENO);
