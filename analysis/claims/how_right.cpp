@@ -17,9 +17,9 @@ std::string code(const nlohmann::json& word) {
 }
 
 /// What detectors say in the same words stands together.
-using Rows = std::vector<std::pair<std::string, std::vector<Contestant>>>;
+using Rows = std::vector<std::pair<std::string, std::vector<DetectorOnRenderer>>>;
 
-void add_to(Rows& rows, const std::string& text, const Contestant& contestant) {
+void add_to(Rows& rows, const std::string& text, const DetectorOnRenderer& contestant) {
   auto row = std::ranges::find(rows, text, &Rows::value_type::first);
   if (row == rows.end()) row = rows.insert(rows.end(), {text, {}});
   row->second.push_back(contestant);
@@ -62,15 +62,15 @@ void add_verified(const std::vector<Result>& run, std::vector<Claim>& claims) {
 /// Which detectors write the same texture.
 void add_equal_textures(const std::vector<Result>& run, std::vector<Claim>& claims) {
   struct Texture {
-    std::vector<Contestant> writers;
+    std::vector<DetectorOnRenderer> writers;
     std::string method;
     std::vector<std::string> files;
   };
   std::map<std::string, Texture> textures;
   for_each(ResultKind::kReplay, run, [&](const nlohmann::json& replay, const std::string& file) {
     Texture& texture = textures[replay.at("texture_hash").get<std::string>()];
-    const Contestant writer = {replay.at("detector").get<std::string>(),
-                               on_renderer(replay.at("gl"), ContextName::kSaid)};
+    const DetectorOnRenderer writer = {replay.at("detector").get<std::string>(),
+                                       on_renderer(replay.at("gl"), ContextName::kSaid)};
     if (std::ranges::find(texture.writers, writer) == texture.writers.end()) texture.writers.push_back(writer);
     texture.method = code(replay.at("method"));
     texture.files.push_back(file);
@@ -222,7 +222,7 @@ Scene read_scene(const nlohmann::json& json, const nlohmann::json& gl) {
   Rows methods;
   for (const auto& series : json.at("series")) {
     const auto detector = series.at("detector").get<std::string>();
-    const Contestant contestant = {detector, on_renderer(gl_used_by(detector, gl))};
+    const DetectorOnRenderer contestant = {detector, on_renderer(gl_used_by(detector, gl))};
     const std::string method = code(series.at("method"));
     add_to(scene.missed, fmt::format("{} by {}", range_missed(series.at("points")), method), contestant);
     add_to(methods, method, contestant);

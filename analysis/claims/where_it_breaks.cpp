@@ -45,10 +45,10 @@ void add_stress(const nlohmann::json& stress, const std::string& file, std::vect
     sum.wrong_winner += row.at("wrong_winner").get<std::uint64_t>();
     sum.missed_of_family[family] += row["false_negatives"].get<std::uint64_t>();
   }
-  std::vector<std::pair<std::string, std::vector<Contestant>>> rows;
+  std::vector<std::pair<std::string, std::vector<DetectorOnRenderer>>> rows;
   for (const auto& [method, detector] : order) {
     const std::string text = text_of(sums[{method, detector}], method);
-    auto row = std::ranges::find(rows, text, &std::pair<std::string, std::vector<Contestant>>::first);
+    auto row = std::ranges::find(rows, text, &std::pair<std::string, std::vector<DetectorOnRenderer>>::first);
     if (row == rows.end()) row = rows.insert(rows.end(), {text, {}});
     row->second.emplace_back(detector, on_renderer(gl_used_by(detector, stress.value("gl", nlohmann::json()))));
   }

@@ -62,7 +62,7 @@ nlohmann::json gl_used_by(const std::string& detector, const nlohmann::json& gl)
   return {{"renderer", "a renderer that the file does not name"}};
 }
 
-std::string listed(const std::vector<Contestant>& contestants) {
+std::string listed(const std::vector<DetectorOnRenderer>& contestants) {
   std::vector<std::string> places;
   for (const auto& [name, place] : contestants)
     if (std::ranges::find(places, place) == places.end()) places.push_back(place);

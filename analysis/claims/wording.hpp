@@ -31,10 +31,10 @@ std::string shared_context(const nlohmann::json& series);
 nlohmann::json gl_used_by(const std::string& detector, const nlohmann::json& gl);
 
 /// A detector, and " on …" as on_renderer() says it.
-using Contestant = std::pair<std::string, std::string>;
+using DetectorOnRenderer = std::pair<std::string, std::string>;
 
 /// Returns "`paper` and `geometry` on llvmpipe (software, osmesa), `cpu` and `embree`": those with OpenGL first.
-std::string listed(const std::vector<Contestant>& contestants);
+std::string listed(const std::vector<DetectorOnRenderer>& contestants);
 
 /// Returns the file name of a path, as code.
 std::string file_name(const nlohmann::json& path);
