@@ -65,8 +65,8 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->capture_default_str()
       ->type_name("builtin|FILE");
   verb.add_option("--animation", choice.animation,
-                  "The avatar's animation, which loops: a name, an index, none, or motion capture. The avatar's joints "
-                  "follow motion capture if their names match ('vestige import' reports more) [default: the first]")
+                  "The avatar's animation, which loops: a name, an index, none, or motion capture, whose joints are "
+                  "matched to the avatar's by their names ('vestige import' reports more) [default: the first]")
       ->type_name("NAME|INDEX|none|FILE.bvh");
   add_unit_option(verb, choice.unit);
   verb.add_option("--map", choice.map,

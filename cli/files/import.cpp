@@ -285,7 +285,7 @@ void add_import(CLI::App& program, Invocation& invocation) {
           "A folder of CSV files, or an .h5 file, that 'vestige export' wrote: poses, colliders, avatar and map")
       ->type_name("DIR|FILE.h5");
   verb->add_option("--motion", options->motion,
-                   "Motion capture (BVH), frame by frame. The avatar's joints follow it if their names match")
+                   "Motion capture (BVH), frame by frame. Its joints are matched to the avatar's by their names")
       ->type_name("FILE.bvh");
   verb->add_option("--poses", options->poses,
                    "Poses of the avatar's own nodes, in rows time_s, NODE.tx ... NODE.sz; '-' is standard input")
