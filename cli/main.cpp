@@ -83,7 +83,7 @@ int run(int argc, char** argv) {
   for (int i = 1; i < argc; ++i)
     if (*argv[i] == '\0')
       throw UsageError(fmt::format("argument {}", i), "is empty",
-                       "an unset variable? Leave the flag out, or give it a value");
+                       "a variable may be unset: leave the flag out, or give the flag a value");
   if (argc == 1) throw UsageError("vestige", "no verb was named", "'vestige --help' lists the verbs");
   if (argc > 1 && *argv[1] != '-')
     if (const auto remedy = help::unknown_verb_remedy(program, argv[1]))

@@ -60,11 +60,15 @@ void add_man(CLI::App& program, Invocation& invocation) {
                             "  vestige man --pages man1\n");
   verb->group(kShellVerbs);
   verb->add_option("VERB", options->verb, "The verb [default: the page of vestige itself]");
-  verb->add_option("--pages", options->man_folder, "Write vestige.1 and the page of every verb into this folder")
+  verb->add_option(
+          "--pages", options->man_folder,
+          "Write vestige.1 and a page for every verb except plot into this folder; 'vestige man plot' prints plot's "
+          "page")
       ->type_name("DIR");
-  verb->add_option("--markdown", options->markdown_folder,
-                   "Write README.md and a page for every verb, as Markdown, into this folder; 'vestige-plot man "
-                   "--markdown' prints plot.md")
+  verb->add_option(
+          "--markdown", options->markdown_folder,
+          "Write README.md and a page for every verb except plot, as Markdown, into this folder; 'vestige-plot man "
+          "--markdown' prints plot.md")
       ->type_name("DIR");
   verb->add_flag("--force", options->force, "With --pages or --markdown: overwrite existing files");
   verb->get_option("--pages")->excludes(verb->get_option("VERB"));

@@ -45,7 +45,7 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
   common(verb.add_flag("-q,--quiet", options.quiet, "Print errors only"));
   common(verb.add_flag("-v,--verbose", options.verbose, "Print more"));
   common(verb.add_flag("--force", options.force, "Overwrite existing files"));
-  common(verb.add_option("--seed", options.seed, "Seed of whatever is random"))->capture_default_str()->check(kSeed);
+  common(verb.add_option("--seed", options.seed, "Seed of the random numbers"))->capture_default_str()->check(kSeed);
   common(verb.set_help_flag("-h,--help", "Print this help"));
 }
 
@@ -72,7 +72,7 @@ class MadeFolders {
 }  // namespace
 
 void make_output_folder(const std::string& path) {
-  if (path == "-") throw UsageError("-o -", "results are a folder of files", "name a folder");
+  if (path == "-") throw UsageError("-o -", "the results are files in a folder", "name a folder");
   static MadeFolders made;
   made.expect(path);
   make_folder(path);
@@ -81,7 +81,8 @@ void make_output_folder(const std::string& path) {
 void refuse_too_many_frames(double frames, const char* flag, const char* remedy) {
   if (!(frames <= kMostTraceFrames))
     throw UsageError(
-        flag, fmt::format("{:.3g} asked for, a trace holds {:.0f} frames at most", frames, kMostTraceFrames), remedy);
+        flag, fmt::format("{:.3g} frames are requested, but a trace holds at most {:.0f}", frames, kMostTraceFrames),
+        remedy);
 }
 
 void warn_of_many_frames(double frames, std::string_view way_out, Verbosity verbosity) {
@@ -101,17 +102,18 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
       // A terminal may well be both read and written.
       if (is_standard_output(path) && !std::filesystem::is_regular_file(input, missing)) continue;
       if (std::filesystem::equivalent(is_standard_output(path) ? "/dev/stdout" : path, input, missing))
-        throw UsageError(path, "this result would change a file that is read", "choose another name");
+        throw UsageError(path, "this output would change an input file", "choose another name");
     }
     if (is_standard_output(path)) continue;
     refuse_overwrite(path, options.overwrite());
     if (!seen.insert(std::filesystem::absolute(where_it_leads(path)).lexically_normal()).second)
-      throw UsageError(path, "two results cannot share one file", "give each a name of its own");
+      throw UsageError(path, "two results cannot share one file", "give each a different name");
   }
 }
 
 void check_inputs(const std::vector<std::string>& inputs) {
-  if (std::ranges::count(inputs, "-") > 1) throw UsageError("-", "standard input can be read once", "name it once");
+  if (std::ranges::count(inputs, "-") > 1)
+    throw UsageError("-", "standard input can be read only once", "name standard input once");
 }
 
 void write_json(const std::string& path, const nlohmann::ordered_json& json, const CommonOptions& options) {
@@ -146,15 +148,16 @@ std::vector<std::uint32_t> parse_counts(const std::string& text, const std::stri
     std::istringstream stream(part);
     for (std::string bound; std::getline(stream, bound, ':');) {
       std::uint32_t value = 0;
-      if (!parse_number(bound, value)) throw fail("is no list of whole numbers");
-      if (value == 0) throw fail("has a zero");
+      if (!parse_number(bound, value)) throw fail("is not a list of whole numbers");
+      if (value == 0) throw fail("contains a zero");
       bounds.push_back(value);
     }
-    if (bounds.empty() || bounds.size() > 3 || part.ends_with(':')) throw fail("is no list of whole numbers");
+    if (bounds.empty() || bounds.size() > 3 || part.ends_with(':')) throw fail("is not a list of whole numbers");
     const std::uint32_t last = bounds.size() > 1 ? bounds[1] : bounds[0];
     const std::uint32_t step = bounds.size() > 2 ? bounds[2] : 1;
-    if (last < bounds[0]) throw fail("runs backwards");
-    if ((last - bounds[0]) / step >= kMostCounts) throw fail("is too long a list");
+    if (last < bounds[0]) throw fail("contains a range that ends below its start");
+    if ((last - bounds[0]) / step >= kMostCounts)
+      throw fail(fmt::format("contains a range of more than {} counts", kMostCounts));
     for (std::uint64_t count = bounds[0]; count <= last; count += step)
       counts.insert(static_cast<std::uint32_t>(count));
   }
@@ -174,19 +177,18 @@ std::vector<std::string> parse_distinct(const std::string& text, const std::stri
   std::vector<std::string> parts = parse_list(text);
   std::set<std::string> seen;
   for (const std::string& part : parts)
-    if (!seen.insert(part).second)
-      throw UsageError(flag, fmt::format("'{}' stands there twice", part), "name each once");
+    if (!seen.insert(part).second) throw UsageError(flag, fmt::format("'{}' is named twice", part), "name each once");
   return parts;
 }
 
 std::vector<std::string> parse_names(const std::string& text, const std::vector<std::string>& known,
                                      const std::string& flag) {
-  const std::string remedy = fmt::format("choose of: {}", fmt::join(known, ", "));
+  const std::string remedy = fmt::format("choose from: {}", fmt::join(known, ", "));
   std::vector<std::string> names = parse_distinct(text, flag);
   for (const std::string& name : names)
     if (std::ranges::find(known, name) == known.end())
       throw UsageError(flag, fmt::format("there is no '{}'", name), remedy);
-  if (names.empty()) throw UsageError(flag, "names nothing", remedy);
+  if (names.empty()) throw UsageError(flag, "is empty", remedy);
   return names;
 }
 

@@ -33,7 +33,7 @@ void write_together(std::initializer_list<std::pair<std::string, std::span<const
 void check_extension(const char* flag, const std::string& path, std::string_view extension, std::string_view what) {
   if (path.empty() || path == "-" || std::filesystem::path(path).extension() == extension) return;
   throw UsageError(flag, fmt::format("'{}' does not end in {}", path, extension),
-                   fmt::format("what is written is {}", what));
+                   fmt::format("the output is {}: end the name in {}", what, extension));
 }
 
 }  // namespace vestige::cli

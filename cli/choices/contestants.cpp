@@ -38,7 +38,7 @@ void check_contestant_choice(const ContestantChoice& choice) {
   parse_names(choice.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
   if (parse_names(choice.contexts, {"egl", "osmesa", "auto"}, "--context").size() > 1 &&
       choice.contexts.find("auto") != std::string::npos)
-    throw UsageError("--context", "'auto' is one of the others", "name egl and osmesa, or auto alone");
+    throw UsageError("--context", "'auto' already means egl or osmesa", "name egl and osmesa, or auto alone");
   parse_names(choice.skips, kSkipNames, "--skip");
 }
 
@@ -78,8 +78,8 @@ std::vector<Contestant> make_contestants(const ContestantChoice& choice, const A
     }
   }
   if (contestants.empty())
-    throw Error("--context", "none of the detectors asked for can run on this machine",
-                "'vestige devices' lists its OpenGL contexts; --detector cpu needs none");
+    throw Error("--context", "none of the requested detectors can run on this machine",
+                "use --detector cpu, which needs no OpenGL; 'vestige devices' lists the contexts of this machine");
   return contestants;
 }
 

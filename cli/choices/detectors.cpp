@@ -15,23 +15,25 @@ namespace vestige::cli {
 namespace {
 
 constexpr const char* kSkipHelp =
-    "on: what bounds prove to miss is neither skinned nor tested, the same result; off: every segment meets every "
-    "triangle";
+    "on: do not skin or test what bounds prove to miss (the result is the same); off: test every segment against "
+    "every triangle";
 
 void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   const auto add = [&](const char* name, auto& value, const char* description) {
     return verb.add_option(name, value, description)->group(kDetectorGroup);
   };
-  add("--device", choice.device, "EGL device, as 'vestige devices' counts them [default: the first GPU, else software]")
+  add("--device", choice.device,
+      "EGL device, by its number in 'vestige devices' [default: the first GPU, otherwise software]")
       ->check(help::whole_number(0, 1023))
       ->type_name("K");
   add("--method", choice.method,
-      "static: each segment against the triangle as it is now, as the paper does; carried: its start moves along with "
-      "the triangle; ccd: both move, the first time they meet")
+      "static: test each segment against the triangle as it is in this frame, as the paper does; carried: first move "
+      "the segment's start along with the triangle; ccd: segment and triangle both move, and the first time at which "
+      "they meet counts")
       ->capture_default_str()
       ->check(CLI::IsMember(kMethodNames));
   add("--surface", choice.surface,
-      "all: skin without an actuator hides what lies behind it; mapped: it is passed through")
+      "all: skin without an actuator hides the skin behind it; mapped: colliders pass through skin without an actuator")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "mapped"}));
 }
@@ -41,11 +43,10 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
 void add_detector_and_context(CLI::App& verb, DetectorChoice& choice) {
   verb.add_option(
           "--detector", choice.detector,
-          "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts, a geometry shader proves "
-          "misses and the processor decides the rest; cpu: exact contacts, without OpenGL; exact: the same by "
-          "slow rational arithmetic, to check with; embree: Embree 3, robust and refitted each frame, its "
-          "fastest configuration; embree_default: the same without its robust flag; auto: the cheapest exact "
-          "one")
+          "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts (a geometry shader proves "
+          "misses, and the CPU decides the rest); cpu: exact contacts without OpenGL; exact: the same contacts by "
+          "slow rational arithmetic, as a check; embree: Embree 3 with its robust flag, refitted each frame (its "
+          "fastest configuration); embree_default: embree without the robust flag; auto: the cheapest exact detector")
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "paper", "geometry", "cpu", "exact", "embree", "embree_default"}));
@@ -65,7 +66,7 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice) {
 
 void add_detector_options(CLI::App& verb, DetectorChoice& choice, std::string& skips) {
   add_common_detector_options(verb, choice);
-  verb.add_option("--skip", skips, std::string(kSkipHelp) + "; off,on: both, against each other")
+  verb.add_option("--skip", skips, std::string(kSkipHelp) + "; off,on: compare both")
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->type_name("LIST");
@@ -108,7 +109,7 @@ std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, const std:
     return make_geometry_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
   if (name != "paper") return make_cpu_detector(avatar, map, options);
   if (options.method != Method::kStatic)
-    throw UsageError("--method", fmt::format("the published method knows no '{}'", choice.method),
+    throw UsageError("--method", fmt::format("the published method does not support '{}'", choice.method),
                      "choose --detector geometry or cpu, or --method static");
   return make_paper_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
 }

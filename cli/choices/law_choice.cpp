@@ -10,11 +10,11 @@ namespace vestige::cli {
 namespace {
 
 constexpr const char* kLawDescription =
-    "How strong actuators are for a contact:\n"
-    "  binary   its own, fully (the published law)\n"
-    "  speed    its own, by the speed of the impact\n"
-    "  phantom  those that it lies between share it, so that it is felt in between\n"
-    "  gaussian all near it, by their distance along the skin";
+    "How strongly a contact drives the actuators:\n"
+    "  binary   the contact's actuator, fully (the published law)\n"
+    "  speed    the contact's actuator, by the speed of the impact\n"
+    "  phantom  the actuators around the contact share its strength, so that it is felt between them\n"
+    "  gaussian all actuators near the contact, by their distance along the skin";
 
 }  // namespace
 
@@ -30,20 +30,22 @@ void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, 
 
 void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group,
                         const std::string& hold_description) {
-  verb.add_option("--full-speed", flags.full_speed_m_per_s,
-                  "With --law speed: the speed along the skin's normal that asks for all, in metres per second "
-                  "[default: 1]")
+  verb.add_option(
+          "--full-speed", flags.full_speed_m_per_s,
+          "With --law speed: the speed along the skin's normal that drives an actuator fully, in metres per second "
+          "[default: 1]")
       ->group(group)
       ->check(help::kPositive)
       ->type_name("SPEED");
-  verb.add_option("--sigma", flags.sigma_mm,
-                  "With --law gaussian: how wide a contact is felt, in mm along the skin [default: half the median "
-                  "distance between neighbours]")
+  verb.add_option(
+          "--sigma", flags.sigma_mm,
+          "With --law gaussian: the width (standard deviation) of a contact, in mm along the skin [default: half "
+          "the median distance between neighbouring actuators]")
       ->group(group)
       ->check(help::kPositive)
       ->type_name("MM");
   verb.add_option("--actuator", flags.actuator,
-                  "The motors, as JSON: what duty makes what amplitude, and a kick that starts them")
+                  "A description of the motors in JSON: the duty for each amplitude, and a kick that starts them")
       ->group(group)
       ->type_name("FILE.json");
   verb.add_option("--hold", flags.hold_ms, hold_description)

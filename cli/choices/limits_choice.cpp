@@ -55,27 +55,27 @@ std::optional<std::uint64_t> parse_bytes(const std::string& text) {
 
 std::uint64_t parse_size(const std::string& text, const std::string& flag) {
   if (const auto bytes = parse_bytes(text)) return *bytes;
-  throw UsageError(flag, fmt::format("'{}' is no size", text),
+  throw UsageError(flag, fmt::format("'{}' is not a size", text),
                    "give bytes, or a number with a unit: 500MB, 64MiB, 2GiB");
 }
 
 void add_limits_options(CLI::App& verb, LimitsChoice& choice) {
   verb.add_option(
           "--ring", choice.ring_s,
-          "Keep the last seconds only, in memory; they are written at the end, and as NAME-0001.mcap and so on at each "
-          "SIGUSR1")
+          "Keep only the last seconds, in memory. They are written at the end, and at each SIGUSR1 as NAME-0001.mcap "
+          "and so on")
       ->type_name("SECONDS")
       ->check(help::kPositive);
-  verb.add_option("--max-size", choice.max_size,
-                  "No file becomes larger: the recording ends, or goes on in the next part (--split). With --ring, the "
-                  "memory that it takes")
+  verb.add_option(
+          "--max-size", choice.max_size,
+          "The largest size of a file: before it is exceeded, the recording ends, or continues in the next part "
+          "(--split). With --ring, the largest amount of memory")
       ->type_name("SIZE");
   verb.add_option("--split", choice.split,
-                  "Write parts NAME-0001.mcap and so on, each a whole trace: 60s, 10min or 500MiB, 0.01 s at least; "
-                  "'vestige merge' "
-                  "joins them. With --force, all parts of an earlier recording go")
+                  "Write parts NAME-0001.mcap and so on, each a complete trace: 60s, 10min or 500MiB, at least 0.01 s. "
+                  "'vestige merge' joins the parts. --force removes all parts of an earlier recording")
       ->type_name("SECONDS|SIZE");
-  verb.add_flag("--sync", choice.sync, "Bring each chunk to disk at once, so that a power cut takes 100 ms at most");
+  verb.add_flag("--sync", choice.sync, "Write each chunk to disk at once, so that a power cut loses at most 100 ms");
 }
 
 RecordingLimits limits_of(const LimitsChoice& choice, const std::string& output) {
@@ -90,18 +90,18 @@ RecordingLimits limits_of(const LimitsChoice& choice, const std::string& output)
                        "give seconds, or a number with a unit: 60s, 10min, 500MB, 64MiB");
     if (limits.split_s && *limits.split_s < kShortestPart_s)
       throw UsageError("--split", fmt::format("'{}' is less than {} s", choice.split, kShortestPart_s),
-                       "give parts more time");
+                       "make the parts longer");
   }
   if (limits.ring_s && limits.splits())
-    throw UsageError("--split", "a ring is written at once, so it has no parts", "leave out --ring or --split");
+    throw UsageError("--split", "a ring is written in one piece, so it has no parts", "leave out --ring or --split");
   if (limits.ring_s && choice.sync)
-    throw UsageError("--sync", "a ring is in memory until its end", "leave out --ring or --sync");
+    throw UsageError("--sync", "a ring stays in memory until the recording ends", "leave out --ring or --sync");
   if (limits.split_bytes && limits.max_bytes)
-    throw UsageError("--max-size", "--split says already how large a part may be", "leave one of them out");
+    throw UsageError("--max-size", "--split already limits the size of a part", "leave out --max-size or --split");
   if (limits.splits() && output == "-")
     throw UsageError("--split", "standard output is one file", "name a file: -o OUT.mcap");
   if (limits.ring_s && limits.max_bytes && *limits.max_bytes < kSmallestRingBytes)
-    throw UsageError("--max-size", "a ring needs some memory", "allow 2MiB or more");
+    throw UsageError("--max-size", "a ring needs at least 2 MiB of memory", "allow 2MiB or more");
   return limits;
 }
 

@@ -39,8 +39,8 @@ void report_bones(const VmcState& state, const Humanoid& humanoid, const std::st
 
 void add_live_options(CLI::App& verb, LiveChoice& choice) {
   verb.add_option("--live", choice.source,
-                  "Record what comes in: lines of JSON on standard input (-), or the VMC protocol and colliders by OSC "
-                  "on a UDP port (vmc://0.0.0.0:39539), until it ends or Ctrl-C")
+                  "Record live input until its end or Ctrl-C: lines of JSON on standard input (-), or the VMC protocol "
+                  "and colliders by OSC on a UDP port (vmc://0.0.0.0:39539)")
       ->type_name("-|URL");
 }
 
@@ -49,12 +49,12 @@ void check_live_choice(const CLI::App& verb, const LiveChoice& choice) {
   if (!choice.is_lines()) parse_host_port(choice.source, kScheme, "--live");
   for (const char* flag : {"--animation", "--colliders", "--count"})
     if (verb.count(flag) != 0)
-      throw UsageError(flag, "what moves and where the colliders are comes from the live source",
+      throw UsageError(flag, "the motion and the colliders come from the live source",
                        fmt::format("leave out {} or --live", flag));
   if (choice.is_lines() && verb.count("--rate") != 0)
-    throw UsageError("--rate", "each line on standard input is a frame", "leave it out");
+    throw UsageError("--rate", "each line on standard input is a frame", "leave --rate out");
   if (choice.is_lines() && verb.count("--origin") != 0)
-    throw UsageError("--origin", "each line says where avatar and colliders stand", "leave it out");
+    throw UsageError("--origin", "each line says where avatar and colliders stand", "leave --origin out");
 }
 
 LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, LiveSettings settings,
@@ -75,7 +75,8 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
     RecordingThread thread(recorder);
     if (verbosity != Verbosity::kQuiet)
       print_message(
-          fmt::format("vestige: listening on {}; it begins with the first datagram, Ctrl-C ends\n", choice.source));
+          fmt::format("vestige: listening on {}; the recording begins with the first datagram, and Ctrl-C ends it\n",
+                      choice.source));
     counts = record_state(datagrams, state, thread, settings);
     thread.stop();
     warn_of(state.problems(), choice.source, verbosity);
@@ -83,14 +84,16 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
   }
   const std::string source = choice.is_lines() ? "standard input" : choice.source;
   if (counts.frames == 0)
-    throw Error(source, "no frame came in, so there is no trace",
-                choice.is_lines() ? "give a line of JSON for each frame: see traces/FORMAT.md"
-                                  : "let the sender send to this machine and port, and no firewall forbid it");
+    throw Error(source, "no frame arrived, so there is no trace",
+                choice.is_lines()
+                    ? "give a line of JSON for each frame: see traces/FORMAT.md"
+                    : "make the sender send to this machine and port, and check that no firewall blocks it");
   if (counts.malformed > 0 && choice.is_lines())
     warn(fmt::format("{}: left out {} that could not be read", source, counted(counts.malformed, "line")), verbosity);
   if (counts.lost_something() && !choice.is_lines())
-    warn(fmt::format("{}: lost {} that came too late, {} that could not be read, {} that nobody took", source,
-                     counted(counts.late, "frame"), counted(counts.malformed, "datagram"), counts.overflowed),
+    warn(fmt::format("{}: lost {} that came too late, {} that could not be read, and {} that the system discarded",
+                     source, counted(counts.late, "frame"), counted(counts.malformed, "datagram"),
+                     counted(counts.overflowed, "datagram")),
          verbosity);
   return counts;
 }

@@ -10,10 +10,10 @@ namespace {
 
 void say_what_matched(const RetargetReport& report, const std::string& path, Verbosity verbosity) {
   warn_of_names(path, "nothing follows these joints", report.unmatched_joints, verbosity);
-  warn_of_names(path, "these joints of the avatar keep their rest", report.unmatched_nodes, verbosity);
+  warn_of_names(path, "these joints of the avatar keep their rest pose", report.unmatched_nodes, verbosity);
   if (verbosity != Verbosity::kVerbose) return;
   for (const JointMatch& match : report.matched)
-    warn_of_names(path, fmt::format("{} leads", shown_word(match.joint)), {match.node}, verbosity);
+    warn_of_names(path, fmt::format("{} moves", shown_word(match.joint)), {match.node}, verbosity);
 }
 
 }  // namespace
@@ -53,10 +53,10 @@ LoadedMotion add_motion(Avatar& avatar, const std::string& path, const std::stri
 
 std::string describe(const LoadedMotion& motion) {
   const RetargetReport& report = motion.report;
-  const std::string tall = fmt::format("its skeleton is {:.4g} units tall", report.height);
+  const std::string tall = fmt::format("the skeleton is {:.4g} units tall", report.height);
   return fmt::format("{} nodes follow {} of {} joints; {}{}; 1 unit is {:.4g} m here\n", report.matched.size(),
                      motion.joint_count - report.unmatched_joints.size(), motion.joint_count, tall,
-                     report.likely_unit.empty() ? ", a person's height in no usual unit"
+                     report.likely_unit.empty() ? ", which is a person's height in no usual unit"
                                                 : fmt::format(", likely {}", report.likely_unit),
                      report.metres_per_unit);
 }

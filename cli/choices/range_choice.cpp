@@ -14,7 +14,8 @@ constexpr double kMost_s = 1.8e10;  ///< hardly less than 2^64 ns
 
 std::uint64_t nanoseconds(double seconds, const std::string& flag) {
   if (!(seconds >= 0 && seconds < kMost_s))
-    throw UsageError(flag, fmt::format("{} s is no time in a trace", seconds), "give seconds from the trace's start");
+    throw UsageError(flag, fmt::format("{} s is not a time in a trace", seconds),
+                     "give seconds from the trace's start");
   return static_cast<std::uint64_t>(std::round(seconds * 1e9));
 }
 
@@ -24,12 +25,12 @@ void add_range_options(CLI::App& command, RangeChoice& choice, const std::string
                        const std::string& from_remark) {
   command
       .add_option("--from", choice.from_s,
-                  fmt::format("{} what is at this time or later, in seconds of the trace.{} [default: its start]", verb,
-                              from_remark))
+                  fmt::format("{} messages at this time or later, in seconds of the trace.{} [default: its start]",
+                              verb, from_remark))
       ->type_name("S");
   command
       .add_option("--to", choice.to_s,
-                  fmt::format("{} what is before this time, in seconds of the trace [default: its end]", verb))
+                  fmt::format("{} messages before this time, in seconds of the trace [default: its end]", verb))
       ->type_name("S");
 }
 
@@ -38,7 +39,7 @@ mcap::TimeRange range_of(const RangeChoice& choice) {
   if (choice.from_s) range.from_ns = nanoseconds(*choice.from_s, "--from");
   if (choice.to_s) range.to_ns = nanoseconds(*choice.to_s, "--to");
   if (range.to_ns && range.from_ns >= *range.to_ns)
-    throw UsageError("--to", "is not after --from", "the first time to leave out comes after the first to keep");
+    throw UsageError("--to", "is not after --from", "make --to later than --from");
   return range;
 }
 

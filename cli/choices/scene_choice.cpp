@@ -35,7 +35,7 @@ std::string describe_colliders() {
 }
 
 std::string describe_count() {
-  std::string text = fmt::format("Colliders of a scenario [default: {}", scenarios().front().default_count);
+  std::string text = fmt::format("Number of colliders of a scenario [default: {}", scenarios().front().default_count);
   for (const Scenario& scenario : scenarios())
     if (scenario.default_count != scenarios().front().default_count)
       fmt::format_to(std::back_inserter(text), "; {}: {}", scenario.name, scenario.default_count);
@@ -44,13 +44,14 @@ std::string describe_count() {
 
 /// Samples of a file that the scene does not reach are said, and when it reaches none it is refused.
 void check_span(const TimeSpan& span, const SceneChoice& choice, double duration_s, Verbosity verbosity) {
-  const std::string times = fmt::format("its samples lie from {} s to {} s, the scene from 0 s to {} s", span.first_s,
-                                        span.last_s, duration_s);
+  const std::string times = fmt::format("the samples last from {} s to {} s, and the scene from 0 s to {} s",
+                                        span.first_s, span.last_s, duration_s);
   if (span.last_s < 0 || span.first_s > duration_s)
     throw Error(choice.colliders, "no sample lies within the scene: " + times,
-                "let the file's time begin at 0, or raise --duration");
+                "make the file's times begin at 0, or raise --duration");
   if (std::isfinite(span.last_s) && (span.first_s < 0 || span.last_s > duration_s))
-    warn(fmt::format("{}: {}; the rest is left out (--duration)", choice.colliders, times), verbosity);
+    warn(fmt::format("{}: {}; samples outside the scene are left out (--duration)", choice.colliders, times),
+         verbosity);
 }
 
 }  // namespace
@@ -64,22 +65,21 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->capture_default_str()
       ->type_name("builtin|FILE");
   verb.add_option("--animation", choice.animation,
-                  "Its animation, looping: a name, an index, none, or motion capture that its joints follow as far as "
-                  "their names tell ('vestige import' reports more) [default: the first]")
+                  "The avatar's animation, which loops: a name, an index, none, or motion capture, whose joints are "
+                  "matched to the avatar's by their names ('vestige import' reports more) [default: the first]")
       ->type_name("NAME|INDEX|none|FILE.bvh");
   add_unit_option(verb, choice.unit);
-  verb.add_option(
-          "--map", choice.map,
-          "The actuator map: a layout," + layout_list() +
-              "\nor a greyscale PNG in UV space or by triangle, whose FILE.json names the actuators if it exists "
-              "[default: builtin for the built-in avatar, else none]")
+  verb.add_option("--map", choice.map,
+                  "The actuator map: a layout," + layout_list() +
+                      "\nor a greyscale PNG in UV space or by triangle; FILE.json, if it exists, names the actuators "
+                      "[default: builtin for the built-in avatar, otherwise none]")
       ->type_name("builtin|none|LAYOUT|FILE.png");
   verb.add_option("--colliders", choice.colliders, describe_colliders())
       ->capture_default_str()
       ->type_name("SCENARIO|FILE.csv|FILE.glb");
   verb.add_option("--nodes", choice.nodes,
-                  "Which nodes of a glTF file are colliders, as a pattern of names: 'ball*' [default: those named "
-                  "collider*, or else all whose translation is animated]")
+                  "The nodes of a glTF file that are colliders, as a pattern of names: 'ball*' [default: nodes named "
+                  "collider*, or if there are none, all nodes with an animated translation]")
       ->type_name("PATTERN");
   verb.add_option("--count", choice.count, describe_count())->check(help::whole_number(1, 1000000));
 }
@@ -87,11 +87,12 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
 void check_scene_choice(const SceneChoice& choice) {
   if (!choice.from_file() && find_scenario(choice.colliders) == nullptr) throw no_scenario(choice.colliders);
   if (choice.unit != "auto" && !is_motion_file(choice.animation))
-    throw UsageError("--unit", "no motion capture is played", "leave it out, or name a .bvh as --animation");
+    throw UsageError("--unit", "no motion capture is played", "leave --unit out, or name a .bvh as --animation");
   if (!choice.nodes.empty() && !choice.from_gltf())
-    throw UsageError("--nodes", "the colliders come from no glTF file", "leave it out, or name a .glb as --colliders");
+    throw UsageError("--nodes", "the colliders do not come from a glTF file",
+                     "leave --nodes out, or name a .glb as --colliders");
   if (choice.count && choice.from_file())
-    throw UsageError("--count", "a file has the colliders that it has", "leave --count out");
+    throw UsageError("--count", "the file sets the number of colliders", "leave --count out");
 }
 
 void load_motion(const SceneChoice& choice, Avatar& avatar, Verbosity verbosity) {

@@ -18,13 +18,13 @@ void add_swept_options(CLI::App& verb, SweepChoice& choice) {
 
 void add_measuring_options(CLI::App& verb, SweepChoice& choice, SweepSettings& settings,
                            const std::string& run_frames_help, const std::string& output_help) {
-  verb.add_option("--runs", settings.runs, "Places of the trace, evenly spread, that are measured")
+  verb.add_option("--runs", settings.runs, "Number of evenly spread places in the trace to measure at")
       ->capture_default_str()
       ->check(help::whole_number(1, 10000));
   verb.add_option("--run-frames", settings.run_frames, run_frames_help)
       ->capture_default_str()
       ->check(help::whole_number(1, 100000));
-  verb.add_option("--min-time", settings.min_time_s, "Seconds spent on every point, at least")
+  verb.add_option("--min-time", settings.min_time_s, "Least time to measure every point, in seconds")
       ->capture_default_str()
       ->check(help::kPositive)
       ->type_name("S");

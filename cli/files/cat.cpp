@@ -99,7 +99,7 @@ bool Printer::take(const mcap::Message& message, std::uint64_t offset) {
 bool Printer::print(const mcap::Message& message) {
   const auto channel = definitions_.channels.find(message.channel_id);
   if (channel == definitions_.channels.end())
-    throw mcap::Malformed(fmt::format("nothing defines its channel {}", message.channel_id));
+    throw mcap::Malformed(fmt::format("its channel {} is not defined", message.channel_id));
   const auto& topics = options_.topics;
   if (!topics.empty() && std::find(topics.begin(), topics.end(), channel->second.topic) == topics.end()) return true;
   const std::string line = text_.line(message, channel->second, streams_.stream_of(message.channel_id)) + "\n";
@@ -117,7 +117,7 @@ void Printer::require_topics() const {
   for (const std::string& topic : options_.topics)
     if (!known.contains(topic))
       throw Error(options_.file, fmt::format("has no channel {}", topic),
-                  fmt::format("it has: {}", fmt::join(known, ", ")));
+                  fmt::format("choose from: {}", fmt::join(known, ", ")));
 }
 
 /// What could not be read; nothing when nobody reads any more.
@@ -135,8 +135,8 @@ std::optional<mcap::DamageList> print_in_order_of_time(const mcap::ByteSource& s
     printer.take({.opcode = record.opcode, .content = record.content, .offset = 0, .in_chunk = true});
   });
   if (!mcap::leads_to_everything(source, reader.summary()))
-    throw Error(source.name(), "its index does not lead to everything that is in it",
-                "leave out '--order time', or make it anew with `vestige recompress`");
+    throw Error(source.name(), "its index does not cover all of its content",
+                "leave out '--order time', or rewrite the file with 'vestige recompress'");
   mcap::Message message;
   while (!interrupted() && reader.next(message))
     if (!printer.take(message, reader.chunk_offset())) return {};
@@ -153,9 +153,9 @@ void run_cat(const CatOptions& options, Invocation& invocation) {
   auto damages =
       options.order == "time" ? print_in_order_of_time(source, printer, range) : print_in_file_order(source, printer);
   if (!damages) return;
-  if (interrupted()) throw Error(options.file, "printing it was stopped", "");
+  if (interrupted()) throw Error(options.file, "printing was stopped", "");
   if (printer.messages() == 0 && (options.range.from_s || options.range.to_s))
-    warn(fmt::format("{}: no such message is in the time asked for; 'vestige inspect' says how long it lasts",
+    warn(fmt::format("{}: no message matches in the requested time; 'vestige inspect' says how long the file lasts",
                      options.file),
          options.common.verbosity());
   printer.require_topics();
@@ -171,18 +171,18 @@ void run_cat(const CatOptions& options, Invocation& invocation) {
 
 void add_cat(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<CatOptions>();
-  CLI::App* verb = add_verb(program, "cat", "Print a trace's messages, or any MCAP file's, one line of JSON each",
+  CLI::App* verb = add_verb(program, "cat", "Print each message of a trace, or of any MCAP file, as a line of JSON",
                             "  vestige cat man.mcap --topic /colliders\n"
                             "  vestige cat man.mcap --from 0.5 --to 0.6 > moment.ndjson\n");
   verb->add_option("FILE", options->file, "The trace, or any MCAP file, or '-' for standard input")->required();
-  verb->add_option("--topic", options->topics, "Print only messages of this topic; may stand there several times")
+  verb->add_option("--topic", options->topics, "Print only messages of this topic. Repeat the flag for more topics")
       ->type_name("TOPIC")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_range_options(*verb, options->range, "Print");
   verb->add_option("--order", options->order,
-                   "As they stand in the file, or by time: that needs the file's index, and reads no chunk outside "
-                   "--from and --to")
+                   "file: in the order of the file; time: by time, which needs the file's index and reads no chunk "
+                   "outside --from and --to")
       ->capture_default_str()
       ->check(CLI::IsMember({"file", "time"}));
   add_common_options(*verb, options->common);

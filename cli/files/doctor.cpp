@@ -63,10 +63,11 @@ std::string describe(const TraceCheck& check, const std::string& file) {
   }
   const std::uint64_t shown = check.problems.kept().size();
   if (check.problems.count() > shown) text += fmt::format("{}: and {} more\n", file, check.problems.count() - shown);
-  const std::string content = check.is_trace ? fmt::format("{} can be read", counted(check.frames, "frame"))
-                                             : fmt::format("{}, {}; no trace of ours, so only its framing was checked",
-                                                           counted(check.container.messages, "message"),
-                                                           counted(check.container.attachments, "attachment"));
+  const std::string content = check.is_trace
+                                  ? fmt::format("{} can be read", counted(check.frames, "frame"))
+                                  : fmt::format("{}, {}; not a trace of Vestige, so only the framing was checked",
+                                                counted(check.container.messages, "message"),
+                                                counted(check.container.attachments, "attachment"));
   const std::uint64_t count = check.problems.count();
   text += fmt::format("{}: {}; {}\n", file, count == 0 ? "no problem" : counted(count, "problem"),
                       check.readable() || count == 0 ? content : "nothing in it can be read");

@@ -47,14 +47,14 @@ const std::vector<Format>& formats() {
 std::string format_of(const ExportOptions& options) {
   if (!options.format.empty()) return options.format;
   if (options.output == "-")
-    throw UsageError("-o -", "nothing says in which format", "add --format ndjson, or --format csv --what poses");
+    throw UsageError("-o -", "the format is not given", "add --format ndjson, or --format csv --what poses");
   for (const Format& format : formats())
     for (const std::string& end : format.ends)
       if (options.output.ends_with(end)) return format.name;
   if (!std::filesystem::path(options.output).has_extension() || std::filesystem::is_directory(options.output))
     return "csv";
-  throw UsageError("-o", fmt::format("'{}' does not tell the format", options.output),
-                   "end it in .csv, .ndjson, .h5, .glb or .pvd, name a folder (for CSV), or add --format");
+  throw UsageError("-o", fmt::format("'{}' has no known extension", options.output),
+                   "end the name in .csv, .ndjson, .h5, .glb or .pvd, name a folder (for CSV), or add --format");
 }
 
 struct Attachment {
@@ -103,7 +103,7 @@ void check_flags(const ExportOptions& options, const std::string& format) {
   if (format == "paraview" && options.output == "-")
     throw UsageError("-o -", "ParaView reads a folder of files", "name a .pvd");
   if (format == "paraview" && !options.common.json.empty())
-    throw UsageError("--json", "'vestige plot paraview' does not say what it wrote", "leave --json out");
+    throw UsageError("--json", "'vestige plot paraview' writes no JSON", "leave --json out");
 }
 
 void write_attachments(const std::vector<Attachment>& attachments, const CommonOptions& options) {
@@ -115,7 +115,7 @@ void remove_files(const std::vector<std::string>& paths) {
   for (const std::string& path : paths) {
     std::error_code failure;
     std::filesystem::remove(path, failure);
-    if (failure) throw system_error(path, "could not remove it", failure.value());
+    if (failure) throw system_error(path, "could not remove the file", failure.value());
   }
 }
 
@@ -237,23 +237,25 @@ void add_export(CLI::App& program, Invocation& invocation) {
                             "  vestige export man.mcap -o - --format csv --what colliders --rate 10\n");
   verb->add_option("FILE", options->file, "The trace, or '-' for standard input")->required();
   verb->add_option("-o,--output", options->output,
-                   "What to write; its end says the format. A name without one is a folder: poses.csv, colliders.csv, "
-                   "the avatar and its map. '-' is standard output")
+                   "The file to write; its extension sets the format. A name without an extension is a folder with "
+                   "poses.csv, colliders.csv, the avatar and its map. '-' is standard output")
       ->required()
       ->type_name("OUT|-");
   verb->add_option("--format", options->format,
                    "The format:\n"
-                   "  csv       poses, a row a frame; colliders, a row each and frame; lossless\n"
-                   "  ndjson    a line of JSON a frame, as 'record --live' reads it; lossless\n"
+                   "  csv       poses: a row for each frame; colliders: a row for each collider and frame; lossless\n"
+                   "  ndjson    a line of JSON for each frame, which 'record --live' can read; lossless\n"
                    "  hdf5      (.h5) for Python, MATLAB and others; lossless\n"
                    "  gltf      (.glb) the avatar's animation and a sphere for each collider; fp32\n"
-                   "  paraview  (.pvd) posed surfaces, which vestige-plot writes [default: by the name's end]")
+                   "  paraview  (.pvd) posed surfaces, which vestige-plot writes [default: by the extension]")
       ->check(CLI::IsMember({"csv", "ndjson", "hdf5", "gltf", "paraview"}));
-  verb->add_option("--what", options->what, "Which of the two tables; CSV only")
+  verb->add_option("--what", options->what, "Which of the two tables to write; CSV only")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "poses", "colliders"}));
-  verb->add_option("--rate", options->rate_hz,
-                   "At most so many frames a second, numbered anew [default: all frames; 'plot paraview' has its own]")
+  verb->add_option(
+          "--rate", options->rate_hz,
+          "Write at most this many frames per second, and renumber them [default: all frames; for paraview, that of "
+          "'vestige plot paraview']")
       ->type_name("HZ")
       ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
   add_common_options(*verb, options->common);

@@ -72,19 +72,19 @@ void refuse_parts(const ImportOptions& options) {
   for (const auto& [flag, is_named] : parts)
     if (is_named)
       throw UsageError(flag, fmt::format("'{}' has poses, colliders, avatar and map", options.from),
-                       "leave it out, or name the parts by their flags");
+                       fmt::format("leave {} out, or name every part by its flag", flag));
 }
 
 /// The files in a folder that `export` wrote.
 void expand_folder(ImportOptions& options) {
   if (options.from == "-")
-    throw UsageError("-", "a folder or an .h5 is not read from standard input",
-                     "name it; --poses, --motion and --colliders take '-'");
+    throw UsageError("-", "a folder or an .h5 file cannot be read from standard input",
+                     "name the folder or file; --poses, --motion and --colliders accept '-'");
   const std::filesystem::path folder(options.from);
   if (!std::filesystem::is_directory(folder))
     throw Error(options.from,
-                std::filesystem::exists(folder) ? "is neither a folder nor .h5" : "there is no such folder",
-                "name what 'vestige export' wrote, or name --poses or --motion");
+                std::filesystem::exists(folder) ? "is neither a folder nor an .h5 file" : "there is no such folder",
+                "name a folder or an .h5 file that 'vestige export' wrote, or give --poses or --motion");
   const auto take = [&](const char* name, std::string& option) {
     if (std::filesystem::exists(folder / name)) option = (folder / name).string();
   };
@@ -96,23 +96,26 @@ void expand_folder(ImportOptions& options) {
     throw Error(options.from, "holds no poses.csv", "name a folder that 'vestige export' wrote");
   if (options.avatar.empty())
     throw Error(options.from, "holds no avatar.glb",
-                "put it back, or name --poses, --colliders and --avatar one by one");
+                "put avatar.glb back, or give --poses, --colliders and --avatar one by one");
   if (options.map.empty()) options.map = "none";
 }
 
 void check_flags(const ImportOptions& options) {
   if (options.motion.empty() == options.poses.empty())
-    throw UsageError("import", options.motion.empty() ? "nothing says how the avatar moves" : "two say how it moves",
-                     "name --motion FILE.bvh, or --poses FILE.csv, or a folder that 'vestige export' wrote");
+    throw UsageError(
+        "import",
+        options.motion.empty() ? "no motion and no poses are given" : "--motion and --poses cannot be combined",
+        "give one of these: --motion FILE.bvh, --poses FILE.csv, or a folder that 'vestige export' wrote");
   if (options.motion.empty() && options.rate_hz)
-    throw UsageError("--rate", "a file of poses has its frames", "leave it out, or name a --motion");
+    throw UsageError("--rate", "the file of poses sets the frame times", "leave --rate out, or give a --motion");
   if (options.motion.empty() && options.unit != "auto")
-    throw UsageError("--unit", "a file of poses is in metres", "leave it out, or name a --motion");
+    throw UsageError("--unit", "a file of poses is in metres", "leave --unit out, or give a --motion");
   const bool from_gltf = options.colliders.ends_with(".glb") || options.colliders.ends_with(".gltf");
   if (!options.nodes.empty() && !from_gltf)
-    throw UsageError("--nodes", "the colliders come from no glTF file", "leave it out, or name a .glb as --colliders");
+    throw UsageError("--nodes", "the colliders do not come from a glTF file",
+                     "leave --nodes out, or name a .glb as --colliders");
   if (options.poses == "-" && options.colliders == "-")
-    throw UsageError("-", "two files cannot share standard input", "give one of them a name");
+    throw UsageError("-", "two inputs cannot share standard input", "give a file name for one of them");
 }
 
 double seconds(const TraceFrame& frame) {
@@ -143,8 +146,8 @@ void read_colliders(const ImportOptions& options, Frames& frames) {
       return;
     }
     if (path == "-")
-      throw UsageError("--colliders -", "these rows do not say their frame",
-                       "put them into a file, which is read twice");
+      throw UsageError("--colliders -", "these rows have no frame numbers",
+                       "put the rows into a file, which can be read twice");
   }
   sample_from(read_collider_csv(path));
 }
@@ -175,7 +178,7 @@ void require_names(const std::string& file, const std::vector<std::string>& name
   const auto is_same = [](const std::string& name, const Node& node) { return name == node.name.c_str(); };
   if (names.empty() || std::ranges::equal(names, avatar.nodes, is_same)) return;
   throw Error(file, "its table pose/node_names does not name its avatar's nodes",
-              "poses must have the nodes of avatar.glb, in their order");
+              "give the poses the nodes of avatar.glb, in the same order");
 }
 
 /// The scene of an .h5, whose frames follow.
@@ -192,7 +195,7 @@ Scene read_hdf5(const std::string& path, Frames& frames, Verbosity verbosity) {
 
 void read_poses(const std::string& path, const Avatar& avatar, Frames& frames, Verbosity verbosity) {
   const auto reader = std::make_shared<PoseCsvReader>(path, avatar);
-  warn_of_names(path, "these nodes of the avatar keep their rest", reader->resting(), verbosity);
+  warn_of_names(path, "these nodes of the avatar keep their rest pose", reader->resting(), verbosity);
   frames.next_pose = [reader](TraceFrame& frame) { return reader->next(frame); };
   frames.share = [reader] { return reader->share(); };
 }
@@ -252,8 +255,9 @@ void run_import(ImportOptions options, Invocation& invocation) {
   frames.finish();
   trace.finish();
   if (!options.colliders.empty() && options.from.empty() && !any_collider)
-    warn(fmt::format("--colliders {}: no frame has a collider; are its times those of the motion, 0 to {} s?",
-                     options.colliders, seconds(frame)),
+    warn(fmt::format(
+             "--colliders {}: no frame has a collider; check that the file's times are those of the motion, 0 to {} s",
+             options.colliders, seconds(frame)),
          verbosity);
 
   nlohmann::ordered_json json = provenance(invocation.argv);
@@ -273,36 +277,38 @@ void run_import(ImportOptions options, Invocation& invocation) {
 
 void add_import(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<ImportOptions>();
-  CLI::App* verb = add_verb(program, "import", "Make a trace of motion capture, or of what other programs wrote",
+  CLI::App* verb = add_verb(program, "import", "Make a trace from motion capture, or from files of other programs",
                             "  vestige import --motion walk.bvh -o walk.mcap\n"
                             "  vestige import man_csv -o man_again.mcap\n");
-  verb->add_option("FROM", options->from,
-                   "What 'vestige export' wrote: a folder of CSV files, or an .h5: poses, colliders, avatar and map")
+  verb->add_option(
+          "FROM", options->from,
+          "A folder of CSV files, or an .h5 file, that 'vestige export' wrote: poses, colliders, avatar and map")
       ->type_name("DIR|FILE.h5");
   verb->add_option("--motion", options->motion,
-                   "Motion capture (BVH), which the avatar follows as far as the joints' names tell, frame by frame")
+                   "Motion capture (BVH), frame by frame. Its joints are matched to the avatar's by their names")
       ->type_name("FILE.bvh");
   verb->add_option("--poses", options->poses,
                    "Poses of the avatar's own nodes, in rows time_s, NODE.tx ... NODE.sz; '-' is standard input")
       ->type_name("FILE.csv|-");
-  verb->add_option("--colliders", options->colliders,
-                   "Colliders: rows time_s,id,x,y,z or what 'export' writes; or the animated nodes of a glTF file "
-                   "[default: none]")
+  verb->add_option(
+          "--colliders", options->colliders,
+          "Colliders: rows time_s,id,x,y,z, a file that 'vestige export' wrote, or the animated nodes of a glTF "
+          "file [default: none]")
       ->type_name("FILE.csv|FILE.glb");
   verb->add_option("--nodes", options->nodes,
-                   "Which nodes of a glTF file are colliders, as a pattern of names: 'ball*' [default: those named "
-                   "collider*, or else all whose translation is animated]")
+                   "The nodes of a glTF file that are colliders, as a pattern of names: 'ball*' [default: nodes named "
+                   "collider*, or if there are none, all nodes with an animated translation]")
       ->type_name("PATTERN");
   verb->add_option("--avatar", options->avatar,
                    "The avatar that moves: the built-in one, or a glTF file (.glb, .gltf, .vrm) [default: builtin]")
       ->type_name("builtin|FILE");
-  verb->add_option("--map", options->map,
-                   "The actuator map: a greyscale PNG in UV space or by triangle, whose FILE.json names the actuators "
-                   "if it exists "
-                   "[default: builtin for the built-in avatar, else none]")
+  verb->add_option(
+          "--map", options->map,
+          "The actuator map: a layout, or a greyscale PNG in UV space or by triangle; FILE.json, if it exists, "
+          "names the actuators [default: builtin for the built-in avatar, otherwise none]")
       ->type_name("builtin|none|LAYOUT|FILE.png");
   add_unit_option(*verb, options->unit);
-  verb->add_option("--rate", options->rate_hz, "Frames per second of a motion [default: its own]")
+  verb->add_option("--rate", options->rate_hz, "Frames per second of --motion [default: those of the motion]")
       ->type_name("HZ")
       ->check(help::kPositive);
   verb->add_option("--compression", options->compression, "How the trace's chunks are compressed")

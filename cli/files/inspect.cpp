@@ -63,7 +63,7 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
     for (const auto& [topic, count] : summary.dropped_by_topic)
       text += fmt::format("  {:<20} {:>9} {} lost\n", topic, count, count == 1 ? "message" : "messages");
   }
-  if (!summary.recovered.empty()) text += fmt::format("it {}\n", summary.recovered);
+  if (!summary.recovered.empty()) text += fmt::format("the file {}\n", summary.recovered);
   if (verbose && summary.session)
     for (const auto& [key, value] : *summary.session) text += fmt::format("  {}: {}\n", key, value);
   return text;

@@ -38,12 +38,13 @@ void run_merge(const MergeOptions& options, Invocation& invocation) {
   written.commit();
   for (const auto& [file, damages] : merged.damages) warn_of_damage(file, damages, verbosity);
   for (const Merged::OtherSession& other : merged.other_sessions)
-    warn(fmt::format("{}: seems to be of another recording than {}: their sessions differ in {}\n  Merge only parts of "
-                     "one recording.",
-                     other.file, options.files.front(), fmt::join(other.keys, ", ")),
+    warn(fmt::format(
+             "{}: seems to be from another recording than {}: their sessions differ in {}\n  Merge only parts of "
+             "one recording.",
+             other.file, options.files.front(), fmt::join(other.keys, ", ")),
          verbosity);
   if (merged.missing_frames > 0)
-    warn(fmt::format("{}: lacks {} between its first and its last, found in none of the files", options.output,
+    warn(fmt::format("{}: lacks {} between its first and its last frame; no input file fills the gap", options.output,
                      counted(merged.missing_frames, "frame")),
          verbosity);
   write_json(options.common.json,
@@ -68,7 +69,8 @@ void add_merge(CLI::App& program, Invocation& invocation) {
   CLI::App* verb = add_verb(program, "merge", "Put parts of one recording together, in order of time",
                             "  vestige merge beginning.mcap end.mcap -o man.mcap\n"
                             "  vestige merge part-*.mcap -o man.mcap --json merge.json\n");
-  verb->add_option("FILE", options->files, "The parts, in any order; frames that several have must be the same in all")
+  verb->add_option("FILE", options->files,
+                   "The parts, in any order. A frame that several parts contain must be the same in all of them")
       ->required();
   verb->add_option("-o,--output", options->output, "The trace to write, or '-' for standard output")
       ->required()

@@ -26,7 +26,7 @@ void run_recompress(const RecompressOptions& options, Invocation& invocation) {
 
 void add_recompress(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<RecompressOptions>();
-  CLI::App* verb = add_verb(program, "recompress", "Write a trace, or any MCAP file, with other compression",
+  CLI::App* verb = add_verb(program, "recompress", "Rewrite a trace, or any MCAP file, with another compression",
                             "  vestige recompress man.mcap -o fast.mcap --compression lz4\n"
                             "  vestige recompress man.mcap -o plain.mcap --compression none\n");
   verb->add_option("FILE", options->file, "The trace, or any MCAP file, or '-' for standard input")->required();

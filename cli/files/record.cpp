@@ -48,11 +48,11 @@ RecordingSettings settings_of(const RecordOptions& options) {
   RecordingSettings settings = options.recording;
   settings.origin_m = parse_vector(options.origin, "--origin");
   if (!options.live.is_lines())  // which have no rate
-    refuse_too_many_frames(settings.rate_hz * settings.duration_s, "--duration", "record less, or at a lower --rate");
+    refuse_too_many_frames(settings.rate_hz * settings.duration_s, "--duration", "lower --duration or --rate");
   if (std::max({std::abs(settings.origin_m.x), std::abs(settings.origin_m.y), std::abs(settings.origin_m.z)}) >
       kFarthest_m)
     throw UsageError("--origin", fmt::format("'{}' is farther away than 1e7 m", options.origin),
-                     "beyond that, positions are too coarse for contacts");
+                     "choose a nearer origin: beyond 1e7 m, positions are too coarse for contacts");
   return settings;
 }
 
@@ -107,7 +107,7 @@ void refuse_part_name(const RecordOptions& options, const RecordingLimits& limit
     return std::filesystem::weakly_canonical(std::filesystem::absolute(path, none).parent_path(), none);
   };
   if (folder_of(trace) == folder_of(json))
-    throw UsageError(options.common.json, "the recording or a part of it is called like this", "choose another name");
+    throw UsageError(options.common.json, "the recording, or a part of it, has this name", "choose another name");
 }
 
 void run_record(const RecordOptions& options, Invocation& invocation) {
@@ -132,7 +132,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
 
   const double frames = settings.rate_hz * settings.duration_s;
   if (!options.live.is_live())
-    warn_of_many_frames(frames, "Ctrl-C ends the trace early, complete up to there", verbosity);
+    warn_of_many_frames(frames, "Ctrl-C ends the recording early, with a complete trace up to then", verbosity);
   catch_interrupts();
   catch_snapshots(limits.ring_s && options.output != "-" ? Snapshots::kWanted : Snapshots::kIgnored);
   const auto start = std::chrono::steady_clock::now();
@@ -154,7 +154,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   const std::chrono::duration<double> recording = std::chrono::steady_clock::now() - start;
   const bool cut_short = interrupted() && !options.live.is_live();
   if (recorder.is_ring_cut_by_size())
-    warn(fmt::format("--max-size {} holds less than {} s: only the last {} are there", options.limits.max_size,
+    warn(fmt::format("--max-size {} holds less than {} s: the trace has only the last {}", options.limits.max_size,
                      *limits.ring_s, counted(recorder.frame_count(), "frame")),
          verbosity);
   if (cut_short && limits.ring_s)
@@ -202,7 +202,8 @@ void add_record(CLI::App& program, Invocation& invocation) {
       ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
   verb->add_option(
           "--duration", options->recording.duration_s,
-          "How long, in seconds; what comes live, by default until it ends, and by datagrams from the first one")
+          "How long to record, in seconds. Without this flag, a live recording lasts until the end of its input or "
+          "Ctrl-C. With datagrams, the time counts from the first one")
       ->type_name("S")
       ->capture_default_str()
       ->check(help::kPositive);

@@ -46,13 +46,11 @@ void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
   };
   if (recovery.bytes_lost > 0) say(fmt::format("lost {}", counted(recovery.bytes_lost, "byte")));
   if (const auto at = recovery.another_file_at)
-    say(
-        fmt::format("at byte {} a second MCAP file begins, which is left out: `tail -c +{} {} > SECOND.mcap` makes a "
-                    "file of it",
+    say(fmt::format("a second MCAP file begins at byte {} and is left out: `tail -c +{} {} > SECOND.mcap` extracts it",
                     *at, *at + 1, options.file));
   if (recovery.chunks_lost > 0) say(fmt::format("lost {}", counted(recovery.chunks_lost, "chunk")));
   if (recovery.chunks_partly > 0)
-    say(fmt::format("kept {} of {}, for which no CRC vouches", counted(recovery.messages_unverified, "message"),
+    say(fmt::format("kept {} of {}, not verified by any CRC", counted(recovery.messages_unverified, "message"),
                     counted(recovery.chunks_partly, "damaged chunk")));
   if (recovery.messages_lost.value_or(0) > 0) say(fmt::format("lost {}", counted(*recovery.messages_lost, "message")));
   if (recovery.messages_left_out > 0)
@@ -60,7 +58,7 @@ void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
   for (const std::string& name : recovery.damaged_attachments)
     say(fmt::format("the attachment {0} is damaged; it is kept as {0}.damaged", name));
   if (recovery.unexplained_change)
-    say("a byte of its header, definitions, metadata or indexes has changed; which one, nothing tells");
+    say("a byte of its header, definitions, metadata or indexes has changed; it is not known which byte");
 }
 
 void run_recover(const RecoverOptions& options, Invocation& invocation) {
@@ -90,7 +88,7 @@ void run_recover(const RecoverOptions& options, Invocation& invocation) {
 
 void add_recover(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<RecoverOptions>();
-  CLI::App* verb = add_verb(program, "recover", "Write a complete file from what is left of a damaged one",
+  CLI::App* verb = add_verb(program, "recover", "Write a complete file from the readable parts of a damaged one",
                             "  vestige recover man.mcap -o mended.mcap\n"
                             "  vestige recover man.mcap -o mended.mcap --json recovery.json\n");
   verb->add_option("FILE", options->file,

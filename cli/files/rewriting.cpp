@@ -15,7 +15,7 @@ void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Ve
   const std::size_t told = std::min(damages.kept().size(), kMostTold);
   for (std::size_t i = 0; i < told; ++i) warn(vestige::describe(damages.kept()[i], file), verbosity);
   if (damages.count() > told) warn(fmt::format("{}: and {} more", file, damages.count() - told), verbosity);
-  if (!damages.empty()) warn(fmt::format("{}: 'vestige recover' may keep more of it", file), verbosity);
+  if (!damages.empty()) warn(fmt::format("{}: 'vestige recover' may keep more of the file", file), verbosity);
 }
 
 void run_rewrite(const std::string& file, const std::string& output, const RewriteOptions& how,

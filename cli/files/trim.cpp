@@ -18,7 +18,7 @@ struct TrimOptions {
 
 void run_trim(const TrimOptions& options, Invocation& invocation) {
   if (!options.range.from_s && !options.range.to_s)
-    throw UsageError("trim", "nothing says what to keep", "give --from, --to or both");
+    throw UsageError("trim", "the time range to keep is missing", "give --from, --to or both");
   run_rewrite(options.file, options.output, {.range = range_of(options.range)}, "Trimming", options.common, invocation);
 }
 
@@ -26,13 +26,14 @@ void run_trim(const TrimOptions& options, Invocation& invocation) {
 
 void add_trim(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<TrimOptions>();
-  CLI::App* verb = add_verb(program, "trim", "Keep some of a trace's time",
+  CLI::App* verb = add_verb(program, "trim", "Keep a time range of a trace",
                             "  vestige trim man.mcap --from 0.5 --to 1.5 -o middle.mcap\n"
                             "  vestige trim man.mcap --to 1 -o beginning.mcap\n");
   verb->add_option("FILE", options->file, "The trace, or any MCAP file, or '-' for standard input")->required();
-  add_range_options(*verb, options->range, "Keep",
-                    " The first frame kept has no contacts, since no frame leads to it; numbers and times of frames "
-                    "stay as they were");
+  add_range_options(
+      *verb, options->range, "Keep",
+      " The first kept frame has no contacts, because no frame comes before it. Frames keep their numbers "
+      "and times.");
   verb->add_option("-o,--output", options->output, "The file to write, or '-' for standard output")
       ->required()
       ->type_name("OUT.mcap|-");

@@ -14,7 +14,7 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {{
     {1, "failed"},
     {2, "wrong usage"},
     {3,
-     "done, but not with all of the data (a damaged trace, interrupted, a vest that did not confirm every frame, or a "
+     "done, but some data is missing (a damaged trace, an interruption, a vest that did not confirm every frame, or a "
      "figure without its PNG)"},
     {4, "a check failed"},
 }};

@@ -198,7 +198,8 @@ std::string markdown_index(const CommandTable& program) {
   std::string text = kWrittenBy + heading(1, "Reference of " + program.name) + usage_and_examples(program);
   text += verb_table(program, 2, [](const CommandTable& verb) { return markdown_name(verb); });
   text += flag_lists(program, 2);
-  text += heading(2, kCommonGroup) + "The page of a verb names those that it takes.\n\n" + common_flags(program);
+  text +=
+      heading(2, kCommonGroup) + "The page of a verb names the common flags that it takes.\n\n" + common_flags(program);
   text += heading(2, "Exit codes") + "| code | means |\n|---|---|\n";
   for (const auto& [exit_code, meaning] : kExitCodes)
     text += fmt::format("| {} | {} |\n", exit_code, as_markdown(meaning));

@@ -71,7 +71,7 @@ std::string help_remedy(const CLI::App& program) {
     verb = verb->get_subcommands().front();
     name += " " + verb->get_name();
   }
-  return fmt::format("'{} --help' {}", name, verb == &program ? "lists the verbs" : "explains it");
+  return fmt::format("'{} --help' {}", name, verb == &program ? "lists the verbs" : "explains the verb");
 }
 
 }  // namespace vestige::help

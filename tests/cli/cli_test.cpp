@@ -334,7 +334,7 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige replay small.mcap --planes t --texture t.exr", 2, {"not expected", "--texture"}, "t.exr");
   expect_failure("ln -s both one && ln -s both two && vestige replay small.mcap --contacts one --timeline two", 2,
                  {"two results cannot share one file"}, "both");
-  expect_failure("vestige map check --bogus", 2, {"--bogus", "'vestige map check --help' explains it"});
+  expect_failure("vestige map check --bogus", 2, {"--bogus", "'vestige map check --help' explains the verb"});
   expect_failure("vestige --bogus", 2, {"--bogus", "'vestige --help' lists the verbs"});
   expect_failure("vestige record -o x.mcap --count 0", 2, {"--count"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --rate 0", 2, {"--rate"}, "x.mcap");

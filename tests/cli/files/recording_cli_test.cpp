@@ -146,7 +146,8 @@ TEST_F(Recording, OfARingIsItsLastSeconds) {
 TEST_F(Recording, OfARingThatHasNoRoomForItsSecondsSaysSo) {
   const test::Outcome outcome = run("vestige record --ring 1000 --max-size 3MiB --duration 4 -o cut.mcap");
   EXPECT_EQ(outcome.exit_code, 0);
-  EXPECT_THAT(outcome.standard_error, HasSubstr("--max-size 3MiB holds less than 1000 s: only the last "));
+  EXPECT_THAT(outcome.standard_error,
+              HasSubstr("--max-size 3MiB holds less than 1000 s: the trace has only the last "));
   EXPECT_EQ(frames_of("cut.mcap").back().index, 3999U);
   EXPECT_EQ(run("vestige record --ring 1000 --duration 0.1 -o whole.mcap").standard_error, "");
 }
@@ -207,8 +208,8 @@ TEST_F(Recording, OfLinesCountsThoseThatItCannotRead) {
 }
 
 TEST_F(Recording, OfNothingIsNoTrace) {
-  expect_failure("vestige record --live - -o a.mcap < /dev/null", 1, {"standard input", "no frame came in"}, "a.mcap");
-  expect_failure("echo nonsense | vestige record --live - --ring 5 -q -o a.mcap", 1, {"no frame came in"}, "a.mcap");
+  expect_failure("vestige record --live - -o a.mcap < /dev/null", 1, {"standard input", "no frame arrived"}, "a.mcap");
+  expect_failure("echo nonsense | vestige record --live - --ring 5 -q -o a.mcap", 1, {"no frame arrived"}, "a.mcap");
 }
 
 /// The source stalls: what it sent is in the file before it goes on, or ends.
