@@ -109,7 +109,7 @@ TEST_F(BatchCommandLine, OneBadInputDoesNotStopTheRest) {
   EXPECT_THAT(run("cut -d, -f1-3 out/scores.csv").standard_output,
               AllOf(HasSubstr("builtin,a,binary\n"), HasSubstr("builtin,b,binary\n"), HasSubstr("builtin,cut,binary\n"),
                     Not(HasSubstr("noise")), Not(HasSubstr("grey"))));
-  expect_failure("vestige batch --maps text.png --traces a.mcap -o none", 1, {"none of them", "PNG"}, "none");
+  expect_failure("vestige batch --maps text.png --traces a.mcap -o none", 1, {"none of the maps", "PNG"}, "none");
   expect_failure("vestige batch --maps builtin --traces noise.mcap -o none", 1, {"noise.mcap"}, "none");
 }
 
