@@ -237,7 +237,7 @@ void add_batch(CLI::App& program, Invocation& invocation) {
       "  vestige batch --maps builtin regions.png --traces man.mcap --laws binary,phantom -o judged\n");
   add_batch_options(*verb, options->batch);
   verb->add_option("--jobs", options->jobs,
-                   "How many traces run at the same time, each on one processor core [default: all cores]")
+                   "How many traces are processed at the same time, each on one core [default: all cores]")
       ->check(help::whole_number(1, 1024))
       ->type_name("N");
   verb->add_option("--shard", options->shard,

@@ -139,8 +139,7 @@ void run_merge_shards(const BatchMergeOptions& options, Invocation& invocation) 
 void add_batch_merge(CLI::App& batch, Invocation& invocation) {
   auto options = std::make_shared<BatchMergeOptions>();
   CLI::App* verb =
-      add_verb(batch, "merge",
-               "Merge the shards of one batch: the results have the same bytes as those of a batch without shards",
+      add_verb(batch, "merge", "Merge the shards of one batch: byte for byte the results of an unsplit batch",
                "  vestige batch merge part1 part2 -o whole\n"
                "  vestige batch merge part* -o whole --json whole.json\n");
   verb->add_option("DIR", options->folders, "The folders of all shards, in any order")->required();

@@ -342,10 +342,9 @@ void run_parts(const PartsOptions& options, Invocation& invocation) {
 
 void add_parts(CLI::App& map, Invocation& invocation) {
   auto options = std::make_shared<PartsOptions>();
-  CLI::App* verb =
-      add_verb(map, "parts", "List the parts and joints of an avatar that regions may name, with their areas of skin",
-               "  vestige map parts\n"
-               "  vestige map parts --avatar man.glb\n");
+  CLI::App* verb = add_verb(map, "parts", "List the parts and joints that regions may name, with their areas of skin",
+                            "  vestige map parts\n"
+                            "  vestige map parts --avatar man.glb\n");
   add_avatar_option(*verb, options->avatar);
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_parts(*options, invocation); });

@@ -255,8 +255,7 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
   verb->get_option("--animation")
       ->description(
           "The avatar's animation, in a loop: a name, an index, or none [default: walk for the built-in avatar, "
-          "otherwise "
-          "the first]");
+          "otherwise the first]");
   verb->remove_option(verb->get_option("--colliders"));  // here it is a list, too
   verb->add_option("--colliders", options->colliders,
                    "Scenarios or files, each measured separately; 'vestige record --help' explains them")
@@ -271,7 +270,7 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->check(CLI::IsMember({"cpu", "exact"}));
   verb->add_option("--truth-rate", options->truth_rate_hz,
-                   "Frames per second at which the true contacts are found; half of this rate is tried too, to show "
+                   "Frames per second at which the true contacts are found; half of this rate is used too, to show "
                    "the difference")
       ->type_name("HZ")
       ->capture_default_str()

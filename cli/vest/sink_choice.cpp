@@ -95,8 +95,7 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
       ->type_name("MS");
   add("--levels", choice.levels,
       "duty: of vibrators; pressure: of pneumatic cells, by the speed at which a collider pushes into the skin, as a "
-      "share "
-      "of 1 m/s")
+      "share of 1 m/s")
       ->capture_default_str()
       ->check(CLI::IsMember({"duty", "pressure"}));
   CLI::Option* xbee =

@@ -237,7 +237,8 @@ TEST_F(BatchCommandLine, RefusesWhatWouldDoNothing) {
   expect_failure(scenario + "--rate 1e9 --duration 100", 2, {"4294967295 frames"}, "none");
   expect_failure(scenario + "--rate 1e300", 2, {"--rate", "0.001 to 1000000000"}, "none");
   expect_failure("vestige batch --maps builtin merge a b -o none", 2, {"--maps", "merge"}, "none");
-  expect_failure("vestige batch slurm --shards 2 --maps builtin --traces a.mcap -o none", 2, {"--shards"}, "none");
+  expect_failure("vestige batch slurm --shards 2 --maps builtin --traces a.mcap -o none", 2,
+                 {"--shards: 2 shards for 1 trace: ", "at most 1 shard"}, "none");
 }
 
 }  // namespace
