@@ -137,7 +137,7 @@ void Sender::look_for_life(Clock::time_point now) {
     sink_.send_off(next_sequence(nullptr));
     note_sent();
     // Called last, because a stopped terminal would block here while the motors keep running.
-    on_event_(fmt::format("{}: the playback has stopped; switched off until it goes on", sink_.name()));
+    on_event_(fmt::format("{}: the playback has stopped; all actuators are off until it continues", sink_.name()));
   }
   deserted_ = deserted;
 }

@@ -74,7 +74,7 @@ std::string summary(const std::string& name, const nlohmann::ordered_json& json,
                     const UvCoverage& coverage) {
   const auto number = [&](const char* corner, std::size_t axis) { return json["bounds"][corner][axis].get<double>(); };
   std::string text =
-      fmt::format("{}: {} triangles, {} vertices in {} places, {} joints, up to {} influences a vertex\n", name,
+      fmt::format("{}: {} triangles, {} vertices in {} places, {} joints, up to {} influences per vertex\n", name,
                   avatar.triangles.size(), avatar.position_bind.size(), json["welded_vertices"].get<std::size_t>(),
                   avatar.joint_count, avatar.influence_count);
   text += fmt::format(
@@ -107,7 +107,7 @@ std::vector<std::byte> overlap_picture(const UvCoverage& coverage) {
 void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
   const bool is_builtin = options.avatar == "builtin";
   if (!options.map_output.empty() && !is_builtin)
-    throw UsageError("--map-output", "only the built-in avatar comes with a map", "leave the flag out, or AVATAR");
+    throw UsageError("--map-output", "only the built-in avatar comes with a map", "leave out --map-output or AVATAR");
   check_extension("-o", options.output, ".glb", "binary glTF");
   check_extension("--map-output", options.map_output, ".png", "a PNG");
   check_extension("--uv", options.uv_output, ".png", "a PNG");
@@ -145,19 +145,18 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
 
 void add_avatar(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<AvatarOptions>();
-  CLI::App* verb = add_verb(program, "avatar", "Describe an avatar; write the built-in one as a file",
+  CLI::App* verb = add_verb(program, "avatar", "Describe an avatar, and write it as a file",
                             "  vestige avatar\n"
                             "  vestige avatar builtin -o mannequin.glb --map-output mannequin.png\n");
-  verb->add_option("AVATAR", options->avatar, "The built-in one, or a glTF file (.glb, .gltf, .vrm)")
+  verb->add_option("AVATAR", options->avatar, "The built-in avatar, or a glTF file (.glb, .gltf, .vrm)")
       ->capture_default_str()
       ->type_name("builtin|FILE");
   verb->add_option("-o,--output", options->output, "Write the avatar as one binary glTF file")->type_name("OUT.glb|-");
   verb->add_option("--map-output", options->map_output,
                    "Write the built-in avatar's actuator map, and OUT.json, which names its actuators")
       ->type_name("OUT.png");
-  verb->add_option(
-          "--uv", options->uv_output,
-          "Draw the texture: grey where one triangle lies, red where several do, which a map cannot tell apart")
+  verb->add_option("--uv", options->uv_output,
+                   "Draw the texture: grey for one triangle, red for several, which a map cannot tell apart")
       ->type_name("OUT.png|-");
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_avatar(*options, invocation); });

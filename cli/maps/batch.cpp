@@ -37,10 +37,13 @@ Shard parse_shard(const std::string& text, std::size_t traces) {
   const bool slash = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';
   const auto count = slash ? std::from_chars(number.ptr + 1, end, shard.count) : number;
   if (!slash || count.ec != std::errc() || count.ptr != end || shard.number < 1 || shard.number > shard.count)
-    throw UsageError("--shard", fmt::format("'{}' is no I/N", text), "give 1/4, 2/4, 3/4 and 4/4 for four parts");
+    throw UsageError("--shard", fmt::format("'{}' is not I/N with I from 1 to N", text),
+                     "give 1/4, 2/4, 3/4 and 4/4 for four parts");
   if (shard.count > traces)
-    throw UsageError("--shard", fmt::format("{} shards of {} traces leave some empty", shard.count, traces),
-                     fmt::format("make {} shards at most", traces));
+    throw UsageError("--shard",
+                     fmt::format("{} for {}: some shards would have no trace", counted(shard.count, "shard"),
+                                 counted(traces, "trace")),
+                     fmt::format("make at most {}", counted(traces, "shard")));
   return shard;
 }
 
@@ -163,14 +166,15 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   check_outputs({batch.common.json}, batch.traces, batch.common);
   if (plan.has_scenario())
     warn_of_many_frames(plan.recording.rate_hz * plan.recording.duration_s,
-                        "Ctrl-C stops, and the same command goes on with the trace after the last that is finished",
+                        "Ctrl-C stops the batch, and the same command then continues after the last finished trace",
                         verbosity);
   catch_interrupts();
   const std::size_t jobs = options.jobs != 0 ? options.jobs : std::max(1U, std::thread::hardware_concurrency());
   std::vector<BatchFailure> failures =
       load_inputs(plan, batch.avatar, batch.maps, batch.law_parameters.actuator, jobs, [] { return !interrupted(); });
   if (failures.size() == plan.maps.size())
-    throw Error("--maps", fmt::format("none of them can be used: {}", failures.front().cause), failures.front().remedy);
+    throw Error("--maps", fmt::format("none of the maps can be used: {}", failures.front().cause),
+                failures.front().remedy);
 
   const nlohmann::ordered_json identity = to_json(plan);
   const BatchFolder folder(batch.output, identity, shard,
@@ -190,7 +194,7 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   folder.remove_results(ended.run);
   if (outcome.interrupted) {
     write_json_file(folder.top("run.json"), ended.run);
-    warn(fmt::format("stopped; {} finished, and the same command goes on from there",
+    warn(fmt::format("stopped; {} finished, and the same command continues from there",
                      counted(outcome.items.size(), "trace")),
          verbosity);
     write_json(batch.common.json, ended.run, batch.common);
@@ -200,13 +204,14 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   if (outcome.items.empty()) {
     write_json_file(folder.top("run.json"), ended.run);
     if (shard.count > 1) {  // the others may do better, and are merged with it
-      warn(fmt::format("shard {}/{}: none of its traces could be used", shard.number, shard.count), verbosity);
+      warn(fmt::format("shard {}/{}: none of the shard's traces could be used", shard.number, shard.count), verbosity);
       print_summary(summary(outcome, ended.run, batch.output), {batch.common.json}, batch.common);
       write_json(batch.common.json, ended.run, batch.common);
       invocation.exit_code = kDataLost;
       return;
     }
-    throw Error("--traces", "none of them could be used", "the warnings above say why, and run.json");
+    throw Error("--traces", "none of the traces could be used",
+                "read the causes in the warnings above, or in run.json");
   }
   std::vector<nlohmann::ordered_json> items;
   for (const BatchItem& item : outcome.items) items.push_back(item.result);
@@ -231,11 +236,12 @@ void add_batch(CLI::App& program, Invocation& invocation) {
       "  vestige batch --maps paper6 torso16 torso40 body --traces swarm hug slide rain orbit punch -o compared\n"
       "  vestige batch --maps builtin regions.png --traces man.mcap --laws binary,phantom -o judged\n");
   add_batch_options(*verb, options->batch);
-  verb->add_option("--jobs", options->jobs, "Traces at a time, each on a processor of its own [default: all cores]")
+  verb->add_option("--jobs", options->jobs,
+                   "How many traces are processed at the same time, each on one core [default: all cores]")
       ->check(help::whole_number(1, 1024))
       ->type_name("N");
   verb->add_option("--shard", options->shard,
-                   "Only each N-th trace, from the I-th: to be merged with the other shards by 'vestige batch merge'")
+                   "Run only each N-th trace, from the I-th; 'vestige batch merge' puts the shards together")
       ->capture_default_str()
       ->type_name("I/N");
   verb->require_subcommand(0, 1);
@@ -246,8 +252,9 @@ void add_batch(CLI::App& program, Invocation& invocation) {
     part->preparse_callback([verb, part](std::size_t) {
       for (CLI::Option* option : verb->get_options()) {
         if (option->count() != 0)
-          throw UsageError(option->get_name(), fmt::format("stands before '{}'", part->get_name()),
-                           fmt::format("give it behind '{0}', or './{0}' where a file is meant", part->get_name()));
+          throw UsageError(
+              option->get_name(), fmt::format("must not stand before '{}'", part->get_name()),
+              fmt::format("give the flag after '{0}'; if '{0}' is a file, write './{0}'", part->get_name()));
         option->required(false);
       }
     });

@@ -94,11 +94,12 @@ void run_merge_shards(const BatchMergeOptions& options, Invocation& invocation) 
   for (const std::string& folder : options.folders) {
     std::error_code missing;
     if (std::filesystem::equivalent(folder, options.output, missing))
-      throw UsageError("-o", fmt::format("'{}' is one of the shards", options.output), "choose a folder of its own");
+      throw UsageError("-o", fmt::format("'{}' is one of the shards", options.output), "choose another folder");
   }
   catch_interrupts();
   const MergedShards shards = read_shards(options.folders);
-  if (shards.items.empty()) throw Error("merge", "none of the traces could be used", "the shards' run.json say why");
+  if (shards.items.empty())
+    throw Error("merge", "none of the traces could be used", "read the causes in the shards' run.json");
   const std::string rank_by = options.rank_by.empty() ? shards.rank_by : options.rank_by;
   const std::size_t headline = metric_to_rank_by(rank_by);
   const BatchFolder folder(options.output, shards.batch, {1, 1},
@@ -137,12 +138,13 @@ void run_merge_shards(const BatchMergeOptions& options, Invocation& invocation) 
 
 void add_batch_merge(CLI::App& batch, Invocation& invocation) {
   auto options = std::make_shared<BatchMergeOptions>();
-  CLI::App* verb = add_verb(batch, "merge", "Put the shards of one batch together: the bytes of a batch run in one go",
-                            "  vestige batch merge part1 part2 -o whole\n"
-                            "  vestige batch merge part* -o whole --json whole.json\n");
+  CLI::App* verb =
+      add_verb(batch, "merge", "Merge the shards of one batch: byte for byte the results of an unsplit batch",
+               "  vestige batch merge part1 part2 -o whole\n"
+               "  vestige batch merge part* -o whole --json whole.json\n");
   verb->add_option("DIR", options->folders, "The folders of all shards, in any order")->required();
   add_rank_by(*verb, options->rank_by)
-      ->description("The metric that puts maps and laws in order [default: the shards']");
+      ->description("The metric that ranks maps and laws [default: the shards' metric]");
   verb->add_option("-o,--output", options->output, "Folder for the results")->required()->type_name("OUT");
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_merge_shards(*options, invocation); });

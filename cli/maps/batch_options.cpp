@@ -51,13 +51,13 @@ void refuse_misspelt(const std::vector<std::string>& given, const char* flag, co
 void check_distinct(const std::vector<std::string>& given, const std::string& flag) {
   std::set<std::string> seen;
   for (const std::string& one : given)
-    if (!seen.insert(one).second) throw UsageError(flag, fmt::format("'{}' stands there twice", one), "name each once");
+    if (!seen.insert(one).second) throw UsageError(flag, fmt::format("'{}' is given twice", one), "name each once");
 }
 
 }  // namespace
 
 CLI::Option* add_rank_by(CLI::App& verb, std::string& rank_by) {
-  return verb.add_option("--rank-by", rank_by, "The metric that puts maps and laws in order")->type_name("METRIC");
+  return verb.add_option("--rank-by", rank_by, "The metric that ranks maps and laws")->type_name("METRIC");
 }
 
 void add_batch_options(CLI::App& verb, BatchOptions& options) {
@@ -67,27 +67,29 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
       ->required()
       ->type_name("FILE|SCENARIO");
   options.laws = fmt::format("{}", fmt::join(kLaws, ","));
-  verb.add_option("--laws", options.laws, "How a contact becomes intensities")
+  verb.add_option("--laws", options.laws, "The laws that turn a contact into intensities")
       ->capture_default_str()
       ->type_name("LIST");
   add_law_parameters(verb, options.law_parameters, "Options", "How long an actuator stays on after a contact");
   options.rank_by = default_metric_to_rank_by();
   add_rank_by(verb, options.rank_by)->capture_default_str();
   verb.add_option("-o,--output", options.output,
-                  "Folder for the results; the same command goes on where it was stopped")
+                  "Folder for the results; after a stop, the same command continues the batch")
       ->required()
       ->type_name("DIR");
-  verb.add_option("--avatar", options.avatar,
-                  "The avatar that maps and traces are for [default: that of the first trace, the built-in one for a "
-                  "scenario]")
+  verb.add_option(
+          "--avatar", options.avatar,
+          "The avatar that maps and traces are for [default: the first trace's avatar; for a scenario, the built-in "
+          "one]")
       ->type_name("builtin|FILE");
   const auto add_recording = [&](const char* name, auto& value, const char* description, const char* type) {
     return verb.add_option(name, value, description)->group(kScenarioGroup)->type_name(type);
   };
   add_recording("--rate", options.rate_hz, "Frames per second [default: 1000]", "HZ")
       ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
-  add_recording("--duration", options.duration_s, "How long, in seconds [default: 2]", "S")->check(help::kPositive);
-  add_recording("--count", options.count, "Colliders [default: 100; slide: 1]", "N")
+  add_recording("--duration", options.duration_s, "Length of the recording, in seconds [default: 2]", "S")
+      ->check(help::kPositive);
+  add_recording("--count", options.count, "Number of colliders [default: 100; slide: 1]", "N")
       ->check(help::whole_number(1, 1000000));
   add_detector_and_context(verb, options.choice);
   add_detector_options(verb, options.choice);
@@ -98,8 +100,8 @@ BatchPlan plan_of(const BatchOptions& options) {
   check_distinct(options.maps, "--maps");
   check_distinct(options.traces, "--traces");
   if (options.choice.surface != "all")
-    throw UsageError("--surface", "all maps share one detection, so unmapped skin cannot be passed through",
-                     "leave it out; 'vestige replay --surface mapped' looks at one map");
+    throw UsageError("--surface", "all maps share one detection, so colliders cannot pass through unmapped skin",
+                     "leave it out; 'vestige replay --surface mapped' takes one map");
   metric_to_rank_by(options.rank_by);
   if (options.output == "-") throw UsageError("-o -", "a batch is a folder of files", "name a folder");
   BatchPlan plan;
@@ -114,7 +116,8 @@ BatchPlan plan_of(const BatchOptions& options) {
   plan.laws = parse_names(options.laws, kLaws, "--laws");
   const auto refuse_without = [&](bool given, const char* flag, const char* law) {
     if (given && std::ranges::find(plan.laws, law) == plan.laws.end())
-      throw UsageError(flag, "means nothing to any of the laws", fmt::format("add {} to --laws, or leave it out", law));
+      throw UsageError(flag, "no law in --laws uses this flag",
+                       fmt::format("add {} to --laws, or leave the flag out", law));
   };
   refuse_without(options.law_parameters.full_speed_m_per_s.has_value(), "--full-speed", "speed");
   refuse_without(options.law_parameters.sigma_mm.has_value(), "--sigma", "gaussian");
@@ -127,7 +130,7 @@ BatchPlan plan_of(const BatchOptions& options) {
     throw UsageError(options.rate_hz      ? "--rate"
                      : options.duration_s ? "--duration"
                                           : "--count",
-                     "none of the traces is a scenario, and files are as they were recorded", "leave it out");
+                     "applies to scenarios only, and none of the traces is a scenario", "leave it out");
   plan.recording.rate_hz = options.rate_hz.value_or(plan.recording.rate_hz);
   plan.recording.duration_s = options.duration_s.value_or(plan.recording.duration_s);
   plan.recording.count = options.count;

@@ -8,6 +8,7 @@
 #include "cli/maps/batch_options.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -23,11 +24,12 @@ struct BatchSlurmOptions {
 void run_slurm(const BatchSlurmOptions& options) {
   const BatchPlan plan = plan_of(options.batch);
   if (!options.batch.common.json.empty())
-    throw UsageError("--json", "a script is all that this writes", "leave it out");
+    throw UsageError("--json", "'vestige batch slurm' writes a script only", "leave it out");
   if (options.shards > plan.traces.size())
     throw UsageError("--shards",
-                     fmt::format("{} shards of {} traces leave some empty", options.shards, plan.traces.size()),
-                     fmt::format("make {} shards at most", plan.traces.size()));
+                     fmt::format("{} for {}: some shards would have no trace", counted(options.shards, "shard"),
+                                 counted(plan.traces.size(), "trace")),
+                     fmt::format("make at most {}", counted(plan.traces.size(), "shard")));
   SlurmBatch batch;
   batch.program = std::filesystem::read_symlink("/proc/self/exe").string();
   batch.working_folder = std::filesystem::current_path().string();
@@ -50,7 +52,7 @@ void add_batch_slurm(CLI::App& batch, Invocation& invocation) {
       batch, "slurm", "Print a script that runs a batch as a Slurm job array, and merges its shards",
       "  vestige batch slurm --shards 3 --maps paper6 body --traces swarm hug slide -o compared >submit.sh\n"
       "  vestige batch slurm --shards 2 --maps paper6 --traces swarm hug --sbatch=--time=60 -o c >submit.sh\n");
-  verb->add_option("--shards", options->shards, "Into how many jobs the traces are split")
+  verb->add_option("--shards", options->shards, "Number of shards, each of which is one job")
       ->required()
       ->check(help::whole_number(1, 1000000))
       ->type_name("N");

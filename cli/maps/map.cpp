@@ -39,8 +39,8 @@ void add_avatar_option(CLI::App& verb, std::string& avatar) {
 
 void say_how_understood(const Body& body, const std::string& avatar, const CommonOptions& options) {
   if (body.understanding() == Understanding::kProportions)
-    warn(fmt::format("{}: its joints' names do not say what is torso and limb, so a grown person's proportions do; "
-                     "'vestige map parts' lists both",
+    warn(fmt::format("{}: the joints' names do not tell torso and limbs apart, so a grown person's proportions do; "
+                     "'vestige map parts' lists parts and joints",
                      avatar),
          options.verbosity());
 }
@@ -164,38 +164,40 @@ std::string unknown_layout(const std::string& word) {
   if (is_layout(word)) return "";
   const std::vector<std::string> names = layout_names();
   const std::vector<std::string_view> known(names.begin(), names.end());
-  return fmt::format("there is no layout '{}'; {}there are: {}", word, help::did_you_mean(word, known),
+  return fmt::format("there is no layout '{}'; {}the layouts are: {}", word, help::did_you_mean(word, known),
                      fmt::join(names, ", "));
 }
 
 void add_make(CLI::App& map, Invocation& invocation) {
   auto options = std::make_shared<MakeOptions>();
-  CLI::App* verb = add_verb(map, "make", "Draw an actuator map for an avatar: a layout, or regions of your own",
+  CLI::App* verb = add_verb(map, "make", "Draw an actuator map for an avatar, from a layout or from your own regions",
                             "  vestige map make --layout torso40 -o torso40.png\n"
                             "  vestige map make --layout paper6 --save-regions mine.json -o paper6.png\n");
   add_avatar_option(*verb, options->avatar);
   auto* layout = verb->add_option("--layout", options->layout, "A layout:" + layout_list())
                      ->check(CLI::Validator(unknown_layout, ""))
                      ->type_name("LAYOUT");
-  verb->add_option("--regions", options->regions,
-                   "A file of regions: {\"regions\": [{\"name\": \"heart\", \"part\": \"vest\", \"side\": [\"front\", "
-                   "\"left\"], \"height\": [0.6, 0.8]}, ...]}; the first that a point of the skin belongs to has it. "
-                   "Which skin: part, joints, below (joints and what hangs on them). What of it: height (0 to 1), "
-                   "height_m, angle (degrees: 0 front, 90 left), side. How many actuators: one, a grid {\"rows\": 5, "
-                   "\"columns\": 4}, or a list of actuators with position_m, each with the skin nearest to it. "
-                   "--save-regions shows how the layouts are written")
+  verb->add_option(
+          "--regions", options->regions,
+          "A file of regions: {\"regions\": [{\"name\": \"heart\", \"part\": \"vest\", \"side\": [\"front\", "
+          "\"left\"], \"height\": [0.6, 0.8]}, ...]}. A point of the skin belongs to the first region that holds it. "
+          "part, joints and below (joints and all their descendants) choose the skin. height (0 to 1), "
+          "height_m, angle (degrees: 0 front, 90 left) and side limit it. A region has one actuator, a grid "
+          "{\"rows\": 5, \"columns\": 4}, or a list of actuators with position_m, each of which has the skin "
+          "nearest to it. --save-regions shows how the layouts are written")
       ->type_name("FILE.json")
       ->excludes(layout);
-  auto* per_triangle = verb->add_flag("--per-triangle", options->settings.per_triangle,
-                                      "One texel for each triangle of the avatar, in their order, instead of an image "
-                                      "in its UV space: for avatars whose left and right halves share one texture, or "
-                                      "that have no texture coordinates");
-  verb->add_option("--size", options->settings.side, "Texels a side")
+  auto* per_triangle =
+      verb->add_flag("--per-triangle", options->settings.per_triangle,
+                     "Write one texel for each triangle of the avatar, in the triangles' order, instead "
+                     "of an image in UV space: for avatars whose left and right halves share one "
+                     "texture, or that have no texture coordinates");
+  verb->add_option("--size", options->settings.side, "Texels on each side of the map")
       ->capture_default_str()
       ->check(help::whole_number(16, 16384))
       ->excludes(per_triangle);
   verb->add_option("--padding", options->settings.padding,
-                   "How many texels regions go on beyond the skin's edge in the texture, never onto other skin")
+                   "How many texels regions extend beyond the skin's edge in the texture, but never onto other skin")
       ->capture_default_str()
       ->check(help::whole_number(0, 64))
       ->excludes(per_triangle);
@@ -203,7 +205,7 @@ void add_make(CLI::App& map, Invocation& invocation) {
       ->required()
       ->type_name("OUT.png");
   verb->add_option("--save-regions", options->regions_output,
-                   "Write the layout's regions too, to begin a file of your own with")
+                   "Also write the layout's regions, as a start for your own file")
       ->type_name("OUT.json");
   add_common_options(*verb, options->common);
   verb->callback([options, verb, &invocation] {
@@ -282,11 +284,11 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
 
 void add_check(CLI::App& map, Invocation& invocation) {
   auto options = std::make_shared<CheckOptions>();
-  CLI::App* verb = add_verb(map, "check", "Look a map over on the avatar that it is for",
+  CLI::App* verb = add_verb(map, "check", "Check a map on the avatar that it is for",
                             "  vestige map check builtin\n"
                             "  vestige map check regions.png --avatar man.glb\n");
   verb->add_option("MAP", options->map,
-                   "A greyscale PNG, whose FILE.json names the actuators if it exists, builtin, or a layout")
+                   "A greyscale PNG (FILE.json names the actuators, if it exists), builtin, or a layout")
       ->required()
       ->type_name("FILE.png|builtin|LAYOUT");
   add_avatar_option(*verb, options->avatar);
@@ -326,7 +328,7 @@ void run_parts(const PartsOptions& options, Invocation& invocation) {
                                  by_joints ? "its joints' names" : "a grown person's proportions");
   for (const auto& [name, area_m2] : parts_m2)
     text += fmt::format("  {:>6.0f} cm²  {}\n", area_m2 * kSquareCentimetres, name);
-  text += "joints, and nodes with meshes of their own\n";
+  text += "joints, and nodes with their own meshes\n";
   for (const auto& [name, area_m2] : joints_m2)
     text += fmt::format("  {:>6.0f} cm²  {}\n", area_m2 * kSquareCentimetres, name);
   print_summary(text, {options.common.json}, options.common);
@@ -340,7 +342,7 @@ void run_parts(const PartsOptions& options, Invocation& invocation) {
 
 void add_parts(CLI::App& map, Invocation& invocation) {
   auto options = std::make_shared<PartsOptions>();
-  CLI::App* verb = add_verb(map, "parts", "List what regions may name: an avatar's parts and joints, by their skin",
+  CLI::App* verb = add_verb(map, "parts", "List the parts and joints that regions may name, with their areas of skin",
                             "  vestige map parts\n"
                             "  vestige map parts --avatar man.glb\n");
   add_avatar_option(*verb, options->avatar);
@@ -364,7 +366,7 @@ void add_preview(CLI::App& map, Invocation& invocation) {
                             "  vestige map preview torso16 -o torso16\n"
                             "  vestige map preview regions.png --avatar man.glb -o regions-on-man\n");
   verb->add_option("MAP", options->map,
-                   "A greyscale PNG, whose FILE.json names the actuators if it exists, builtin, or a layout")
+                   "A greyscale PNG (FILE.json names the actuators, if it exists), builtin, or a layout")
       ->required()
       ->type_name("FILE.png|builtin|LAYOUT");
   add_avatar_option(*verb, options->avatar);

@@ -47,16 +47,16 @@ std::vector<double> parse_rates(const AccuracyOptions& options) {
     double rate_hz = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), rate_hz);
     if (failure != std::errc() || end != text.data() + text.size() || !std::isfinite(rate_hz) || !(rate_hz > 0))
-      throw UsageError("--rate", fmt::format("'{}' is no rate", text), remedy);
+      throw UsageError("--rate", fmt::format("'{}' is not a positive number", text), remedy);
     if (rate_hz > options.truth_rate_hz / 2)
       throw UsageError("--rate",
                        fmt::format("{} Hz is more than half of the truth's {} Hz", text, options.truth_rate_hz),
-                       "the truth must see more than what is measured by it: raise --truth-rate");
+                       "raise --truth-rate to at least twice the highest rate");
     if (rate_hz * options.duration_s < 2)
-      throw UsageError("--rate", fmt::format("at {} Hz, {} s hold less than two frames", text, options.duration_s),
+      throw UsageError("--rate", fmt::format("at {} Hz, {} s hold fewer than two frames", text, options.duration_s),
                        "raise --duration");
     if (!rates_hz.insert(rate_hz).second)
-      throw UsageError("--rate", fmt::format("'{}' stands there twice", text), "name each once");
+      throw UsageError("--rate", fmt::format("'{}' is given twice", text), "name each once");
   }
   if (rates_hz.empty()) throw UsageError("--rate", "the list is empty", remedy);
   return {rates_hz.begin(), rates_hz.end()};
@@ -74,14 +74,15 @@ std::vector<AccuracyContestant> make_contestants(const AccuracyOptions& options,
         contestants.push_back({detector, method_named(method),
                                make_detector(detector, choice.context, choice, scene.avatar, scene.map, Plane::kTime)});
       } catch (const UsageError& error) {
-        if (options.chosen) warn(fmt::format("no '{}' with {}: {}", detector, method, error.what()), verbosity);
+        if (options.chosen)
+          warn(fmt::format("'{}' with {} is left out: {}", detector, method, error.what()), verbosity);
       } catch (const Error& error) {
-        warn(fmt::format("no '{}' with {}: {}", detector, method, error.what()), verbosity);
+        warn(fmt::format("'{}' with {} is left out: {}", detector, method, error.what()), verbosity);
       }
     }
   if (contestants.empty())
-    throw Error("--detector", "none of those asked for can run here with a method asked for",
-                "'vestige devices' lists this machine's OpenGL contexts; --detector cpu needs none");
+    throw Error("--detector", "none of the listed detectors can run here with any of the listed methods",
+                "'vestige devices' lists this machine's OpenGL contexts; --detector cpu needs no context");
   return contestants;
 }
 
@@ -138,7 +139,7 @@ class Measurement {
     find_truth(moving, result);
     if (interrupted()) return result;
     if (result.truth.events.empty())
-      warn(fmt::format("{}: nothing touches the avatar, so there is nothing to miss", choice.colliders),
+      warn(fmt::format("{}: no collider touches the avatar, so there is no contact to miss", choice.colliders),
            options_.common.verbosity());
     Progress progress(choice.colliders + ", measuring", options_.common.verbosity());
     result.points = run_accuracy(moving, result.truth, contestants_, rates_hz_, options_.common.seed,
@@ -182,7 +183,8 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   parse_names(options.detectors, detector_names(), "--detector");
   parse_names(options.methods, kMethodNames, "--method");
   if (options.truth_rate_hz * options.duration_s > kMostTraceFrames)
-    throw UsageError("--duration", "the truth would have more than 4294967295 frames", "lower it, or --truth-rate");
+    throw UsageError("--duration", "the truth would have more than 4294967295 frames",
+                     "lower --duration or --truth-rate");
   const std::vector<double> rates_hz = parse_rates(options);
   const std::vector<SceneChoice> choices = scene_choices(options);
   const std::string errors_path = options.output + "/accuracy.json";
@@ -214,7 +216,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   results["run"] = run;
   write_json(options.common.json, results, options.common);
 
-  if (interrupted()) warn("stopped early; the rates that were measured were written", options.common.verbosity());
+  if (interrupted()) warn("stopped early; only the measured rates were written", options.common.verbosity());
   print_summary(accuracy_table(scenes, contestants), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", errors_path, run_path), {options.common.json}, options.common);
   draw_or_remove_figure("accuracy", "accuracy", options.output, !options.no_figure && !interrupted(), options.common);
@@ -237,23 +239,26 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
       ->type_name("LIST");
   add_detector_options(*verb, options->choice);
   verb->remove_option(verb->get_option("--method"));  // here it is a list
-  verb->add_option("--method", options->methods,
-                   "Methods to measure: static: each segment against the triangle as it is now, as the paper does; "
-                   "carried: its start moves along with the triangle; ccd: both move, the first time they meet")
+  verb->add_option(
+          "--method", options->methods,
+          "Methods to measure: static: each segment against the triangle as it is now, as the paper does; "
+          "carried: the segment's start moves along with the triangle; ccd: both move, and the first time that "
+          "they meet counts")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
-  verb->add_option("--context", options->choice.context, "Where detectors that need OpenGL run")
+  verb->add_option("--context", options->choice.context, "OpenGL context that paper and geometry run in")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
   add_scene_options(*verb, options->scene);
   verb->get_option("--animation")
       ->description(
-          "Its animation, looping: a name, an index, or none [default: walk for the built-in avatar, else the first]");
+          "The avatar's animation, in a loop: a name, an index, or none [default: walk for the built-in avatar, "
+          "otherwise the first]");
   verb->remove_option(verb->get_option("--colliders"));  // here it is a list, too
   verb->add_option("--colliders", options->colliders,
-                   "Scenarios, each measured apart, or files: 'vestige record --help' explains them")
+                   "Scenarios or files, each measured separately; 'vestige record --help' explains them")
       ->capture_default_str()
       ->type_name("LIST");
   verb->add_option("--duration", options->duration_s, "How long the scene is, in seconds")
@@ -264,9 +269,9 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
                    "The detector that finds the true contacts, by ccd; exact is independent of the others, and slow")
       ->capture_default_str()
       ->check(CLI::IsMember({"cpu", "exact"}));
-  verb->add_option(
-          "--truth-rate", options->truth_rate_hz,
-          "Frames per second at which the true contacts are found; also at half of it, to see what that changes")
+  verb->add_option("--truth-rate", options->truth_rate_hz,
+                   "Frames per second at which the true contacts are found; half of this rate is used too, to show "
+                   "the difference")
       ->type_name("HZ")
       ->capture_default_str()
       ->check(help::kPositive);

@@ -22,7 +22,8 @@ struct ClaimsOptions {
 };
 
 std::vector<std::string> json_files_under(const std::filesystem::path& folder) {
-  if (!std::filesystem::is_directory(folder)) throw Error(folder.string(), "is no folder", "name a folder of results");
+  if (!std::filesystem::is_directory(folder))
+    throw Error(folder.string(), "is not a folder", "name a folder of results");
   std::vector<std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
     if (entry.path().extension() == ".json") files.push_back(entry.path().string());

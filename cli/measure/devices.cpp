@@ -130,7 +130,7 @@ std::string limits_table(const std::vector<Offer>& offers) {
     if (same == columns.end()) {
       columns.push_back(&offer);
     } else {
-      shared += fmt::format("  {} has those of {}\n", offer.name, (*same)->name);
+      shared += fmt::format("  {} has the limits of {}\n", offer.name, (*same)->name);
     }
   }
   if (columns.empty()) return "";
@@ -157,8 +157,10 @@ void run_devices(const CommonOptions& options, const Invocation& invocation) {
     json["contexts"].push_back(to_json(offer));
     text += describe(offer, automatic.context);
   }
-  text += automatic.context.empty() ? "No OpenGL 4.5 context is to be had here: 'paper' cannot run. 'cpu' needs none.\n"
-                                    : "* is what --context auto takes.\n";
+  text +=
+      automatic.context.empty()
+          ? "This machine offers no OpenGL 4.5 context: 'paper' and 'geometry' cannot run. 'cpu' needs no context.\n"
+          : "* marks the context that --context auto takes.\n";
   write_json(options.json, json, options);
   print_summary(text + limits_table(offers), {options.json}, options);
 }

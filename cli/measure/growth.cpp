@@ -47,7 +47,7 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
   OpenTrace trace(path, verbosity);
   if (trace.reader.collider_ids().size() < options.settings.colliders)
     throw Error("--count",
-                fmt::format("{} colliders asked for, the trace has {}", options.settings.colliders,
+                fmt::format("{} colliders are asked for, and the trace has {}", options.settings.colliders,
                             trace.reader.collider_ids().size()),
                 "ask for fewer, or record a trace with more");
   Growth growth;
@@ -71,7 +71,7 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
   write_json(json_path, json, common);
   write_json(common.json, json, common);
 
-  if (interrupted()) warn("stopped early; what was measured so far was written", verbosity);
+  if (interrupted()) warn("stopped early; the results so far were written", verbosity);
   for (const std::string& warning : noise_warnings(growth.by_colliders)) warn(warning, verbosity);
   const std::vector<std::string> wrong = all_disagreements(growth);
   for (const std::string& warning : wrong) warn(warning, verbosity);
@@ -93,17 +93,17 @@ void add_growth(CLI::App& program, Invocation& invocation) {
                "  vestige growth -o growth\n"
                "  vestige growth man.mcap --counts 1,10 --count 10 --subdivisions 2 -o growth\n");
   add_swept_options(*verb, options->choice);
-  verb->add_option("--count", options->settings.colliders, "Colliders that every size of the avatar is measured with")
+  verb->add_option("--count", options->settings.colliders, "Number of colliders for every size of the avatar")
       ->capture_default_str()
       ->check(help::whole_number(1, 1000000));
   verb->add_option("--subdivisions", options->settings.subdivisions,
-                   "How often the avatar's triangles are split into four; each size is measured")
+                   "How many times the avatar's triangles are split into four; each size is measured")
       ->capture_default_str()
       ->check(help::whole_number(0, kMostSubdivisions));
   add_contestant_options(*verb, options->choice.contestants);
   add_measuring_options(*verb, options->choice, options->settings.sweep,
-                        fmt::format("Consecutive frames at each place; above {} pairs of collider and triangle it is "
-                                    "single frames at 3 places",
+                        fmt::format("Consecutive frames at each place; above {} pairs of collider and triangle, single "
+                                    "frames at 3 places",
                                     kManyPairs),
                         "Folder for growth.json and the figure");
   verb->callback([options, &invocation] { run_growth_verb(*options, invocation); });

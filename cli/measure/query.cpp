@@ -8,6 +8,7 @@
 #include "cli/choices/detectors.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -52,7 +53,7 @@ void warn_of(const QueryScore& score, const std::vector<std::size_t>& lines, std
              Verbosity verbosity) {
   if (lines.empty()) return;
   const std::span shown(lines.data(), std::min(lines.size(), kMostLinesShown));
-  warn(fmt::format("{}: {} {}, in the queries that begin in lines {}{}", score.name, lines.size(), kind,
+  warn(fmt::format("{}: {}, in the queries that begin in lines {}{}", score.name, counted(lines.size(), kind),
                    fmt::join(shown, ", "), shown.size() < lines.size() ? ", ..." : ""),
        verbosity);
 }
@@ -68,7 +69,7 @@ void run_query(const QueryOptions& options, Invocation& invocation) {
     QueryFile file = read_query_file(path, rounded ? Inexact::kRound : Inexact::kRefuse);
     if (!file.ends_in_newline) warn(fmt::format("{}: ends within a line; was it cut off?", path), verbosity);
     if (truth_of(file, options) == QueryTruth::kExact && options.choice.detector == "exact" && !rounded)
-      warn(fmt::format("{}: has no truth of --method static: 'exact' is compared with itself", path), verbosity);
+      warn(fmt::format("{}: has no truth for --method static, so 'exact' is compared with itself", path), verbosity);
     files.push_back(rounded ? rounded_to_fp32(std::move(file)) : std::move(file));
   }
 
@@ -100,8 +101,8 @@ void run_query(const QueryOptions& options, Invocation& invocation) {
   json["total"] = to_json(total);
   write_json(options.common.json, json, options.common);
   for (const QueryScore& score : scores) {
-    warn_of(score, score.false_positives, "false contacts", verbosity);
-    warn_of(score, score.false_negatives, "missed contacts", verbosity);
+    warn_of(score, score.false_positives, "false contact", verbosity);
+    warn_of(score, score.false_negatives, "missed contact", verbosity);
   }
   print_summary(query_table(scores, total), {options.common.json}, options.common);
   if (!total.all_right()) invocation.exit_code = kCheckFailed;
@@ -118,12 +119,12 @@ void add_query(CLI::App& program, Invocation& invocation) {
                             "  vestige query queries.csv --detector exact --round-fp32 --json -\n");
   verb->add_option(
           "CSV", options->files,
-          "Files of queries: eight rows each (the point and the triangle's corners at t = 0, then at t = 1) of "
-          "x, y, z as numerator,denominator and the truth; or a segment and a triangle a row, as hexadecimal "
+          "Files of queries. A query is eight rows (the point and the triangle's corners at t = 0, then at t = 1) of "
+          "x, y, z as numerator,denominator and the truth; or one row with a segment and a triangle, as hexadecimal "
           "doubles")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--detector", options->choice.detector, "What answers. geometry needs --round-fp32")
+  verb->add_option("--detector", options->choice.detector, "The detector that answers; geometry needs --round-fp32")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->check(CLI::IsMember({"cpu", "exact", "geometry"}));
@@ -132,8 +133,8 @@ void add_query(CLI::App& program, Invocation& invocation) {
       ->group(kDetectorGroup)
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
   verb->add_option("--method", options->choice.method,
-                   "ccd: point and triangle both move; static: the point's way against the triangle at t = 1, with the "
-                   "truth from exact arithmetic where the file has another")
+                   "ccd: point and triangle both move; static: the point's way against the triangle at t = 1; if the "
+                   "file's truth is for ccd, the truth comes from exact arithmetic")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->check(CLI::IsMember({"static", "ccd"}));

@@ -67,7 +67,7 @@ PlaneSet parse_planes(const std::string& text) {
     for (const NamedPlane& named : kPlaneNames)
       if (part == named.name) found = &named;
     if (found == nullptr)
-      throw UsageError("--planes", fmt::format("there is no plane '{}'", part), "choose of" + known);
+      throw UsageError("--planes", fmt::format("there is no plane '{}'", part), "choose from" + known);
     planes = planes | found->plane;
   }
   return planes;
@@ -105,10 +105,11 @@ std::vector<TimedMap> parse_map_at(const std::vector<std::string>& texts) {
 void check_map_at(const ReplayOptions& options) {
   if (options.map_at.empty()) return;
   if (options.choice.surface == "mapped")
-    throw UsageError("--map-at", "changes what --surface mapped looks for on the way", "leave one of the two out");
+    throw UsageError("--map-at", "changes the mapped skin, and --surface mapped cannot follow",
+                     "leave one of the two out");
   for (const std::string& detector : {options.choice.detector, options.verify})
     if (detector == "paper")
-      throw UsageError("--map-at", "--detector paper has its map on the GPU and keeps it", "choose another detector");
+      throw UsageError("--map-at", "the detector 'paper' keeps its first map on the GPU", "choose another detector");
 }
 
 std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace,
@@ -116,13 +117,13 @@ std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const 
   std::vector<MapChange> changes;
   for (const TimedMap& timed : timed_maps) {
     const ActuatorMapFiles files = read_map_files(trace.avatar, timed.file);
-    if (files.png.empty()) throw UsageError("--map-at", "'none' is no map", "name a PNG file, builtin or a layout");
+    if (files.png.empty()) throw UsageError("--map-at", "'none' is not a map", "name a PNG file, builtin or a layout");
     MapChange change = {timed.time_s, parse_actuator_map(files, trace.avatar, timed.file), nullptr};
     if (change.map.actuator_count != trace.map.actuator_count)
       throw Error(timed.file,
-                  fmt::format("names {} actuators, where the trace's map has {}", change.map.actuator_count,
+                  fmt::format("names {} actuators, and the trace's map has {}", change.map.actuator_count,
                               trace.map.actuator_count),
-                  "give every map of a replay the same actuators");
+                  "use maps with the same number of actuators");
     for (const std::string& warning : change.map.warnings) warn(warning, verbosity);
     if (drives != nullptr) change.layout = drives->layout_of(change.map);
     changes.push_back(std::move(change));
@@ -147,13 +148,13 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
   if (is_detector(options.verify)) {
     if (options.verify == detector.name())
       throw UsageError("--verify", fmt::format("'{}' would be compared with itself", options.verify),
-                       "name the other detector, or a file");
+                       "name another detector, or a file");
     verification.detectors = std::make_unique<DetectorTeam>(options.threads, [&] {
       return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, planes);
     });
   } else if (options.verify == "-" || options.verify == "auto") {
     throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
-                     "name cpu, exact, geometry, paper or embree, or what an earlier replay wrote");
+                     "name cpu, exact, geometry, paper or embree, or a file that an earlier replay wrote");
   } else if (options.verify.ends_with(".csv")) {
     verification.contacts = read_contacts_csv(options.verify);
     verification.from_csv = true;
@@ -161,8 +162,8 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
     const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
     if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
       throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
-                  "name cpu, exact, geometry, paper or embree, or what 'vestige replay --contacts FILE.csv' or '--json "
-                  "FILE' wrote");
+                  "name cpu, exact, geometry, paper or embree, or a file that 'vestige replay --contacts FILE.csv' or "
+                  "'--json FILE' wrote");
     verification.texture_hash = json["texture_hash"].get<std::string>();
   }
   return verification;
@@ -274,11 +275,11 @@ std::string summary(const ReplayResult& result, const Run& run) {
     text += fmt::format("left out: {} of {} triangles, which no actuator covers\n", detector.triangles_left_out(),
                         run.trace.avatar.triangles.size());
   text += fmt::format(
-      "skinning: at most {:.2g} of the avatar's height from the double reference; {} of {} vertices "
-      "have the bits of the CPU's\n",
+      "skinning: at most {:.2g} of the avatar's height from the double-precision reference; {} of {} "
+      "vertices have the same bits as on the CPU\n",
       result.skinning.largest_m / result.skinning.height_m, result.skinning.identical, result.skinning.vertices);
   if (captures(detector))
-    text += fmt::format("captured {} pairs of {}, {} of them contact\n", result.work.pairs_captured,
+    text += fmt::format("captured {} of {} pairs; {} of these pairs touch\n", result.work.pairs_captured,
                         result.work.pairs_tested, result.work.pairs_meeting);
   return text + fmt::format("texture_hash {}\n", result.texture_hash);
 }
@@ -288,7 +289,7 @@ int report_verification(const ReplayOptions& options, const ReplayResult& result
                         const std::vector<std::string>& outputs) {
   if (options.verify.empty()) return kDone;
   if (result.interrupted) {
-    print_summary(fmt::format("verify against {}: not to the end\n", options.verify), outputs, options.common);
+    print_summary(fmt::format("verify against {}: stopped before the end\n", options.verify), outputs, options.common);
     return kDataLost;
   }
   const bool by_hash = !result.comparison;
@@ -304,7 +305,7 @@ void warn_of_gaps(const ReplayResult& result, const std::vector<TimedMap>& timed
   const Verbosity verbosity = options.common.verbosity();
   if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
   for (std::size_t i = result.map_changes; i < timed_maps.size() && !result.interrupted; ++i)
-    warn(fmt::format("--map-at {}={}: the trace ends before that", timed_maps[i].time_s, timed_maps[i].file),
+    warn(fmt::format("--map-at {}={}: the trace ends before that time", timed_maps[i].time_s, timed_maps[i].file),
          verbosity);
   if (result.non_finite_frames + result.non_finite_segments != 0)
     warn(fmt::format(
@@ -398,7 +399,7 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   add_detector_and_context(*verb, options->choice);
   add_detector_options(*verb, options->choice);
   verb->add_option("--threads", options->threads,
-                   "Detect on this many processor threads, frame by frame; the same result")
+                   "Number of processor threads that detect, frame by frame; the result is the same")
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(help::whole_number(1, 256));
@@ -407,20 +408,21 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   };
   add_result("--contacts", options->contacts, "Write the contacts, one row each")->type_name("OUT.csv|-");
   add_result("--textures", options->textures,
-             "Write the collision textures as OpenEXR: a row a frame, a column a collider")
+             "Write the collision textures as OpenEXR: one row per frame, one column per collider")
       ->type_name("OUT.exr|-");
   add_result("--planes", options->planes,
-             "What the textures hold, of: actuator, t, triangle, barycentric, texture, position, speed, side, "
+             "Planes of the textures, any of: actuator, t, triangle, barycentric, texture, position, speed, side, "
              "pressure")
       ->capture_default_str()
       ->type_name("LIST");
   add_result(
       "--timeline", options->timeline,
-      "Write the actuators' duties: a row a frame, 0 to 255; or as MPEG haptics (.hjif); or for bHaptics (.tact, "
-      "at most 40 actuators)")
+      "Write the actuators' duties: as CSV, one row per frame, 0 to 255; as MPEG haptics (.hjif); or for bHaptics "
+      "(.tact, at most 40 actuators)")
       ->type_name("OUT.csv|OUT.hjif|OUT.tact|-");
-  verb->add_option("--map-at", options->map_at,
-                   "Use another actuator map from a time of the trace on, with as many actuators; again for more")
+  verb->add_option(
+          "--map-at", options->map_at,
+          "Use another actuator map, with as many actuators, from this time of the trace on; repeat for more maps")
       ->group("Results")
       ->type_name("TIME=FILE.png|TIME=LAYOUT")
       ->expected(1)

@@ -76,8 +76,8 @@ Contestants make_contestants(const StressOptions& options, Verbosity verbosity) 
       contestants.list.push_back({detector, choice.method_kind(), make});
     }
   if (contestants.list.empty())
-    throw Error("--detector", "none of the detectors asked for can run here with these methods",
-                "--detector cpu knows every method and needs nothing");
+    throw Error("--detector", "none of the listed detectors can run here with these methods",
+                "choose --detector cpu, which knows every method and needs no OpenGL");
   return contestants;
 }
 
@@ -118,7 +118,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   run.update(result);
   write_json(options.common.json, run, options.common);
 
-  if (interrupted()) warn("stopped early; what was complete so far was written", verbosity);
+  if (interrupted()) warn("stopped early; the complete results so far were written", verbosity);
   print_summary(stress_table(counts), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, run_path), {options.common.json}, options.common);
   draw_or_remove_figure("stress", "stress", options.output, !options.no_figure && !interrupted(), options.common);
@@ -132,24 +132,26 @@ void add_stress(CLI::App& program, Invocation& invocation) {
   std::vector<std::string> raced = detector_names();
   std::erase(raced, "exact");
   options->detectors = fmt::format("{}", fmt::join(raced, ","));
-  CLI::App* verb = add_verb(program, "stress", "Attack the detectors with hostile cases, and count what they get wrong",
+  CLI::App* verb = add_verb(program, "stress", "Attack the detectors with hostile cases, and count their errors",
                             "  vestige stress -o stress\n"
                             "  vestige stress --families watertight --detector cpu --n 10000 -o ladder\n");
-  verb->add_option("--families", options->families,
-                   fmt::format("Families of cases, of: {}; -v prints what each is", fmt::join(family_names(), ", ")))
+  verb->add_option(
+          "--families", options->families,
+          fmt::format("Families of cases, any of: {}; -v prints their definitions", fmt::join(family_names(), ", ")))
       ->capture_default_str()
       ->type_name("all|LIST");
-  verb->add_option("--n", options->settings.cases, "Cases of each family and magnitude")
+  verb->add_option("--n", options->settings.cases, "Number of cases for each family and magnitude")
       ->capture_default_str()
       ->check(help::whole_number(1, 100000000));
-  verb->add_option("--detector", options->detectors,
-                   fmt::format("Detectors to attack: {}; embree is its robust configuration, embree_default the other",
-                               fmt::join(detector_names(), ", ")))
+  verb->add_option(
+          "--detector", options->detectors,
+          fmt::format("Detectors to attack: {}; embree is Embree's robust configuration, embree_default its default",
+                      fmt::join(detector_names(), ", ")))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
   verb->add_option("--method", options->methods,
-                   "Methods, of: static, carried, ccd; a detector is tried with those that it knows")
+                   "Methods, any of: static, carried, ccd; each detector runs with the methods that it knows")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
@@ -158,7 +160,7 @@ void add_stress(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
   verb->add_option("--device", options->device,
-                   "EGL device, as 'vestige devices' counts them [default: the first GPU, else software]")
+                   "EGL device, by its number in 'vestige devices' [default: the first GPU, otherwise software]")
       ->group(kDetectorGroup)
       ->check(help::whole_number(0, 1023))
       ->type_name("K");

@@ -68,9 +68,9 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   times_file.write(compressed);
   times_file.commit();
 
-  if (interrupted()) warn("stopped early; what was measured so far was written", verbosity);
+  if (interrupted()) warn("stopped early; the results so far were written", verbosity);
   if (runs < options.settings.runs)
-    warn(fmt::format("--runs {}: the trace has room for {} of {} frames each", options.settings.runs, runs,
+    warn(fmt::format("--runs {}: the trace has room for {} runs of {} frames each", options.settings.runs, runs,
                      options.settings.run_frames),
          verbosity);
   for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
@@ -93,9 +93,10 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
                             "  vestige sweep man.mcap --counts 1,10,40,100 --detector paper,cpu -o sweep\n");
   add_swept_options(*verb, options->choice);
   add_contestant_options(*verb, options->choice.contestants);
-  verb->add_option("--renderer", options->choice.contestants.renderer,
-                   "on: measures everything also while a second thread draws the scene at 90 Hz in a context of its "
-                   "own, as HAVE 2010 does")
+  verb->add_option(
+          "--renderer", options->choice.contestants.renderer,
+          "on: measures everything again while a second thread draws the scene at 90 Hz in its own context, as "
+          "HAVE 2010 does")
       ->capture_default_str()
       ->check(CLI::IsMember({"on", "off"}));
   add_measuring_options(*verb, options->choice, options->settings, "Consecutive frames at each place",

@@ -111,7 +111,7 @@ int draw_timeline(const Options& options) {
       const ActuatorMap map = map_of(options);
       if (map.actuator_count != timeline.actuator_count)
         throw Error(options.map,
-                    fmt::format("has {} actuators, and {} has {}", map.actuator_count, options.inputs.front().string(),
+                    fmt::format("has {} actuators, but {} has {}", map.actuator_count, options.inputs.front().string(),
                                 timeline.actuator_count),
                     "name the map that the timeline was made with");
       timeline.names = map.names;
@@ -130,7 +130,7 @@ int draw_textures(const Options& options) {
       for (const TextureContact& contact : textures.contacts)
         if (contact.actuator > map.actuator_count)
           throw Error(options.map,
-                      fmt::format("has {} actuators, and {} names actuator {}", map.actuator_count,
+                      fmt::format("has {} actuators, but {} names actuator {}", map.actuator_count,
                                   options.inputs.front().string(), contact.actuator),
                       "name the map that the textures were made with");
       textures.names = map.names;
@@ -150,8 +150,9 @@ int draw_avatar(Options options) {
     sheet.animations = ContactSheet::choose(sheet.subject.avatar, options.animation);
     sheet.poses = options.poses;
     if (sheet.animations.size() > kMostAnimations) {
-      warn(options, fmt::format("{}: has {} animations, of which the first {} are drawn; name others with --animation",
-                                input, sheet.animations.size(), kMostAnimations));
+      warn(options,
+           fmt::format("{}: has {} animations, and only the first {} are drawn; choose another with --animation", input,
+                       sheet.animations.size(), kMostAnimations));
       sheet.animations.resize(kMostAnimations);
     }
     return avatar_figure(sheet);
@@ -240,7 +241,7 @@ int draw_paraview(const Options& options) {
   TraceReader trace(input);
   const Subject subject = read_subject(trace, input, options.map);
   warn_of(options, subject);
-  if (subject.map.actuator_count == 0) warn(options, "there is no actuator map, so that every amplitude is 0");
+  if (subject.map.actuator_count == 0) warn(options, "there is no actuator map, so every amplitude is 0");
   ParaviewOptions settings;
   settings.law = options.law;
   settings.law_options.hold_s = options.hold_ms / 1000;
@@ -259,8 +260,8 @@ int draw_paraview(const Options& options) {
   series.commit();
   if (result.interrupted) warn(options, fmt::format("stopped after {} frames", result.frames));
   if (!options.quiet)
-    print_message(fmt::format("wrote {}.pvd: {} steps of {} frames, {} contacts\n", stem.string(), series.steps(),
-                              result.frames, result.contacts));
+    print_message(fmt::format("wrote {}.pvd: {} time steps from {} frames, {} contacts\n", stem.string(),
+                              series.steps(), result.frames, result.contacts));
   return result.interrupted ? cli::kDataLost : damage;
 }
 

@@ -58,7 +58,7 @@ CLI::App& add_sweep(CLI::App& app, Options& options) {
                                 "  vestige plot sweep gpu/sweep.json software/sweep.json -o figures\n");
   sweep
       .add_option("INPUT", options.inputs,
-                  "The sweep.json to draw, or the folder that holds it; several go into one figure")
+                  "The sweep.json to draw, or the folder that holds it; several inputs go into one figure")
       ->type_name("DIR|JSON")
       ->required();
   add_common_options(sweep, options, "DIR", "Folder for the figures [default: beside the first input]");
@@ -69,9 +69,11 @@ CLI::App& add_timeline(CLI::App& app, Options& options) {
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
                                    "  vestige plot timeline timeline.csv --map builtin -o figures/timeline\n");
-  add_input(timeline, options, "CSV", "What 'vestige replay --timeline FILE.csv' wrote");
+  add_input(timeline, options, "CSV", "The file that 'vestige replay --timeline FILE.csv' wrote");
   add_naming_map(timeline, options);
-  timeline.add_option("--measured", options.measured, "What a board's pins did meanwhile, as CSV like a timeline")
+  timeline
+      .add_option("--measured", options.measured,
+                  "The duties that were measured at a board's pins meanwhile, as CSV like a timeline")
       ->type_name("CSV");
   add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
   return timeline;
@@ -82,7 +84,7 @@ CLI::App& add_textures(CLI::App& app, Options& options) {
       add_command(app, "textures", "Collision textures: which actuator each collider touched, and when",
                   "  vestige plot textures textures.exr\n"
                   "  vestige plot textures textures.exr --map builtin -o figures/textures\n");
-  add_input(textures, options, "EXR", "What 'vestige replay --textures FILE.exr' wrote");
+  add_input(textures, options, "EXR", "The file that 'vestige replay --textures FILE.exr' wrote");
   add_naming_map(textures, options);
   add_common_options(textures, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
   return textures;
@@ -98,10 +100,11 @@ CLI::App& add_body(CLI::App& app, Options& options) {
       ->type_name("builtin|FILE");
   body.add_option(
           "--map", options.map,
-          "The actuator map, a greyscale PNG whose FILE.json names the actuators if it exists, or a layout ('vestige "
-          "map make' lists them) [default: the trace's]")
+          "The actuator map: a greyscale PNG (FILE.json names the actuators, if it exists), or a layout ('vestige map "
+          "make --help' lists the layouts) [default: the trace's]")
       ->type_name("builtin|none|LAYOUT|FILE.png");
-  body.add_option("--contacts", options.contacts, "What 'vestige replay --contacts FILE.csv' wrote")->type_name("CSV");
+  body.add_option("--contacts", options.contacts, "The file that 'vestige replay --contacts FILE.csv' wrote")
+      ->type_name("CSV");
   add_common_options(body, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -body]");
   return body;
 }
@@ -115,10 +118,12 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
   scene.add_option("--frames", options.moments.count, "How many frames are drawn")
       ->capture_default_str()
       ->check(CLI::Range(1, 24));
-  scene.add_option("--from", options.moments.from_s, "Leave out what is before [default: the trace's beginning]")
+  scene
+      .add_option("--from", options.moments.from_s,
+                  "Leave out the frames before this time [default: the trace's beginning]")
       ->type_name("SECONDS")
       ->check(help::kFinite);
-  scene.add_option("--to", options.moments.to_s, "Leave out what is after [default: the trace's end]")
+  scene.add_option("--to", options.moments.to_s, "Leave out the frames after this time [default: the trace's end]")
       ->type_name("SECONDS")
       ->check(help::kFinite);
   scene.add_option("--trail", options.trail_ms, "How far back paths and contacts are shown")
@@ -127,7 +132,7 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
       ->check(help::between(0.001, 10000));
   scene
       .add_option("--contacts", options.contacts,
-                  "What 'vestige replay --contacts FILE.csv' wrote; the frames drawn are then ones with contacts")
+                  "The file that 'vestige replay --contacts FILE.csv' wrote; then only frames with contacts are drawn")
       ->type_name("CSV");
   add_other_map(scene, options);
   add_common_options(scene, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -scene]");
@@ -155,7 +160,7 @@ CLI::App& add_report(CLI::App& app, Options& options) {
                                  "  vestige plot report compared\n"
                                  "  vestige plot report compared --top 3 -o page\n");
   add_input(report, options, "DIR", "The folder that 'vestige batch -o DIR' wrote");
-  report.add_option("--top", options.top, "How many maps get pictures, from the best on")
+  report.add_option("--top", options.top, "How many of the best maps get pictures")
       ->capture_default_str()
       ->type_name("N")
       ->check(help::whole_number(1, 1000));
@@ -169,7 +174,8 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
                                    "  vestige plot paraview man.mcap --every 1 -o paraview/man.pvd\n");
   add_input(paraview, options, "MCAP", "The trace");
   add_other_map(paraview, options);
-  paraview.add_option("--law", options.law, "How strong a contact makes the actuators")
+  paraview
+      .add_option("--law", options.law, "The intensity law, which says how strongly a contact drives the actuators")
       ->capture_default_str()
       ->type_name("binary|speed|phantom|gaussian");
   paraview.add_option("--hold", options.hold_ms, "How long a contact is felt")
@@ -177,19 +183,20 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
       ->type_name("MS")
       ->check(help::between(0, 10000));
   CLI::Option* every =
-      paraview.add_option("--every", options.every, "One time step for so many frames, instead of --rate")
+      paraview.add_option("--every", options.every, "Write one time step for every N frames, instead of --rate")
           ->type_name("N")
           ->check(help::whole_number(1, 1000000000));
   paraview
       .add_option("--rate", options.rate_hz,
-                  "At most so many time steps a second; each has the contacts since the one before, and the highest "
-                  "amplitudes")
+                  "Write at most HZ time steps per second; each step has the contacts since the step before, and the "
+                  "highest amplitudes")
       ->capture_default_str()
       ->type_name("HZ")
       ->check(help::between(0.001, 1e6))
       ->excludes(every);
-  add_common_options(paraview, options, "DIR|FILE.pvd",
-                     "Write DIR/NAME.pvd and the folder DIR/NAME, or FILE.pvd and FILE [default: beside the trace]");
+  add_common_options(
+      paraview, options, "DIR|FILE.pvd",
+      "Write DIR/NAME.pvd and the folder DIR/NAME, or FILE.pvd and the folder FILE [default: beside the trace]");
   return paraview;
 }
 
@@ -203,7 +210,7 @@ std::vector<Verb> add_verbs(CLI::App& app, Options& options) {
           {&add_results(app, options, "growth", "Cost over colliders and over triangles (growth.svg, .png)",
                         "Folder for the figure [default: the input]"),
            draw_growth},
-          {&add_results(app, options, "stress", "What each detector gets wrong, by family of hostile cases",
+          {&add_results(app, options, "stress", "Errors of each detector, by family of hostile cases",
                         "Folder for the figures [default: the input]"),
            draw_stress},
           {&add_timeline(app, options), draw_timeline},

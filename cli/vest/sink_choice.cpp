@@ -31,8 +31,8 @@ std::uint64_t parse_address(const std::string& text) {
   std::uint64_t address = 0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), address, 16);
   if (failure != std::errc() || end != text.data() + text.size())
-    throw UsageError("--xbee-address", fmt::format("'{}' is no address", text),
-                     "give up to 16 hexadecimal digits, as 0013A20041AABBCC; FFFF is every radio that listens");
+    throw UsageError("--xbee-address", fmt::format("'{}' is not an address", text),
+                     "write at most 16 hexadecimal digits, as 0013A20041AABBCC; FFFF means every radio that listens");
   return address;
 }
 
@@ -46,17 +46,17 @@ std::optional<XbeeOptions> xbee_options(const SinkChoice& choice) {
 /// Refuses flags that would say nothing, or not what they seem to.
 void check_sink_flags(const CLI::App& verb, const SinkChoice& choice) {
   if (choice.ttl_ms % 10 != 0)
-    throw UsageError("--ttl", fmt::format("{} ms cannot be told to the vest", choice.ttl_ms),
-                     "choose a multiple of 10");
-  if (choice.port == SinkChoice::kFilePrefix) throw UsageError("--port", "names no file", "file:OUT");
+    throw UsageError("--ttl", fmt::format("a vest frame cannot hold {} ms", choice.ttl_ms), "choose a multiple of 10");
+  if (choice.port == SinkChoice::kFilePrefix) throw UsageError("--port", "names no file", "write file:OUT");
   if (choice.is_osc() && verb.count("--ttl") != 0) throw UsageError("--ttl", "OSC has no time to live", "leave it out");
   const bool is_serial = !choice.is_osc() && !choice.is_file();
   for (const char* flag : {"--baud", "--xbee-api"})
     if (!is_serial && verb.count(flag) != 0)
-      throw UsageError(flag, fmt::format("says nothing of '{}', which is no serial port", choice.port), "leave it out");
+      throw UsageError(flag, fmt::format("does not apply to '{}', which is not a serial port", choice.port),
+                       "leave it out");
   for (const char* flag : {"--osc-address", "--osc-value"})
     if (!choice.is_osc() && verb.count(flag) != 0)
-      throw UsageError(flag, fmt::format("says nothing of '{}', which is no OSC", choice.port),
+      throw UsageError(flag, fmt::format("does not apply to '{}', which is not OSC", choice.port),
                        "send to osc://HOST:PORT, or leave it out");
 }
 
@@ -83,29 +83,31 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
           },
           ""))
       ->type_name("DEVICE|URL|-");
-  add("--baud", choice.baud, "Of the serial line, as the board was built for")
+  add("--baud", choice.baud, "Baud of the serial line; the board must be built for the same")
       ->capture_default_str()
       ->check(help::whole_number(1, 4'000'000))
       ->type_name("N");
   add("--ttl", choice.ttl_ms,
-      "The board switches all off when it hears nothing newer for so long, in ms, in steps of 10")
+      "The board switches all actuators off if it receives no newer frame for this time, in ms, in steps of 10")
       ->capture_default_str()
       // A state that stays is sent again in time only where it lives so long (`ttl_units` takes less).
       ->check(help::whole_number(50, 2550))
       ->type_name("MS");
   add("--levels", choice.levels,
-      "duty: of vibrators; pressure: of pneumatic cells, the share of 1 m/s at which something is pushed into the skin")
+      "duty: of vibrators; pressure: of pneumatic cells, by the speed at which a collider pushes into the skin, as a "
+      "share of 1 m/s")
       ->capture_default_str()
       ->check(CLI::IsMember({"duty", "pressure"}));
   CLI::Option* xbee =
       verb.add_flag("--xbee-api", choice.xbee_api, "The XBee at this port is in API mode (its setting AP is not 0)")
           ->group(kVestGroup);
   add("--xbee-request", choice.xbee_request,
-      "transmit: frame 0x10, 64-bit addresses; tx16: frame 0x01, 16-bit addresses, for the first series")
+      "transmit: frame 0x10, 64-bit addresses; tx16: frame 0x01, 16-bit addresses, for the first XBee series")
       ->capture_default_str()
       ->check(CLI::IsMember({"transmit", "tx16"}))
       ->needs(xbee);
-  add("--xbee-address", choice.xbee_address, "The radio at the vest, in hexadecimal; FFFF: all that listen")
+  add("--xbee-address", choice.xbee_address,
+      "Address of the vest's radio, in hexadecimal; FFFF: every radio that listens")
       ->capture_default_str()
       ->type_name("HEX")
       ->needs(xbee);
@@ -142,7 +144,7 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
     if (choice.osc_value == "boolean") osc.value = OscValue::kBoolean;
     auto sink = std::make_unique<OscSink>(osc, actuator_names);
     if (sink->is_refused())
-      warn(fmt::format("{}: nobody listens there now; frames are sent all the same", sink->name()), verbosity);
+      warn(fmt::format("{}: no program listens there now; frames are sent anyway", sink->name()), verbosity);
     sink_ = std::move(sink);
     return;
   }
@@ -164,10 +166,11 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
   auto sink = std::make_unique<SerialSink>(serial);
   greeting_ = sink->greet();
   if (!greeting_) {
-    warn(fmt::format("{}: no board answers; frames are sent all the same\n  Is it on, is the baud {}, is the vest's "
-                     "own program on it?",
-                     choice.port, choice.baud),
-         verbosity);
+    warn(
+        fmt::format("{}: no board answers; frames are sent anyway\n  Check that the board is on, that it uses {} baud, "
+                    "and that it runs the vest's program.",
+                    choice.port, choice.baud),
+        verbosity);
   }
   std::size_t sent = actuator_names.size();
   if (greeting_) {
@@ -177,7 +180,7 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
   frame_bytes_ = state_bytes(choice, sent);
   // Two may be on their way when the next one is due.
   if (2 * line_time_s() > choice.ttl_ms / 1e3)
-    warn(fmt::format("{}: a frame takes {:.0f} ms on the line: one that is late or lost, and the board switches itself "
+    warn(fmt::format("{}: a frame takes {:.0f} ms on the line; if one frame is late or lost, the board switches itself "
                      "off\n  Use a faster --baud, or a longer --ttl.",
                      choice.port, line_time_s() * 1e3),
          verbosity);
@@ -189,7 +192,7 @@ OpenSink::~OpenSink() = default;
 
 void OpenSink::warn_of_actuators_beyond(std::size_t actuators, Verbosity verbosity) const {
   if (greeting_ && greeting_->actuator_count < actuators)
-    warn(fmt::format("{}: the board drives {} actuators; those beyond, up to {}, will not be felt", choice_.port,
+    warn(fmt::format("{}: the board drives only the first {} of {} actuators; the others are not felt", choice_.port,
                      greeting_->actuator_count, actuators),
          verbosity);
 }

@@ -144,17 +144,17 @@ int report_losses(const Streamed& streamed, const OpenSink& sink, Verbosity verb
     say(fmt::format("{} poses and the ends of {} segments are not finite; they fired nothing",
                     playback.non_finite_frames, playback.non_finite_segments));
   if (sender.receive_errors + sender.overruns != 0)
-    say(fmt::format("the board counted {} damaged frames and {} times lost bytes: a loose wire, or another baud?",
+    say(fmt::format("the board counted {} damaged frames and lost bytes {} times; check the wires and the baud",
                     sender.receive_errors, sender.overruns));
   if (sender.fail_safes != 0)
-    say(fmt::format("the board had switched itself off or restarted {} times", sender.fail_safes));
+    say(fmt::format("the board switched itself off or restarted {} times", sender.fail_safes));
   if (const std::string radio = sink.radio_failure(); !radio.empty()) say(radio);
   const bool acknowledges = sink.sink().acknowledges();
   if (acknowledges && sender.acknowledged != sender.sent)
     say(fmt::format("{} of {} frames were not acknowledged{}", sender.sent - sender.acknowledged, sender.sent,
-                    sink.greeting() && sender.acknowledged <= 2 ? "; is --levels what the board takes?" : ""));
+                    sink.greeting() && sender.acknowledged <= 2 ? "; check that the board takes these --levels" : ""));
   if (!sender.off_sent || (acknowledges && !sender.off_acknowledged))
-    say("nothing confirms that everything is off at the end; a board's own time-out does it, if it has one");
+    say("nothing confirms that all actuators are off at the end; a board that has a time-out switches them off itself");
   return code;
 }
 
@@ -162,14 +162,15 @@ void check_flags(const StreamOptions& options) {
   options.law.check();
   if (options.sink.quantity() == Quantity::kPressure && options.law.any())
     throw UsageError(options.law.actuator.empty() ? "--law" : "--actuator",
-                     "pressures follow from the speed of contacts, by a law of their own", "leave it out");
+                     "pressures have their own law, which uses the speed of contacts", "leave it out");
   if (!options.map.empty() && options.choice.surface == "mapped")
-    throw UsageError("--map", "may change while it is felt, which --surface mapped cannot follow",
+    throw UsageError("--map", "may change during the playback, which --surface mapped cannot follow",
                      "leave one of the two out");
   if (options.map == "none")
-    throw UsageError("--map", "'none' has no actuator to switch", "name a map, or leave it out for the trace's own");
+    throw UsageError("--map", "'none' has no actuator to switch",
+                     "name a map, or leave the flag out to use the trace's map");
   if (options.is_map_watched() && options.choice.detector == "paper")
-    throw UsageError("--map", "may change while it is felt, which --detector paper cannot follow",
+    throw UsageError("--map", "may change during the playback, which --detector paper cannot follow",
                      "choose another detector");
 }
 
@@ -180,7 +181,8 @@ void choose_map(OpenTrace& trace, const StreamOptions& options) {
     for (const std::string& warning : trace.map.warnings) warn(warning, options.common.verbosity());
   }
   if (trace.map.actuator_count == 0)
-    throw Error(options.trace, "holds no actuator map, so that nothing would be felt", "name one: --map FILE.png");
+    throw Error(options.map.empty() ? options.trace : options.map, "has no actuator, so nothing would be felt",
+                "name a map that has actuators: --map FILE.png");
 }
 
 /// Returns laws for pressures if the sink asks for them, else those of --law.
@@ -240,10 +242,10 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
       return progress.update(share);
     };
     calls.fell_behind = [&] {
-      tell(
-          fmt::format("{}: a second late: '{}' does not keep up with the trace, or the machine was busy; what is felt "
-                      "comes late and lasts longer\n  Take a faster --detector, or a lower --rate.",
-                      options.trace, name));
+      tell(fmt::format(
+          "{}: the playback is a second late: '{}' does not keep up with the trace, or the machine was busy; "
+          "contacts are felt late and for longer\n  Use a faster --detector, or a lower --rate.",
+          options.trace, name));
     };
     calls.take = [&](const ActuatorFrame& frame, Sender::Clock::time_point due) {
       sender.post(frame, due);
@@ -282,7 +284,7 @@ void add_stream(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->check(help::between(1e-3, 1e3))
       ->type_name("X");
-  verb->add_flag("--loop", options->playback.loop, "Begin anew at the trace's end, until Ctrl-C")->group("Playing");
+  verb->add_flag("--loop", options->playback.loop, "Begin again at the trace's end, until Ctrl-C")->group("Playing");
   add_playing("--map", options->map,
               "Use this actuator map instead of the trace's, and read it again whenever it changes on disk")
       ->type_name("builtin|LAYOUT|FILE.png");
@@ -291,7 +293,7 @@ void add_stream(CLI::App& program, Invocation& invocation) {
   add_detector_and_context(*verb, options->choice);
   add_detector_options(*verb, options->choice);
   verb->add_option("--log", options->log,
-                   "Write every changed state: when it was due, whether it was sent or superseded, after how many "
+                   "Write every changed state: its due time, whether it was sent or superseded, after how many "
                    "microseconds, and its levels")
       ->group("Results")
       ->type_name("OUT.csv|-");

@@ -107,19 +107,19 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
     verdict += fmt::format(", the link was lost {}", counted(statistics.links_lost, "time"));
   if (statistics.superseded > 0) verdict += fmt::format(", {} could not be sent in time", statistics.superseded);
   if (!statistics.off_sent) {
-    verdict += ", the last, which switches off, could not be sent";
+    verdict += ", the last frame, which switches all off, could not be sent";
   } else if (acknowledges && !statistics.off_acknowledged) {
-    verdict += ", the last, which switches off, was not acknowledged";
+    verdict += ", the last frame, which switches all off, was not acknowledged";
   }
   if (checked.stopped) verdict += fmt::format("; stopped at actuator {} of {}", checked.actuators, actuators);
   if (!good) {
     verdict += ": THE VEST DOES NOT HEAR EVERYTHING";
-    if (sink.greeting() && statistics.acknowledged <= 2) verdict += "; is --levels what the board takes?";
+    if (sink.greeting() && statistics.acknowledged <= 2) verdict += "; check that the board takes these --levels";
     verdict += "\n";
   } else if (checked.stopped) {
     verdict += "\n";
   } else if (!acknowledges) {
-    verdict += "; nothing answers on this way, so only what you felt counts\n";
+    verdict += "; this --port gives no answers, so only what you felt counts\n";
   } else {
     verdict += fmt::format(", answers after {:.1f} ms (median): the vest hears everything\n",
                            statistics.acknowledged_after.quantile_us(0.5) / 1e3);
@@ -149,13 +149,13 @@ void add_check(CLI::App& vest, Invocation& invocation) {
                             "  vestige vest check --port /dev/ttyUSB0\n"
                             "  vestige vest check --port osc://127.0.0.1:9000 --actuators 2\n");
   add_sink_options(*verb, options->sink);
-  verb->add_option("--actuators", options->actuators, "How many there are [default: what the board says, else 6]")
+  verb->add_option("--actuators", options->actuators, "Number of actuators [default: as the board says, otherwise 6]")
       ->check(help::whole_number(1, kMaxActuators))
       ->type_name("N");
-  verb->add_option("--level", options->level, "How strongly they run")
+  verb->add_option("--level", options->level, "How strongly the actuators run")
       ->capture_default_str()
       ->check(help::whole_number(1, 255));
-  verb->add_option("--seconds", options->on_s, "How long each runs")
+  verb->add_option("--seconds", options->on_s, "How long each actuator runs")
       ->capture_default_str()
       ->check(help::between(0.05, 60))
       ->type_name("S");
@@ -166,7 +166,7 @@ void add_check(CLI::App& vest, Invocation& invocation) {
 }  // namespace
 
 void add_vest(CLI::App& program, Invocation& invocation) {
-  CLI::App* verb = add_verb(program, "vest", "Try a vest out",
+  CLI::App* verb = add_verb(program, "vest", "Try out a vest",
                             "  vestige vest check --port /dev/ttyUSB0\n"
                             "  vestige vest check --port /dev/ttyUSB0 --level 128 --seconds 2\n");
   verb->require_subcommand(1);

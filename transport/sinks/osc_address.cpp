@@ -49,7 +49,7 @@ std::string expand(std::string_view address_template, std::size_t index, const s
       address += part_of(name);
     } else {
       throw UsageError("--osc-address", fmt::format("there is no placeholder '{}'", placeholder),
-                       "choose of {n} (from 1), {i} (from 0) and {name}");
+                       "choose from {n} (from 1), {i} (from 0) and {name}");
     }
     address_template.remove_prefix(length);
   }
@@ -60,12 +60,13 @@ void check_address(const std::string& address) {
   constexpr std::size_t kMostBytes = 1000;  // an address must fit into a datagram
   const auto refuse = [&](const char* cause) {
     throw UsageError("--osc-address", fmt::format("'{}' {}", address, cause),
-                     fmt::format("it looks like '{}'", kOscAddressTemplate));
+                     fmt::format("write an address like '{}'", kOscAddressTemplate));
   };
-  if (!address.starts_with('/') || address.size() == 1) refuse("is no OSC address: it begins with a slash and goes on");
+  if (!address.starts_with('/') || address.size() == 1)
+    refuse("is not an OSC address, which begins with a slash and has a name after it");
   if (address.size() > kMostBytes) refuse("is too long");
   if (!std::ranges::all_of(address, may_stand_in_address))
-    refuse("holds what an OSC address must not: blanks, # * , ? [ ] or what is not ASCII");
+    refuse("holds characters that an OSC address cannot hold: blanks, # * , ? [ ] { } or characters outside ASCII");
 }
 
 }  // namespace
@@ -74,10 +75,9 @@ OscOptions parse_osc_url(std::string_view url) {
   const std::string_view place = url.substr(0, url.size() - (url.ends_with('/') ? 1 : 0));
   const std::size_t host = url.find("://");
   if (host != std::string_view::npos && place.find('/', host + 3) != std::string_view::npos)
-    throw UsageError(
-        "--port",
-        fmt::format("'{}' goes on after the port; what the parameters are called is set by --osc-address", url),
-        "name a host and a port: osc://127.0.0.1:9000");
+    throw UsageError("--port",
+                     fmt::format("'{}' goes on after the port; --osc-address sets the names of the parameters", url),
+                     "name a host and a port: osc://127.0.0.1:9000");
   HostPort parsed = parse_host_port(url, "osc", "--port");
   OscOptions options;
   options.host = std::move(parsed.host);
@@ -99,9 +99,10 @@ std::vector<std::string> osc_addresses(std::string_view address_template,
     check_address(address);
     const auto [other, is_new] = number_of.emplace(address, i + 1);
     if (!is_new)
-      throw UsageError("--osc-address",
-                       fmt::format("actuators {} and {} would both be '{}'", other->second, i + 1, address),
-                       "put {n} or {i} into it, which differ for each actuator");
+      throw UsageError(
+          "--osc-address",
+          fmt::format("actuators {} and {} would have the same address '{}'", other->second, i + 1, address),
+          "put {n} or {i}, which differ for each actuator, into the template");
   }
   return addresses;
 }

@@ -65,8 +65,8 @@ OscSink::OscSink(OscOptions options, const std::vector<std::string>& actuator_na
   addrinfo* found = nullptr;
   if (const int error = ::getaddrinfo(options_.host.c_str(), std::to_string(options_.port).c_str(), &hints, &found);
       error != 0)
-    throw Error(name(), fmt::format("'{}' is not known: {}", options_.host, ::gai_strerror(error)),
-                "check its name, or give its address: osc://192.168.1.20:9000");
+    throw Error(name(), fmt::format("the host '{}' is not known: {}", options_.host, ::gai_strerror(error)),
+                "check the host's name, or give its address: osc://192.168.1.20:9000");
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
   const addrinfo* chosen = found;
   while (chosen != nullptr && chosen->ai_family != AF_INET) chosen = chosen->ai_next;
@@ -124,7 +124,7 @@ void OscSink::send_datagram(std::span<const std::byte> bytes) {
     if (error == EINTR) continue;
     const std::string cause = fmt::format("could not send: {}", std::strerror(error));
     if (is_passing(error)) throw LinkLost(name(), cause, "check the network");
-    throw Error(name(), cause, "check the address, and that no firewall forbids it");
+    throw Error(name(), cause, "check the address, and that no firewall blocks it");
   }
   bytes_sent_ += bytes.size();
 }

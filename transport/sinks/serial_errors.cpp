@@ -34,9 +34,10 @@ Error permission_error(const std::string& path) {
   const bool known = ::stat(path.c_str(), &status) == 0;
   // A user should not join the group root for a serial port.
   if (!known || (status.st_mode & kGroupMay) != kGroupMay || status.st_gid == 0)
-    return {path, "you may not open it", fmt::format("give it to yourself: sudo chown $USER {}", path)};
+    return {path, "you have no permission to open this port",
+            fmt::format("make yourself the owner: sudo chown $USER {}", path)};
   const std::string group = group_name(status.st_gid);
-  return {path, fmt::format("you may not open it: it belongs to the group {}", group),
+  return {path, fmt::format("you have no permission to open this port: it belongs to the group {}", group),
           fmt::format("join the group, then log out and in again: sudo usermod -aG {} $USER", group)};
 }
 

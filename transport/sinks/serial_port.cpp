@@ -50,13 +50,13 @@ speed_t speed_constant(std::uint32_t baud) {
   bauds.reserve(kSpeeds.size());
   for (const Speed& speed : kSpeeds) bauds.push_back(speed.baud);
   throw UsageError("--baud", fmt::format("{} is not a standard rate", baud),
-                   fmt::format("use what the board is set to, one of {}", fmt::join(bauds, ", ")));
+                   fmt::format("use the rate that the board is set to, one of {}", fmt::join(bauds, ", ")));
 }
 
 void set_raw(const std::string& path, int descriptor, std::uint32_t baud, speed_t speed) {
   const auto refuse = [&] {
     return Error(path, fmt::format("its driver refuses {} baud, 8 data bits, no parity", baud),
-                 "use a slower --baud, and the same on the board");
+                 "use a slower --baud, and set the board to the same rate");
   };
   termios wanted{};
   if (::tcgetattr(descriptor, &wanted) != 0) throw serial_open_error(path, errno);
@@ -156,8 +156,7 @@ void SerialPort::write(std::span<const std::uint8_t> bytes) {
       throw lost(path_, fmt::format("the line is lost: {}", std::generic_category().message(errno)));
     const auto left = std::chrono::ceil<milliseconds>(deadline - steady_clock::now());
     if (left <= milliseconds(0))
-      throw lost(path_,
-                 fmt::format("the line is lost: it does not take what is written within {} ms", patience_.count()));
+      throw lost(path_, fmt::format("the line is lost: it does not take all bytes within {} ms", patience_.count()));
     pollfd line{.fd = descriptor_, .events = POLLOUT, .revents = 0};
     ::poll(&line, 1, static_cast<int>(left.count()));
   }

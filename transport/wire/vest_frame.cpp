@@ -54,7 +54,7 @@ std::optional<VestAnswer> decode(std::span<const std::uint8_t> frame) {
 std::uint8_t ttl_units(int ttl_ms) {
   constexpr int kMost_ms = 255 * kTtlUnit_ms;
   if (ttl_ms < kTtlUnit_ms || ttl_ms > kMost_ms || ttl_ms % kTtlUnit_ms != 0)
-    throw UsageError("--ttl", fmt::format("{} ms cannot be told to the vest", ttl_ms),
+    throw UsageError("--ttl", fmt::format("a vest frame cannot hold {} ms", ttl_ms),
                      fmt::format("choose a multiple of {} from {} to {}", kTtlUnit_ms, kTtlUnit_ms, kMost_ms));
   return static_cast<std::uint8_t>(ttl_ms / kTtlUnit_ms);
 }
@@ -62,7 +62,8 @@ std::uint8_t ttl_units(int ttl_ms) {
 std::vector<std::uint8_t> encode_state(Quantity quantity, std::span<const std::uint8_t> level, std::uint8_t sequence,
                                        std::uint8_t ttl) {
   if (level.size() > kMaxActuators)
-    throw Error("vest", fmt::format("a frame holds {} actuators, these are {}", kMaxActuators, level.size()),
+    throw Error("vest",
+                fmt::format("a frame holds at most {} actuators, and there are {}", kMaxActuators, level.size()),
                 "use a map with fewer actuators");
   const std::uint8_t type = quantity == Quantity::kDuty ? 'S' : 'P';
   std::vector<std::uint8_t> payload{type, sequence, ttl, static_cast<std::uint8_t>(level.size())};

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> request_header(const XbeeOptions& options, std::uint8_
   if (options.request == XbeeRequest::kTx16) {
     if (options.address > 0xFFFF)
       throw UsageError("XBee", fmt::format("address {:X} does not fit into a TX16 frame", options.address),
-                       "name the 16-bit address (the vest's module tells it as MY), or use Transmit Request frames");
+                       "name the 16-bit address (the setting MY of the vest's module), or use Transmit Request frames");
     data = {0x01, frame_number};
     append_number(data, options.address, 2);
   } else {

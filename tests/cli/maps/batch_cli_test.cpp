@@ -109,7 +109,7 @@ TEST_F(BatchCommandLine, OneBadInputDoesNotStopTheRest) {
   EXPECT_THAT(run("cut -d, -f1-3 out/scores.csv").standard_output,
               AllOf(HasSubstr("builtin,a,binary\n"), HasSubstr("builtin,b,binary\n"), HasSubstr("builtin,cut,binary\n"),
                     Not(HasSubstr("noise")), Not(HasSubstr("grey"))));
-  expect_failure("vestige batch --maps text.png --traces a.mcap -o none", 1, {"none of them", "PNG"}, "none");
+  expect_failure("vestige batch --maps text.png --traces a.mcap -o none", 1, {"none of the maps", "PNG"}, "none");
   expect_failure("vestige batch --maps builtin --traces noise.mcap -o none", 1, {"noise.mcap"}, "none");
 }
 
@@ -237,7 +237,8 @@ TEST_F(BatchCommandLine, RefusesWhatWouldDoNothing) {
   expect_failure(scenario + "--rate 1e9 --duration 100", 2, {"4294967295 frames"}, "none");
   expect_failure(scenario + "--rate 1e300", 2, {"--rate", "0.001 to 1000000000"}, "none");
   expect_failure("vestige batch --maps builtin merge a b -o none", 2, {"--maps", "merge"}, "none");
-  expect_failure("vestige batch slurm --shards 2 --maps builtin --traces a.mcap -o none", 2, {"--shards"}, "none");
+  expect_failure("vestige batch slurm --shards 2 --maps builtin --traces a.mcap -o none", 2,
+                 {"--shards: 2 shards for 1 trace: ", "at most 1 shard"}, "none");
 }
 
 }  // namespace

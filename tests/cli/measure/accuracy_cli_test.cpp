@@ -80,7 +80,7 @@ TEST_F(AccuracyCommandLine, ReadsCollidersFromAFileAndSaysWhatThePublishedMethod
       run("vestige accuracy --detector paper,cpu --method static,ccd --rate 60 --truth-rate 2000 --colliders hand.csv "
           "--no-figure -o hand");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
-  EXPECT_THAT(outcome.standard_error, HasSubstr("no 'paper' with ccd"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("'paper' with ccd is left out"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("paper, static"));
   const auto scene = json_in("hand/accuracy.json")["scenes"][0];
   EXPECT_EQ(scene["count"], 1);

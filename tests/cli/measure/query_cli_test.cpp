@@ -51,7 +51,7 @@ TEST_F(QueryCommandLine, AFalseAnswerFailsTheCheckAndIsNamed) {
   const test::Outcome outcome = run("vestige query wrong.csv");
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_THAT(outcome.standard_output, HasSubstr("wrong.csv"));
-  EXPECT_THAT(outcome.standard_error, AllOf(HasSubstr("1 false contacts"), HasSubstr("lines 1")));
+  EXPECT_THAT(outcome.standard_error, AllOf(HasSubstr("1 false contact,"), HasSubstr("lines 1")));
 }
 
 TEST_F(QueryCommandLine, ABrokenFileIsAnErrorAndLeavesNothingBehind) {

@@ -200,7 +200,8 @@ TEST(SerialPort, NamesTheGroupToJoinForThePermission) {
   ASSERT_EQ(::chown(line.path().c_str(), 0, dialout->gr_gid), 0);
   ASSERT_EQ(::chmod(line.path().c_str(), 0660), 0);
   EXPECT_THAT(as_nobody([&] { return refusal(line.path()); }),
-              AllOf(HasSubstr(line.path() + ": you may not open it"), HasSubstr("sudo usermod -aG dialout $USER")));
+              AllOf(HasSubstr(line.path() + ": you have no permission to open this port"),
+                    HasSubstr("sudo usermod -aG dialout $USER")));
 }
 
 TEST(SerialPort, AdvisesNobodyToJoinAGroupThatHelpsNothingOrIsRoots) {

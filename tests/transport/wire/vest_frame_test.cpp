@@ -52,7 +52,7 @@ TEST(VestFrame, HoldsAsManyActuatorsAsItsCountCanSayAndNoMore) {
     encode_state(Quantity::kDuty, Bytes(256, 1), 9, 20);
     FAIL() << "the count has wrapped round";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("255 actuators, these are 256"));
+    EXPECT_THAT(error.what(), HasSubstr("255 actuators, and there are 256"));
   }
 }
 
