@@ -122,7 +122,7 @@ std::vector<std::string> small_print(const Sweeps& sweeps) {
     if (!source.machine.empty()) text += fmt::format("Machine: {}. ", source.machine);
     if (!source.avatar.empty()) text += fmt::format("Avatar: {}. ", source.avatar);
     if (source.surface == "mapped") text += "Mapped triangles only. ";
-    if (!source.complete) text += "Not complete: it was stopped before its end. ";
+    if (!source.complete) text += "Not complete: the run was stopped before its end. ";
     text += fmt::format("Commit\u00a0{}.", source.commit);
     for (std::string& line : wrapped(text)) lines.push_back(std::move(line));
   }
