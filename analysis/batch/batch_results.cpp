@@ -142,17 +142,18 @@ void write_ranking(const BatchFolder& folder, const BatchResults& results, std::
   std::string csv = "rank,map,law,traces";
   for (const Metric& metric : metrics()) csv += fmt::format(",{0},{0}_low,{0}_high", metric.name);
   csv += ",difference_from_best,difference_low,difference_high,distinguishable_from_best\n";
-  nlohmann::ordered_json json = {{"schema_version", 1},
-                                 {"rank_by", headline.name},
-                                 {"better", name_of(headline.better)},
-                                 {"model_based", headline.model_based},
-                                 {"traces", results.traces},
-                                 {"seed", seed},
-                                 {"interval",
-                                  "95 %, paired bootstrap over the traces (expanded percentile: Hesterberg 2015); not "
-                                  "corrected for multiple comparisons"},
-                                 {"metrics", metrics_json()},
-                                 {"ranking", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {
+      {"schema_version", 1},
+      {"rank_by", headline.name},
+      {"better", name_of(headline.better)},
+      {"model_based", headline.model_based},
+      {"traces", results.traces},
+      {"seed", seed},
+      {"interval",
+       "95 %, paired bootstrap over the traces (expanded percentile: Hesterberg 2015); not corrected for "
+       "multiple comparisons"},
+      {"metrics", metrics_json()},
+      {"ranking", nlohmann::ordered_json::array()}};
   for (const RankedCandidate& ranked : results.ranking) {
     const BatchResults::Candidate& candidate = results.candidates[ranked.candidate];
     csv += fmt::format("{},{},{},{}", ranked.rank ? std::to_string(*ranked.rank) : "", candidate.map, candidate.law,

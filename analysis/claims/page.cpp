@@ -22,7 +22,7 @@ last section says [how each file was made](#how-was-each-file-made).
 renderer runs without OpenGL. `paper` is the published method. `geometry` is exact and uses OpenGL. `cpu` is exact
 without OpenGL. `embree` is the ray tracer Embree, `embree_default` the same without its robust flag. With `static`, a
 collider moves and the skin rests. With `carried`, the collider's start first moves along with the skin. With `ccd`,
-both move. Skipping leaves out what cannot touch.
+both move. Skipping leaves out pairs that cannot touch.
 
 )";
 

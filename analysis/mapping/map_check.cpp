@@ -115,7 +115,7 @@ class Checker {
         add(Severity::kProblem, "never_fires", actuator,
             fmt::format("actuator {} can never fire: no skin reaches its {} texels", quoted(actuator),
                         of(actuator).texels),
-            "paint it where the avatar's texture shows skin: 'vestige avatar FILE --uv uv.png' draws where that is");
+            "paint it where the avatar's texture shows skin; 'vestige avatar FILE --uv uv.png' draws this skin");
     }
   }
 
@@ -242,7 +242,7 @@ class Checker {
     // A map as coarse as a chessboard has no soft edges.
     if (soft == 0 || (soft == map_.actuator_count && map_.width * map_.height < 64 * 64)) return;
     add(Severity::kProblem, "soft_edges", soft == 1 ? one : std::uint16_t{0},
-        fmt::format("{} of {} grey levels are nowhere more than two texels wide ({} texels): soft edges of an editor, "
+        fmt::format("{} of {} grey levels are at most two texels wide everywhere ({} texels): soft edges of an editor, "
                     "each a separate actuator",
                     soft, map_.actuator_count, texels),
         "draw with a hard brush (GIMP: the pencil; no anti-aliasing, no scaling with interpolation)");

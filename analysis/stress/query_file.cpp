@@ -55,7 +55,7 @@ double take_fraction(CsvLines& lines, int axis, Inexact inexact) {
   const auto value = exact.convert_to<double>();
   if (!std::isfinite(value)) throw lines.error("a coordinate is beyond the largest double");
   if (inexact == Inexact::kRefuse && cpp_rational(value) != exact)
-    throw lines.error("a coordinate lies between two doubles, and the truth may not hold for either",
+    throw lines.error("a coordinate lies between two doubles, so the truth may be wrong for both",
                       "add --round-fp32: it rounds the coordinates and computes the truth again");
   return value;
 }
