@@ -112,7 +112,7 @@ void refuse_too_large(std::span<const std::byte> png, std::string_view name) {
   const std::uint32_t width = number(kWidth);
   const std::uint32_t height = number(kWidth + 4);
   if (width > kMaxSide || height > kMaxSide)
-    throw Error(name, fmt::format("is {} x {} texels, and a map has at most {} a side", width, height, kMaxSide),
+    throw Error(name, fmt::format("is {} x {} texels; a side must have at most {}", width, height, kMaxSide),
                 "export it smaller, without interpolation");
 }
 
@@ -129,7 +129,7 @@ GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name)
   if (!read_header(reader)) throw fail();
   const int colour = png_get_color_type(reader.png(), reader.info());
   if (colour != PNG_COLOR_TYPE_GRAY)
-    throw Error(name, "has colours or an alpha channel; grey levels alone are the actuators",
+    throw Error(name, "has colours or an alpha channel; only grey levels mean actuators",
                 "convert it to greyscale without alpha (in GIMP: Image > Mode > Greyscale, Layer > Transparency > "
                 "Remove Alpha)");
   GreyImage image;
@@ -190,7 +190,7 @@ void warn_of_fields(const nlohmann::json& object, const std::vector<std::string>
                     std::vector<std::string>& warnings) {
   for (const auto& [key, value] : object.items())
     if (std::ranges::find(known, key) == known.end())
-      warnings.push_back(fmt::format("{}: has a field '{}' that means nothing here; there are: {}.", where, key,
+      warnings.push_back(fmt::format("{}: the field '{}' has no meaning here; the known fields are: {}.", where, key,
                                      fmt::join(known, ", ")));
 }
 
@@ -212,8 +212,9 @@ Sidecar parse_sidecar(std::string_view json, std::string_view name, std::vector<
   if (document.contains("triangles")) {
     const auto& triangles = document["triangles"];
     if (!triangles.is_number_unsigned() || triangles.get<std::uint64_t>() == 0)
-      throw Error(fmt::format("{}, sidecar", name), "'triangles' is not a number of triangles",
-                  "write how many the avatar has, or leave it out of a map in the avatar's UV space");
+      throw Error(fmt::format("{}, sidecar", name), "'triangles' is not a whole number above 0",
+                  "write the number of the avatar's triangles, or leave 'triangles' out if the map is in the avatar's "
+                  "UV space");
     sidecar.triangle_count = triangles.get<std::size_t>();
     if (document.contains("skin") && document["skin"].is_string()) sidecar.skin_digest = document["skin"];
   }
@@ -238,7 +239,8 @@ Sidecar actuators_of(const GreyImage& image, std::string_view name, std::vector<
   std::map<std::uint16_t, std::size_t> texels;
   for (const std::uint16_t grey : image.grey)
     if (grey != 0) ++texels[grey];
-  if (texels.size() > 0xFFFF - 1) throw Error(name, "has more than 65534 grey levels", "is it an actuator map at all?");
+  if (texels.size() > 0xFFFF - 1)
+    throw Error(name, "has more than 65534 grey levels", "name a file that is an actuator map");
   Sidecar found;
   std::size_t thin = 0;
   for (const auto& [grey, count] : texels) {
@@ -249,15 +251,15 @@ Sidecar actuators_of(const GreyImage& image, std::string_view name, std::vector<
   }
   if (found.grey.size() > kManyActuators)
     warnings.push_back(
-        fmt::format("{}: {} grey levels make {} actuators; soft edges of an editor? Draw without "
+        fmt::format("{}: {} grey levels make {} actuators; they may be soft edges of an editor. Draw without "
                     "anti-aliasing, or list the greys in a sidecar JSON.",
                     name, found.grey.size(), found.grey.size()));
   if (thin != 0)
     warnings.push_back(
-        fmt::format("{}: {} grey levels cover {} texels or fewer; soft edges of an editor? Draw without "
+        fmt::format("{}: {} grey levels cover {} texels or fewer; they may be soft edges of an editor. Draw without "
                     "anti-aliasing, or list the greys in a sidecar JSON.",
                     name, thin, kFewTexels));
-  if (found.grey.empty()) warnings.push_back(fmt::format("{}: is black all over, so nothing will ever fire.", name));
+  if (found.grey.empty()) warnings.push_back(fmt::format("{}: is black everywhere, so no actuator can fire.", name));
   return found;
 }
 
@@ -283,8 +285,8 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
   Sidecar listed =
       sidecar_json.empty() ? actuators_of(image, name, map.warnings) : parse_sidecar(sidecar_json, name, map.warnings);
   if (image.is_by_triangle && listed.triangle_count == 0)
-    throw Error(name, "its texels are the triangles of an avatar, and no sidecar says of which",
-                "put the .json beside it that 'vestige map make' wrote with it");
+    throw Error(name, "has a texel for each triangle of an avatar, but no sidecar says how many triangles",
+                "put the .json file that 'vestige map make' wrote with the map beside the map");
   std::vector<std::uint16_t> actuator_of_grey(0x10000, 0);
   for (std::size_t i = 0; i < listed.grey.size(); ++i)
     actuator_of_grey[listed.grey[i]] = static_cast<std::uint16_t>(i + 1);
@@ -300,19 +302,20 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
     map.actuator.push_back(actuator_of_grey[grey]);
   }
   if (listed.triangle_count > map.actuator.size())
-    throw Error(name, fmt::format("has {} texels for {} triangles", map.actuator.size(), listed.triangle_count),
-                "let 'vestige map make --per-triangle' write it anew");
+    throw Error(name, fmt::format("has only {} texels for {} triangles", map.actuator.size(), listed.triangle_count),
+                "make the map again with 'vestige map make --per-triangle'");
   map.triangle_count = listed.triangle_count;
   map.skin_digest = listed.skin_digest;
   if (map.triangle_count != 0 && map.skin_digest.empty())
     map.warnings.push_back(
-        fmt::format("{}: its sidecar has no 'skin', which tells the avatar it was made for: any avatar of {} triangles "
-                    "will do.",
+        fmt::format("{}: its sidecar has no 'skin', which identifies the avatar of the map. Every avatar with {} "
+                    "triangles is accepted.",
                     name, map.triangle_count));
   if (map.triangle_count != 0 && std::any_of(map.actuator.begin() + static_cast<std::ptrdiff_t>(map.triangle_count),
                                              map.actuator.end(), [](std::uint16_t actuator) { return actuator != 0; }))
-    throw Error(name, fmt::format("has texels behind its {} triangles that are not black", map.triangle_count),
-                "let 'vestige map make --per-triangle' write it anew");
+    throw Error(name,
+                fmt::format("has texels that are not black after the texels of its {} triangles", map.triangle_count),
+                "make the map again with 'vestige map make --per-triangle'");
   map.actuator_count = listed.grey.size();
   map.names = std::move(listed.names);
   map.position_m = std::move(listed.position_m);
@@ -330,12 +333,12 @@ ActuatorMap parse_actuator_map(const ActuatorMapFiles& files, const Avatar& avat
   ActuatorMap map = parse_actuator_map(files.png, files.json, name);
   if (map.triangle_count != 0 && map.triangle_count != avatar.triangles.size())
     throw Error(name,
-                fmt::format("gives an actuator to each of {} triangles, and the avatar has {}", map.triangle_count,
+                fmt::format("is for an avatar with {} triangles, but this avatar has {}", map.triangle_count,
                             avatar.triangles.size()),
-                "let 'vestige map make --per-triangle' write it for this avatar");
+                "make a map for this avatar with 'vestige map make --per-triangle'");
   if (map.triangle_count != 0 && !map.skin_digest.empty() && map.skin_digest != skin_digest(avatar))
-    throw Error(name, "gives its actuators to the triangles of another avatar, or of another export of it",
-                "let 'vestige map make --per-triangle' write it for this avatar");
+    throw Error(name, "was made for another avatar, or for another export of this avatar",
+                "make a map for this avatar with 'vestige map make --per-triangle'");
   map.warnings.insert(map.warnings.begin(), files.warnings.begin(), files.warnings.end());
   return map;
 }
@@ -361,7 +364,8 @@ ActuatorMapFiles read_actuator_map_files(const std::string& map) {
   if (!std::filesystem::exists(std::filesystem::symlink_status(sidecar, ignored))) return files;
   files.json = read_text_file(sidecar, kMostSidecarBytes);
   if (files.json.empty())
-    throw Error(sidecar.string(), "is empty", "list the actuators in it, or remove it: then each grey level is one");
+    throw Error(sidecar.string(), "is empty",
+                "list the actuators in it, or remove it: then each grey level is an actuator");
   return files;
 }
 

@@ -114,8 +114,8 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
     }
   const EventScore halved = score_of_half(scene);
   return table + fmt::format(
-                     "True events: ccd at {} Hz, {} of them; at {} Hz {} of them are missed and {} mistaken, {} are "
-                     "false, {} have another actuator.\n",
+                     "True events: ccd at {} Hz finds {}. At {} Hz, ccd misses {} of them and mistakes {}; {} of its "
+                     "events are false, {} have another actuator.\n",
                      scene.truth.rate_hz, scene.truth.events.size(), scene.half.rate_hz, halved.missed, halved.mistaken,
                      halved.false_events, halved.wrong_actuator);
 }

@@ -64,7 +64,7 @@ std::vector<std::byte> write_png(const Image& image, std::optional<PngText> text
   Writer writer;
   writer.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &writer, on_error, on_warning);
   if (writer.png != nullptr) writer.info = png_create_info_struct(writer.png);
-  if (writer.info == nullptr) throw Error("PNG", "libpng has no memory", "make the picture smaller");
+  if (writer.info == nullptr) throw Error("PNG", "libpng cannot get enough memory", "make the picture smaller");
   png_set_write_fn(writer.png, &writer, take_bytes, nullptr);
   png_text chunk = {};
   if (text) {

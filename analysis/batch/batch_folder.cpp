@@ -98,7 +98,7 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
     if (failure != EWOULDBLOCK) throw system_error(path, "could not lock", failure);
     throw Error(folder.string(),
                 fmt::format("another batch is writing into this folder{}{}", length > 0 ? ", " : "", holder),
-                "wait for its end, or choose another -o");
+                "wait until that batch ends, or choose another -o");
   }
   const std::string holder = this_process();
   if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, holder.data(), holder.size(), 0) < 0) {
@@ -129,13 +129,13 @@ void BatchFolder::refuse_others(const nlohmann::ordered_json& batch, const Shard
     for (const auto& entry : std::filesystem::directory_iterator(folder_))
       if (entry.path().filename() != kLockName && entry.path().filename() != kShards &&
           entry.path().filename() != kLogs)
-        throw Error(folder_.string(),
-                    fmt::format("there is no batch in it, but '{}'", entry.path().filename().string()), kOtherFolder);
+        throw Error(folder_.string(), fmt::format("contains '{}', but no batch", entry.path().filename().string()),
+                    kOtherFolder);
     return;
   }
   if (!same_command(read_json_object(run.string(), kOtherFolder), batch, shard))
-    throw Error(folder_.string(), "holds another batch: other maps, traces, laws, options or shard (run.json)",
-                kOtherFolder);
+    throw Error(folder_.string(),
+                "holds another batch: the maps, traces, laws, options or shard in its run.json differ", kOtherFolder);
 }
 
 void BatchFolder::remove_leftovers(const nlohmann::ordered_json& batch) const {
@@ -250,7 +250,7 @@ void write_or_remove_file(const std::string& path, std::string_view text) {
   std::error_code failure;
   std::filesystem::remove(path, failure);
   if (failure)
-    throw Error(path, fmt::format("is left of an earlier batch and cannot be removed: {}", failure.message()),
+    throw Error(path, fmt::format("is from an earlier batch and cannot be removed: {}", failure.message()),
                 "remove it, or choose another -o");
 }
 
@@ -260,7 +260,7 @@ void write_json_file(const std::string& path, const nlohmann::ordered_json& json
 
 nlohmann::ordered_json read_json_object(const std::string& path, std::string_view remedy) {
   auto json = nlohmann::ordered_json::parse(read_text_file(path), nullptr, false);
-  if (!json.is_object()) throw Error(path, "is no JSON object", remedy);
+  if (!json.is_object()) throw Error(path, "is not a JSON object", remedy);
   return json;
 }
 

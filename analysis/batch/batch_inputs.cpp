@@ -52,7 +52,7 @@ BatchActuators read_actuators(const std::string& file) {
 
 ActuatorMapFiles map_files(const std::string& given, const Avatar& avatar, bool builtin_avatar) {
   if (given == "builtin" && !builtin_avatar)
-    throw Error(given, "is drawn for the built-in avatar, and the batch's is another",
+    throw Error(given, "is the map of the built-in avatar, but the batch has another avatar",
                 "name one of the layouts, which fit any humanoid, or a PNG for this avatar");
   return read_map_files(avatar, given);
 }
@@ -65,7 +65,7 @@ void add_problems(BatchMap& map, const ActuatorMap& parsed, const BatchPlan& pla
     if (finding.severity == Severity::kProblem && ++problems <= kMostTold)
       map.warnings.push_back(fmt::format("{}; {}", finding.cause, finding.remedy));
   if (problems > kMostTold)
-    map.warnings.push_back(fmt::format("and {} more problems, which 'vestige map check' tells", problems - kMostTold));
+    map.warnings.push_back(fmt::format("and {} more problems; 'vestige map check' lists them", problems - kMostTold));
 }
 
 void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {

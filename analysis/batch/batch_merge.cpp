@@ -32,20 +32,20 @@ struct ShardFolder {
 ShardFolder read_shard(const std::string& folder) {
   ShardFolder shard = {folder, {}, {}};
   const std::string path = shard.path("run.json");
-  if (!std::filesystem::exists(path)) throw Error(folder, "there is no batch in it (no run.json)", kRemedy);
+  if (!std::filesystem::exists(path)) throw Error(folder, "contains no batch (no run.json)", kRemedy);
   shard.run = read_json_object(path, kRemedy);
   try {
     shard.shard = {shard.run.at("shard").at("number"), shard.run.at("shard").at("count")};
     if (shard.shard.number < 1 || shard.shard.number > shard.shard.count)
-      throw Error(path, "has no such shard", kRemedy);
+      throw Error(path, "has a shard number that is not from 1 to the number of shards", kRemedy);
     if (!shard.run.at("complete").get<bool>())
-      throw Error(folder, "is not finished", "run its command again, which goes on where it was, then merge");
+      throw Error(folder, "is not finished", "run its command again: it continues where it stopped; then merge");
     if (!shard.run.at("batch").at("traces").is_array() || !shard.run.at("failures").is_array())
-      throw Error(path, "is no run.json of a batch", kRemedy);
+      throw Error(path, "is not the run.json of a batch", kRemedy);
     static_cast<void>(item_key(shard.run.at("batch")));
     static_cast<void>(shard.run.at("rank_by").get<std::string>());
   } catch (const nlohmann::json::exception&) {
-    throw Error(path, "is no run.json of a batch", kRemedy);
+    throw Error(path, "is not the run.json of a batch", kRemedy);
   }
   return shard;
 }
@@ -63,19 +63,19 @@ void check_same_batch(const std::vector<ShardFolder>& shards) {
   for (const ShardFolder& shard : shards) {
     if (shard.run["batch"] != first.run["batch"])
       throw Error(shard.folder,
-                  fmt::format("is of another batch than '{}': they differ in {}", first.folder,
+                  fmt::format("belongs to another batch than '{}': they differ in {}", first.folder,
                               difference(first.run["batch"], shard.run["batch"])),
                   "merge the shards of one batch, run with the same program on the same files");
     if (shard.shard.count != first.shard.count)
       throw Error(
           shard.folder,
-          fmt::format("is one of {} shards, '{}' one of {}", shard.shard.count, first.folder, first.shard.count),
+          fmt::format("is one of {} shards, but '{}' is one of {}", shard.shard.count, first.folder, first.shard.count),
           "merge shards of the same --shard I/N");
   }
   if (first.run["batch"]["program"] != program_version())
     throw Error(first.folder,
-                fmt::format("was written by version {}, this is {}", first.run["batch"]["program"].get<std::string>(),
-                            program_version()),
+                fmt::format("was written by version {}, but this is version {}",
+                            first.run["batch"]["program"].get<std::string>(), program_version()),
                 "merge with the program that ran the shards");
 }
 
@@ -105,18 +105,18 @@ std::optional<nlohmann::ordered_json> item_in(const ShardFolder& shard, const st
   const std::string path = shard.path("items/" + trace + ".json");
   if (!std::filesystem::exists(path)) {
     if (failed(shard, trace)) return std::nullopt;
-    throw Error(path, "is missing", "run the shard's command again, which makes it");
+    throw Error(path, "is missing", "run the shard's command again: it writes this file");
   }
   const std::string contacts = shard.path("contacts/" + trace + ".csv");
   if (!std::filesystem::exists(contacts))
-    throw Error(contacts, "is missing", "run the shard's command again, which makes it");
+    throw Error(contacts, "is missing", "run the shard's command again: it writes this file");
   nlohmann::ordered_json item = read_json_object(path, "run the shard's command again");
   if (!item.contains("key") || item["key"] != item_key(shard.run["batch"]))
-    throw Error(path, "is a result of other maps, laws, options or another program than run.json says",
+    throw Error(path, "does not match run.json: the maps, laws, options or the program differ",
                 "run the shard's command again");
   if (!item.contains("contacts_sha256") || item["contacts_sha256"] != sha256_of_file(contacts))
-    throw Error(contacts, "is not what its batch wrote: its SHA-256 is another",
-                "run the shard's command again, which makes it anew");
+    throw Error(contacts, "is not the file that its batch wrote: the SHA-256 differs",
+                "run the shard's command again: it writes this file again");
   return item;
 }
 
@@ -129,8 +129,9 @@ void check_inputs(const ShardFolder& shard) {
     for (const std::string& file : files)
       if (const std::string path = shard.path(file); std::filesystem::exists(path)) sha.update(read_file(path));
     if (of.at("sha256") != sha.hex())
-      throw Error(shard.path(files.front()) + what, "is missing, or not what was judged: its SHA-256 is another",
-                  "run the shard's command again, which writes it anew");
+      throw Error(shard.path(files.front()) + what,
+                  "is missing, or is not the file that the batch scored: the SHA-256 differs",
+                  "run the shard's command again: it writes this file again");
   };
   const nlohmann::ordered_json& batch = shard.run["batch"];
   check("", {"avatar.glb"}, batch["avatar"]);
@@ -181,7 +182,7 @@ MergedShards read_shards(const std::vector<std::string>& folders) {
       if (found && *found != *item)
         throw Error(shard.path("items/" + name + ".json"),
                     fmt::format("differs from the one in '{}'", merged.folder_of_trace[i]),
-                    "find out which is right (another trace of the same name?), and leave the other folder out");
+                    "find out which is right (two traces may have the same name), and leave the other folder out");
       if (!found) merged.folder_of_trace[i] = shard.folder;
       found = item;
     }

@@ -13,7 +13,7 @@ nlohmann::ordered_json trace_record(const BatchTrace& trace, const nlohmann::ord
   record["earlier"] = earlier;
   const std::string path = folder.item_times(trace.name);
   const nlohmann::ordered_json run = std::filesystem::exists(path)
-                                         ? read_json_object(path, "remove it: it is needed for nothing but timings")
+                                         ? read_json_object(path, "remove it: only the timings need it")
                                          : nlohmann::ordered_json::object();
   for (const char* field : {"time", "recording_s", "reading_s", "detection_s", "scoring_s"})
     record[field] = run.contains(field) ? run[field] : nullptr;

@@ -94,8 +94,9 @@ class ScoreTable {
       for (std::size_t m = 0; m < metrics().size(); ++m) {
         if (found == scores.end() || !found->second->contains(metrics()[m].name))
           throw Error(name,
-                      fmt::format("has no '{}' of {}, {}", metrics()[m].name, candidates_[c].map, candidates_[c].law),
-                      "remove its file in items, and run the batch again");
+                      fmt::format("has no '{}' for map {} and law {}", metrics()[m].name, candidates_[c].map,
+                                  candidates_[c].law),
+                      "remove its file in the folder items, and run the batch again");
         const nlohmann::ordered_json& value = (*found->second)[std::string(metrics()[m].name)];
         if (value.is_number()) values_[c][m][trace] = value.get<double>();
       }
@@ -149,8 +150,8 @@ void write_ranking(const BatchFolder& folder, const BatchResults& results, std::
       {"traces", results.traces},
       {"seed", seed},
       {"interval",
-       "95 %, paired bootstrap over the traces (expanded percentile: Hesterberg 2015); each comparison stands for "
-       "itself, not corrected for their number"},
+       "95 %, paired bootstrap over the traces (expanded percentile: Hesterberg 2015); not corrected for "
+       "multiple comparisons"},
       {"metrics", metrics_json()},
       {"ranking", nlohmann::ordered_json::array()}};
   for (const RankedCandidate& ranked : results.ranking) {
@@ -189,7 +190,8 @@ void warn_of_copies(std::span<const nlohmann::ordered_json> items, std::vector<s
     const auto name = item.at("trace").get<std::string>();
     const auto [place, is_new] = first.emplace(item.at("trace_sha256").get<std::string>(), name);
     if (!is_new)
-      warnings.push_back(fmt::format("traces '{}' and '{}' are the same bytes: they count twice", place->second, name));
+      warnings.push_back(
+          fmt::format("traces '{}' and '{}' have the same bytes, so they count twice", place->second, name));
   }
 }
 
@@ -200,10 +202,10 @@ void warn_of_gaps(BatchResults& results) {
   for (const RankedCandidate& ranked : results.ranking) least = std::min(least, ranked.metrics[results.headline].n);
   if (least < results.traces)
     results.warnings.push_back(fmt::format(
-        "some maps and laws have a {} on {} of {} traces{}, since nothing was felt on the others, or nothing "
-        "that this metric looks at{}",
+        "some maps and laws have a {} on {} of {} traces{}: on the others, nothing was felt, or nothing that this "
+        "metric measures{}",
         headline.name, least == 0 ? "none" : std::to_string(least), results.traces, least == 0 ? "" : " only",
-        least == 0 ? "" : ": their means are of easier or harder traces"));
+        least == 0 ? "" : "; their means may come from easier or harder traces"));
   const auto coverage = std::ranges::find(metrics(), kCoverage, &Metric::name);
   if (coverage == metrics().end() || headline.name == kCoverage) return;
   const auto place = static_cast<std::size_t>(coverage - metrics().begin());
@@ -214,10 +216,10 @@ void warn_of_gaps(BatchResults& results) {
     high = std::max(high, ranked.metrics[place].mean);
   }
   if (low < 0.9 * high)
-    results.warnings.push_back(fmt::format(
-        "coverage runs from {:.2g} to {:.2g}: what a map does not fire counts in no {}, so a small map has it "
-        "easier; read both",
-        low, high, headline.name));
+    results.warnings.push_back(
+        fmt::format("coverage ranges from {:.2g} to {:.2g}: contacts that fire nothing do not count in {}, so a small "
+                    "map has an advantage; read both",
+                    low, high, headline.name));
 }
 
 }  // namespace
@@ -233,8 +235,8 @@ std::size_t metric_to_rank_by(const std::string& name) {
     if (metrics()[m].name == name) return m;
     names.emplace_back(metrics()[m].name);
   }
-  throw UsageError("--rank-by", fmt::format("there is no metric '{}' that puts maps in order", name),
-                   fmt::format("choose of: {}", fmt::join(names, ", ")));
+  throw UsageError("--rank-by", fmt::format("there is no metric '{}' that can rank maps", name),
+                   fmt::format("choose one of: {}", fmt::join(names, ", ")));
 }
 
 BatchResults write_results(const BatchFolder& folder, const nlohmann::ordered_json& batch,
@@ -256,8 +258,8 @@ BatchResults write_results(const BatchFolder& folder, const nlohmann::ordered_js
     warn_of_gaps(results);
     return results;
   } catch (const nlohmann::json::exception& error) {
-    throw Error(folder.top("items"), fmt::format("holds what is no item of a batch ({})", error.what()),
-                "remove it, and run the batch again");
+    throw Error(folder.top("items"), fmt::format("contains a file that is not an item of a batch ({})", error.what()),
+                "remove this folder, and run the batch again");
   }
 }
 
@@ -272,7 +274,7 @@ std::string describe(const BatchResults& results, std::size_t rows) {
                   name_of(headline.better),
                   results.traces == 1 ? "one trace: no intervals"
                                       : fmt::format("mean over {} traces and its 95 % interval", results.traces),
-                  headline.model_based ? "; OF A MODEL, NO USER STUDY" : "");
+                  headline.model_based ? "; FROM A MODEL, NOT FROM A USER STUDY" : "");
   std::size_t width = 3;
   for (const BatchResults::Candidate& candidate : results.candidates) width = std::max(width, candidate.map.size());
   text += fmt::format("  {:>4}  {:<{}}  {:<8}  {:>28}", "rank", "map", width, "law", headline.name);
@@ -302,12 +304,12 @@ std::string describe(const BatchResults& results, std::size_t rows) {
   if (results.ranking.size() > rows)
     text += fmt::format("  ... {} more in ranking.csv\n", results.ranking.size() - rows);
   if (marked)
-    text += "=: not distinguishable from rank 1 on these traces (the interval of the paired difference holds 0)\n";
+    text += "=: not distinguishable from rank 1 on these traces (the interval of the paired difference contains 0)\n";
   if (results.traces > 1 && results.traces < kFewTraces)
     text +=
-        fmt::format("{} traces are few: intervals are rough, and hold for traces like these only\n", results.traces);
+        fmt::format("{} traces are few: the intervals are rough and apply only to traces like these\n", results.traces);
   if (std::ranges::any_of(beside, [](std::size_t m) { return metrics()[m].model_based; }))
-    text += "*: of a model, no user study\n";
+    text += "*: from a model, not from a user study\n";
   return text;
 }
 

@@ -103,7 +103,7 @@ class BatchRun {
     } catch (const std::system_error&) {
       const std::lock_guard lock(mutex_);
       running_ -= count - threads.size();  // the threads that exist do all the work
-      if (threads.empty()) throw Error("--jobs", "the system starts no thread", "try again later");
+      if (threads.empty()) throw Error("--jobs", "the system cannot start a thread", "try again later");
     }
     for (std::unique_lock lock(mutex_); running_ != 0; lock.lock()) {
       ended_.wait_for(lock, kProgressPeriod);
@@ -234,8 +234,9 @@ class BatchRun {
     };
     TraceReader reader(path);
     if (sha256_hex(reader.avatar_glb()) != plan_.avatar_sha256)
-      throw Error(path, fmt::format("was recorded with another avatar than the batch's, '{}'", plan_.avatar_given),
-                  "give the traces of each avatar a batch of their own, or name their avatar with --avatar");
+      throw Error(path,
+                  fmt::format("was recorded with another avatar than that of the batch, '{}'", plan_.avatar_given),
+                  "run one batch for each avatar, or name the avatar of the traces with --avatar");
     const std::vector<std::uint32_t>& ids = reader.collider_ids();
     const auto frame_count = static_cast<double>(reader.frame_count());
     RecordedTrace recorded;

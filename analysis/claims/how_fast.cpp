@@ -169,11 +169,12 @@ std::vector<Claim> claims_how_fast(const std::vector<Result>& run) {
     for (const auto& frame : benchmark.at("frames"))
       ratios.push_back(fmt::format("{:.3f} ({}, skip {})", frame.at("ratio").get<double>(),
                                    frame.at("colliders").get<std::string>(), frame.value("skip", "off")));
-    claims.push_back({Question::kHowFast,
-                      "",
-                      fmt::format("A frame with exact decisions takes {} times the time of one with plain double ones",
-                                  listed(ratios)),
-                      {file}});
+    claims.push_back(
+        {Question::kHowFast,
+         "",
+         fmt::format("A frame with exact decisions takes {} times the time of a frame with plain double decisions",
+                     listed(ratios)),
+         {file}});
   });
   return claims;
 }

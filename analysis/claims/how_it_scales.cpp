@@ -71,7 +71,7 @@ void add_growth(const nlohmann::json& growth, const std::string& file, std::vect
     overtakings.push_back(fmt::format("above {:.3g} colliders {} is faster than {}", crossover.at("at").get<double>(),
                                       name("cheaper_above"), name("cheaper_below")));
   }
-  if (!overtakings.empty()) texts.push_back(fmt::format("Who overtakes whom: {}", fmt::join(overtakings, "; ")));
+  if (!overtakings.empty()) texts.push_back(fmt::format("Crossovers: {}", fmt::join(overtakings, "; ")));
   const std::string topic = fmt::format(
       "Mean time of a frame with more colliders (on {} triangles), and on more triangles (with {} colliders){}",
       growth.at("avatar").at("triangles").get<std::uint64_t>(), growth.at("colliders").get<int>(),

@@ -114,13 +114,13 @@ void add_skinning(const std::vector<Result>& run, std::vector<Claim>& claims) {
   for (const auto& [renderer, skinning] : skinnings) {
     texts.push_back(fmt::format("{:.2g}{}", skinning.error, renderer.empty() ? " on the CPU" : renderer));
     if (!renderer.empty())
-      texts.back() += fmt::format(", with the CPU's bits in {} of {}", skinning.identical, skinning.vertices);
+      texts.back() += fmt::format(", with the CPU's bits in {} of {} vertices", skinning.identical, skinning.vertices);
     // The worst of each first.
     files.insert(files.begin(), skinning.files.front());
     files.insert(files.end(), skinning.files.begin() + 1, skinning.files.end());
   }
   claims.push_back(claim_of(
-      fmt::format("Skinned vertices lie near the double reference, within this share of the avatar's height: {}",
+      fmt::format("Skinned vertices differ from the double reference by at most this share of the avatar's height: {}",
                   fmt::join(texts, "; ")),
       files));
   claims.back().links = skinnings.size();
@@ -259,7 +259,10 @@ void add_accuracy(const nlohmann::json& accuracy, const std::string& file, std::
     claims.push_back({Question::kHowRight, topic, fmt::format("{}: {}", scene.name, fmt::join(missed, "; ")), {file}});
   }
   if (agree)
-    claims.push_back({Question::kHowRight, topic, "The same for every detector with the method: " + detectors, {file}});
+    claims.push_back({Question::kHowRight,
+                      topic,
+                      "Every detector with the same method misses the same shares: " + detectors,
+                      {file}});
 }
 
 }  // namespace

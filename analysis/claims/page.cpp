@@ -15,14 +15,14 @@ namespace {
 
 constexpr const char* kIntroduction = R"(# Results
 
-What runs showed. `vestige claims` writes this page from their JSON files: no figure is typed by hand. At its end stands
-[how each file was made](#how-was-each-file-made).
+This page says what the runs showed. `vestige claims` writes it from their JSON files: no figure is typed by hand. The
+last section says [how each file was made](#how-was-each-file-made).
 
-**A renderer marked as software runs on the CPU: its figures say nothing of a GPU.** A detector that is not "on" a
-renderer runs without OpenGL. `paper` is the published method. `geometry` and `cpu` are exact, with OpenGL and without.
-`embree` is the ray tracer Embree, `embree_default` the same without its robust flag. By `static`, a collider moves and
-the skin rests; by `carried`, the collider's start moves along first; by `ccd`, both move. Skipping leaves out what
-cannot touch.
+**A renderer marked as software runs on the CPU: its figures say nothing about a GPU.** A detector that is not "on" a
+renderer runs without OpenGL. `paper` is the published method. `geometry` is exact and uses OpenGL. `cpu` is exact
+without OpenGL. `embree` is the ray tracer Embree, `embree_default` the same without its robust flag. With `static`, a
+collider moves and the skin rests. With `carried`, the collider's start first moves along with the skin. With `ccd`,
+both move. Skipping leaves out pairs that cannot touch.
 
 )";
 
@@ -183,9 +183,8 @@ std::string claims_page(const std::vector<Run>& runs) {
     for (const Run& run : runs) add(run, list_of_claims(run, section.question));
   }
   page +=
-      "\n## How was each file made?\n\n`<a|b>` stands for one run each, in the order of the files; `{a,b}` for both at "
-      "once, "
-      "as in a shell. Times are UTC.\n";
+      "\n## How was each file made?\n\n`<a|b>` stands for one run each, in the order of the files. `{a,b}` stands for "
+      "both in one run, as in a shell. Times are UTC.\n";
   for (const Run& run : runs) add(run, list_of_commands(run));
   return page;
 }

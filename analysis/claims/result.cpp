@@ -31,7 +31,7 @@ nlohmann::json with_run(nlohmann::json result, const nlohmann::json& run) {
 }
 
 Error not_ours(const std::string& path, const nlohmann::json::exception& exception) {
-  return {path, fmt::format("is no result of ours: {}", exception.what()), "remove it, or write it again"};
+  return {path, fmt::format("is not a result of Vestige: {}", exception.what()), "remove it, or write it again"};
 }
 
 }  // namespace vestige

@@ -137,7 +137,7 @@ std::string growth_table(const Growth& growth, std::uint32_t colliders) {
        most_pairs(growth.by_triangles.front().triangles, growth.by_colliders.front().points.back().colliders) >
            kManyPairs);
   if (few_frames)
-    text += fmt::format("Above {} pairs of collider and triangle: the mean of 3 frames, measured again and again.\n",
+    text += fmt::format("Above {} pairs of collider and triangle: the mean of 3 frames, each measured repeatedly.\n",
                         kManyPairs);
   return text + text_of(ablations(growth.by_colliders));
 }

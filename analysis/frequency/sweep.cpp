@@ -32,9 +32,8 @@ std::uint64_t place_length(std::uint64_t trace_frames, const SweepSettings& sett
 std::vector<Place> read_places(TraceReader& trace, const SweepSettings& settings) {
   const std::uint64_t frames = trace.frame_count();
   if (frames < 2)
-    throw Error("the trace",
-                fmt::format("has {} frame{}; two follow each other at least", frames, frames == 1 ? "" : "s"),
-                "record a longer one");
+    throw Error("the trace", fmt::format("has {} frame{}; at least two are needed", frames, frames == 1 ? "" : "s"),
+                "record a longer trace");
   const std::uint64_t length = place_length(frames, settings);
   const std::uint64_t count = sweep_places(frames, settings);
   std::vector<Place> places(count);
@@ -78,8 +77,8 @@ class Sweep {
       series.gl = detectors_.back()->gl_info();
       for (const std::uint32_t count : settings.counts) {
         if (count > ids_.size())
-          throw Error("--counts", fmt::format("{} colliders asked for, the trace has {}", count, ids_.size()),
-                      "record a trace with more (--count), or ask for fewer");
+          throw Error("--counts", fmt::format("asks for {} colliders, but the trace has {}", count, ids_.size()),
+                      "record a trace with more colliders (--count), or ask for fewer");
         SweepPoint point;
         point.colliders = count;
         series.points.push_back(std::move(point));
@@ -214,7 +213,7 @@ class Sweep {
         throw Error(series_[series].detector,
                     fmt::format("frame {} gave other contacts with {} colliders than with {}", place[i].index,
                                 point.colliders, expected.size()),
-                    "this is a fault of ours or of the GL driver: try another --context, and report it");
+                    "this is a bug in Vestige or in the GL driver: try another --context, and report it");
     }
     if (point.repetitions.size() < places_.size()) {
       point.pass_frames += repetition.frames;

@@ -199,8 +199,9 @@ std::vector<std::string> disagreements(std::span<const SweepSeries> series) {
       const std::string& hash = one.points[p].texture_hash;
       // Empty: the run was stopped before the hash was computed.
       if (!hash.empty() && !expected.empty() && hash != expected)
-        found.push_back(fmt::format("with {} colliders, '{}' and '{}' gave different contacts, and promise the same",
-                                    one.points[p].colliders, name_of(*first), name_of(one)));
+        found.push_back(
+            fmt::format("with {} colliders, '{}' and '{}' gave different contacts, but both must give the same",
+                        one.points[p].colliders, name_of(*first), name_of(one)));
     }
   }
   return found;

@@ -74,7 +74,7 @@ bool has_texture_coordinates(const Avatar& avatar) {
 void require_texture_coordinates(const Avatar& avatar, std::string_view name) {
   if (has_texture_coordinates(avatar)) return;
   throw Error(
-      name, "has no texture coordinates, so that no map can tell its regions apart",
+      name, "has no texture coordinates, so a map cannot tell its regions apart",
       "make the map --per-triangle, or unwrap the avatar (Blender: Edit Mode, UV > Smart UV Project) and export "
       "it with its UVs");
 }

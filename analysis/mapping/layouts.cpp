@@ -132,10 +132,10 @@ MadeMap make_layout_map(const Avatar& avatar, std::string_view layout) {
   const bool is_too_coarse = by_triangle.left_out.size() > map.left_out.size();
   MadeMap& better = is_too_coarse ? map : by_triangle;
   better.warnings.push_back(
-      fmt::format("the avatar's texture coordinates cannot tell its skin apart: {:.0f} % of that of layout {} {}",
+      fmt::format("the avatar's texture coordinates cannot tell its skin apart: {:.0f} % of the skin of layout {} {}",
                   100 * misplaced, layout,
-                  is_too_coarse ? "fires another actuator, and its triangles are too large to have one each"
-                                : "would fire another actuator; each triangle has one instead"));
+                  is_too_coarse ? "fires a wrong actuator, and the triangles are too large for an actuator each"
+                                : "would fire a wrong actuator, so the map gives each triangle an actuator instead"));
   return std::move(better);
 }
 

@@ -77,12 +77,13 @@ class Checker {
 
   void find_absent() {
     if (map_.actuator_count == 0)
-      add(Severity::kProblem, "never_fires", 0, "the map is black all over, so that nothing will ever fire",
-          "paint regions in grey levels, or let 'vestige map make' draw them");
+      add(Severity::kProblem, "never_fires", 0, "the map is black everywhere, so no actuator can fire",
+          "paint regions in grey levels, or make the map with 'vestige map make'");
     for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator)
       if (of(actuator).texels == 0 || (map_.triangle_count != 0 && !(of(actuator).area_m2 > 0)))
         add(Severity::kProblem, "never_fires", actuator,
-            fmt::format("actuator {} can never fire: the image has none of its grey", quoted(actuator)),
+            fmt::format("actuator {} can never fire: {}", quoted(actuator),
+                        of(actuator).texels == 0 ? "the image has no texel of its grey" : "its triangles have no area"),
             "paint its region, or take it out of the sidecar");
   }
 
@@ -105,16 +106,16 @@ class Checker {
     }
     if (unfit > 0)
       add(Severity::kProblem, "texture_coordinates", 0,
-          fmt::format("{} triangles have texture coordinates that are not finite, or cover the texture more than once "
-                      "over, so that each fires many regions",
+          fmt::format("{} triangles have texture coordinates that are not finite or cover the texture more than once, "
+                      "so each fires many regions",
                       unfit),
-          "give them a place of their own in the texture, and export the avatar again");
+          "give each triangle a separate place in the texture, and export the avatar again");
     for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
       if (of(actuator).texels > 0 && !reached[actuator] && unfit == 0)
         add(Severity::kProblem, "never_fires", actuator,
             fmt::format("actuator {} can never fire: no skin reaches its {} texels", quoted(actuator),
                         of(actuator).texels),
-            "paint it where the avatar's texture shows skin: 'vestige avatar FILE --uv uv.png' draws where that is");
+            "paint it where the avatar's texture shows skin; 'vestige avatar FILE --uv uv.png' draws this skin");
     }
   }
 
@@ -175,7 +176,7 @@ class Checker {
                         "({:.0f} cm² of skin)",
                         quoted(actuator), shared.mirrored, checked.texels, checked.mirrored_m2 * 1e4),
             "the avatar's halves share one texture: make the map --per-triangle, or give each half its own place in "
-            "the texture; or, where that is meant, say so with a position_m in the body's middle");
+            "the texture; if both are meant to fire, set a position_m in the body's middle");
       } else {
         add(is_speck || shared.other_pieces == 0 ? Severity::kNote : Severity::kProblem, "shared_texels", actuator,
             fmt::format("actuator {}: {} of its {} texels lie on two places of the skin, up to {:.2f} m apart "
@@ -183,7 +184,7 @@ class Checker {
                         quoted(actuator), shared.texels, checked.texels, double{shared.farthest_m},
                         checked.shared_m2 * 1e4),
             "make the map --per-triangle, or give each its own place in the texture; 'vestige avatar FILE --uv uv.png' "
-            "draws where they lie upon each other");
+            "draws where they overlap");
       }
     }
   }
@@ -211,7 +212,7 @@ class Checker {
       if (pieces.size() > kMostListed) places += ", …";
       add(Severity::kProblem, "split", actuator,
           fmt::format("actuator {} lies in {} pieces on the body: {}", quoted(actuator), pieces.size(), places),
-          "an actuator is felt in one place: take the strays out, or give each piece its own grey");
+          "remove the stray pieces, or give each piece its own grey: an actuator is felt in one place");
     }
   }
 
@@ -241,8 +242,8 @@ class Checker {
     // A map as coarse as a chessboard has no soft edges.
     if (soft == 0 || (soft == map_.actuator_count && map_.width * map_.height < 64 * 64)) return;
     add(Severity::kProblem, "soft_edges", soft == 1 ? one : std::uint16_t{0},
-        fmt::format("{} of {} grey levels are nowhere more than two texels wide ({} texels): soft edges of an editor, "
-                    "each an actuator of its own",
+        fmt::format("{} of {} grey levels are at most two texels wide everywhere ({} texels): soft edges of an editor, "
+                    "each a separate actuator",
                     soft, map_.actuator_count, texels),
         "draw with a hard brush (GIMP: the pencil; no anti-aliasing, no scaling with interpolation)");
   }
@@ -259,7 +260,7 @@ class Checker {
         add(Severity::kProblem, "position", actuator,
             fmt::format("actuator {}: its position_m is {:.2f} m away from the nearest skin that fires it",
                         quoted(actuator), nearest_m[actuator]),
-            "is the map another avatar's? Positions are metres in the avatar's rest pose");
+            "use the map of this avatar; positions are metres in the avatar's rest pose");
   }
 
   const Body& body_;

@@ -161,16 +161,16 @@ void warn_of(const MapRaster& raster, std::string_view avatar_name, MadeMap& map
     if (worst == raster.conflicts.end() || pair->second > worst->second) worst = pair;
   }
   if (texels > 0)
-    map.warnings.push_back(fmt::format(
-        "{}: its texture coordinates give {} texels to two places of the skin that should fire differently, {} of them "
-        "to {} and {}; both will fire the first. Make the map --per-triangle, or give each its own place in the "
-        "texture.",
-        avatar_name, texels, worst->second, name_of(map.actuators, worst->first.first),
-        name_of(map.actuators, worst->first.second)));
+    map.warnings.push_back(
+        fmt::format("{}: its texture coordinates give {} texels to two places of the skin that should fire different "
+                    "actuators, {} of them to {} and {}; both places fire the first. Make the map --per-triangle, or "
+                    "give each its own place in the texture.",
+                    avatar_name, texels, worst->second, name_of(map.actuators, worst->first.first),
+                    name_of(map.actuators, worst->first.second)));
   if (raster.triangles_left_out > 0)
     map.warnings.push_back(
         fmt::format("{}: {} triangles are not mapped: their texture coordinates are not finite, or cover the texture "
-                    "more than once over.",
+                    "more than once.",
                     avatar_name, raster.triangles_left_out));
 }
 
@@ -203,7 +203,8 @@ MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& se
                   "widen its region, or move it before the regions that take its skin");
     }
   }
-  if (map.actuators.empty()) throw Error(name, "no skin of this avatar belongs to any of its regions", "try another");
+  if (map.actuators.empty())
+    throw Error(name, "no skin of this avatar belongs to any of its regions", "use other regions");
   const std::size_t count = map.actuators.size();
   const std::size_t step = count <= kMostInEightBits ? kMostInEightBits / count : 65535 / count;
   for (std::size_t i = 0; i < count; ++i) map.actuators[i].grey = static_cast<std::uint16_t>(step * (i + 1));

@@ -63,7 +63,8 @@ class Fields {
     const json& value = at(key);
     std::vector<std::string> found;
     const auto add = [&](const json& item) {
-      if (!item.is_string() || item.get<std::string>().empty()) refuse(key, "is not a text or a list of them", example);
+      if (!item.is_string() || item.get<std::string>().empty())
+        refuse(key, "is neither a text nor a list of texts", example);
       found.push_back(item.get<std::string>());
     };
     if (!value.is_array()) {
@@ -93,9 +94,9 @@ class Fields {
     if (!value.is_array() || value.size() != 2 || !std::ranges::all_of(value, is_finite))
       refuse(key, "is not two numbers", example);
     const Extent interval = {value[0].get<double>(), value[1].get<double>()};
-    if (!(interval.low < interval.high)) refuse(key, "does not go from the lower to the higher", example);
+    if (!(interval.low < interval.high)) refuse(key, "does not go from the lower number to the higher", example);
     if (interval.low < least || interval.high > most)
-      refuse(key, fmt::format("goes beyond {} or {}", least, most).c_str(), example);
+      refuse(key, fmt::format("is not within {} and {}", least, most).c_str(), example);
     return interval;
   }
 
@@ -177,7 +178,7 @@ RegionSpec parse_region(const json& item, const std::string& where) {
     region.radius_m = fields.number("radius_m", "0.06");
     if (!(*region.radius_m > 0)) fields.refuse("radius_m", "is not above 0", "0.06");
     if (region.actuators.empty())
-      throw Error(where, "has a 'radius_m', but no 'actuators' that it is around", "list them, or leave it out");
+      throw Error(where, "has a 'radius_m', but no 'actuators'", "list the actuators, or leave 'radius_m' out");
   }
   return region;
 }

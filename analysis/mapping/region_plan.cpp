@@ -140,8 +140,8 @@ void RegionPlan::number_actuators(const RegionSpec& spec, const std::string& whe
   std::set<std::string_view> seen;
   for (const RegionActuator& actuator : spec.actuators) {
     if (!seen.insert(actuator.name).second)
-      throw Error(where, fmt::format("the name '{}' stands twice among its actuators", actuator.name),
-                  "give each a name of its own");
+      throw Error(where, fmt::format("two of its actuators have the name '{}'", actuator.name),
+                  "give each a different name");
     region.actuators.push_back(number_of(actuator.name));
   }
   if (spec.actuators.empty()) region.actuators.push_back(number_of(spec.name));
@@ -152,7 +152,7 @@ std::uint16_t RegionPlan::number_of(const std::string& actuator_name) {
   const auto number = static_cast<std::uint16_t>(found - names_.begin() + 1);
   if (found == names_.end()) {
     if (names_.size() == 65534)
-      throw Error(actuator_name, "is one actuator more than the 65534 of a map", "ask for fewer");
+      throw Error(actuator_name, "is actuator number 65535, but a map has at most 65534", "use fewer actuators");
     names_.push_back(actuator_name);
     given_position_m_.emplace_back();
   }
@@ -311,7 +311,7 @@ void RegionPlan::place_sites(const RegionSpec& spec, const std::string& where, R
   const SurfaceDistance distance(body_.surface().rest_m(), avatar.triangles, SurfaceDistance::Gaps::kBridged);
   for (const Nearest& place : nearest) {
     if (std::isinf(place.distance_squared))
-      throw Error(where, "selects no skin to put its actuators on", "look at its height, angle and side");
+      throw Error(where, "selects no skin for its actuators", "check its height, angle and side");
     Site site;
     site.position_m = body_.surface().position_m(place.point);
     site.detour_m = distance.from(place.point);

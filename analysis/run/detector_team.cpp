@@ -30,7 +30,7 @@ DetectorTeam::DetectorTeam(std::size_t threads, Make make)
     // there is no batch.
     static_cast<void>(begin_.arrive(static_cast<std::ptrdiff_t>(threads - helpers_.size())));
     for (std::thread& helper : helpers_) helper.join();
-    throw Error("--threads", "the system starts no more threads", "use fewer");
+    throw Error("--threads", "the system cannot start more threads", "use fewer threads");
   }
 }
 

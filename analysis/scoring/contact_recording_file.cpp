@@ -16,18 +16,18 @@ namespace {
 
 constexpr std::string_view kHeader = "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,side,speed_m_per_s";
 constexpr std::string_view kNoContact = ",,,,,,,,,";
-constexpr std::string_view kRemedy = "it is written by 'vestige batch', into contacts/";
+constexpr std::string_view kRemedy = "run 'vestige batch' again: it writes this file into contacts/";
 constexpr std::size_t kFieldsOfContact = 9;
 static_assert(kNoContact.size() == kFieldsOfContact);
 
 /// Reads the fields after the time. Returns false for a frame without contacts.
 bool take_contact(CsvLines& lines, std::uint32_t& collider, Contact& contact) {
   std::string_view first;
-  if (!lines.take_text(first)) throw lines.error("is no row of contacts");
+  if (!lines.take_text(first)) throw lines.error("is not a row of contacts");
   if (first.empty()) {
     for (std::size_t i = 1; i < kFieldsOfContact; ++i)
       if (std::string_view field; !lines.take_text(field) || !field.empty())
-        throw lines.error("has some fields of a contact, not all");
+        throw lines.error("has only some of the fields of a contact");
     return false;
   }
   const auto [end, failure] = std::from_chars(first.data(), first.data() + first.size(), collider);
@@ -36,7 +36,7 @@ bool take_contact(CsvLines& lines, std::uint32_t& collider, Contact& contact) {
       !lines.take(contact.t) || !lines.take(contact.barycentric.x) || !lines.take(contact.barycentric.y) ||
       !lines.take(contact.texture_coordinate.x) || !lines.take(contact.texture_coordinate.y) || !lines.take(side) ||
       !lines.take(contact.speed_m_per_s) || side < -1 || side > 1 || !contact.hit())
-    throw lines.error("is no row of contacts");
+    throw lines.error("is not a row of contacts");
   contact.side = static_cast<std::int8_t>(side);
   return true;
 }
@@ -75,9 +75,10 @@ RecordedTrace read_contact_recording(const std::string& path) {
   while (lines.next()) {
     std::size_t frame = 0;
     double time_s = 0;
-    if (!lines.take(frame) || !lines.take(time_s)) throw lines.error("is no row of contacts");
+    if (!lines.take(frame) || !lines.take(time_s)) throw lines.error("is not a row of contacts");
     const bool same_frame = recording.frames() != 0 && frame + 1 == recording.frames();
-    if (!same_frame && frame != recording.frames()) throw lines.error("leaves out a frame, or goes back to one");
+    if (!same_frame && frame != recording.frames())
+      throw lines.error("skips a frame, or goes back to an earlier frame");
     if (same_frame ? time_s != recording.time_s.back() : frame != 0 && !(time_s >= recording.time_s.back()))
       throw lines.error("has a time that does not fit its frame");
     std::uint32_t collider = 0;

@@ -21,12 +21,12 @@ constexpr Metric kMetrics[] = {
     {"mapped_share", "", Better::kNeither, false, "mapped area / area of the whole skin", "Vestige"},
     {"area_ratio", "", Better::kLower, false, "largest / smallest area of an actuator", "Vestige"},
     {"localisation_error_mm", "mm", Better::kLower, true,
-     "sqrt(mean |Σ A_i v_i / Σ A_i|²) over contacts that fire; v_i: way along the body from the contact to actuator i",
+     "sqrt(mean |Σ A_i v_i / Σ A_i|²) over contacts that fire; v_i: path along the body from the contact to actuator i",
      "amplitude centroid"},
     {"localisation_error_acuities", "", Better::kLower, true,
-     "the same, each contact's in units of the torso's acuity: 25 mm, at the midline 10 mm", "van Erp 2005"},
+     "the same, with each contact's error in units of the torso's acuity: 25 mm, at the midline 10 mm", "van Erp 2005"},
     {"energy_localisation_error_mm", "mm", Better::kLower, true,
-     "sqrt(mean |Σ A_i² v_i / Σ A_i²|²): what phantom assumes, so between actuators it is 0 for phantom by "
+     "sqrt(mean |Σ A_i² v_i / Σ A_i²|²): phantom assumes this formula, so for phantom it is 0 between actuators by "
      "construction",
      "Israr & Poupyrev 2011"},
     {"slide_ripple", "", Better::kLower, true, "(max - min) / mean of Σ A_i² along a slide, mean over felt slides",
@@ -36,7 +36,8 @@ constexpr Metric kMetrics[] = {
     {"slide_reversals_per_m", "1/m", Better::kLower, true,
      "steps of Σ A_i x_i / Σ A_i against the collider's, per metre of felt slide", "amplitude centroid"},
     {"timing_f1", "", Better::kHigher, false,
-     "2 TP / (2 TP + FP + FN) over frames and actuators: vibrates, against asked for by a contact of the frame",
+     "2 TP / (2 TP + FP + FN) over frames and actuators: actuators that vibrate, against those that a contact of the "
+     "frame asks for",
      "Mesaros et al. 2016"},
     {"onset_error_ms", "ms", Better::kLower, false, "mean time from a contact's instant to its actuator's vibration",
      "Vestige"},
@@ -49,17 +50,17 @@ constexpr Metric kMetrics[] = {
      "Σ p_ij log2(p_ij / (p_i p_j)): regions of contact, against those that a noisy observer names", "Tan et al. 2010"},
     {"information_categories", "", Better::kHigher, true, "2^information_bits: regions told apart without error",
      "Tan et al. 2010"},
-    {"use_evenness", "", Better::kHigher, false, "-Σ p_i log2 p_i / log2 n, p_i: actuator i's part in all duty",
+    {"use_evenness", "", Better::kHigher, false, "-Σ p_i log2 p_i / log2 n, p_i: actuator i's share of all duty",
      "Shannon 1948; Pielou 1966"},
     {"mean_duty", "", Better::kNeither, false, "mean of the duties 0 … 1 over frames and actuators", "Vestige"},
     {"peak_duty", "", Better::kLower, false, "the largest frame's mean of the duties 0 … 1 over actuators", "Vestige"},
     {"switches_hz", "Hz", Better::kLower, false, "times that an actuator begins to vibrate, per second and actuator",
      "Vestige"},
     {"ambiguous_share", "", Better::kLower, false,
-     "mapped skin whose texels skin more than 50 mm away has too / mapped skin", "Vestige"},
-    {"superseded", "", Better::kLower, true, "changed states that a newer one overtook before the line was free / all",
-     "Vestige"},
-    {"line_load", "", Better::kLower, true, "bytes sent / bytes that the line takes in that time", "Vestige"},
+     "mapped skin that shares its texels with skin more than 50 mm away / mapped skin", "Vestige"},
+    {"superseded", "", Better::kLower, true,
+     "changed states that a newer state replaced before the line was free / all changed states", "Vestige"},
+    {"line_load", "", Better::kLower, true, "bytes sent / bytes that the line can carry in that time", "Vestige"},
 };
 
 /// Returns the median step between frames, or 0 for fewer than two frames.

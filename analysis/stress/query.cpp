@@ -21,7 +21,7 @@ namespace {
 constexpr int kTries = 3;
 
 void refuse_carried(Method method) {
-  if (method == Method::kCarried) throw std::invalid_argument("queries know no 'carried'");
+  if (method == Method::kCarried) throw std::invalid_argument("queries have no method 'carried'");
 }
 
 LooseTriangle as_loose(const Corners& corners) {
@@ -153,7 +153,7 @@ std::string query_table(std::span<const QueryScore> scores, const QueryScore& to
   for (const QueryScore& score : scores) add(score.name, score);
   add(kTotal, total);
   return table +
-         "true: contacts there are. false +, -: found where there is none, missed. exactly: decided by exact "
+         "true: contacts that exist. false +: found, but none exists. false -: missed. exactly: decided by exact "
          "arithmetic.\nus: thread CPU time, the least of three tries.\n";
 }
 

@@ -37,7 +37,7 @@ cpp_int take_whole(CsvLines& lines) {
   const bool negative = field.starts_with('-');
   if (negative || field.starts_with('+')) field.remove_prefix(1);
   if (field.empty() || field.find_first_not_of("0123456789") != std::string_view::npos)
-    throw lines.error(fmt::format("'{}' is no whole number", whole));
+    throw lines.error(fmt::format("'{}' is not a whole number", whole));
   if (field.size() > kMostDigits)
     throw lines.error(fmt::format("a number has {} digits, more than {}", field.size(), kMostDigits));
   // A leading zero would make it octal.
@@ -55,8 +55,8 @@ double take_fraction(CsvLines& lines, int axis, Inexact inexact) {
   const auto value = exact.convert_to<double>();
   if (!std::isfinite(value)) throw lines.error("a coordinate is beyond the largest double");
   if (inexact == Inexact::kRefuse && cpp_rational(value) != exact)
-    throw lines.error("a coordinate lies between two doubles, and the truth may not hold for either",
-                      "add --round-fp32: coordinates are rounded, and the truth worked out anew");
+    throw lines.error("a coordinate lies between two doubles, so the truth may be wrong for both",
+                      "add --round-fp32: it rounds the coordinates and computes the truth again");
   return value;
 }
 
@@ -80,7 +80,7 @@ double take_hexadecimal(CsvLines& lines) {
       std::from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::hex);
   if (!prefixed || failure != std::errc() || end != digits.data() + digits.size() || digits.starts_with('-') ||
       !std::isfinite(value))
-    throw lines.error(fmt::format("'{}' is no finite hexadecimal double", field));
+    throw lines.error(fmt::format("'{}' is not a finite hexadecimal double", field));
   return negative ? -value : value;
 }
 

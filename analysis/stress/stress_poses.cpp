@@ -168,13 +168,13 @@ constexpr std::array kBroken = {0.0, 1.0, 2.0, 3.0, 4.0, 5.0};
 
 constexpr StressBody kMannequin = StressBody::kMannequin;
 constexpr std::array<StressFamily, 5> kPoseFamilies = {{
-    {"non_finite", "", "Colliders and bones without a finite place; nothing they do may count as a contact.",
+    {"non_finite", "", "Colliders and bones without a finite place; they must cause no contact.",
      "0 a collider's NaN, 1 its infinity, 2 its 1e39 m; 3 a bone's NaN, 4 its infinity, 5 its 3e38 m", kBroken,
      kMannequin, non_finite},
     {"collapse", "", "A bone twisted by half a turn and shrunk, so that the skin around it collapses.",
      "scale of the bone", kSizes, kMannequin, collapse},
     {"spin", "", "An avatar that turns fast.", "degrees a frame", kTurnsInDegrees, kMannequin, spin},
-    {"teleport", "", "An avatar that jumps; half of the colliders say that they jumped along, and test nothing.",
+    {"teleport", "", "An avatar that jumps; half of the colliders are marked as jumping along, and test nothing.",
      "metres", kJumps_m, kMannequin, teleport},
     {"mirrored", "", "A bone with negative scale, which turns its skin inside out.", "mirrored axes", kAxes, kMannequin,
      mirrored},

@@ -66,7 +66,7 @@ std::string stress_table(std::span<const StressCount> counts) {
     table += '\n';
     row = end;
   }
-  return table + "Missed / false / on another triangle or actuator / t of other bits; 0: nothing wrong.\n";
+  return table + "Missed / false / on another triangle or actuator / with other bits of t; 0: no errors.\n";
 }
 
 std::string family_definitions() {

@@ -143,7 +143,7 @@ constexpr std::array kWorld_m = {0.0, 10.0, 1000.0, 1e5, 1e7};
 constexpr std::array kFloat_m = {10.0, 1000.0};
 
 constexpr const char* kMeaning =
-    "Segments from inside the resting avatar (its winding number there, exactly, is not 0) to outside: each must hit.";
+    "Segments from inside the avatar in rest pose (the exact winding number is not 0) to outside: each must hit.";
 constexpr const char* kInDouble = "metres from the origin, of avatar and colliders in double coordinates";
 constexpr const char* kInFloat = "metres from the origin, as fp32 coordinates";
 

@@ -67,17 +67,17 @@ void ActuatorMapWatch::read() try {
   // Reading a pipe might never end.
   for (const auto& file : {std::filesystem::path(file_), sidecar_path(file_)})
     if (std::filesystem::exists(file) && !std::filesystem::is_regular_file(file))
-      throw Error(file.string(), "is no regular file any more", "write it anew under its name");
+      throw Error(file.string(), "is no longer a regular file", "write a regular file under this name");
   ActuatorMap map = parse_actuator_map(read_actuator_map_files(file_), avatar_, file_);
   if (map.actuator_count != actuator_count_)
-    throw Error(file_, fmt::format("now names {} actuators, where {} are in use", map.actuator_count, actuator_count_),
-                "start again to use it");
+    throw Error(file_, fmt::format("now has {} actuators, but {} are in use", map.actuator_count, actuator_count_),
+                "start the command again to use this map");
   std::shared_ptr<const ActuatorLayout> layout;
   if (layouts_ == Layouts::kMeasured) layout = std::make_shared<ActuatorLayout>(avatar_, map);
   const std::lock_guard lock(mutex_);
   map_ = {std::move(map), std::move(layout)};
 } catch (const std::exception& error) {
-  warn_(fmt::format("{}\n  The map before it stays in use.", error.what()));
+  warn_(fmt::format("{}\n  The previous map stays in use.", error.what()));
 }
 
 }  // namespace vestige

@@ -25,7 +25,7 @@ std::uint8_t to_duty(double share) {
 class Parser {
  public:
   Parser(const nlohmann::json& object, std::string where) : object_(object), where_(std::move(where)) {
-    if (!object.is_object()) throw Error(where_, "is no JSON object", kRemedy);
+    if (!object.is_object()) throw Error(where_, "is not a JSON object", kRemedy);
   }
 
   Motor parse(Motor motor, bool is_one_actuator) const {
@@ -43,11 +43,11 @@ class Parser {
       } else if (key == "kick_ms") {
         motor.kick_s = number(key, value, 0, 1e4) / 1e3;
       } else if (!(is_one_actuator ? key == "name" : key == "actuators")) {
-        throw Error(where_, fmt::format("has a field '{}' that no motor has", key),
+        throw Error(where_, fmt::format("has a field '{}' that does not describe a motor", key),
                     "the fields are: duty, dead_zone, rise_ms, fall_ms, kick_ms, felt_threshold, actuators");
       }
     }
-    if (motor.dead_zone == 1) throw Error(where_, "'dead_zone' is 1, so that the motor never turns", "lower it");
+    if (motor.dead_zone == 1) throw Error(where_, "'dead_zone' is 1, so the motor never turns", "write a lower value");
     return motor;
   }
 
@@ -60,7 +60,7 @@ class Parser {
 
   double time_s(const std::string& key, const nlohmann::json& value) const {
     const double time_ms = number(key, value, 0, 1e4);
-    if (time_ms == 0) throw Error(where_, fmt::format("'{}' is 0", key), "no motor is that quick: write 0.1 or more");
+    if (time_ms == 0) throw Error(where_, fmt::format("'{}' is 0", key), "write 0.1 or more: no motor is faster");
     return time_ms / 1e3;
   }
 
@@ -90,7 +90,7 @@ class Parser {
   std::vector<std::pair<double, double>> read_table(const nlohmann::json& value) const {
     const auto refuse = [&] {
       return Error(where_,
-                   "'table' is no list of pairs [amplitude, share of full duty] that ascends from amplitude 0 to 1",
+                   "'table' is not a list of pairs [amplitude, share of full duty] that rises from amplitude 0 to 1",
                    R"(write for example {"table": [[0, 0], [0.1, 0.4], [1, 1]]})");
     };
     if (!value.is_array() || value.size() < 2) throw refuse();
@@ -139,7 +139,7 @@ std::vector<Motor> ActuatorModel::motors(const ActuatorMap& map) const {
     const auto found = std::ranges::find(map.names, name);
     if (found == map.names.end())
       throw Error(name_, fmt::format("names an actuator '{}' that the map does not have", name),
-                  fmt::format("the map's are: {}", fmt::join(map.names, ", ")));
+                  fmt::format("the map's actuators are: {}", fmt::join(map.names, ", ")));
     motors[static_cast<std::size_t>(found - map.names.begin())] = motor;
   }
   return motors;
@@ -151,15 +151,15 @@ ActuatorModel parse_actuator_model(std::string_view json, std::string_view name)
   model.name_ = name;
   model.all_ = Parser(document, std::string(name)).parse(Motor(), false);
   if (!document.contains("actuators")) return model;
-  if (!document["actuators"].is_array()) throw Error(name, "'actuators' is no list", kRemedy);
+  if (!document["actuators"].is_array()) throw Error(name, "'actuators' is not a list", kRemedy);
   for (const nlohmann::json& entry : document["actuators"]) {
     const std::string where = fmt::format("{}, actuators[{}]", name, model.named_.size());
     const Motor motor = Parser(entry, where).parse(model.all_, true);
     if (!entry.contains("name") || !entry["name"].is_string())
-      throw Error(where, "has no 'name'", "name an actuator as the map's sidecar does");
+      throw Error(where, "has no 'name'", "write an actuator's name as it stands in the map's sidecar");
     const auto actuator = entry["name"].get<std::string>();
     if (std::ranges::find(model.named_, actuator, &std::pair<std::string, Motor>::first) != model.named_.end())
-      throw Error(where, fmt::format("'{}' stands here twice", actuator), "remove one of them");
+      throw Error(where, fmt::format("actuator '{}' is listed twice", actuator), "remove one of them");
     model.named_.emplace_back(actuator, motor);
   }
   return model;

@@ -223,7 +223,7 @@ std::unique_ptr<IntensityLaw> make_law(std::string_view name, std::size_t actuat
   if (name == "binary") return std::make_unique<Binary>(actuator_count, options);
   if (name == "speed") return std::make_unique<Speed>(actuator_count, options);
   throw UsageError("--law", fmt::format("there is no intensity law '{}'", name),
-                   fmt::format("choose of: {}", fmt::join(kLawNames, ", ")));
+                   fmt::format("choose one of: {}", fmt::join(kLawNames, ", ")));
 }
 
 }  // namespace vestige

@@ -14,8 +14,8 @@ namespace {
 
 void refuse_unless(bool is_right, const char* flag, const std::string& law, const char* knower) {
   if (!is_right)
-    throw UsageError(flag, fmt::format("means nothing to the law '{}'", law),
-                     fmt::format("add --law {}, or leave it out", knower));
+    throw UsageError(flag, fmt::format("has no effect with the law '{}'", law),
+                     fmt::format("add --law {}, or leave this flag out", knower));
 }
 
 }  // namespace

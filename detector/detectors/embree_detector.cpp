@@ -206,7 +206,7 @@ void require_embree() {
 std::unique_ptr<Detector> make_embree_detector(EmbreeMode mode, const Avatar& avatar, const ActuatorMap& map,
                                                const DetectorOptions& options) {
   if (options.method != Method::kStatic)
-    throw UsageError("--method", fmt::format("Embree knows no '{}'", name_of(options.method)),
+    throw UsageError("--method", fmt::format("Embree has no method '{}'", name_of(options.method)),
                      "choose --detector cpu, or --method static");
   return std::make_unique<EmbreeDetector>(mode, avatar, map, options);
 }

@@ -118,8 +118,10 @@ class PaperDetector final : public Detector {
   void upload_map(const ActuatorMap& map) {
     const auto side = static_cast<std::uint32_t>(gl_limit(gl_, GL_MAX_TEXTURE_SIZE));
     if (map.width > side || map.height > side)
-      throw Error("--map", fmt::format("{} x {} texels are more than this driver's {}", map.width, map.height, side),
-                  map.triangle_count == 0 ? "scale the map down, without smoothing" : "choose another detector");
+      throw Error(
+          "--map",
+          fmt::format("has {} x {} texels, but a side has at most {} with this driver", map.width, map.height, side),
+          map.triangle_count == 0 ? "scale the map down, without smoothing" : "choose another detector");
     gl_.CreateTextures(GL_TEXTURE_2D, 1, &map_texture_);
     gl_.TextureStorage2D(map_texture_, 1, GL_R16UI, static_cast<GLsizei>(map.width), static_cast<GLsizei>(map.height));
     gl_.PixelStorei(GL_UNPACK_ALIGNMENT, 1);

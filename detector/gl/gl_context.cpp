@@ -18,8 +18,7 @@ thread_local GlContext* current_context = nullptr;
 
 constexpr const char* kContextRemedy =
     "install a software renderer (apt-get install libegl1 libegl-mesa0 libgl1-mesa-dri libosmesa6), or the GPU's "
-    "driver; "
-    "'vestige devices' lists what this machine offers. --detector cpu needs no OpenGL";
+    "driver; 'vestige devices' lists what this machine offers. --detector cpu needs no OpenGL";
 
 std::string text_of(const GLubyte* text) {
   return text == nullptr ? "" : reinterpret_cast<const char*>(text);
@@ -28,9 +27,9 @@ std::string text_of(const GLubyte* text) {
 /// Mesa may serve a GPU's device with its software renderer. That renderer must not win over another device's GPU.
 std::unique_ptr<GlContext> make_hardware_context(int device) {
   if (list_egl_devices()[static_cast<std::size_t>(device)].software)
-    throw Error(fmt::format("egl-device-{}", device), "is software", "");
+    throw Error(fmt::format("egl-device-{}", device), "is a software renderer", "");
   auto context = make_egl_device_context(device);
-  if (context->info().software) throw Error(context->info().context, "is served by software", "");
+  if (context->info().software) throw Error(context->info().context, "uses a software renderer", "");
   return context;
 }
 
@@ -56,7 +55,7 @@ std::unique_ptr<GlContext> GlContext::loaded(std::unique_ptr<GlContext> context,
 #define VESTIGE_GL_LOAD(type, function)                                             \
   functions.function = reinterpret_cast<type>(context->address_of("gl" #function)); \
   if (functions.function == nullptr)                                                \
-    throw Error(name, "the driver has no gl" #function, "OpenGL 4.5 is needed: use a newer driver");
+    throw Error(name, "the driver has no gl" #function, "use a newer driver: OpenGL 4.5 is needed");
   VESTIGE_GL_FUNCTIONS(VESTIGE_GL_LOAD)
 #undef VESTIGE_GL_LOAD
   const std::string renderer = text_of(functions.GetString(GL_RENDERER));
@@ -109,7 +108,7 @@ std::unique_ptr<GlContext> make_gl_context(ContextKind kind, int device) {
       failures += fmt::format("\n  tried {}", line.substr(0, line.find('\n')));
     }
   }
-  throw Error("--context", "no OpenGL 4.5 context is to be had on this machine" + failures, kContextRemedy);
+  throw Error("--context", "this machine offers no OpenGL 4.5 context" + failures, kContextRemedy);
 }
 
 }  // namespace vestige

@@ -17,7 +17,7 @@ constexpr std::int64_t kPlanes = kGlPlanes.size();
 
 constexpr std::array<Row, 11> kRows = {{
     {GL_MAX_GEOMETRY_OUTPUT_VERTICES, {"geometry_output_vertices", "points from a geometry shader", 0, 1}},
-    {GL_MAX_GEOMETRY_TOTAL_OUTPUT_COMPONENTS, {"geometry_output_components", "components in all of them", 0, 16}},
+    {GL_MAX_GEOMETRY_TOTAL_OUTPUT_COMPONENTS, {"geometry_output_components", "components in all points", 0, 16}},
     {GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, {"vertex_storage_blocks", "storage blocks, vertex shader", 0, 1}},
     {GL_MAX_GEOMETRY_SHADER_STORAGE_BLOCKS, {"geometry_storage_blocks", "storage blocks, geometry shader", 0, 1}},
     {GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS, {"storage_bindings", "storage buffer bindings", 0, 2}},

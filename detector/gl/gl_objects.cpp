@@ -13,7 +13,7 @@ namespace vestige {
 namespace {
 
 constexpr const char* kFaultRemedy =
-    "this is a fault of ours or of the GL driver: try another --context, and report it";
+    "this is a bug in Vestige or in the GL driver: try another --context, and report it";
 
 /// Returns the info log of a shader or a program, depending on the two functions.
 template <typename GetIv, typename GetLog>

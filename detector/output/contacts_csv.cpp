@@ -45,8 +45,8 @@ std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path
   std::vector<RecordedContact> contacts;
   const auto check = [&](const char* what, std::uint64_t number, std::uint64_t count) {
     if (number < count) return;
-    throw lines.error(fmt::format("refers to {} {}, and there are only {}", what, number, count),
-                      "name the contacts of this very trace, avatar and map");
+    throw lines.error(fmt::format("refers to {} {}, but there are only {}", what, number, count),
+                      "use the contacts of this trace, avatar and map");
   };
   while (lines.next()) {
     RecordedContact contact;
@@ -63,7 +63,7 @@ std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path
     if (!lines.take(contact.frame) || !skip(1) || !lines.take(contact.collider) || !lines.take(contact.triangle) ||
         !lines.take(contact.t) || !lines.take(weights.x) || !lines.take(weights.y) || !skip(2) ||
         !lines.take(contact.actuator) || !skip(4) || !lines.at_end())
-      throw lines.error("is no row of contacts");
+      throw lines.error("is not a row of contacts");
     if (!finite) throw lines.error("time, texture coordinates and position must be finite");
     if (!(contact.t >= 0 && contact.t <= 1)) throw lines.error("t must be from 0 to 1");
     if (!(weights.x >= 0 && weights.x <= 1 && weights.y >= 0 && weights.y <= 1))

@@ -86,8 +86,8 @@ void TextureExr::add(const DetectorFrame& frame, const ContactRow& row) {
 
 void TextureExr::write(OutputFile& file) const {
   if (rows_ == 0 || columns_ == 0)
-    throw Error(file.path().string(), "there is no frame or no collider, so there is no texture to write",
-                "replay a trace that has both");
+    throw Error(file.path().string(), "the trace has no frame or no collider, so there is no texture to write",
+                "replay a trace with frames and colliders");
   Imf::Header header(static_cast<int>(columns_), static_cast<int>(rows_));
   header.compression() = Imf::ZIPS_COMPRESSION;
   for (const auto& [name, value] : attributes_) header.insert(name, Imf::StringAttribute(value));

@@ -116,15 +116,15 @@ TEST(ActuatorMap, WarnsOfFieldsThatMeanNothingAndOfNamesThatStandTwice) {
   const char* sidecar =
       R"({"skn": "", "actuators": [{"grey": 10, "name": "a", "positon_m": [0, 0, 0]}, {"grey": 20, "name": "a"}]})";
   EXPECT_THAT(parse_actuator_map(png, sidecar, "map.png").warnings,
-              ElementsAre(HasSubstr("map.png, sidecar: has a field 'skn'"),
-                          HasSubstr("map.png, sidecar, actuators[0]: has a field 'positon_m'"),
+              ElementsAre(HasSubstr("map.png, sidecar: the field 'skn' has no meaning here"),
+                          HasSubstr("map.png, sidecar, actuators[0]: the field 'positon_m' has no meaning here"),
                           HasSubstr("actuators 1 and 2 are both called 'a'")));
 }
 
 TEST(ActuatorMap, RefusesAnImageThatIsTooLargeAsWhatItIs) {
   const auto png = make_png<std::uint8_t>(std::vector<std::uint8_t>(16385, 10), 16385, PNG_COLOR_TYPE_GRAY);
   EXPECT_THAT(message_of([&] { parse_actuator_map(png, "", "map.png"); }),
-              HasSubstr("is 16385 x 1 texels, and a map has at most 16384 a side"));
+              HasSubstr("is 16385 x 1 texels; a side must have at most 16384"));
 }
 
 TEST(ActuatorMap, TakesTheNearestTexelAndWrapsAround) {
@@ -190,7 +190,7 @@ TEST(ActuatorMap, MayGiveEachTriangleItsOwn) {
   const ActuatorMap map = parse_actuator_map(png, kSidecar, "map.png");
   for (std::uint32_t i = 0; i < 5; ++i) EXPECT_EQ(map.at(i, {0.9, 0.9}), greys[i] / 40) << i;
   EXPECT_EQ(map.at(5, {0.9, 0.9}), 0) << "no triangle of its";
-  EXPECT_THAT(map.warnings, ElementsAre(HasSubstr("any avatar of 5 triangles")));
+  EXPECT_THAT(map.warnings, ElementsAre(HasSubstr("Every avatar with 5 triangles")));
 
   EXPECT_THAT(message_of([&] {
                 parse_actuator_map(png, R"({"triangles": 4, "actuators": [{"grey": 40}, {"grey": 80}]})", "map.png");
@@ -203,7 +203,7 @@ TEST(ActuatorMap, MayGiveEachTriangleItsOwn) {
   EXPECT_THAT(message_of([&] {
                 parse_actuator_map({png, kSidecar}, avatar, "map.png");
               }),
-              HasSubstr("gives an actuator to each of 5 triangles, and the avatar has 4"));
+              HasSubstr("is for an avatar with 5 triangles, but this avatar has 4"));
   EXPECT_THAT(message_of([&] {
                 parse_actuator_map(png, R"({"triangles": 7, "actuators": [{"grey": 40}, {"grey": 80}]})", "map.png");
               }),

@@ -33,7 +33,8 @@ const std::string& font_file(Weight weight) {
   static const std::string regular = folder + "LiberationSans-Regular.ttf";
   static const std::string bold = folder + "LiberationSans-Bold.ttf";
   const std::string& file = weight == Weight::kBold ? bold : regular;
-  if (!std::filesystem::exists(file)) throw Error(file, "this font is missing", "apt-get install fonts-liberation2");
+  if (!std::filesystem::exists(file))
+    throw Error(file, "this font is missing", "install it: apt-get install fonts-liberation2");
   return file;
 }
 

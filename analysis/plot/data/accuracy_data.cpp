@@ -8,7 +8,7 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr std::string_view kRemedy = "was it written by 'vestige accuracy'? Measure again, or name another folder";
+constexpr std::string_view kRemedy = "name a folder that 'vestige accuracy' wrote, or measure again";
 
 /// What an axis can show; nothing real lies outside.
 constexpr double kLeastRate_hz = 1e-3;
@@ -21,7 +21,7 @@ AccuracyPoint read_point(const JsonField& errors, const JsonField& times) {
   AccuracyPoint point;
   point.rate_hz = errors.at("rate_hz").within(kLeastRate_hz, kMostRate_hz);
   if (times.at("rate_hz").within(kLeastRate_hz, kMostRate_hz) != point.rate_hz)
-    times.at("rate_hz").refuse("is not that of accuracy.json");
+    times.at("rate_hz").refuse("differs from that of accuracy.json");
   point.load = point.rate_hz * times.at("us_median").within(kLeast_us, kMost_us) * 1e-6;
   point.missed_share = errors.at("missed_share").within(0, 1);
   return point;
@@ -30,10 +30,11 @@ AccuracyPoint read_point(const JsonField& errors, const JsonField& times) {
 /// The member of `times` that belongs to one of `errors`: both lists are in the same order.
 JsonField partner(const JsonField& errors, const JsonField& times, std::size_t index,
                   std::initializer_list<const char*> keys) {
-  if (times.count() != errors.count()) times.refuse("is not as long as in accuracy.json");
+  if (times.count() != errors.count()) times.refuse("does not have as many entries as in accuracy.json");
   JsonField found = times.at(index);
   for (const char* key : keys)
-    if (found.at(key).text() != errors.at(index).at(key).text()) found.at(key).refuse("is not that of accuracy.json");
+    if (found.at(key).text() != errors.at(index).at(key).text())
+      found.at(key).refuse("differs from that of accuracy.json");
   return found;
 }
 
@@ -74,7 +75,7 @@ AccuracyResult read_accuracy(const std::filesystem::path& folder) {
     const JsonField times = partner(scenes, run.at("scenes"), i, {"colliders"});
     result.panels.push_back(read_panel(scenes.at(i), times));
     if (result.panels.back().series.size() != result.panels.front().series.size())
-      scenes.at(i).at("series").refuse("is not as long as that of the first scene");
+      scenes.at(i).at("series").refuse("does not have as many entries as that of the first scene");
     for (std::size_t s = 0; result.renderer.empty() && s < times.at("series").count(); ++s)
       if (times.at("series").at(s).has("gl"))
         result.renderer = phrase(times.at("series").at(s).at("gl"), {{"renderer", ""}, {"version", ""}});

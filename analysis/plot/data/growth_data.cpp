@@ -9,7 +9,7 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr std::string_view kRemedy = "was it written by 'vestige growth'? Measure again, or name another folder";
+constexpr std::string_view kRemedy = "name a folder that 'vestige growth' wrote, or measure again";
 
 /// What an axis can show; nothing real lies outside.
 constexpr double kMostSize = 1e10;
@@ -47,7 +47,7 @@ GrowthResult read_growth(const std::filesystem::path& folder) {
   const std::filesystem::path path = folder / "growth.json";
   const nlohmann::json json = read_json(path, kRemedy);
   const JsonField document(json, path, kRemedy);
-  if (!json.is_object()) document.refuse("is no JSON object");
+  if (!json.is_object()) document.refuse("is not a JSON object");
   GrowthResult result;
   auto& [by_colliders, by_triangles] = result.panels;
   by_colliders.along = "Number of colliders";

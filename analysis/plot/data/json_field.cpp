@@ -11,7 +11,7 @@ nlohmann::json read_json(const std::filesystem::path& file, std::string_view rem
   try {
     return nlohmann::json::parse(read_text_file(file));
   } catch (const nlohmann::json::parse_error& error) {
-    throw Error(fmt::format("{}, byte {}", file.string(), error.byte), "is no JSON", remedy);
+    throw Error(fmt::format("{}, byte {}", file.string(), error.byte), "is not JSON", remedy);
   } catch (const nlohmann::json::out_of_range&) {
     throw Error(file.string(), "holds a number beyond the largest double", remedy);
   }
@@ -37,20 +37,20 @@ JsonField JsonField::at(std::size_t index) const {
 }
 
 std::size_t JsonField::count() const {
-  if (!value_.is_array()) refuse("is no list");
+  if (!value_.is_array()) refuse("is not a list");
   if (value_.empty()) refuse("is empty");
   return value_.size();
 }
 
 double JsonField::within(double least, double most) const {
-  if (!value_.is_number()) refuse("is no number");
+  if (!value_.is_number()) refuse("is not a number");
   const double number = value_.get<double>();
   if (!(number >= least && number <= most)) refuse(fmt::format("is {}, not within {} and {}", number, least, most));
   return number;
 }
 
 std::string JsonField::text() const {
-  if (!value_.is_string()) refuse("is no text");
+  if (!value_.is_string()) refuse("is not a text");
   return value_.get<std::string>();
 }
 

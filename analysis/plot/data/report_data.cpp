@@ -15,8 +15,8 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr std::string_view kRemedy = "was it written by 'vestige batch'? Run the batch again, with --force";
-constexpr std::string_view kGoOn = "run the same 'vestige batch' again: it goes on where it was stopped";
+constexpr std::string_view kRemedy = "name a folder that 'vestige batch' wrote, or run the batch again with --force";
+constexpr std::string_view kGoOn = "run the same 'vestige batch' again: it continues where it stopped";
 constexpr double kLeast = std::numeric_limits<double>::min();
 constexpr double kMost = std::numeric_limits<double>::max();
 
@@ -36,7 +36,7 @@ bool truth(const JsonField& field) {
 
 /// Lists may be empty here.
 std::size_t length(const JsonField& field) {
-  if (!field.value().is_array()) field.refuse("is no list");
+  if (!field.value().is_array()) field.refuse("is not a list");
   return field.value().size();
 }
 
@@ -44,7 +44,7 @@ std::size_t length(const JsonField& field) {
 std::string file_name(const JsonField& field) {
   std::string name = field.text();
   if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
-    field.refuse(fmt::format("is '{}', which is no name of a map or a trace", name));
+    field.refuse(fmt::format("is '{}', which is not a name of a map, trace or law", name));
   return name;
 }
 
@@ -89,7 +89,7 @@ void read_ranking(const std::filesystem::path& file, ReportData& data) {
   const std::string rank_by = document.at("rank_by").text();
   const auto headline = std::ranges::find(data.metrics, rank_by, &ReportMetric::name);
   if (headline == data.metrics.end())
-    document.at("rank_by").refuse(fmt::format("is '{}', which is no metric", rank_by));
+    document.at("rank_by").refuse(fmt::format("is '{}', which is not a metric", rank_by));
   data.headline = static_cast<std::size_t>(headline - data.metrics.begin());
   data.interval = document.at("interval").text();
   const JsonField ranking = document.at("ranking");
@@ -166,7 +166,7 @@ void read_run(const std::filesystem::path& file, ReportData& data) {
   }
   if (run.has("complete")) data.complete = truth(run.at("complete"));
   if (!data.complete && !run.has("traces"))
-    throw Error(file.string(), "says that the batch was not finished, and has no trace yet", kGoOn);
+    throw Error(file.string(), "says that the batch is not finished and has no trace yet", kGoOn);
   read_provenance(run, data);
   const JsonField batch = run.at("batch");
   const JsonField laws = batch.at("laws");
@@ -222,15 +222,15 @@ const Candidate& ReportData::best_of(const std::string& map) const {
 
 void require_judged(const std::string& file, const std::string& sha256, const std::string& judged) {
   if (judged.empty() || sha256 == judged) return;
-  throw Error(file, "is not what the batch judged (SHA-256 in run.json): it was changed since", kFileRemedy);
+  throw Error(file, "was changed after the batch scored it: the SHA-256 in run.json differs", kFileRemedy);
 }
 
 ReportData read_report(const std::filesystem::path& folder) {
   if (!std::filesystem::is_directory(folder))
-    throw Error(folder.string(), std::filesystem::exists(folder) ? "is no folder" : "there is no such folder",
+    throw Error(folder.string(), std::filesystem::exists(folder) ? "is not a folder" : "there is no such folder",
                 "name the folder that 'vestige batch -o' wrote");
   if (!std::filesystem::exists(folder / "ranking.json"))
-    throw Error(folder.string(), "holds no ranking.json: no batch was finished here",
+    throw Error(folder.string(), "has no ranking.json: no batch has finished here",
                 std::filesystem::exists(folder / "run.json") ? fmt::format("{}; run.json says what failed", kGoOn)
                                                              : "run 'vestige batch -o' first, and name its folder");
   ReportData data;

@@ -17,7 +17,7 @@ namespace vestige::plot {
 
 /// The remedy for a damaged file of the folder.
 inline constexpr std::string_view kFileRemedy =
-    "run the same 'vestige batch' (or 'batch merge') again: it writes the file anew";
+    "run the same 'vestige batch' (or 'batch merge') again: it writes the file again";
 
 /// A mean over traces and its 95 % interval. A value is absent if the batch has none (no trace has a value, or for the
 /// interval fewer than two traces have one).

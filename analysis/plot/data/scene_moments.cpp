@@ -121,8 +121,8 @@ std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, std:
   const std::string span = fmt::format("from {} s to {} s", times.front().time_s, times.back().time_s);
   std::erase_if(times, [&](const FrameTime& at) { return at.time_s < choice.from_s || at.time_s > choice.to_s; });
   if (times.empty())
-    throw UsageError("--from, --to", fmt::format("{}, which lasts {}, has no frame in that time", name, span),
-                     "choose a time within");
+    throw UsageError("--from, --to", fmt::format("{} lasts {}, and has no frame in that time", name, span),
+                     "choose a time within the trace");
 
   std::map<std::uint64_t, double> time_of;
   for (const FrameTime& at : times) time_of[at.index] = at.time_s;
@@ -134,7 +134,7 @@ std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, std:
     for (const RecordedContact& contact : contacts)
       if (time_of.contains(contact.frame)) touched.insert(contact.frame);
     if (touched.empty())
-      throw UsageError("--contacts", fmt::format("there is no contact in the frames of {} that are drawn", name),
+      throw UsageError("--contacts", fmt::format("the frames of {} that are drawn have no contact", name),
                        "widen --from and --to, or leave --contacts out");
     const std::vector<std::uint64_t> frames(touched.begin(), touched.end());
     for (std::size_t i = 0; i < std::min(choice.count, frames.size()); ++i) {

@@ -6,7 +6,7 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr std::string_view kRemedy = "was it written by 'vestige stress'? Run it again, or name another folder";
+constexpr std::string_view kRemedy = "name a folder that 'vestige stress' wrote, or run it again";
 constexpr double kMostCases = 1e15;
 constexpr double kMostMagnitude = 1e30;
 

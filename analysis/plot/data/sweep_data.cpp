@@ -10,7 +10,7 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr std::string_view kRemedy = "was it written by 'vestige sweep'? Measure again, or name another file";
+constexpr std::string_view kRemedy = "name a file that 'vestige sweep' wrote, or measure again";
 
 /// "on" and "off" may also be true and false.
 std::string setting(const JsonField& field) {
@@ -67,7 +67,7 @@ SweepSource read_source(const JsonField& document) {
 void read_sweep(const std::filesystem::path& path, Sweeps& sweeps) {
   const nlohmann::json json = read_json(path, kRemedy);
   const JsonField document(json, path, kRemedy);
-  if (!json.is_object()) document.refuse("is no JSON object");
+  if (!json.is_object()) document.refuse("is not a JSON object");
   const JsonField series = document.at("series");
   for (std::size_t i = 0; i < series.count(); ++i) {
     sweeps.series.push_back(read_series(series.at(i)));

@@ -17,7 +17,7 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr std::string_view kRemedy = "was it written by 'vestige replay --textures FILE.exr'?";
+constexpr std::string_view kRemedy = "name a file that 'vestige replay --textures FILE.exr' wrote";
 constexpr const char* kPlane = "actuator";
 /// More than any recording has; a damaged header may claim more than there is memory.
 constexpr std::int64_t kMostColliders = std::int64_t{1} << 20;
@@ -34,7 +34,9 @@ void read_plane(const std::filesystem::path& path, TextureContacts& result) {
   const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
   const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
   if (width > kMostColliders || width * height > kMostTexels)
-    throw Error(path.string(), fmt::format("claims {} colliders and {} frames", width, height), kRemedy);
+    throw Error(path.string(),
+                fmt::format("has a header with {} colliders and {} frames, which are too many", width, height),
+                kRemedy);
   result.colliders = static_cast<std::uint32_t>(width);
   result.frames = static_cast<std::uint32_t>(height);
 
@@ -57,7 +59,7 @@ void read_plane(const std::filesystem::path& path, TextureContacts& result) {
       const std::int64_t collider = texel % width;
       if (!(value >= 0 && value <= std::numeric_limits<std::uint16_t>::max()) || value != std::floor(value))
         throw Error(fmt::format("{}, frame {}, collider {}", path.string(), frame, collider),
-                    fmt::format("{} is no actuator", value), kRemedy);
+                    fmt::format("{} is not an actuator", value), kRemedy);
       result.contacts.push_back(
           {static_cast<std::uint32_t>(frame), static_cast<std::uint32_t>(collider), static_cast<std::uint16_t>(value)});
     }
@@ -69,7 +71,8 @@ void read_plane(const std::filesystem::path& path, TextureContacts& result) {
 TextureContacts read_texture_contacts(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) throw Error(path.string(), "there is no such file", "check the name");
   if (std::filesystem::is_directory(path)) throw Error(path.string(), "is a folder", "name a file");
-  if (!Imf::isOpenExrFile(path.c_str())) throw Error(path.string(), "is no OpenEXR file, or may not be read", kRemedy);
+  if (!Imf::isOpenExrFile(path.c_str()))
+    throw Error(path.string(), "is not an OpenEXR file, or cannot be read", kRemedy);
   TextureContacts result;
   try {
     read_plane(path, result);

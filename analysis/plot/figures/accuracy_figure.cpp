@@ -48,11 +48,10 @@ std::vector<std::string> wrapped(const std::string& text) {
 std::vector<std::string> small_print(const AccuracyResult& result) {
   std::vector<std::string> lines = wrapped(fmt::format(
       "Truth: continuous collision detection at {} Hz. An event is a maximal run of contact of a collider with an "
-      "actuator; it is missed if no contact of theirs lies within one frame of it, nor one with another actuator in "
-      "its "
-      "place. Small numbers: frames per second of the trace (k: thousand). Run time: median of a frame times the rate; "
-      "a second of motion in more than a second is slower than it happens. Marks in the grey band missed none; their "
-      "height there only keeps them apart.",
+      "actuator. It is missed if no contact of this pair lies within one frame of it, and no contact with another "
+      "actuator lies there instead. Small numbers: frames per second of the trace (k: thousand). Run time: median time "
+      "of a frame times the rate; more than 1 s is slower than real time. Marks in the grey band missed no event; "
+      "their height there only keeps them apart.",
       result.truth_rate_hz));
   std::string text;
   if (!result.renderer.empty()) text += fmt::format("OpenGL: {}. ", result.renderer);

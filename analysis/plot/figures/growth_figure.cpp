@@ -37,7 +37,7 @@ std::vector<std::string> wrapped(const std::string& text) {
 
 std::vector<std::string> small_print(const GrowthResult& result) {
   std::string text =
-      "Mean of a frame, whole round trip. Triangles: the avatar's, each split into four again and again. ";
+      "Mean time of a frame, whole round trip. Triangles: those of the avatar, each split into four repeatedly. ";
   if (!result.renderer.empty()) text += fmt::format("OpenGL: {}. ", result.renderer);
   if (!result.machine.empty()) text += fmt::format("Machine: {}. ", result.machine);
   text += fmt::format("Avatar: {}. Commit\u00a0{}.", result.avatar, result.commit);

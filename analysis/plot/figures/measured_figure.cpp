@@ -117,11 +117,10 @@ class MeasuredFigure : public Figure {
     canvas.rectangle({plot.left_pt, upper_pt - 3, plot.left_pt + 16, upper_pt + 3}, faded(kCommanded, 0.6));
     canvas.text({plot.left_pt + 20, upper_pt}, "Commanded", kLabelStyle);
     canvas.line({plot.left_pt, lower_pt}, {plot.left_pt + 16, lower_pt}, {kMeasured, 0.75});
-    canvas.text(
-        {plot.left_pt + 20, lower_pt},
-        fmt::format("Measured, its clock shifted by {:+.3f} s so that the first actuator goes on in both at once",
-                    shift_s_),
-        kLabelStyle);
+    canvas.text({plot.left_pt + 20, lower_pt},
+                fmt::format("Measured, with its clock shifted by {:+.3f} s: both switch the first actuator on together",
+                            shift_s_),
+                kLabelStyle);
   }
 
   Timeline commanded_;
@@ -137,12 +136,13 @@ std::unique_ptr<Figure> measured_figure(Timeline commanded, Timeline measured, c
   if (commanded.actuator_count != measured.actuator_count)
     throw Error(
         name,
-        fmt::format("has {} actuators, and the timeline has {}", measured.actuator_count, commanded.actuator_count),
-        "name what was measured while this timeline was streamed");
+        fmt::format("has {} actuators, but the timeline has {}", measured.actuator_count, commanded.actuator_count),
+        "name the file that was measured while this timeline was streamed");
   const std::optional<double> commanded_s = first_on_s(commanded);
   const std::optional<double> measured_s = first_on_s(measured);
   if (!commanded_s || !measured_s)
-    throw Error(name, measured_s ? "goes on, but the timeline never does" : "never goes on",
+    throw Error(name,
+                measured_s ? "switches an actuator on, but the timeline never does" : "never switches an actuator on",
                 "stream a trace with contacts");
   return std::make_unique<MeasuredFigure>(std::move(commanded), std::move(measured), *commanded_s - *measured_s);
 }

@@ -149,7 +149,7 @@ class StressFigure : public Figure {
     constexpr std::size_t kSteps = 120;
     const Box none = {kMarginPt + kNamePt + 4, top_pt - 7, kMarginPt + kNamePt + kMagnitudePt - 8, top_pt};
     const Box bar = {column_pt(0) + 8, none.bottom_pt, column_pt(0) + 8 + kStepPt * kSteps, none.top_pt};
-    canvas.text({kMarginPt, (bar.bottom_pt + bar.top_pt) / 2}, "Share of cases wrong", kKeyStyle);
+    canvas.text({kMarginPt, (bar.bottom_pt + bar.top_pt) / 2}, "Share of wrong cases", kKeyStyle);
     canvas.rectangle(none, kNoErrors);
     const TextStyle label = {6, kInk, Anchor::kCentre, Level::kTop};
     canvas.text({(none.left_pt + none.right_pt) / 2, none.bottom_pt - 3}, "none", label);

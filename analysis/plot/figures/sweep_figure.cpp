@@ -111,7 +111,8 @@ std::vector<std::string> small_print(const Sweeps& sweeps) {
   std::string first = "Frequency is frames / total time, whole round trip.";
   if (has_interval) first += " Shaded: 95 % bootstrap interval.";
   first += " Triangles: published lower bounds.";
-  if (any_skips(sweeps)) first += " cpu and geometry skip what no collider is near, unless their names say otherwise.";
+  if (any_skips(sweeps))
+    first += " cpu and geometry skip triangles that no collider can touch, unless their names say otherwise.";
   if (const auto methods = methods_of(sweeps); methods.size() == 1 && !methods.begin()->empty())
     first += fmt::format(" Method: {}.", *methods.begin());
   lines = wrapped(first);
@@ -122,7 +123,7 @@ std::vector<std::string> small_print(const Sweeps& sweeps) {
     if (!source.machine.empty()) text += fmt::format("Machine: {}. ", source.machine);
     if (!source.avatar.empty()) text += fmt::format("Avatar: {}. ", source.avatar);
     if (source.surface == "mapped") text += "Mapped triangles only. ";
-    if (!source.complete) text += "Not complete: it was stopped before its end. ";
+    if (!source.complete) text += "Not complete: the run was stopped before its end. ";
     text += fmt::format("Commit\u00a0{}.", source.commit);
     for (std::string& line : wrapped(text)) lines.push_back(std::move(line));
   }

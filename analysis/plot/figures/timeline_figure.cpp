@@ -17,7 +17,7 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr std::string_view kRemedy = "was it written by 'vestige replay --timeline FILE.csv'?";
+constexpr std::string_view kRemedy = "name a file that 'vestige replay --timeline FILE.csv' wrote";
 constexpr std::size_t kMostActuators = 1024;
 /// 30 000 years.
 constexpr double kFarthestS = 1e12;
@@ -167,14 +167,14 @@ Timeline read_timeline(const std::filesystem::path& path) {
   CsvLines lines(text, path.string(), header, kRemedy);
   while (lines.next()) {
     double time_s = 0;
-    if (!lines.take(time_s) || !(std::abs(time_s) <= kFarthestS)) throw lines.error("time_s is no time in seconds");
+    if (!lines.take(time_s) || !(std::abs(time_s) <= kFarthestS)) throw lines.error("time_s is not a time in seconds");
     if (!timeline.time_s.empty() && time_s <= timeline.time_s.back())
       throw lines.error(fmt::format("time_s does not rise: {} after {}", time_s, timeline.time_s.back()));
     timeline.time_s.push_back(time_s);
     for (std::size_t actuator = 1; actuator <= timeline.actuator_count; ++actuator) {
       int duty = 0;
       if (!lines.take(duty) || duty < 0 || duty > kFullDuty)
-        throw lines.error(fmt::format("actuator_{} is no whole number from 0 to 255", actuator));
+        throw lines.error(fmt::format("actuator_{} is not a whole number from 0 to 255", actuator));
       timeline.duty.push_back(static_cast<std::uint8_t>(duty));
     }
     if (!lines.at_end()) throw lines.error(fmt::format("has more than {} fields", timeline.actuator_count + 1));

@@ -161,7 +161,8 @@ void ParaviewSeries::write_part(const char* part, vtkPolyData& data, double time
   writer->SetCompressorTypeToZLib();
   writer->WriteToOutputStringOn();
   const std::filesystem::path path = folder_.path() / file_name(part, times_s_.size());
-  if (writer->Write() == 0) throw Error(path.string(), "VTK could not write it", "is there enough memory?");
+  if (writer->Write() == 0)
+    throw Error(path.string(), "VTK could not write it", "make sure that there is enough memory");
   OutputFile file(path, Overwrite::kAllow);
   file.write(writer->GetOutputString());
   file.commit();

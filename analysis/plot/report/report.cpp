@@ -50,7 +50,8 @@ ContactRecording read_trace_contacts(const std::filesystem::path& file) {
     return read_contact_recording(file.string()).contacts;
   } catch (const Error& error) {
     if (!std::filesystem::exists(file))
-      throw Error(file.string(), "is missing", "run the same 'vestige batch' (or 'batch merge') again: it writes it");
+      throw Error(file.string(), "is missing",
+                  "run the same 'vestige batch' (or 'batch merge') again: it writes the file");
     throw Error("contacts", error.fault(), kFileRemedy);
   }
 }
@@ -63,13 +64,14 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
     for (std::size_t i = 0; i < recording.contacts.size(); ++i) {
       const Contact& contact = recording.contacts[i];
       if (contact.triangle >= avatar.triangles.size())
-        throw Error(file.string(),
-                    fmt::format("names triangle {}, and avatar.glb has {}", contact.triangle, avatar.triangles.size()),
-                    kFileRemedy);
+        throw Error(
+            file.string(),
+            fmt::format("names triangle {}, but avatar.glb has only {}", contact.triangle, avatar.triangles.size()),
+            kFileRemedy);
       const glm::dvec2& weights = contact.barycentric;
       constexpr double kSlack = 1e-9;
       if (!(weights.x >= 0 && weights.y >= 0 && weights.x + weights.y <= 1 + kSlack))
-        throw Error(file.string(), fmt::format("contact {}: u and v are no weights from 0 to 1", i + 1), kFileRemedy);
+        throw Error(file.string(), fmt::format("contact {}: u and v are not weights from 0 to 1", i + 1), kFileRemedy);
       RecordedContact one;
       one.triangle = contact.triangle;
       one.barycentric = contact.barycentric;
@@ -150,8 +152,8 @@ class Report {
     ReportPage page = {data, {}, {}, {}, contacts.shown_trace};
     if (data.ranking.front().headline.mean) {
       std::string caption =
-          "Each combination of map and law: mean over traces, and its 95\u00a0% interval. Filled: cannot "
-          "be told from the first at 95\u00a0%.";
+          "Each combination of map and law: mean over traces, and its 95\u00a0% interval. Filled: cannot be "
+          "distinguished from the first at 95\u00a0%.";
       if (data.traces.size() < 2) caption = "Each combination of map and law, on the one trace.";
       if (data.ranking.size() > kRankedShown) caption += fmt::format(" The best {} are drawn.", kRankedShown);
       page.ranking.push_back(draw("ranking", *ranking_figure(data, kRankedShown), caption));

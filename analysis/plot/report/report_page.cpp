@@ -26,12 +26,16 @@ struct LawWords {
 };
 constexpr std::array<LawWords, 5> kLaws = {{
     {"binary", "A contact switches the actuator of its skin fully on (Spanlang et al. 2010, HAVE)."},
-    {"speed", "As strong as the collider's speed along the skin's normal, up to a speed that asks for everything."},
+    {"speed",
+     "The amplitude rises with the collider's speed along the skin's normal, up to a speed of full amplitude."},
     {"phantom",
-     "Shared between the actuators that a contact lies between, at constant energy: for two, A₁ = √(1−β) A and "
+     "The actuators around a contact share its amplitude at constant energy: for two, A₁ = √(1−β) A and "
      "A₂ = √β A (Israr & Poupyrev 2011, Tactile Brush)."},
-    {"gaussian", "Every actuator, less with its distance along the body: exp(−d²/2σ²)."},
-    {"linear", "Shared as by phantom, but linearly, so that energy sags between actuators; for comparison."},
+    {"gaussian",
+     "Every actuator vibrates, with an amplitude that falls with its distance along the body: exp(−d²/2σ²)."},
+    {"linear",
+     "The actuators share the amplitude as with phantom, but linearly, so the energy drops between them; for "
+     "comparison."},
 }};
 
 template <typename... Arguments>
@@ -93,9 +97,9 @@ class Page {
     inputs();
     provenance();
     out_ +=
-        "</main>\n<footer><p class=\"soft\">Written by <code>vestige plot report</code>. This page needs no network: "
-        "its figures stand in it. Beside it, as SVG and PNG, they are in the folder <code>figures</code>, and all "
-        "scores are in <code>scores.csv</code>.</p></footer>\n</body>\n</html>\n";
+        "</main>\n<footer><p class=\"soft\">Written by <code>vestige plot report</code>. This page needs no network, "
+        "because it contains its figures. The folder <code>figures</code> also has them, as SVG and PNG. All scores "
+        "are in <code>scores.csv</code>.</p></footer>\n</body>\n</html>\n";
     return std::move(out_);
   }
 
@@ -161,25 +165,22 @@ class Page {
     const std::size_t others = data_.ranking.size() - 1;
     if (others == 0) return "There is nothing else to compare it with.";
     if (data_.traces.size() < 2)
-      return fmt::format(
-          "With one trace it cannot be said whether that would hold on another: the {} have no interval "
-          "either.",
-          counted(others, "other combination"));
+      return fmt::format("One trace cannot show whether this holds on another trace: the {} have no interval either.",
+                         counted(others, "other combination"));
     const std::size_t level = level_with_best();
     if (level == 0)
-      return others == 1
-                 ? "The other combination of map and law is worse, as far as these traces tell."
-                 : fmt::format("All {} other combinations of map and law are worse, as far as these traces tell.",
-                               others);
-    return fmt::format("Of the {} of map and law, {} cannot be told from it.", counted(others, "other combination"),
-                       level);
+      return others == 1 ? "The other combination of map and law is worse on these traces."
+                         : fmt::format("All {} other combinations of map and law are worse on these traces.", others);
+    return fmt::format("Of the {} of map and law, {} cannot be distinguished from it.",
+                       counted(others, "other combination"), level);
   }
 
   void cautions() {
     std::vector<std::string> cautions;
     if (!data_.shard.empty())
       cautions.push_back(fmt::format("This is shard {} of the batch: 'vestige batch merge' joins them.", data_.shard));
-    if (!data_.complete) cautions.emplace_back("The batch was stopped before its end; what is shown is part of it.");
+    if (!data_.complete)
+      cautions.emplace_back("The batch was stopped before its end; this page shows only a part of it.");
     if (!data_.failures.empty())
       cautions.push_back(fmt::format("{} could not be used and {} left out (<a href=\"#failures\">Failures</a>).",
                                      counted(data_.failures.size(), "input"),
@@ -187,16 +188,17 @@ class Page {
     const auto damaged =
         std::ranges::count_if(data_.traces, [](const ReportTrace& one) { return !one.damage.empty(); });
     if (damaged != 0)
-      cautions.push_back(fmt::format("{} damaged; only what could be read of {} counts.",
+      cautions.push_back(fmt::format("{} damaged; only the part of {} that could be read counts.",
                                      damaged == 1 ? "One trace is" : fmt::format("{} traces are", damaged),
                                      damaged == 1 ? "it" : "them"));
     if (data_.traces.size() < 2)
-      cautions.emplace_back("One trace gives no interval: nothing here says how the maps compare on another one.");
+      cautions.emplace_back("One trace gives no interval: this page cannot say how the maps compare on another trace.");
     else if (data_.traces.size() < kFewTraces)
-      cautions.push_back(fmt::format("{} are few: intervals are rough, and hold for traces like these only.",
+      cautions.push_back(fmt::format("{} are few: the intervals are rough and apply only to traces like these.",
                                      sentence_case(counted(data_.traces.size(), "trace"))));
     if (data_.ranking.size() > 2 && data_.traces.size() > 1)
-      cautions.emplace_back("Each comparison with the first stands at 95\u00a0% for itself: of many, some err.");
+      cautions.emplace_back(
+          "Each comparison with the first has its own level of 95\u00a0%: of many comparisons, some are wrong.");
     if (const auto more = more_coverage(); !more.empty()) cautions.push_back(more);
     if (headline().model_based)
       cautions.push_back(
@@ -220,8 +222,8 @@ class Page {
     const double felt_most = *most->metrics[index].mean;
     if (felt_most < felt + kWorthSaying) return {};
     return fmt::format(
-        "{} lets {:.1f}\u00a0% of a trace's contacts be felt in the mean, {} {:.1f}\u00a0%; "
-        "{} says nothing of those that are not.",
+        "{} lets {:.1f}\u00a0% of a trace's contacts be felt on average, {} lets {:.1f}\u00a0%; {} says nothing about "
+        "the contacts that are not felt.",
         name_of(best()), 100 * felt, name_of(*most), 100 * felt_most, html_text(words_of_name(headline().name)));
   }
 
@@ -235,9 +237,8 @@ class Page {
     for (const PageFigure& one : page_.ranking) out_ += figure(one, "ranking");
     std::string table = "<table>\n";
     add(table,
-        "<caption><span>{}, mean over traces. Highlighted rows cannot be told from the first at 95\u00a0%. Not felt: "
-        "contacts of "
-        "all traces on skin without an actuator, whatever the law.</span></caption>\n"
+        "<caption><span>{}, mean over traces. Highlighted rows cannot be distinguished from the first at 95\u00a0%. "
+        "Not felt: contacts of all traces on skin without an actuator, with every law.</span></caption>\n"
         "<thead><tr><th scope=\"col\" class=\"n\">Rank</th><th scope=\"col\">Map</th><th scope=\"col\">Law</th>"
         "<th scope=\"col\" class=\"n\">{}</th><th scope=\"col\">95\u00a0% interval</th><th scope=\"col\">Against the "
         "first</th><th scope=\"col\" class=\"n\">Traces</th><th scope=\"col\" class=\"n\">Not "
@@ -262,7 +263,7 @@ class Page {
     if (!one.rank) return "no value";
     if (is_first) return "first";
     const Estimate& difference = one.difference_from_best;
-    if (!difference.has_interval()) return "cannot be told: too few traces";
+    if (!difference.has_interval()) return "unknown: too few traces";
     const std::string interval = fmt::format(" <span class=\"interval\">({}{})</span>",
                                              html_text(difference_text(difference)), unit_of(headline()));
     return (one.distinguishable_from_best ? "worse" : "not distinguishable") + interval;
@@ -276,8 +277,8 @@ class Page {
   void maps() {
     out_ += "<section aria-labelledby=\"maps\">\n<h2 id=\"maps\">Maps on the body</h2>\n";
     add(out_,
-        "<p>Best first. Densities count the contacts of all traces and have one scale, so that maps compare. Skin "
-        "without an actuator gives nothing to feel, under any law.{}</p>\n",
+        "<p>Best first. Densities count the contacts of all traces and have one scale, so that maps can be compared. "
+        "Skin without an actuator is not felt, under any law.{}</p>\n",
         page_.shown_trace.empty()
             ? " No trace has a contact."
             : fmt::format(" Errors and timelines are of the trace <strong>{}</strong>, which has the most contacts.",
@@ -358,10 +359,9 @@ class Page {
   void definitions() {
     out_ += "<section aria-labelledby=\"definitions\">\n<h2 id=\"definitions\">Definitions</h2>\n";
     std::string table =
-        "<table>\n<caption><span>How each metric is computed, and where it comes from. Those marked as a model rest on "
-        "a "
-        "model of "
-        "perception, motors or link; nobody was asked.</span></caption>\n<thead><tr><th scope=\"col\">Metric</th><th "
+        "<table>\n<caption><span>How each metric is computed, and where it comes from. Metrics marked as a model rest "
+        "on a model of perception, motors or link; no user was asked.</span></caption>\n<thead><tr><th "
+        "scope=\"col\">Metric</th><th "
         "scope=\"col\">Unit</th><th scope=\"col\">Better</th><th scope=\"col\">Formula</th><th "
         "scope=\"col\">Source</th></tr></thead>\n<tbody>\n";
     for (const ReportMetric& metric : data_.metrics)
@@ -380,9 +380,10 @@ class Page {
     }
     add(out_, "</dl>\n<p>A contact is held for {:g} ms. {}</p>\n</section>\n", 1e3 * data_.law_options.hold_s,
         data_.actuator.empty()
-            ? std::string("Motors do at once what they are told.")
-            : fmt::format("Scores and errors are of the motors in {}; the timelines show the laws alone.",
-                          html_text(data_.actuator)));
+            ? std::string("Motors follow their commands at once.")
+            : fmt::format(
+                  "Scores and errors are those of the motors in {}; the timelines show the laws without motors.",
+                  html_text(data_.actuator)));
   }
 
   void inputs() {

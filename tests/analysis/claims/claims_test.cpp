@@ -137,7 +137,8 @@ TEST(Claims, QuoteWhatEachMethodMissesOverAllRates) {
   ASSERT_EQ(claims.size(), 2U);
   EXPECT_THAT(claims[0].topic, HasSubstr("at 60 and 1000 Hz"));
   EXPECT_EQ(claims[0].text, "hug, of 8 true contacts: 0.0 to 12.5 % by `static`");
-  EXPECT_EQ(claims[1].text, "The same for every detector with the method: `static` of `cpu` and `embree`");
+  EXPECT_EQ(claims[1].text,
+            "Every detector with the same method misses the same shares: `static` of `cpu` and `embree`");
 
   accuracy["scenes"][0]["series"][1] = missed("embree", 0.25, 0.25);
   EXPECT_THAT(texts_of({result("accuracy.json", with_run(accuracy, origin()))}),
@@ -169,7 +170,7 @@ TEST(Claims, SayHowAFrameGrowsAndWhoOvertakesWhom) {
       texts_of({result("growth.json", growth)}),
       ElementsAre("`paper` on softpipe (software): 1.00 µs with 1 and 1.00 ms with 9 colliders",
                   "`cpu`: 10.0 µs with 1 and 10.0 µs with 9 colliders; 10.0 µs with 10 and 2.00 s with 40 triangles",
-                  "Who overtakes whom: above 3.25 colliders `cpu` is faster than `paper` on softpipe (software)"));
+                  "Crossovers: above 3.25 colliders `cpu` is faster than `paper` on softpipe (software)"));
 }
 
 TEST(Claims, AreNotMadeOfOtherJson) {
@@ -180,7 +181,7 @@ TEST(Claims, NameTheFileThatLacksAField) {
   nlohmann::json record = test::record(1);
   record.erase("frames");
   EXPECT_THAT(test::message_of([&] { claims_of({result("a.json", record)}); }),
-              HasSubstr("/results/a.json: is no result of ours"));
+              HasSubstr("/results/a.json: is not a result of Vestige"));
 }
 
 }  // namespace

@@ -174,9 +174,9 @@ TEST_F(PlotBodyTest, ContactsOfAnotherTraceAreRefusedNamingTheirLine) {
   };
   for (const Case& wrong : {Case{"1,0.1,0,12,0,0,0,0,0,1,1,0,0,0", "line 3: refers to triangle 12"},
                             Case{"1,0.1,0,11,0,0,0,0,0,4,1,0,0,0", "line 3: refers to actuator 4"},
-                            Case{"1,0.1,0,x,0,0,0,0,0,1,1,0,0,0", "line 3: is no row of contacts"},
-                            Case{"1,0.1,0,11,0,0,0,0,0,1,0,x,junk", "line 3: is no row of contacts"},
-                            Case{"1,0.1,0,11,0,0,0,0,0,1,1,0,0,0,0", "line 3: is no row of contacts"},
+                            Case{"1,0.1,0,x,0,0,0,0,0,1,1,0,0,0", "line 3: is not a row of contacts"},
+                            Case{"1,0.1,0,11,0,0,0,0,0,1,0,x,junk", "line 3: is not a row of contacts"},
+                            Case{"1,0.1,0,11,0,0,0,0,0,1,1,0,0,0,0", "line 3: is not a row of contacts"},
                             Case{"1,0.1,0,11,0,nan,0,0,0,1,1,0,0,0", "line 3: u and v must be weights"},
                             Case{"1,0.1,0,11,0,0,1e300,0,0,1,1,0,0,0", "line 3: u and v must be weights"}}) {
     write_text(folder_ / "other.csv", header + "1,0.1,0,11,0,0,0,0,0,3,1,0,0,0\n" + wrong.row + "\n");

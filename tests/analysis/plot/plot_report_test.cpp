@@ -234,22 +234,22 @@ TEST_F(ReportTest, RefusesAnAvatarMapOrMotorsOtherThanTheJudged) {
   const std::string other = sha256("other");
   run_["batch"]["maps"] = {{{"name", "box"}, {"given", "box.png"}, {"sha256", other}}};
   EXPECT_THAT(report().standard_error,
-              AllOf(HasSubstr("box.png"), HasSubstr("changed since"), HasSubstr("run the same 'vestige batch'")));
+              AllOf(HasSubstr("box.png"), HasSubstr("was changed after"), HasSubstr("run the same 'vestige batch'")));
   run_["batch"]["maps"][0]["sha256"] = sha256(map);
   run_["batch"]["avatar"]["sha256"] = other;
-  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("avatar.glb"), HasSubstr("changed since")));
+  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("avatar.glb"), HasSubstr("was changed after")));
   run_["batch"]["avatar"]["sha256"] = sha256(avatar);
   test::write_text(folder_ / "batch/avatar.glb", avatar.substr(0, avatar.size() / 2));
-  EXPECT_THAT(report().standard_error,
-              AllOf(HasSubstr("avatar.glb"), HasSubstr("changed since"), HasSubstr("run the same 'vestige batch'")));
+  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("avatar.glb"), HasSubstr("was changed after"),
+                                             HasSubstr("run the same 'vestige batch'")));
   test::write_text(folder_ / "batch/avatar.glb", avatar);
   test::write_text(folder_ / "batch/maps/box.json", sidecar + "\n");
-  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("box.png or its sidecar"), HasSubstr("changed since")));
+  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("box.png or its sidecar"), HasSubstr("was changed after")));
   test::write_text(folder_ / "batch/maps/box.json", sidecar);
   const std::string motors = R"({"rise_ms": 400})";
   run_["batch"]["options"]["actuator"] = {{"given", "slow.json"}, {"sha256", sha256(motors)}};
   test::write_text(folder_ / "batch/actuator.json", R"({"rise_ms": 300})");
-  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("actuator.json"), HasSubstr("changed since")));
+  EXPECT_THAT(report().standard_error, AllOf(HasSubstr("actuator.json"), HasSubstr("was changed after")));
   test::write_text(folder_ / "batch/actuator.json", motors);
   expect_nothing_written();
   EXPECT_EQ(report().exit_code, 0);

@@ -78,7 +78,7 @@ TEST_F(PlotSceneTest, WithContactsShowsTheFramesThatHaveThem) {
 
   const test::Outcome elsewhere = run("scene box.mcap --contacts contacts.csv --to 0.5 --force");
   EXPECT_EQ(elsewhere.exit_code, 2);
-  EXPECT_THAT(elsewhere.standard_error, HasSubstr("no contact in the frames"));
+  EXPECT_THAT(elsewhere.standard_error, HasSubstr("are drawn have no contact"));
 }
 
 TEST_F(PlotSceneTest, ContactsOfAnotherTraceAreRefusedNamingTheirLine) {

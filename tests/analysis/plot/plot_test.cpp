@@ -255,14 +255,14 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadInput{"MissingSweep", "sweep", nullptr, "no such file"},
         BadInput{"SweepCutOff", "sweep", R"({"commit": "x", "series": [)", "byte 28"},
-        BadInput{"SweepIsAList", "sweep", "[1]", "no JSON object"},
+        BadInput{"SweepIsAList", "sweep", "[1]", "not a JSON object"},
         BadInput{"NoSeriesField", "sweep", R"({"commit": "x"})", "series is missing"},
         BadInput{"EmptySeries", "sweep", R"({"commit": "x", "series": []})", "series is empty"},
         BadInput{"NoPoints", "sweep", R"({"commit": "x", "series": [{"detector": "cpu", "points": []}]})",
                  "series[0].points is empty"},
         BadInput{"NotANumber", "sweep",
                  R"({"commit": "x", "series": [{"detector": "cpu", "points": [{"colliders": 1, "hz": null}]}]})",
-                 "series[0].points[0].hz is no number"},
+                 "series[0].points[0].hz is not a number"},
         BadInput{"ZeroFrequency", "sweep",
                  R"({"commit": "x", "series": [{"detector": "cpu", "points": [{"colliders": 1, "hz": 0}]}]})",
                  "series[0].points[0].hz is 0"},
@@ -281,7 +281,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadInput{"FieldTooMany", "timeline", "time_s,actuator_1\n0,1,2\n", "line 2"},
         BadInput{"FieldMissing", "timeline", "time_s,actuator_1,actuator_2\n0,1\n", "line 2: actuator_2"},
         BadInput{"MissingTextures", "textures", nullptr, "no such file"},
-        BadInput{"NoExr", "textures", "time_s,actuator_1\n", "no OpenEXR"}),
+        BadInput{"NoExr", "textures", "time_s,actuator_1\n", "not an OpenEXR"}),
     [](const auto& test) { return std::string(test.param.name); });
 
 TEST_F(PlotTest, ACutOffExrIsRefused) {

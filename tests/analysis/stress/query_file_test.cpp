@@ -78,8 +78,8 @@ TEST(QueryFile, RefusesWhatNoDoubleEqualsAndNamesTheWayOut) {
 TEST(QueryFile, SaysWhereItIsMalformed) {
   EXPECT_THAT(error_of(""), HasSubstr("q.csv: holds no query"));
   EXPECT_THAT(error_of(kSegmentHeader), HasSubstr("q.csv: holds no query"));
-  EXPECT_THAT(error_of(replaced(kFalls, "1,", "x,")), HasSubstr("q.csv, line 1: 'x' is no whole number"));
-  EXPECT_THAT(error_of(replaced(kFalls, "4,1,0,1", "4,1,0.5,1")), HasSubstr("line 3: '0.5' is no whole number"));
+  EXPECT_THAT(error_of(replaced(kFalls, "1,", "x,")), HasSubstr("q.csv, line 1: 'x' is not a whole number"));
+  EXPECT_THAT(error_of(replaced(kFalls, "4,1,0,1", "4,1,0.5,1")), HasSubstr("line 3: '0.5' is not a whole number"));
   EXPECT_THAT(error_of(replaced(kFalls, "4,1,0,1", "4,1,0")), HasSubstr("q.csv, line 3: "));
   EXPECT_THAT(error_of(replaced(kFalls, "4,1,0,1", "4,1,0,1,7")), HasSubstr("q.csv, line 3: "));
   EXPECT_THAT(error_of(replaced(kFalls, "4,1,0,1", "4,0,0,1")), HasSubstr("line 3: the denominator of x is 0"));

@@ -112,7 +112,7 @@ TEST_F(Map, ThatEachTriangleHasItsOwnActuatorIsNoLoss) {
   VESTIGE_REQUIRE_DATA(avatar);
   const test::Outcome made = run("vestige map make --layout torso16 -o knight.png --avatar " + avatar.string());
   EXPECT_EQ(made.exit_code, 0);
-  EXPECT_THAT(made.standard_error, HasSubstr("each triangle has one instead"));
+  EXPECT_THAT(made.standard_error, HasSubstr("gives each triangle an actuator instead"));
   EXPECT_THAT(made.standard_output, HasSubstr("a texel for each triangle"));
 }
 

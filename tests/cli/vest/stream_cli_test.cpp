@@ -238,7 +238,7 @@ TEST_F(StreamCommand, AMapThatIsEditedWhileItIsFeltIsReadAgainAndABadOneIsNot) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_EQ(json_in("stream.json")["maps_reloaded"], 1);
   EXPECT_THAT(outcome.standard_error, HasSubstr("map.png"));
-  EXPECT_THAT(outcome.standard_error, HasSubstr("The map before it stays in use"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("The previous map stays in use"));
   const std::vector<Row> log = read_log(folder_ / "log.csv");
   ASSERT_FALSE(log.empty());
   EXPECT_TRUE(std::ranges::any_of(log, [](const Row& row) { return row.level == Levels{255, 0}; }));
@@ -341,7 +341,7 @@ TEST_F(StreamCommand, AMapThatBecomesAPipeIsRefusedAndTheStreamEnds) {
       run("timeout 20 vestige stream trace.mcap --port file:frames --map map.png --loop & stream=$!\n"
           "sleep 3; rm map.png; mkfifo map.png; sleep 3; kill -INT $stream; wait $stream");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
-  EXPECT_THAT(outcome.standard_error, HasSubstr("map.png: is no regular file any more"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("map.png: is no longer a regular file"));
 }
 
 TEST_F(StreamCommand, WhatCannotBeStreamedIsRefusedWithItsReason) {

@@ -93,7 +93,7 @@ TEST_F(ActuatorMapWatchTest, WhatCannotBeReadAndAnotherNumberOfActuatorsIsSaidOn
   write_png("new.png");
   std::filesystem::rename(folder / "new.png", file);
   wait_for_warnings(3);
-  EXPECT_THAT(warnings_so_far().back(), HasSubstr("now names 6 actuators, where 5 are in use"));
+  EXPECT_THAT(warnings_so_far().back(), HasSubstr("now has 6 actuators, but 5 are in use"));
   EXPECT_FALSE(other.take());
 }
 

@@ -81,7 +81,7 @@ TEST(ActuatorModel, ReadsCurvesAndWhatIsDifferentForOne) {
 TEST(ActuatorModel, SaysWhatIsWrong) {
   EXPECT_EQ(complaint("{}"), "");
   EXPECT_THAT(complaint("nonsense"), AllOf(HasSubstr("motor.json"), HasSubstr("not JSON")));
-  EXPECT_THAT(complaint("[]"), HasSubstr("no JSON object"));
+  EXPECT_THAT(complaint("[]"), HasSubstr("not a JSON object"));
   EXPECT_THAT(complaint(R"({"rise_ms": 0})"), HasSubstr("'rise_ms' is 0"));
   EXPECT_THAT(complaint(R"({"rise_ms": "fast"})"), HasSubstr("'rise_ms'"));
   EXPECT_THAT(complaint(R"({"dead_zone": 1.5})"), HasSubstr("'dead_zone'"));
@@ -91,7 +91,7 @@ TEST(ActuatorModel, SaysWhatIsWrong) {
   EXPECT_THAT(complaint(R"({"duty": {"gamma": 0}})"), HasSubstr("'gamma'"));
   EXPECT_THAT(complaint(R"({"duty": {"table": [[0, 0], [0.5, 0.6], [0.5, 1], [1, 1]]}})"), HasSubstr("'table'"));
   EXPECT_THAT(complaint(R"({"duty": {"table": [[0, 0], [0.9, 1]]}})"), HasSubstr("'table'"));
-  EXPECT_THAT(complaint(R"({"actuators": {}})"), HasSubstr("'actuators' is no list"));
+  EXPECT_THAT(complaint(R"({"actuators": {}})"), HasSubstr("'actuators' is not a list"));
   EXPECT_THAT(complaint(R"({"actuators": [{"rise_ms": 2}]})"), HasSubstr("has no 'name'"));
   EXPECT_THAT(complaint(R"({"actuators": [{"name": "up"}]})"), AllOf(HasSubstr("'up'"), HasSubstr("left, right")));
   EXPECT_THAT(complaint(R"({"actuators": [{"name": "left"}, {"name": "left"}]})"), HasSubstr("twice"));
