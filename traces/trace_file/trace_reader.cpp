@@ -123,7 +123,7 @@ void TraceReader::Implementation::require_trace() {
     throw Error(file,
                 index_.profile_is_ours
                     ? "is a trace without the channel /pose"
-                    : "is an MCAP file, but not a trace of vestige: it has no channel /pose of vestige's schema",
+                    : "is an MCAP file, but not a trace of vestige: it has no channel /pose with vestige's schema",
                 "record a trace with `vestige record`; `vestige inspect` shows what is in this file");
   }
   auto names = parse_node_names(*pose);
