@@ -97,7 +97,7 @@ TEST(ActuatorMap, RefusesASidecarThatSaysOneThingTwice) {
               }),
               HasSubstr("map.png, sidecar: an object has 'grey' twice"));
   EXPECT_THAT(message_of([&] { parse_actuator_map(png, R"({"actuators": [)", "map.png"); }),
-              HasSubstr("map.png, sidecar, byte 16: is not JSON from there on"));
+              HasSubstr("map.png, sidecar, byte 16: is not JSON from this byte on"));
   const char* same_name_apart = R"({"name": 1, "actuators": [{"grey": 10, "name": "a"}]})";
   EXPECT_EQ(parse_actuator_map(png, same_name_apart, "map.png").names.at(0), "a");
 }

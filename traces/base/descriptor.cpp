@@ -26,7 +26,8 @@ void refuse_to_wait_when_stopped(const std::string& name) {
 
 Error unreadable(const std::string& name, std::string_view doing, int error_number) {
   if (error_number == ENOENT) return {name, "there is no such file", "check the name"};
-  if (error_number == EACCES) return {name, "may not be read", "ask its owner, or change its permissions"};
+  if (error_number == EACCES)
+    return {name, "you have no permission to read it", "ask its owner, or change its permissions"};
   return {name, std::string(doing) + ": " + std::strerror(error_number), ""};
 }
 

@@ -18,11 +18,11 @@ HostPort parse_host_port(std::string_view url, std::string_view scheme, std::str
   if (!url.starts_with(beginning)) throw refuse("does not begin with " + beginning);
   std::string_view rest = url.substr(beginning.size());
   if (rest.ends_with('/')) rest.remove_suffix(1);
-  if (rest.find('/') != std::string_view::npos) throw refuse("goes on after the port");
+  if (rest.find('/') != std::string_view::npos) throw refuse("continues after the port");
   std::string_view host;
   if (rest.starts_with('[')) {
     const std::size_t close = rest.find(']');
-    if (close == std::string_view::npos) throw refuse("has a bracket that does not close");
+    if (close == std::string_view::npos) throw refuse("has no closing bracket");
     host = rest.substr(1, close - 1);
     rest.remove_prefix(close + 1);
   } else {
@@ -30,7 +30,7 @@ HostPort parse_host_port(std::string_view url, std::string_view scheme, std::str
     host = rest.substr(0, colon);
     rest.remove_prefix(colon);
     if (rest.find(':', 1) != std::string_view::npos)
-      throw refuse("has more than one colon; an IPv6 address stands in brackets");
+      throw refuse("has more than one colon; an IPv6 address must be in brackets");
   }
   if (host.empty()) throw refuse("has no host");
   if (!rest.starts_with(':')) throw refuse("has no port");
@@ -38,7 +38,7 @@ HostPort parse_host_port(std::string_view url, std::string_view scheme, std::str
   HostPort place{.host = std::string(host)};
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), place.port);
   if (error != std::errc() || end != rest.data() + rest.size() || place.port == 0)
-    throw refuse(fmt::format("has the port '{}', which is no number from 1 to 65535", rest));
+    throw refuse(fmt::format("has the port '{}', which is not a number from 1 to 65535", rest));
   return place;
 }
 

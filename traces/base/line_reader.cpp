@@ -21,7 +21,8 @@ bool LineReader::next(std::string_view& line) {
   while ((end = buffer_.find('\n', searched)) == std::string::npos) {
     searched = buffer_.size() - begin_;
     if (searched > kMostLineBytes)
-      throw Error(fmt::format("{}, line {}", name(), line_ + 1), "is longer than 64 MiB", "is it the file you meant?");
+      throw Error(fmt::format("{}, line {}", name(), line_ + 1), "is longer than 64 MiB",
+                  "check that it is the right file");
     if (fill()) continue;
     if (begin_ == buffer_.size()) return false;
     end = buffer_.size();

@@ -23,9 +23,9 @@ nlohmann::json parse_strict_json(std::string_view text, std::string_view name, s
   try {
     return json::parse(text, check);
   } catch (const json::parse_error& error) {
-    throw Error(fmt::format("{}, byte {}", name, error.byte), "is not JSON from there on", remedy);
+    throw Error(fmt::format("{}, byte {}", name, error.byte), "is not JSON from this byte on", remedy);
   } catch (const json::exception&) {
-    throw Error(name, "is not JSON that can be read", remedy);
+    throw Error(name, "is not readable JSON", remedy);
   }
 }
 

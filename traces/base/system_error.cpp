@@ -20,7 +20,7 @@ std::string_view remedy_for(int error_number) {
       return "choose a folder that you may write to, or change its permissions";
     case ENOENT:
     case ENOTDIR:
-      return "check the name; create the folder first";
+      return "check the name, or create the folder first";
     case EISDIR:
       return "name a file, not a folder";
     default:

@@ -58,8 +58,7 @@ Scene load(const std::filesystem::path& path) {
   for (Animation& animation : scene.nodes.animations)
     for (AnimationChannel& channel : animation.channels) {
       if (!animated.emplace(channel.node, channel.property).second) {
-        report.warn(fmt::format("nodes[{}]", channel.node),
-                    "is moved by several animations, of which the first counts");
+        report.warn(fmt::format("nodes[{}]", channel.node), "is moved by several animations; only the first is used");
         continue;
       }
       scene.animation.duration_s = std::max(scene.animation.duration_s, double{channel.times_s.back()});
@@ -86,9 +85,10 @@ std::vector<int> choose(const Scene& scene, const std::string& pattern, const st
   for (const Node& node : scene.nodes.nodes)
     if (!node.name.empty() && names.size() < 10) names.push_back(node.name);
   throw Error(name,
-              pattern.empty() ? "no node is named collider, and no translation is animated"
-                              : fmt::format("no node's name matches '{}'", pattern),
-              fmt::format("choose nodes by --nodes; there are: {}", fmt::join(names, ", ")));
+              pattern.empty()
+                  ? "no node's name begins with collider, and no node other than a joint has an animated translation"
+                  : fmt::format("no node's name matches '{}'", pattern),
+              fmt::format("choose nodes with --nodes; the file has: {}", fmt::join(names, ", ")));
 }
 
 class GltfColliders final : public ColliderSource {

@@ -17,7 +17,8 @@ namespace {
 constexpr std::string_view kTimesRemedy = "each row is time_s,id,x,y,z: seconds, a whole number, metres";
 constexpr std::string_view kFramesRemedy =
     "each row is frame,time_s,id,x,y,z,teleported: a whole number, seconds, a whole number, metres, 0 or 1";
-constexpr std::string_view kAloneRemedy = "export poses and colliders of the same trace, or leave out the column frame";
+constexpr std::string_view kAloneRemedy =
+    "export poses and colliders of the same trace, or leave out the columns frame and teleported";
 
 class ColliderCsv final : public TraceExport {
  public:
@@ -70,9 +71,9 @@ bool ColliderRows::next(ColliderRow& row) {
   glm::dvec3& position = row.sample.position_m;
   const bool has_frames = columns_ == ColliderColumns::kFrames;
   int teleported = 0;
-  if (has_frames && !lines_.take(row.frame)) throw lines_.error("frame is no whole number");
-  if (!lines_.take(row.time_s)) throw lines_.error("time_s is no number");
-  if (!lines_.take(row.sample.id)) throw lines_.error("id is no whole number from 0 to 4294967295");
+  if (has_frames && !lines_.take(row.frame)) throw lines_.error("frame is not a whole number");
+  if (!lines_.take(row.time_s)) throw lines_.error("time_s is not a number");
+  if (!lines_.take(row.sample.id)) throw lines_.error("id is not a whole number from 0 to 4294967295");
   if (!lines_.take(position.x) || !lines_.take(position.y) || !lines_.take(position.z))
     throw lines_.error(has_frames ? "is not seven numbers" : "is not five numbers");
   if (has_frames && (!lines_.take(teleported) || (teleported != 0 && teleported != 1)))
@@ -82,7 +83,7 @@ bool ColliderRows::next(ColliderRow& row) {
       !std::isfinite(position.z))
     throw lines_.error("a number is not finite");
   if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) > trace_format::kFarthest_m)
-    throw lines_.error("a position is farther away than 1e9 m");
+    throw lines_.error("a coordinate is beyond 1e9 m");
   if (rows_ > 0 && row.time_s < last_time_s_)
     throw lines_.error(fmt::format("time runs backwards, from {} s to {} s", last_time_s_, row.time_s),
                        "sort the rows by time");
@@ -109,7 +110,7 @@ void ColliderFrames::fill(TraceFrame& frame) {
     throw rows_.error(fmt::format("frame {} has no pose", ahead_->frame), kAloneRemedy);
   for (; ahead_ && ahead_->frame == frame.index; advance()) {
     if (nanoseconds_of(ahead_->time_s) != frame.time_ns)
-      throw rows_.error(fmt::format("frame {} is at {} s, its pose at another time", frame.index, ahead_->time_s),
+      throw rows_.error(fmt::format("frame {} is at {} s, but its pose has another time", frame.index, ahead_->time_s),
                         kAloneRemedy);
     if (!ids_.insert(ahead_->sample.id).second)
       throw rows_.error(fmt::format("collider {} has two positions in frame {}", ahead_->sample.id, frame.index),

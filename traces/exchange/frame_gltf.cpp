@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::uint64_t kMostGlbBytes = std::numeric_limits<std::uint32_t>::max();
 constexpr int kFloat = 5126;
 constexpr int kUnsignedShort = 5123;
-constexpr const char* kTooLarge = "export fewer frames: --rate 60, or a part of it that 'vestige trim' cuts out";
+constexpr const char* kTooLarge = "export fewer frames: use --rate 60, or cut out a part with 'vestige trim'";
 
 struct Sphere {
   std::vector<float> positions;
@@ -78,7 +78,7 @@ class Builder {
       json = Json::parse(chunks.json);
     } catch (const Json::exception&) {
       // The avatar's reader skips the JSON that it does not need, but here all of it is copied.
-      throw Error("the trace's avatar.glb", "has JSON that cannot be copied, such as a number beyond double",
+      throw Error("the trace's avatar.glb", "has JSON that cannot be copied, such as a number too large for a double",
                   "mend the avatar and record again, or export to another format");
     }
     if (chunks.bin.empty() && json.contains("buffers")) {
@@ -465,11 +465,11 @@ std::vector<std::string> FrameGltf::losses() const {
   std::vector<std::string> losses;
   if (frames_left_out_ > 0)
     losses.push_back(
-        fmt::format("left out {} at the time of the one before, once it is rounded to fp32 (--rate, or 'vestige trim')",
+        fmt::format("left out {}: rounded to fp32, the time is that of the frame before (use --rate or 'vestige trim')",
                     counted(frames_left_out_, "frame")));
   if (non_finite_ > 0)
     losses.push_back(fmt::format(
-        "not finite in fp32: {}; nodes and the origin are left as in the frame before, colliders are absent",
+        "not finite in fp32: {}; nodes and the origin keep the values of the frame before, colliders are absent",
         counted(non_finite_, "value")));
   return losses;
 }

@@ -111,11 +111,12 @@ const Hdf5Library& hdf5() {
 
 Hdf5Handle::Hdf5Handle(hid_t id, Close close, const std::filesystem::path& path, std::string_view doing)
     : id_(id), close_(close) {
-  if (id < 0) throw Error(path.string(), fmt::format("HDF5 could not {}", doing), "is the disk full?");
+  if (id < 0) throw Error(path.string(), fmt::format("HDF5 could not {}", doing), "check that the disk is not full");
 }
 
 void hdf5_check(herr_t result, const std::filesystem::path& path, std::string_view doing) {
-  if (result < 0) throw Error(path.string(), fmt::format("HDF5 could not {}", doing), "is the disk full?");
+  if (result < 0)
+    throw Error(path.string(), fmt::format("HDF5 could not {}", doing), "check that the disk is not full");
 }
 
 }  // namespace vestige

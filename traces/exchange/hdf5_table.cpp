@@ -9,12 +9,12 @@ namespace vestige {
 Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name) : path_(path), name_(name) {
   const Hdf5Library& h5 = hdf5();
   dataset_ = Hdf5Handle(h5.open_dataset(file, name, H5P_DEFAULT), h5.close_dataset);
-  if (dataset_.id() < 0) fail("is not there");
+  if (dataset_.id() < 0) fail("is missing");
   const Hdf5Handle space(h5.space_of(dataset_.id()), h5.close_space);
   const int rank = h5.rank(space.id());
-  if (rank < 1 || rank > 3) fail("is no table");
+  if (rank < 1 || rank > 3) fail("does not have 1 to 3 dimensions");
   dimensions_.resize(static_cast<std::size_t>(rank));
-  if (h5.dimensions(space.id(), dimensions_.data(), nullptr) < 0) fail("is no table");
+  if (h5.dimensions(space.id(), dimensions_.data(), nullptr) < 0) fail("has dimensions that cannot be read");
   const Hdf5Handle type(h5.type_of(dataset_.id()), h5.close_type);
   type_.kind = h5.class_of(type.id());
   if (type_.kind != H5T_INTEGER && type_.kind != H5T_FLOAT) fail("does not hold numbers", kHdf5TypeRemedy);
@@ -47,7 +47,7 @@ void Hdf5Table::read(const Type& type, hsize_t first, hsize_t rows, void* out) c
   const Hdf5Library& h5 = hdf5();
   // HDF5 would silently change numbers that do not fit.
   if (!type_.fits_into(type))
-    fail(fmt::format("holds numbers that may not fit {} of {} bits",
+    fail(fmt::format("may hold numbers that do not fit into {} of {} bits",
                      type.kind == H5T_FLOAT ? "floats"
                      : type.is_signed       ? "whole numbers"
                                             : "unsigned whole numbers",
@@ -67,9 +67,8 @@ void Hdf5Table::read(const Type& type, hsize_t first, hsize_t rows, void* out) c
                           h5.close_space);
   if (h5.select_hyperslab(place.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0 ||
       h5.read(dataset_.id(), as, memory.id(), place.id(), H5P_DEFAULT, out) < 0)
-    fail(fmt::format(
-             "cannot be read from row {} on: the file is damaged, or compressed by a filter that is not installed",
-             first),
+    fail(fmt::format("cannot be read from row {} on: the file is damaged, or its compression filter is not installed",
+                     first),
          kHdf5DamagedRemedy);
 }
 

@@ -12,9 +12,9 @@ namespace vestige {
 
 /// Remedies for files that are not as they should be.
 inline constexpr const char* kHdf5DamagedRemedy = "export it again, or take an undamaged copy";
-inline constexpr const char* kHdf5TypeRemedy = "convert it, as numpy's astype does, to the type that FORMAT.md has";
+inline constexpr const char* kHdf5TypeRemedy = "convert it to the type in FORMAT.md, for example with numpy's astype";
 inline constexpr const char* kHdf5Remedy =
-    "name a file that 'vestige export' wrote, or that has its tables (FORMAT.md)";
+    "name a file that 'vestige export' wrote, or a file with the same tables (FORMAT.md)";
 
 /// A table of numbers in an HDF5 file that any program may have written. Every function throws `Error` with file and
 /// table.

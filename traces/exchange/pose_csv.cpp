@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kRemedy =
     "a row is frame,time_s,origin_x,origin_y,origin_z, then NODE.tx … NODE.sz for nodes of the avatar";
 constexpr std::string_view kAvatarRemedy =
-    "name the avatar that it was exported with (--avatar), or leave the column out";
+    "name the avatar of the exported trace with --avatar, or leave out the column";
 
 constexpr double kLongest_s = 9e9;  // limit of int64 nanoseconds
 
@@ -136,8 +136,8 @@ void PoseCsvReader::read_header() {
   for (const std::string& column : columns_) {
     const auto target = known.find(column);
     if (target == known.end())
-      throw lines_.error(fmt::format("the column '{}' names no node of the avatar", column), kAvatarRemedy);
-    if (!seen.insert(column).second) throw lines_.error(fmt::format("the column '{}' stands there twice", column));
+      throw lines_.error(fmt::format("the avatar has no node for the column '{}'", column), kAvatarRemedy);
+    if (!seen.insert(column).second) throw lines_.error(fmt::format("the column '{}' appears twice", column));
     targets_.push_back(target->second);
     if (target->second.column == Column::kNode) moves[target->second.node] = true;
   }
@@ -149,18 +149,19 @@ void PoseCsvReader::read_header() {
 
 void PoseCsvReader::take(const Target& target, TraceFrame& frame) {
   const auto number = [&](auto& value) {
-    if (lines_.at_end()) throw lines_.error(fmt::format("has less than the header's {} fields", targets_.size()));
+    if (lines_.at_end()) throw lines_.error(fmt::format("has fewer than the header's {} fields", targets_.size()));
     if (!lines_.take(value) || !std::isfinite(value))
       throw lines_.error(
-          fmt::format("{} is no finite number", columns_[static_cast<std::size_t>(&target - targets_.data())]));
+          fmt::format("{} is not a finite number", columns_[static_cast<std::size_t>(&target - targets_.data())]));
   };
   switch (target.column) {
     case Column::kFrame:
-      if (!lines_.take(frame.index)) throw lines_.error("frame is no whole number");
+      if (!lines_.take(frame.index)) throw lines_.error("frame is not a whole number");
       break;
     case Column::kTime:
       number(time_s_);
-      if (time_s_ < 0 || time_s_ > kLongest_s) throw lines_.error(fmt::format("{} s is no time in a trace", time_s_));
+      if (time_s_ < 0 || time_s_ > kLongest_s)
+        throw lines_.error(fmt::format("the time {} s is not from 0 to 9e9 s", time_s_));
       frame.time_ns = nanoseconds_of(time_s_);
       break;
     case Column::kOrigin:
@@ -182,7 +183,7 @@ void PoseCsvReader::check(const TraceFrame& frame) {
   for (std::size_t i = 0; i < frame.pose.nodes.size(); ++i) {
     const glm::quat& q = frame.pose.nodes[i].rotation;
     if (q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0)
-      throw lines_.error(fmt::format("the rotation of node {} is zero, which is no rotation", i));
+      throw lines_.error(fmt::format("the rotation of node {} is zero, which is not a rotation", i));
   }
 }
 

@@ -60,11 +60,11 @@ class TraceHdf5::Implementation {
     frame.index = block_.index[place];
     frame.time_ns = block_.time_ns[place];
     if (frame.index > std::numeric_limits<std::uint32_t>::max())
-      index_.fail(fmt::format("says {} in row {}: numbers of frames have 32 bits", frame.index, row_));
+      index_.fail(fmt::format("has {} in row {}, but frame numbers have 32 bits", frame.index, row_));
     if (row_ > 0 && frame.index <= last_index_)
-      index_.fail(fmt::format("says {} in row {}, after {}", frame.index, row_, last_index_));
+      index_.fail(fmt::format("has {} in row {}, after {}", frame.index, row_, last_index_));
     if (frame.time_ns < last_time_ns_)
-      time_.fail(fmt::format("says {} in row {}, after {}", frame.time_ns, row_, last_time_ns_));
+      time_.fail(fmt::format("has {} in row {}, after {}", frame.time_ns, row_, last_time_ns_));
     last_index_ = frame.index;
     last_time_ns_ = frame.time_ns;
     frame.pose.origin_m = vector(block_.origin, place);
@@ -86,7 +86,7 @@ class TraceHdf5::Implementation {
     std::error_code failed;
     if (!std::filesystem::exists(path, failed)) throw Error(path.string(), "there is no such file", "check the name");
     Hdf5Handle file(hdf5().open_file(path.c_str(), kHdf5ReadOnly, H5P_DEFAULT), hdf5().close_file);
-    if (file.id() < 0) throw Error(path.string(), "is no HDF5 file, or one that is damaged", kHdf5Remedy);
+    if (file.id() < 0) throw Error(path.string(), "is not an HDF5 file, or is damaged", kHdf5Remedy);
     return file;
   }
 
@@ -99,7 +99,7 @@ class TraceHdf5::Implementation {
       const std::string said = read_text(object, std::string(trace_format::kVersionKey)).value_or(version);
       if (said != version)
         throw Error(path_.string(), fmt::format("its format version is '{}', not {}", said, version),
-                    "a later vestige wrote it: use that one");
+                    "use the later version of vestige that wrote it");
     }
   }
 
@@ -129,7 +129,7 @@ class TraceHdf5::Implementation {
   template <typename Read>
   std::vector<std::string> read_texts(const std::string& what, hid_t type, hid_t space, Read read) const {
     const Hdf5Library& h5 = hdf5();
-    if (h5.class_of(type) != H5T_STRING) fail(what, "is no text");
+    if (h5.class_of(type) != H5T_STRING) fail(what, "is not a text");
     const hssize_t count = h5.element_count(space);
     const std::size_t size = h5.size_of(type);
     constexpr std::size_t kMostBytes = std::size_t{64} << 20;
@@ -161,7 +161,7 @@ class TraceHdf5::Implementation {
     if (h5.link_exists(file_.id(), kNodeNames, H5P_DEFAULT) <= 0) return {};
     const std::string what = fmt::format("table {}", kNodeNames);
     const Hdf5Handle dataset(h5.open_dataset(file_.id(), kNodeNames, H5P_DEFAULT), h5.close_dataset);
-    if (dataset.id() < 0) fail(what, "is no table");
+    if (dataset.id() < 0) fail(what, "cannot be opened as a table");
     const Hdf5Handle type(h5.type_of(dataset.id()), h5.close_type);
     const Hdf5Handle space(h5.space_of(dataset.id()), h5.close_space);
     return read_texts(what, type.id(), space.id(),
@@ -179,11 +179,10 @@ class TraceHdf5::Implementation {
     const std::string key = fmt::format("{}{}", trace_format::kSha256Prefix, name);
     const auto recorded = read_text(kSession, key);
     if (recorded && !bytes.empty() && *recorded != sha256_hex(bytes))
-      throw Error(path_.string(),
-                  fmt::format("its {} is not the one that was recorded: its SHA-256 is another than the group session "
-                              "says",
-                              name),
-                  fmt::format("export the trace again, or, if you changed it, remove the attribute '{}'", key));
+      throw Error(
+          path_.string(),
+          fmt::format("its {} is not the recorded one: its SHA-256 differs from that in the group session", name),
+          fmt::format("export the trace again, or remove the attribute '{}' if you changed the table", key));
     return bytes;
   }
 
@@ -238,8 +237,9 @@ class TraceHdf5::Implementation {
     frame.teleported.clear();
     for (std::size_t i = 0; i < ids_.size(); ++i) {
       const std::size_t k = place * ids_.size() + i;
-      if (block_.present[k] > 1) present_->fail(fmt::format("says {} in row {}", block_.present[k], row_));
-      if (block_.teleported[k] > 1) teleported_->fail(fmt::format("says {} in row {}", block_.teleported[k], row_));
+      if (block_.present[k] > 1) present_->fail(fmt::format("has {} in row {}, not 0 or 1", block_.present[k], row_));
+      if (block_.teleported[k] > 1)
+        teleported_->fail(fmt::format("has {} in row {}, not 0 or 1", block_.teleported[k], row_));
       if (block_.present[k] != 0) frame.colliders.push_back({ids_[i], vector(block_.position, k)});
       if (block_.teleported[k] != 0) frame.teleported.push_back(ids_[i]);
     }
@@ -294,8 +294,8 @@ TraceHdf5::TraceHdf5(const std::filesystem::path& path) {
   if (interrupted) throw Error(path.string(), "reading it was stopped", "");
   if (signal != 0)
     throw Error(path.string(),
-                fmt::format("is damaged: HDF5's own library {} on it (signal {})",
-                            signal == SIGXCPU ? "never comes to an end" : "crashes", signal),
+                fmt::format("is damaged: the HDF5 library {} on it (signal {})",
+                            signal == SIGXCPU ? "does not finish" : "crashes", signal),
                 kHdf5DamagedRemedy);
   implementation_ = std::make_unique<Implementation>(path);
 }

@@ -71,7 +71,7 @@ void AppendFile::write(std::span<const std::byte> bytes) {
 void AppendFile::sync() {
   // Pipes, some devices and some network disks cannot be synced; that is not an error.
   if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS)
-    fail("could not bring it to disk", errno);
+    fail("could not write it to disk", errno);
 }
 
 void AppendFile::keep() {
@@ -127,7 +127,7 @@ void AppendFile::fail(std::string_view doing, int error_number) {
     throw system_error(path_, doing, error_number);
   }
   throw Error(path_.string(),
-              fmt::format("{}: {}; what was written until then is kept, and readable, as {}", doing,
+              fmt::format("{}: {}; the part that was written before is kept and readable as {}", doing,
                           std::strerror(error_number), set_aside().string()),
               "free some space, or write to another disk");
 }

@@ -20,7 +20,7 @@ Container read_all(const std::filesystem::path& path, std::uint64_t limit_bytes)
   std::size_t used = 0;
   for (;;) {
     if (std::max<std::uint64_t>(used, expected) > limit_bytes)
-      throw Error(input.name(), fmt::format("is larger than {} bytes", limit_bytes), "is it the file you meant?");
+      throw Error(input.name(), fmt::format("is larger than {} bytes", limit_bytes), "check that it is the right file");
     if (used == content.size()) content.resize(std::max<std::size_t>(expected + 1, used + std::max(used, kStep)));
     const std::size_t count = input.read(std::as_writable_bytes(std::span(content).subspan(used)));
     if (count == 0) break;

@@ -39,7 +39,7 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const std::file
     const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
     if (written < 0) {
       if (errno == EINTR) continue;
-      if (errno == EPIPE) throw PipeClosed(shown_name(path), "whoever read it has stopped", "");
+      if (errno == EPIPE) throw PipeClosed(shown_name(path), "the program that read it has stopped", "");
       throw system_error(path, "could not write", errno);
     }
     bytes = bytes.subspan(static_cast<std::size_t>(written));
@@ -59,7 +59,7 @@ std::filesystem::path where_it_leads(std::filesystem::path path) {
   }
   // /proc gives the name the file had when it was opened, which may no longer exist.
   if (std::filesystem::exists(end) && !std::filesystem::equivalent(path, led, failed))
-    throw Error(path.string(), "is open, but has no name any more", "write to '-', or name a file");
+    throw Error(path.string(), "is open, but no longer has a name", "write to '-', or name a file");
   return led;
 }
 
@@ -76,7 +76,7 @@ mode_t new_file_mode() {
 void make_folder(const std::filesystem::path& folder) {
   std::error_code failure;
   if (std::filesystem::exists(folder, failure) && !std::filesystem::is_directory(folder, failure))
-    throw Error(folder.string(), "is a file, where a folder is to be", "choose another name");
+    throw Error(folder.string(), "is a file, but must be a folder", "choose another name");
   std::filesystem::create_directories(folder, failure);
   if (failure) throw system_error(folder, "the folder cannot be made", failure.value());
 }
@@ -99,7 +99,7 @@ void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite) {
 
 void refuse_terminal(std::string_view flag) {
   if (::isatty(STDOUT_FILENO) != 0)
-    throw UsageError(flag, "this is binary and standard output is a terminal", "redirect it, or name a file");
+    throw UsageError(flag, "the output is binary, but standard output is a terminal", "redirect it, or name a file");
 }
 
 OutputFile::OutputFile(std::filesystem::path path, Overwrite overwrite)
@@ -157,7 +157,7 @@ void give_name(const std::filesystem::path& temporary_path, const std::filesyste
     if (::link(temporary_path.c_str(), path.c_str()) == 0) {
       ::unlink(temporary_path.c_str());
     } else if (errno == EEXIST) {
-      throw Error(path.string(), "was made by another program meanwhile", "choose another name, or add --force");
+      throw Error(path.string(), "another program has just made this file", "choose another name, or add --force");
     } else if (::rename(temporary_path.c_str(), path.c_str()) != 0) {
       throw system_error(path, "could not give the finished file its name", errno);
     }

@@ -19,7 +19,7 @@ std::filesystem::path temporary_folder() {
   std::error_code failure;
   std::filesystem::path folder = std::filesystem::temp_directory_path(failure);
   if (failure)
-    throw Error("the folder for temporary files", failure.message(), "let TMPDIR name a folder that can be written");
+    throw Error("the folder for temporary files", failure.message(), "set TMPDIR to a folder that you may write to");
   return folder;
 }
 

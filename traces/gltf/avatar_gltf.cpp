@@ -70,7 +70,7 @@ bool fits_into_float(const glm::dmat4& matrix) {
 /// Finite numbers may still have a product that is too large for a float.
 void refuse_rest_pose_beyond_float(const Avatar& avatar, const Report& report) {
   const auto fail = [&](int node, std::string_view cause) {
-    report.fail(fmt::format("nodes[{}]", node), fmt::format("in the rest pose {} beyond what a float can hold", cause),
+    report.fail(fmt::format("nodes[{}]", node), fmt::format("in the rest pose {} beyond the range of a float", cause),
                 "scale the avatar down to metres");
   };
   std::vector<glm::dmat4> matrices;
@@ -88,7 +88,7 @@ void refuse_rest_pose_beyond_float(const Avatar& avatar, const Report& report) {
 }
 
 [[noreturn]] void fail_without_triangles(const Report& report) {
-  std::string cause = "there are no triangles that the default scene shows";
+  std::string cause = "the default scene shows no triangles";
   for (const std::string& warning : report.warnings()) cause += "\n  also: " + warning;
   report.fail("", cause, "name a file that holds an avatar");
 }

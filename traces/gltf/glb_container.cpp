@@ -36,16 +36,18 @@ std::span<const std::byte> check_header(std::span<const std::byte> glb, Report& 
     report.fail(at(glb.size()), fmt::format("{} bytes are too few for a GLB header of {}", glb.size(), kHeaderBytes),
                 "name a complete .glb, .vrm or .gltf file");
   if (read_u32(glb, 0) != kMagic)
-    report.fail(at(0), "does not start with 'glTF': not a binary glTF file", "name a .glb, .vrm or .gltf file");
+    report.fail(at(0), "does not start with 'glTF', so it is not a binary glTF file",
+                "name a .glb, .vrm or .gltf file");
   if (const std::uint32_t version = read_u32(glb, 4); version != 2)
-    report.fail(at(4), fmt::format("is GLB version {}, only 2 can be read", version), "export the file as glTF 2.0");
+    report.fail(at(4), fmt::format("is GLB version {}, but only 2 can be read", version),
+                "export the file as glTF 2.0");
   const std::size_t length = read_u32(glb, 8);
   if (length < kHeaderBytes + kChunkHeaderBytes)
     report.fail(at(8), fmt::format("a length of {} bytes leaves no room for a chunk", length));
   if (length > glb.size())
     report.fail(at(8), fmt::format("says {} bytes, but the file has only {}", length, glb.size()),
                 "the file was cut short: copy or download it again");
-  if (length < glb.size()) report.warn(at(length), "ignored what follows the end of the glTF");
+  if (length < glb.size()) report.warn(at(length), "ignored the bytes after the end of the glTF");
   return glb.first(length);
 }
 
@@ -62,7 +64,7 @@ GlbChunks split_glb(std::span<const std::byte> glb, Report& report) {
     const std::size_t left = file.size() - offset - kChunkHeaderBytes;
     if (length > left)
       report.fail(at(offset), fmt::format("the chunk claims {} bytes, but only {} are left", length, left));
-    if (length % 4 != 0) report.fail(at(offset), fmt::format("the chunk's length {} is no multiple of 4", length));
+    if (length % 4 != 0) report.fail(at(offset), fmt::format("the chunk's length {} is not a multiple of 4", length));
     const std::span<const std::byte> content = file.subspan(offset + kChunkHeaderBytes, length);
     if (index == 0 && type != kJsonChunk) report.fail(at(offset), "the first chunk is not JSON");
     if (index == 0 && content.empty()) report.fail(at(offset), "the JSON chunk is empty");
@@ -84,7 +86,7 @@ std::vector<std::byte> join_glb(std::string_view json, std::span<const std::byte
   const std::size_t total = kHeaderBytes + kChunkHeaderBytes + padded(json.size()) +
                             (bin.empty() ? 0 : kChunkHeaderBytes + padded(bin.size()));
   if (total > std::numeric_limits<std::uint32_t>::max())
-    report.fail("", "needs more than the 4 GiB that a GLB can hold", "leave out what the avatar does not need");
+    report.fail("", "needs more than the 4 GiB that a GLB can hold", "remove the parts that the avatar does not need");
   std::vector<std::byte> glb(total);
   std::size_t offset = 0;
   const auto put_u32 = [&](std::size_t value) {

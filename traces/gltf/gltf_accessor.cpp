@@ -109,8 +109,9 @@ void check_alignment(const Document& document, int view, std::uint64_t offset, s
                      const std::string& path, const Report& report) {
   const std::uint64_t start = document.views[static_cast<std::size_t>(view)].offset + offset;
   if (offset % component_bytes != 0 || start % component_bytes != 0)
-    report.fail(path, fmt::format("starts at byte {} of its buffer, which is no multiple of its component's {} bytes",
-                                  start, component_bytes));
+    report.fail(
+        path, fmt::format("starts at byte {} of its buffer, which is not a multiple of its component's {} bytes", start,
+                          component_bytes));
 }
 
 void check_sparse(const Document& document, const Accessor& accessor, std::size_t index, std::size_t size,
@@ -121,7 +122,7 @@ void check_sparse(const Document& document, const Accessor& accessor, std::size_
                 fmt::format("{} is more than the accessor's {} elements", sparse.count, accessor.count));
   const ComponentType& type = component_type(sparse.indices_component_type);
   if ((type.plain & (kUint8 | kUint16 | kUint32)) == 0)
-    report.fail(accessor_path(index, ".sparse.indices.componentType"), "is no unsigned integer type");
+    report.fail(accessor_path(index, ".sparse.indices.componentType"), "is not an unsigned integer type");
   const std::string indices = accessor_path(index, ".sparse.indices");
   const std::string values = accessor_path(index, ".sparse.values");
   check_range(document, sparse.indices_view, {sparse.indices_offset, sparse.count, type.bytes, type.bytes}, indices,
@@ -133,7 +134,7 @@ void check_sparse(const Document& document, const Accessor& accessor, std::size_
   for (const int view : {sparse.indices_view, sparse.values_view})
     if (document.views[static_cast<std::size_t>(view)].stride != 0)
       report.fail(fmt::format("bufferViews[{}].byteStride", view),
-                  fmt::format("is only for vertex attributes, not for {}", accessor_path(index, ".sparse")));
+                  fmt::format("is allowed only for vertex attributes, not for {}", accessor_path(index, ".sparse")));
 }
 
 std::uint32_t read_unsigned(const std::byte* bytes, std::size_t size) {
@@ -158,7 +159,7 @@ void check_accessors(const Document& document, Report& report) {
     if (type.bytes == 0)
       report.fail(accessor_path(i, ".componentType"), fmt::format("{} does not exist", accessor.component_type));
     if (accessor.normalized && type.normalized == type.plain)
-      report.warn(accessor_path(i, ".normalized"), fmt::format("means nothing for {}", type.name));
+      report.warn(accessor_path(i, ".normalized"), fmt::format("has no meaning for {}", type.name));
     // An accessor without data of its own is all zeros, and nothing else would limit its length.
     if (accessor.count > document.data_bytes)
       report.fail(accessor_path(i, ".count"),
@@ -173,7 +174,7 @@ void check_accessors(const Document& document, Report& report) {
       check_range(document, accessor.view, {accessor.offset, accessor.count, stride, size}, accessor_path(i), report);
       check_alignment(document, accessor.view, accessor.offset, type.bytes, accessor_path(i), report);
     } else if (accessor.offset != 0) {
-      report.warn(accessor_path(i, ".byteOffset"), "means nothing without a bufferView");
+      report.warn(accessor_path(i, ".byteOffset"), "has no meaning without a bufferView");
     }
     if (accessor.sparse) check_sparse(document, accessor, i, size, report);
   }
@@ -225,8 +226,9 @@ void AccessorReader::substitute_sparse(const Document& document, const Report& r
   for (std::size_t i = 0; i < sparse.count; ++i) {
     const std::uint32_t target = read_unsigned(indices + i * index_bytes, index_bytes);
     if (target < next || target >= count_)
-      report.fail(accessor_path(static_cast<std::size_t>(index_), ".sparse.indices"),
-                  fmt::format("index {} is {}, not increasing or not below {}", i, target, count_));
+      report.fail(
+          accessor_path(static_cast<std::size_t>(index_), ".sparse.indices"),
+          fmt::format("index {} is {}, which is not above the index before or not below {}", i, target, count_));
     next = std::uint64_t{target} + 1;
     std::memcpy(dense_.data() + target * size, values + i * size, size);
   }
@@ -295,7 +297,7 @@ void AccessorReader::compare_bounds(Report& report) const {
     return !(std::abs(said - found) <= 1e-5 * std::max(1.0, std::abs(found)));
   };
   const auto index = static_cast<std::size_t>(index_);
-  if (!accessor_.min || !accessor_.max) report.warn(accessor_path(index), "has no min and max");
+  if (!accessor_.min || !accessor_.max) report.warn(accessor_path(index), "has no min or no max");
   for (std::size_t c = 0; c < std::min<std::size_t>(component_count(accessor_.type), 3); ++c) {
     double least = stored(0, c);
     double most = least;

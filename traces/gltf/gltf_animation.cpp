@@ -53,17 +53,17 @@ class AnimationReader {
       const std::optional<AnimatedProperty> property = animated_property(channel.target_path);
       if (!property) {
         if (channel.target_path == kNoNode)
-          report_.warn(path + ".target", "names no node, and was ignored");
+          report_.warn(path + ".target", "names no node and is ignored");
         else
-          report_.warn(fmt::format("{}.target.path '{}'", path, channel.target_path), "moves no node, and was ignored");
+          report_.warn(fmt::format("{}.target.path '{}'", path, channel.target_path), "moves no node and is ignored");
         continue;
       }
       if (!targets.emplace(channel.target_node, *property).second)
         report_.fail(path + ".target", fmt::format("animates the {} of nodes[{}] a second time", channel.target_path,
                                                    channel.target_node));
       if (!document_.model.nodes[static_cast<std::size_t>(channel.target_node)].matrix.empty())
-        report_.fail(path + ".target",
-                     fmt::format("animates nodes[{}], whose `matrix` forbids that", channel.target_node));
+        report_.fail(path + ".target", fmt::format("animates nodes[{}], but a node with a `matrix` cannot be animated",
+                                                   channel.target_node));
       animation.channels.push_back(read_channel(source, index, channel, path, *property));
       animation.duration_s = std::max(animation.duration_s, double{animation.channels.back().times_s.back()});
     }
@@ -96,7 +96,7 @@ class AnimationReader {
     const std::size_t components = is_rotation ? 4 : 3;
     numbers_ += times.count() + components * values.count();
     if (numbers_ > most_numbers_)
-      report_.fail(path, fmt::format("takes the animations beyond {} numbers", most_numbers_),
+      report_.fail(path, fmt::format("brings the animations to more than {} numbers", most_numbers_),
                    "leave out animations, or resample them");
     read_times(times, sampler_path + ".input", result);
     read_values(values, components, result);
@@ -109,8 +109,8 @@ class AnimationReader {
                     const std::string& path) const {
     const std::size_t factor = kind == Interpolation::kCubicSpline ? 3 : 1;
     if (values.count() != factor * times.count())
-      report_.fail(path + ".output", fmt::format("has {} elements where {} times need {}", values.count(),
-                                                 times.count(), factor * times.count()));
+      report_.fail(path + ".output", fmt::format("has {} elements, but {} times need {}", values.count(), times.count(),
+                                                 factor * times.count()));
     if (factor == 3 && times.count() < 2) report_.fail(path + ".input", "CUBICSPLINE needs at least 2 times");
   }
 
@@ -120,7 +120,7 @@ class AnimationReader {
       const float time_s = reader.finite(i, 0);
       if (time_s < 0) report_.fail(path, fmt::format("time {} is negative ({} s)", i, time_s));
       if (i > 0 && time_s <= channel.times_s.back())
-        report_.fail(path, fmt::format("time {} ({} s) is not later than the one before", i, time_s));
+        report_.fail(path, fmt::format("time {} ({} s) is not later than the time before", i, time_s));
       channel.times_s.push_back(time_s);
     }
   }
@@ -139,8 +139,8 @@ class AnimationReader {
       const glm::dvec4 quaternion(q[0], q[1], q[2], q[3]);
       const double length = std::sqrt(quaternion.x * quaternion.x + quaternion.y * quaternion.y +
                                       quaternion.z * quaternion.z + quaternion.w * quaternion.w);
-      if (!(length > 0)) report_.fail(path, fmt::format("key {} is zero, which is no rotation", key));
-      if (std::abs(length - 1) > 1e-2) report_.warn(path, "has rotations not of length 1, which were normalised");
+      if (!(length > 0)) report_.fail(path, fmt::format("key {} is zero, which is not a rotation", key));
+      if (std::abs(length - 1) > 1e-2) report_.warn(path, "has rotations whose length is not 1; they are normalised");
     }
   }
 

@@ -103,7 +103,7 @@ void read_accessors(Document& document, Report& report) {
         for (const char* bound : {"min", "max"})
           if (accessor.contains(bound) && accessor[bound].size() != components) {
             report.warn(fmt::format("accessors[{}].{}", i, bound),
-                        "has not as many numbers as an element, or one beyond double");
+                        "does not have as many numbers as an element, or has a number too large for a double");
             accessor.erase(bound);
           }
         accessor.erase("name");
@@ -120,7 +120,7 @@ void read_views(Document& document, Report& report) {
       [&](json& view, std::size_t i) {
         const std::string path = fmt::format("bufferViews[{}]", i);
         const auto stride = view.value("byteStride", std::uint64_t{0});
-        if (stride % 4 != 0) report.fail(path + ".byteStride", fmt::format("{} is no multiple of 4", stride));
+        if (stride % 4 != 0) report.fail(path + ".byteStride", fmt::format("{} is not a multiple of 4", stride));
         if (const auto packed = read_packed_view(view, path, document.json.count("buffers"), report))
           document.packed.emplace(i, *packed);
         view.erase("name");
@@ -160,8 +160,8 @@ void resolve_buffer(Document& document, std::size_t index, std::span<const std::
   } else if (const std::string_view text = document.json.buffer_uri(index, buffer, report); is_data_uri(text)) {
     bytes = document.decoded.emplace_back(decode_data_uri(text, path + ".uri", report));
   } else {
-    report.fail(path + ".uri", "is in another file, where only one binary file was given",
-                "name the file that lies beside it, or export a .glb, which holds everything");
+    report.fail(path + ".uri", "is in another file, but only one binary file was given",
+                "name a glTF file that lies beside its other files, or export a .glb, which holds everything");
   }
   if (bytes.size() < byte_length)
     report.fail(path + ".byteLength", fmt::format("says {} bytes, but there are only {}", byte_length, bytes.size()));
@@ -181,7 +181,8 @@ void resolve_buffers(Document& document, std::span<const std::byte> bin, Report&
     const std::span<const std::byte> buffer = document.buffers[packed.buffer];
     check_inside_buffer(packed.offset, packed.length, packed.buffer, buffer.size(), path, report);
     const std::uint64_t size = packed.count * packed.stride;
-    if (size > left_bytes) report.fail(path, fmt::format("{} bytes cannot be packed in this file", size));
+    if (size > left_bytes)
+      report.fail(path, fmt::format("{} unpacked bytes are too many for a file of this size", size));
     left_bytes -= size;
     document.decoded.push_back(unpack(packed, buffer.subspan(packed.offset, packed.length), path, report));
     document.views[view].buffer = document.buffers.size();
@@ -228,8 +229,8 @@ void read_model(Document& document, Report& report) {
       [&](const json& node, std::size_t i) {
         const auto has = [&](const char* name) { return node.contains(name); };
         if (has("matrix") && (has("translation") || has("rotation") || has("scale")))
-          report.fail(fmt::format("nodes[{}].matrix", i), "stands beside a translation, rotation or scale");
-        if (has("skin") && !has("mesh")) report.warn(fmt::format("nodes[{}].skin", i), "is of no use without a mesh");
+          report.fail(fmt::format("nodes[{}].matrix", i), "is given together with a translation, rotation or scale");
+        if (has("skin") && !has("mesh")) report.warn(fmt::format("nodes[{}].skin", i), "has no effect without a mesh");
       },
       [&](tinygltf::Model&& some) { append(all.nodes, std::move(some.nodes)); });
   read_list(document.json, "scenes", report, nothing,
@@ -274,7 +275,7 @@ void refuse_stride(const Document& document, int accessor, std::string_view use,
   const int view = document.accessors[static_cast<std::size_t>(accessor)].view;
   if (view >= 0 && document.views[static_cast<std::size_t>(view)].stride != 0)
     report.fail(fmt::format("bufferViews[{}].byteStride", view),
-                fmt::format("is only for vertex attributes, not for {}", use));
+                fmt::format("is allowed only for vertex attributes, not for {}", use));
 }
 
 Document parse_document(Json json, Report& report) {

@@ -41,7 +41,7 @@ bool is_harmless(std::string_view extension) {
 
 /// Returns the visible effect of ignoring an extension, or an empty text if there is nothing to report.
 std::string_view effect_of_ignoring(std::string_view extension) {
-  if (extension == "EXT_mesh_gpu_instancing") return " (what has instances is drawn once)";
+  if (extension == "EXT_mesh_gpu_instancing") return " (an instanced mesh is drawn once)";
   if (extension == "KHR_node_visibility") return " (hidden nodes are drawn)";
   return "";
 }
@@ -68,7 +68,7 @@ bool check_extensions(const json& head, Report& report) {
   }
   std::set<std::string_view> known(used.begin(), used.end());
   for (const std::string& name : required)
-    if (!known.contains(name)) report.warn(fmt::format("extensionsRequired '{}'", name), "is not among extensionsUsed");
+    if (!known.contains(name)) report.warn(fmt::format("extensionsRequired '{}'", name), "is not in extensionsUsed");
   known.insert(required.begin(), required.end());
   return known.contains(kQuantization);
 }

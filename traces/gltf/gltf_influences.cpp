@@ -42,13 +42,13 @@ Influences combine_influences(std::vector<Influence>& influences, std::uint16_t 
   sort_by_palette(influences);
   merge_equal(influences);
   if (influences.empty()) {
-    report.warn(path, "has vertices without any weight, which follow their first joint");
+    report.warn(path, "has vertices without any weight; they follow their first joint");
     influences.push_back({first, 1.0});
   }
   if (std::abs(sum_of(influences) - 1) > kSumTolerance)
-    report.warn(path, "has weights whose sum is not 1, which were normalised");
+    report.warn(path, "has weights whose sum is not 1; they are normalised");
   if (influences.size() > kMaxInfluences) {
-    report.warn(path, fmt::format("has vertices with more than {0} joints, of which the {0} largest weights were kept",
+    report.warn(path, fmt::format("has vertices with more than {0} joints; only the {0} largest weights are kept",
                                   kMaxInfluences));
     std::stable_sort(influences.begin(), influences.end(),
                      [](const Influence& a, const Influence& b) { return a.weight > b.weight; });

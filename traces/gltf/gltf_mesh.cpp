@@ -129,7 +129,7 @@ class MeshReader {
     }
     const auto position = source.attributes.find("POSITION");
     if (position == source.attributes.end()) {
-      report_.warn(part_path(part), "skipped what has no POSITION");
+      report_.warn(part_path(part), "skipped a primitive without POSITION");
       return false;
     }
     part.vertex_count = accessor(position->second).count;
@@ -138,7 +138,7 @@ class MeshReader {
     part.corner_count = source.indices < 0 ? part.vertex_count : accessor(source.indices).count;
     if (triangle_count(source.mode, part.corner_count) == 0 ||
         (source.mode == TINYGLTF_MODE_TRIANGLES && part.corner_count % 3 != 0))
-      report_.warn(part_path(part), "ignored corners that make no whole triangle");
+      report_.warn(part_path(part), "ignored corners that do not make a whole triangle");
     return triangle_count(source.mode, part.corner_count) > 0;
   }
 
@@ -151,7 +151,7 @@ class MeshReader {
     const tinygltf::Primitive& source = primitive(part);
     for (const auto& [name, index] : source.attributes) {
       check(attribute_path(part, name), index);
-      if (!is_known_attribute(name)) report_.warn(attribute_path(part, name), "is no attribute that glTF knows");
+      if (!is_known_attribute(name)) report_.warn(attribute_path(part, name), "is not an attribute that glTF defines");
     }
     for (std::size_t i = 0; i < source.targets.size(); ++i)
       for (const auto& [name, index] : source.targets[i])
@@ -178,9 +178,10 @@ class MeshReader {
       if (seen.try_emplace(key(part), true).second) vertices += part.vertex_count;
       triangles += triangle_count(primitive(part).mode, part.corner_count);
       if (vertices > most_vertices || triangles > most_triangles)
-        report_.fail(part_path(part),
-                     fmt::format("takes the avatar beyond {} vertices or {} triangles", most_vertices, most_triangles),
-                     "simplify the mesh");
+        report_.fail(
+            part_path(part),
+            fmt::format("brings the avatar to more than {} vertices or {} triangles", most_vertices, most_triangles),
+            "simplify the mesh");
     }
     avatar_.position_bind.reserve(vertices);
     avatar_.texture_coordinate.reserve(vertices);
@@ -249,7 +250,8 @@ class MeshReader {
       const auto count = std::count_if(attributes.begin(), attributes.end(),
                                        [&](const auto& attribute) { return attribute.first.starts_with(prefix); });
       if (static_cast<std::size_t>(count) != sets.size())
-        report_.fail(part_path(part, ".attributes"), fmt::format("has {}n that do not count up from 0", prefix));
+        report_.fail(part_path(part, ".attributes"),
+                     fmt::format("has {}n whose numbers do not count up from 0", prefix));
     }
     return sets;
   }
@@ -270,13 +272,13 @@ class MeshReader {
             report_.fail(set.joints_path, fmt::format("vertex {} names joint {}, but skins[{}] has only {}", vertex,
                                                       joint, part.skin, palette.size()));
           if (joint >= palette.size()) {
-            report_.warn(set.joints_path, "names joints that do not exist, without a weight");
+            report_.warn(set.joints_path, "names joints that do not exist; their weight is 0");
             continue;
           }
           if (weight > 0 && std::any_of(influences.begin(), influences.end(), [&](const Influence& other) {
                 return other.palette == palette[joint] && other.weight > 0;
               }))
-            report_.warn(set.joints_path, "names a joint twice for one vertex; the weights were added");
+            report_.warn(set.joints_path, "names a joint twice for one vertex; the weights are added");
           influences.push_back({palette[joint], weight});
         }
       const std::uint16_t first = influences.empty() ? palette.front() : influences.front().palette;
@@ -301,7 +303,8 @@ class MeshReader {
     const auto [found, is_new] = palette_.try_emplace(entry, avatar_.palette.size());
     if (is_new) {
       if (avatar_.palette.size() > std::numeric_limits<std::uint16_t>::max())
-        report_.fail(part_path(part), "takes the avatar beyond 65536 joints and rigid nodes", "simplify the rig");
+        report_.fail(part_path(part), "brings the avatar to more than 65536 joints and rigid nodes",
+                     "simplify the rig");
       avatar_.palette.push_back({node, inverse_bind});
     }
     return static_cast<std::uint16_t>(found->second);

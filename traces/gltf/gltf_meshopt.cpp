@@ -28,7 +28,7 @@ class Reader {
     const auto found = extension_.find(name);
     if (found == extension_.end()) fail("", fmt::format("'{}' is missing", name));
     if (!found->is_number_unsigned() || found->get<std::uint64_t>() > at_most)
-      fail(name, fmt::format("{} is no whole number in 0 … {}", found->dump(), at_most));
+      fail(name, fmt::format("{} is not a whole number from 0 to {}", found->dump(), at_most));
     return found->get<std::uint64_t>();
   }
 
@@ -42,7 +42,7 @@ class Reader {
     if (found == extension_.end()) return 0;
     const auto word =
         found->is_string() ? std::find(words.begin(), words.end(), found->get_ref<const std::string&>()) : words.end();
-    if (word == words.end()) fail(name, fmt::format("is none of {}", fmt::join(words, ", ")));
+    if (word == words.end()) fail(name, fmt::format("is not one of {}", fmt::join(words, ", ")));
     return static_cast<std::size_t>(word - words.begin());
   }
 
@@ -84,14 +84,14 @@ std::optional<PackedView> read_packed_view(const json& view, const std::string& 
   packed.filter = static_cast<PackedView::Filter>(reader.word("filter", kFilters));
   if (!is_stride_possible(packed)) reader.fail("byteStride", fmt::format("cannot be {} here", packed.stride));
   if (packed.mode == PackedView::Mode::kTriangles && packed.count % 3 != 0)
-    reader.fail("count", fmt::format("{} is no whole number of triangles", packed.count));
+    reader.fail("count", fmt::format("{} is not a multiple of 3, but the view holds triangles", packed.count));
   if (packed.mode != PackedView::Mode::kAttributes && packed.filter != PackedView::Filter::kNone)
-    reader.fail("filter", "is not for indices");
+    reader.fail("filter", "is not allowed for indices");
   if (packed.count * packed.stride != view["byteLength"].get<std::uint64_t>())
-    reader.fail("count", fmt::format("{} elements of {} bytes are not the view's {}", packed.count, packed.stride,
+    reader.fail("count", fmt::format("{} elements of {} bytes are not the view's {} bytes", packed.count, packed.stride,
                                      view["byteLength"].get<std::uint64_t>()));
   if (view.contains("byteStride") && view["byteStride"].get<std::uint64_t>() != packed.stride)
-    reader.fail("byteStride", "is not the view's");
+    reader.fail("byteStride", "differs from the view's byteStride");
   return packed;
 }
 
@@ -111,7 +111,7 @@ std::vector<std::byte> unpack(const PackedView& view, std::span<const std::byte>
       failure = meshopt_decodeIndexSequence(content.data(), view.count, view.stride, bytes, packed.size());
       break;
   }
-  if (failure != 0) report.fail(path, fmt::format("is not {} elements packed by {}", view.count, kMeshopt));
+  if (failure != 0) report.fail(path, fmt::format("cannot be unpacked to {} elements by {}", view.count, kMeshopt));
   switch (view.filter) {
     case PackedView::Filter::kNone:
       break;

@@ -70,12 +70,12 @@ std::optional<NodeLocal> decompose(const glm::dmat4& matrix) {
 
 void read_matrix(const std::vector<double>& numbers, Index index, Node& node, Report& report) {
   const std::optional<glm::dmat4> matrix = affine_matrix(numbers.data());
-  if (!matrix) report.fail(node_path(index, ".matrix"), "is no affine transform: its last row is not 0 0 0 1");
+  if (!matrix) report.fail(node_path(index, ".matrix"), "is not an affine transform: its last row is not 0 0 0 1");
   if (const std::optional<NodeLocal> local = decompose(*matrix)) {
     node.rest = *local;
     return;
   }
-  report.warn(node_path(index, ".matrix"), "is no product of translation, rotation and scale; it is used as it is");
+  report.warn(node_path(index, ".matrix"), "is not a product of translation, rotation and scale; it is used as it is");
   node.fixed_matrix = matrix;
 }
 
@@ -86,8 +86,9 @@ void read_translation_rotation_scale(const tinygltf::Node& source, Index index, 
   if (r.empty()) return;
   node.rest.rotation = glm::quat(glm::dquat(r[3], r[0], r[1], r[2]));
   const double length = glm::length(glm::dquat(node.rest.rotation));
-  if (!(length > 0)) report.fail(node_path(index, ".rotation"), "is zero, which is no rotation");
-  if (std::abs(length - 1) > 1e-3) report.warn(node_path(index, ".rotation"), "is not of length 1, and was normalised");
+  if (!(length > 0)) report.fail(node_path(index, ".rotation"), "is zero, which is not a rotation");
+  if (std::abs(length - 1) > 1e-3)
+    report.warn(node_path(index, ".rotation"), "does not have length 1 and is normalised");
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ class BufferPacker {
     const std::filesystem::path file = gltf::decode_relative_uri(uri, path + ".uri", report_);
     const auto known = packed_.find(file);
     if (known == packed_.end() && !std::filesystem::exists(folder_ / file))
-      report_.fail(path + ".uri", fmt::format("names '{}', which is not there", (folder_ / file).string()),
+      report_.fail(path + ".uri", fmt::format("names '{}', which does not exist", (folder_ / file).string()),
                    "put that file beside the glTF, or export a .glb, which holds everything");
     return known != packed_.end() ? known->second
                                   : packed_.emplace(file, append(read_file(folder_ / file))).first->second;
@@ -76,8 +76,8 @@ class BufferPacker {
   Place append(std::span<const std::byte> content) {
     const std::size_t start = (bytes_.size() + 3) / 4 * 4;
     if (content.size() + start > kMostBytes)
-      report_.fail("buffers", "take the file beyond the 4 GiB that a GLB can hold",
-                   "leave out what the avatar does not need");
+      report_.fail("buffers", "bring the file to more than the 4 GiB that a GLB can hold",
+                   "remove the parts that the avatar does not need");
     if (content.size() > bytes_.size()) bytes_.reserve(start + content.size());
     bytes_.resize(start);
     bytes_.insert(bytes_.end(), content.begin(), content.end());

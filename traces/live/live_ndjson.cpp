@@ -58,7 +58,7 @@ Number number_of(const AnyJson& json, std::string_view name) {
   constexpr Number kInfinity = std::numeric_limits<Number>::infinity();
   if (json.is_number()) {
     const auto number = json.template get<Number>();
-    if (!std::isfinite(number)) throw Malformed(fmt::format("'{}' has a number that no float can hold", name));
+    if (!std::isfinite(number)) throw Malformed(fmt::format("'{}' has a number that does not fit into a float", name));
     return number;
   }
   if (json.is_string()) {
@@ -67,12 +67,12 @@ Number number_of(const AnyJson& json, std::string_view name) {
     if (text == "inf") return kInfinity;
     if (text == "-inf") return -kInfinity;
   }
-  throw Malformed(fmt::format("'{}' has {} where a number must be", name, json.type_name()));
+  throw Malformed(fmt::format("'{}' has {} instead of a number", name, json.type_name()));
 }
 
 template <typename AnyJson>
 void require_array(const AnyJson& json, std::size_t size, std::string_view name) {
-  if (!json.is_array() || json.size() != size) throw Malformed(fmt::format("'{}' is no array of {}", name, size));
+  if (!json.is_array() || json.size() != size) throw Malformed(fmt::format("'{}' is not an array of {}", name, size));
 }
 
 glm::dvec3 position_of(const Json& json, std::string_view name) {
@@ -91,7 +91,7 @@ glm::quat rotation_of(const FloatJson& json, std::size_t at, std::string_view na
 
 std::uint32_t id_of(const Json& json) {
   if (!json.is_number_unsigned() || json.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
-    throw Malformed("a collider's id is no whole number of 32 bits");
+    throw Malformed("a collider's id is not a whole number of 32 bits");
   return json.get<std::uint32_t>();
 }
 
@@ -117,7 +117,7 @@ void read_nodes(const FloatJson& nodes, Pose& pose) {
 }
 
 void read_joint(const FloatJson& joint, NodeLocal& node) {
-  if (!joint.is_object()) throw Malformed("a joint is no object");
+  if (!joint.is_object()) throw Malformed("a joint is not an object");
   if (const auto t = joint.find("t"); t != joint.end()) {
     require_array(*t, 3, "t");
     node.translation = vector_of(*t, 0, "t");
@@ -133,7 +133,7 @@ void read_joint(const FloatJson& joint, NodeLocal& node) {
 }
 
 std::vector<ColliderSample> colliders_of(const Json& json) {
-  if (!json.is_array()) throw Malformed("'colliders' is no array");
+  if (!json.is_array()) throw Malformed("'colliders' is not an array");
   std::vector<ColliderSample> colliders;
   colliders.reserve(json.size());
   for (const Json& one : json) {
@@ -146,12 +146,12 @@ std::vector<ColliderSample> colliders_of(const Json& json) {
   for (const ColliderSample& collider : colliders) ids.push_back(collider.id);
   std::sort(ids.begin(), ids.end());
   if (const auto twice = std::adjacent_find(ids.begin(), ids.end()); twice != ids.end())
-    throw Malformed(fmt::format("collider {} is in it twice", *twice));
+    throw Malformed(fmt::format("it has collider {} twice", *twice));
   return colliders;
 }
 
 std::vector<std::uint32_t> teleported_of(const Json& json) {
-  if (!json.is_array()) throw Malformed("'teleported' is no array");
+  if (!json.is_array()) throw Malformed("'teleported' is not an array");
   std::vector<std::uint32_t> ids;
   for (const Json& id : json) ids.push_back(id_of(id));
   return ids;
@@ -159,9 +159,11 @@ std::vector<std::uint32_t> teleported_of(const Json& json) {
 
 std::int64_t time_of(const Json& json, std::int64_t last_ns) {
   const auto time_s = number_of<double>(json, "time_s");
-  if (!(time_s >= 0 && time_s < kMost_s)) throw Malformed(fmt::format("'time_s' is {}, which is no time", time_s));
+  if (!(time_s >= 0 && time_s < kMost_s))
+    throw Malformed(fmt::format("'time_s' is {}, which is not from 0 to 9e9", time_s));
   const std::int64_t time_ns = std::llround(time_s * kNanosecondsPerSecond);
-  if (time_ns < last_ns) throw Malformed(fmt::format("'time_s' is {}, before the line before", time_s));
+  if (time_ns < last_ns)
+    throw Malformed(fmt::format("'time_s' is {}, which is earlier than in the line before", time_s));
   return time_ns;
 }
 
@@ -180,7 +182,7 @@ void LiveNdjson::note_unknown(const AnyJson& object, std::initializer_list<std::
   for (const auto& [name, value] : object.items()) {
     if (std::find(known.begin(), known.end(), name) != known.end() || unknown_.size() >= kMostBadLinesTold) continue;
     if (unknown_.insert(name).second)
-      problems_.push_back(fmt::format("line {}: '{}' means nothing and is ignored; there are {}", lines_, name,
+      problems_.push_back(fmt::format("line {}: '{}' is unknown and is ignored; the known names are {}", lines_, name,
                                       fmt::join(known, ", ")));
   }
 }
@@ -221,23 +223,24 @@ void LiveNdjson::finish(std::int64_t now_ns, const TakeFrame& take) {
 void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const TakeFrame& take) {
   if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
   try {
-    if (depth_of(line) > kDeepestJson) throw Malformed(fmt::format("is nested deeper than {}", kDeepestJson));
+    if (depth_of(line) > kDeepestJson) throw Malformed(fmt::format("is nested deeper than {} levels", kDeepestJson));
     const Json json = Json::parse(line);
-    if (!json.is_object()) throw Malformed("is no JSON object");
+    if (!json.is_object()) throw Malformed("is not a JSON object");
     note_unknown(json, {"frame", "time_s", "pose", "colliders", "teleported"});
     TraceFrame frame;
     frame.index = next_index_;
     if (const auto number = json.find("frame"); number != json.end()) {
-      if (!number->is_number_unsigned()) throw Malformed("'frame' is no whole number");
+      if (!number->is_number_unsigned()) throw Malformed("'frame' is not a whole number");
       frame.index = number->get<std::uint64_t>();
-      if (frame.index < next_index_) throw Malformed(fmt::format("frame {} comes again, or too late", frame.index));
+      if (frame.index < next_index_) throw Malformed(fmt::format("frame {} comes twice or too late", frame.index));
     }
-    if (frame.index > std::numeric_limits<std::uint32_t>::max()) throw Malformed("its number has more than 32 bits");
+    if (frame.index > std::numeric_limits<std::uint32_t>::max())
+      throw Malformed("its frame number has more than 32 bits");
     const auto time = json.find("time_s");
     frame.time_ns = time == json.end() ? std::max(now_ns, last_ns_) : time_of(*time, last_ns_);
     frame.pose = pose_;
     if (const auto pose = json.find("pose"); pose != json.end()) {
-      if (!pose->is_object()) throw Malformed("'pose' is no object");
+      if (!pose->is_object()) throw Malformed("'pose' is not an object");
       note_unknown(*pose, {"origin", "nodes", "joints"});
       frame.pose.origin_m = pose->contains("origin") ? position_of((*pose)["origin"], "origin") : glm::dvec3(0);
       const FloatJson floats = pose_in_floats(line, *pose);
@@ -271,7 +274,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     // "[json.exception.parse_error.101] parse error at line 1, column 2: …": the number is the library's own.
     const std::string_view text = error.what();
     const std::size_t after_number = text.find("] ");
-    leave_out(fmt::format("is no JSON: {}", after_number == text.npos ? text : text.substr(after_number + 2)));
+    leave_out(fmt::format("is not JSON: {}", after_number == text.npos ? text : text.substr(after_number + 2)));
   }
 }
 

@@ -61,7 +61,7 @@ OscMessage decode_message(std::span<const std::byte> bytes) {
     throw Malformed("a message's address does not begin with a slash");
   int failure = 0;
   const std::unique_ptr<void, FreeMessage> message(lo_message_deserialise(copy.data(), copy.size(), &failure));
-  if (!message) throw Malformed("a message is no OSC");
+  if (!message) throw Malformed("a message is not valid OSC");
   OscMessage decoded;
   decoded.address = reinterpret_cast<const char*>(copy.data());  // terminated within the bytes, as liblo has checked
   const char* types = lo_message_get_types(message.get());
@@ -80,13 +80,13 @@ void decode(std::span<const std::byte> packet, int depth, std::vector<OscMessage
     return;
   }
   if (depth == kDeepest) throw Malformed("its bundles are nested too deep");
-  if (packet.size() < kBundle.size() + kTimeTagBytes) throw Malformed("a bundle has no time");
+  if (packet.size() < kBundle.size() + kTimeTagBytes) throw Malformed("a bundle is too short for its time tag");
   packet = packet.subspan(kBundle.size() + kTimeTagBytes);
   while (!packet.empty()) {
-    if (packet.size() < sizeof(std::uint32_t)) throw Malformed("a bundle ends within an element's size");
+    if (packet.size() < sizeof(std::uint32_t)) throw Malformed("a bundle ends inside an element's size");
     const std::uint32_t size = big_endian(packet);
     packet = packet.subspan(sizeof size);
-    if (size > packet.size()) throw Malformed("an element reaches beyond its bundle");
+    if (size > packet.size()) throw Malformed("an element is longer than the rest of its bundle");
     decode(packet.first(size), depth + 1, out);
     packet = packet.subspan(size);
   }

@@ -28,7 +28,7 @@ UdpReceiver::UdpReceiver(const HostPort& place, const std::string& name) : buffe
   addrinfo* found = nullptr;
   if (const int error = ::getaddrinfo(place.host.c_str(), std::to_string(place.port).c_str(), &hints, &found);
       error != 0)
-    throw Error(name, fmt::format("'{}' is not known: {}", place.host, ::gai_strerror(error)),
+    throw Error(name, fmt::format("the host '{}' cannot be resolved: {}", place.host, ::gai_strerror(error)),
                 "name an address of this machine, or 0.0.0.0 for all");
   const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> owner(found, &::freeaddrinfo);
   socket_ = ::socket(found->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);

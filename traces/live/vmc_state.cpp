@@ -32,7 +32,7 @@ double number(const OscMessage& message, std::size_t at) {
   } else if (const auto* twice = std::get_if<double>(&message.arguments[at])) {
     value = *twice;
   } else {
-    throw Malformed(fmt::format("{}: argument {} is no float", message.address, at + 1));
+    throw Malformed(fmt::format("{}: argument {} is not a float", message.address, at + 1));
   }
   if (!std::isfinite(value)) throw Malformed(fmt::format("{}: argument {} is not finite", message.address, at + 1));
   if (std::abs(value) > trace_format::kFarthest_m)
@@ -42,13 +42,14 @@ double number(const OscMessage& message, std::size_t at) {
 
 std::uint32_t id(const OscMessage& message) {
   const auto* value = message.arguments.empty() ? nullptr : std::get_if<std::int32_t>(&message.arguments[0]);
-  if (value == nullptr || *value < 0) throw Malformed(fmt::format("{}: its id is no whole number", message.address));
+  if (value == nullptr || *value < 0)
+    throw Malformed(fmt::format("{}: its id is not a whole number from 0 up", message.address));
   return static_cast<std::uint32_t>(*value);
 }
 
 const std::string& text(const OscMessage& message) {
   const auto* value = message.arguments.empty() ? nullptr : std::get_if<std::string>(&message.arguments[0]);
-  if (value == nullptr) throw Malformed(fmt::format("{}: its first argument is no text", message.address));
+  if (value == nullptr) throw Malformed(fmt::format("{}: its first argument is not a text", message.address));
   return *value;
 }
 
@@ -80,8 +81,8 @@ std::size_t outermost(const Avatar& avatar, std::size_t node) {
 VmcState::VmcState(const Avatar& avatar, const Humanoid& humanoid, const glm::dvec3& origin_m)
     : pose_(rest_pose(avatar)), facing_(humanoid.facing) {
   if (humanoid.node_of.empty())
-    throw Error("--avatar", "none of its joints is known as a bone of a human body, so nothing can move it",
-                "take a VRM file, or one whose joints are called as in Unity, Mixamo, Unreal or Blender");
+    throw Error("--avatar", "no joint is recognised as a bone of a human body, so no message can move the avatar",
+                "use a VRM file, or name the joints as in Unity, Mixamo, Unreal or Blender");
   for (const NodeLocal& node : pose_.nodes) rest_.push_back(glm::normalize(glm::dquat(node.rotation)));
   pose_.origin_m = origin_m;
   std::vector<glm::dmat4> world;
@@ -115,12 +116,12 @@ bool VmcState::take(std::span<const std::byte> datagram) {
         id(message);
         for (std::size_t i = 1; i <= 3; ++i) number(message, i);
         if (!colliders_.contains(id(message)) && ++colliders > kMostColliders)
-          throw Malformed("there are a million colliders already");
+          throw Malformed("there are already a million colliders");
       } else if (message.address == "/vestige/collider/remove" || message.address == "/vestige/teleport") {
         id(message);
       } else if (message.address == "/vestige/marker") {
         text(message);
-        if (++markers > kMostMarkers) throw Malformed("there are a thousand markers since the last frame already");
+        if (++markers > kMostMarkers) throw Malformed("there are already a thousand markers since the last frame");
       }
     }
     bool changed = false;
@@ -143,7 +144,7 @@ VmcState::Placement VmcState::placement_of(const OscMessage& message) const {
                                .rotation = plus_z ? glm::dquat(qw, qx, -qy, -qz) : glm::dquat(qw, -qx, -qy, qz)};
   const double length = glm::length(placement.rotation);
   if (!(length > kShortestQuaternion))
-    throw Malformed(fmt::format("{}: its rotation is no quaternion", message.address));
+    throw Malformed(fmt::format("{}: its rotation is a quaternion without length", message.address));
   return {.position = placement.position, .rotation = placement.rotation / length};
 }
 

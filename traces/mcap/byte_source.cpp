@@ -43,7 +43,7 @@ int spool(InputDescriptor& input) {
     // A pipe may bring a file whose beginning is damaged; a device that brings anything else might never end.
     if (std::exchange(first, false) && input.is_device() &&
         (count < kMagicBytes || !is_magic(std::span(block).first(kMagicBytes))))
-      throw Error(input.name(), "is a device, and what comes from it is no MCAP file", "name a file, or a pipe");
+      throw Error(input.name(), "is a device, and its data is not an MCAP file", "name a file, or a pipe");
     write_all(copy.value(), std::span(block).first(count), folder);
   }
   return copy.release();

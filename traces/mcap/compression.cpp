@@ -154,7 +154,7 @@ void decompress(std::string_view compression, std::span<const std::byte> bytes, 
     throw Malformed(fmt::format("it claims to expand to {} bytes, more than the {} allowed", size, kMaxChunkBytes));
   const std::span<std::byte> target = out.reset(static_cast<std::size_t>(size));
   if (compression.empty()) {
-    if (bytes.size() != size) throw Malformed("its size is not what it claims");
+    if (bytes.size() != size) throw Malformed("its size is not the size that it claims");
     if (size > 0) std::memcpy(target.data(), bytes.data(), bytes.size());
   } else if (compression == name_of(Compression::kZstd)) {
     expand_zstd(bytes, target);
@@ -162,7 +162,7 @@ void decompress(std::string_view compression, std::span<const std::byte> bytes, 
     expand_lz4(bytes, target);
   } else {
     throw Malformed(
-        fmt::format("its compression '{}' is none of \"\", lz4 and zstd", compression.substr(0, kMostNameBytes)));
+        fmt::format("its compression '{}' is not one of \"\", lz4 and zstd", compression.substr(0, kMostNameBytes)));
   }
 }
 

@@ -26,7 +26,7 @@ IndexedReader::IndexedReader(const ByteSource& source, const TimeRange& range, T
   SummaryResult result = read_summary(source);
   if (!result.summary)
     throw Error(source.name(), fmt::format("cannot be read by its index: {}", result.problem),
-                "read it in the order of the file, or recover it first");
+                "leave out '--order time', or run `vestige recover` on the file first");
   summary_ = std::move(*result.summary);
   const std::vector<ChunkIndex>& chunks = summary_.chunk_indexes;
   for (std::uint32_t chunk = 0; chunk < chunks.size(); ++chunk)
@@ -48,8 +48,8 @@ void IndexedReader::open_due_chunks() {
     if (!entries_.empty() && summary_.chunk_indexes[chunk].message_start_time > entries_.top().log_time) return;
     open(chunk);
     if (open_bytes_ + entries_.size() * sizeof(Entry) > kMostOpenBytes)
-      throw Error(source_.name(), "the times of its chunks overlap: more than 1 GiB would have to be sorted at once",
-                  "read it in the order of the file");
+      throw Error(source_.name(), "the times of its chunks overlap, so more than 1 GiB must be sorted at once",
+                  "leave out '--order time'");
   }
 }
 
@@ -69,8 +69,8 @@ void IndexedReader::open(std::uint32_t chunk) {
   } catch (const Malformed& malformed) {
     note(chunk, malformed.what());
   }
-  if (opened.has_misfits) note(chunk, "the fields of some of its records do not fit into them");
-  if (opened.contradicts_index) note(chunk, "it has messages outside the time that its index says");
+  if (opened.has_misfits) note(chunk, "some of its records are shorter than their fields");
+  if (opened.contradicts_index) note(chunk, "it has messages outside the time range in its index");
   if (opened.messages_left > 0) return;
   open_bytes_ -= opened.records.size();
   open_chunks_.erase(chunk);

@@ -39,7 +39,7 @@ bool is_always_short(Opcode opcode) {
 
 void require_content(const ByteSource& source) {
   if (source.size() == 0)
-    throw Error(source.name(), "is empty", "was its recording started, and did the disk have room?");
+    throw Error(source.name(), "is empty", "check that its recording started, and that the disk is not full");
 }
 
 }  // namespace
@@ -47,9 +47,9 @@ void require_content(const ByteSource& source) {
 void require_mcap(const ByteSource& source) {
   require_content(source);
   if (!begins_with_magic(source))
-    throw Error(source.name(), "is no MCAP file: it does not begin with MCAP's magic bytes",
-                "name a recorded trace; if it is one, `vestige recover` may still read it");
-  if (source.size() < kMagicBytes) throw Error(source.name(), "ends within its first bytes", "record it again");
+    throw Error(source.name(), "is not an MCAP file: it does not begin with MCAP's magic bytes",
+                "name a recorded trace; if this file is one, `vestige recover` may still read it");
+  if (source.size() < kMagicBytes) throw Error(source.name(), "ends inside MCAP's magic bytes", "record it again");
 }
 
 RecordWalker::RecordWalker(const ByteSource& source, MagicBytes magic)
@@ -65,7 +65,7 @@ RecordWalker::RecordWalker(const ByteSource& source, MagicBytes magic)
 void RecordWalker::begin_without_magic() {
   const auto header = head_at(here_, kMagicBytes);
   if (header && header->opcode == Opcode::kHeader && may_resume_at(*header, false)) {
-    damages_.push_back({0, kMagicBytes, "the magic bytes that begin the file are broken"});
+    damages_.push_back({0, kMagicBytes, "the magic bytes at the beginning of the file are broken"});
   } else {
     damages_.push_back({0, 0, "the file does not begin with MCAP's magic bytes"});
     position_ = 0;
@@ -211,7 +211,7 @@ void RecordWalker::finish(std::uint64_t end) {
   const std::uint64_t rest = source_.size() - end;
   const auto magic = static_cast<std::size_t>(std::min<std::uint64_t>(rest, kMagicBytes));
   if (magic < kMagicBytes || !is_magic(ahead_.at(end, magic)))
-    damages_.push_back({end, rest, "the magic bytes that end the file are cut off or broken"});
+    damages_.push_back({end, rest, "the magic bytes at the end of the file are cut off or broken"});
   else if (rest > kMagicBytes)
     note_bytes_behind(end + kMagicBytes);
 }
@@ -220,9 +220,10 @@ void RecordWalker::note_bytes_behind(std::uint64_t end) {
   const std::uint64_t rest = source_.size() - end;
   if (rest > kMagicBytes && is_magic(ahead_.at(end, kMagicBytes)))
     damages_.push_back(
-        {end, rest, "the file's end; a second MCAP file begins here, which was not read", DamageEffect::kAnotherFile});
+        {end, rest, "the file ends here; a second MCAP file follows, which is not read", DamageEffect::kAnotherFile});
   else
-    damages_.push_back({end, rest, "bytes after the file's end, which were not read", DamageEffect::kBehindEnd});
+    damages_.push_back(
+        {end, rest, "the file ends here; more bytes follow, which are not read", DamageEffect::kBehindEnd});
 }
 
 bool RecordWalker::next(RecordPlace& place) {

@@ -74,7 +74,7 @@ bool StreamReader::next_in_chunk(StreamRecord& record) {
 /// Adds one note for all misfits of a chunk, since there may be millions.
 void StreamReader::note_misfits() {
   if (const std::uint64_t bytes = std::exchange(misfit_bytes_, 0); bytes > 0)
-    damages_.add({chunk_place_.offset, bytes, "records in a Chunk: their fields do not fit into them"});
+    damages_.add({chunk_place_.offset, bytes, "records in a Chunk: they are shorter than their fields"});
 }
 
 bool StreamReader::open_chunk(const RecordPlace& place, Bytes content) {
@@ -105,7 +105,7 @@ void StreamReader::check(const RecordPlace& place, Bytes content) {
         break;
       default:
         if (least_content_bytes(place.opcode) && !natural_content_bytes(place.opcode, content))
-          throw Malformed("its fields do not fit into it");
+          throw Malformed("it is shorter than its fields");
     }
   } catch (const Malformed& malformed) {
     damages_.add(
@@ -128,10 +128,10 @@ void StreamReader::check_data_section(const RecordPlace& place, Bytes content) {
 }
 
 void StreamReader::check_summary(const RecordPlace& place, Bytes content) {
-  if (!data_end_seen_) damages_.add({place.offset, 0, "no DataEnd comes before the Footer"});
+  if (!data_end_seen_) damages_.add({place.offset, 0, "there is no DataEnd before the Footer"});
   const Footer footer = decode_footer(content);
   if (footer.summary_start > place.offset || footer.summary_offset_start > place.offset)
-    throw Malformed("the summary is said to begin after it");
+    throw Malformed("it says that the summary begins after it");
   if (footer.summary_crc == 0) return;
   const std::uint64_t begin = footer.summary_start != 0 ? footer.summary_start : place.offset;
   if (crc32_of(source_, begin, place.end() - sizeof footer.summary_crc) != footer.summary_crc)

@@ -28,15 +28,15 @@ std::pair<std::uint64_t, std::uint64_t> place_of(const Index& index) {
 }
 
 Footer read_tail(const ByteSource& source) {
-  if (source.size() < kMagicBytes + kTailBytes) throw Malformed("its last bytes are no footer");
+  if (source.size() < kMagicBytes + kTailBytes) throw Malformed("its last bytes are not a footer");
   std::array<std::byte, kTailBytes> tail = {};
   source.read_at(source.size() - kTailBytes, tail);
   const Bytes bytes = tail;
-  if (!is_magic(bytes.last(kMagicBytes))) throw Malformed("its last bytes are no footer");
+  if (!is_magic(bytes.last(kMagicBytes))) throw Malformed("its last bytes are not a footer");
   Cursor cursor(bytes);
   if (cursor.number<std::uint8_t>() != static_cast<std::uint8_t>(Opcode::kFooter) ||
       cursor.number<std::uint64_t>() != kFooterContentBytes)
-    throw Malformed("its last bytes are no footer");
+    throw Malformed("its last bytes are not a footer");
   return decode_footer(cursor.bytes(kFooterContentBytes));
 }
 
@@ -161,7 +161,7 @@ Bytes read_record_at(const ByteSource& source, std::uint64_t offset, Opcode expe
                      RawBuffer& buffer) {
   std::array<std::byte, kRecordHeadBytes> head = {};
   limit = std::min(limit, source.size());
-  if (offset > limit || limit - offset < kRecordHeadBytes) throw Malformed("it is not within the file");
+  if (offset > limit || limit - offset < kRecordHeadBytes) throw Malformed("it is not inside the file");
   source.read_at(offset, head);
   Cursor cursor{Bytes(head)};
   const auto opcode = static_cast<Opcode>(cursor.number<std::uint8_t>());

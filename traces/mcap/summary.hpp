@@ -26,7 +26,7 @@ struct Summary {
 /// A summary, or the reason why there is no trustworthy one.
 struct SummaryResult {
   std::optional<Summary> summary;
-  std::string problem;  ///< "it has no footer", …
+  std::string problem;  ///< "its last bytes are not a footer", …
 };
 
 /// Reads a file's footer and summary section. Returns an empty summary for a file that has a footer but no summary

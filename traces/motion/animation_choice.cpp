@@ -13,8 +13,8 @@ namespace vestige {
 namespace {
 
 std::string list_animations(const Avatar& avatar) {
-  if (avatar.animations.empty()) return "the avatar has none; leave --animation out";
-  std::string list = "the avatar has";
+  if (avatar.animations.empty()) return "leave out --animation: the avatar has no animation";
+  std::string list = "choose one that the avatar has:";
   for (std::size_t i = 0; i < avatar.animations.size(); ++i)
     fmt::format_to(std::back_inserter(list), "{} {} ({})", i == 0 ? "" : ",", i,
                    avatar.animations[i].name.empty() ? "unnamed" : avatar.animations[i].name);

@@ -77,7 +77,7 @@ class Words {
     Number value = 0;
     const auto [end, failure] = std::from_chars(word.data(), word.data() + word.size(), value);
     if (failure == std::errc::invalid_argument || end != word.data() + word.size())
-      fail(fmt::format("{} is {}, which is no number", what, quoted(word)));
+      fail(fmt::format("{} is {}, which is not a number", what, quoted(word)));
     bool fits = failure == std::errc();
     if constexpr (std::is_floating_point_v<Number>) {
       // A number too small for its type counts as 0. from_chars does not distinguish it from one that is too large.
@@ -110,7 +110,7 @@ class Parser {
 
   BvhMotion parse() {
     if (const std::string_view first = words_.next(); !same_word(first, "HIERARCHY"))
-      words_.fail(fmt::format("starts with {}, not with HIERARCHY: it is no BVH file", Words::quoted(first)),
+      words_.fail(fmt::format("starts with {}, not with HIERARCHY, so it is not a BVH file", Words::quoted(first)),
                   "name a .bvh file");
     parse_hierarchy();
     parse_motion();
@@ -140,7 +140,7 @@ class Parser {
         words_.fail(open.empty() ? "the file ends before MOTION" : "the file ends before a brace is closed",
                     "the file was cut short: copy or export it again");
       } else {
-        words_.fail(fmt::format("'{}' has no place here", shown_word(word)));
+        words_.fail(fmt::format("'{}' is not allowed here", shown_word(word)));
       }
     }
     if (motion_.joints.empty()) words_.fail("there is no joint before MOTION");
@@ -177,23 +177,24 @@ class Parser {
   void parse_channels(BvhJoint& joint) {
     if (!joint.channels.empty()) words_.fail(fmt::format("joint '{}' has CHANNELS twice", shown_word(joint.name)));
     if (joint.first_channel != motion_.channel_count)
-      words_.fail(fmt::format("the CHANNELS of '{}' stand behind its children", shown_word(joint.name)));
+      words_.fail(fmt::format("the CHANNELS of '{}' come after its children", shown_word(joint.name)));
     const auto count = words_.number<unsigned>(words_.next(), "the number of CHANNELS");
     if (count > std::size(kChannelNames)) words_.fail(fmt::format("a joint has {} channels, more than 6", count));
     for (unsigned i = 0; i < count; ++i) {
       const std::string_view word = words_.next_in_line();
-      if (word.empty()) words_.fail(fmt::format("{} channels were announced, and {} are there", count, i));
+      if (word.empty()) words_.fail(fmt::format("{} channels were announced, but there are only {}", count, i));
       const auto* const name =
           std::ranges::find_if(kChannelNames, [&](std::string_view known) { return same_word(known, word); });
       if (name == std::end(kChannelNames))
-        words_.fail(fmt::format("there is no channel '{}'", shown_word(word)), "channels are Xposition … Zrotation");
+        words_.fail(fmt::format("there is no channel '{}'", shown_word(word)),
+                    "use only the channels Xposition … Zrotation");
       const auto channel = static_cast<BvhChannel>(name - std::begin(kChannelNames));
       if (std::ranges::find(joint.channels, channel) != joint.channels.end())
         words_.fail(fmt::format("joint '{}' has {} twice", shown_word(joint.name), *name));
       joint.channels.push_back(channel);
     }
     if (const std::string_view more = words_.next_in_line(); !more.empty())
-      words_.fail(fmt::format("{} channels were announced, and '{}' follows", count, shown_word(more)));
+      words_.fail(fmt::format("{} channels were announced, but '{}' follows", count, shown_word(more)));
     motion_.channel_count += count;
   }
 
@@ -209,7 +210,7 @@ class Parser {
     if (frames > most)
       words_.fail(fmt::format("{} frames of {} numbers do not fit into the {} bytes that follow", frames,
                               motion_.channel_count, words_.bytes_left()),
-                  "the file was cut short, or its number of frames is wrong");
+                  "copy or export the file again: it was cut short, or its number of frames is wrong");
     words_.expect("Frame");
     if (const std::string_view word = words_.next(); same_word(word, "Time"))
       words_.expect(":");
@@ -219,7 +220,7 @@ class Parser {
     if (!(motion_.frame_time_s > 0)) words_.fail("the frame time is not positive");
     if (motion_.frame_time_s < kShortestFrame_s)
       words_.fail(fmt::format("the frame time is {} s, less than 1e-9 s", motion_.frame_time_s),
-                  "it is in seconds: for 120 frames a second, write 0.00833333");
+                  "write it in seconds: 0.00833333 for 120 frames a second");
     if (static_cast<double>(frames) * motion_.frame_time_s > kLongest_s)
       words_.fail("the motion lasts longer than 1e9 s", "check the frame time");
     motion_.frame_count = static_cast<std::size_t>(frames);
@@ -227,19 +228,19 @@ class Parser {
     for (std::size_t frame = 0; frame < motion_.frame_count; ++frame) parse_frame(frame);
     if (const std::string_view more = words_.next(); !more.empty())
       words_.fail(fmt::format("'{}' follows the last of {} frames", shown_word(more), motion_.frame_count),
-                  "the number of frames is wrong");
+                  "correct the number of frames");
   }
 
   void parse_frame(std::size_t frame) {
     std::string_view word = words_.next();
     if (word.empty())
-      words_.fail(fmt::format("{} frames were announced, and {} are there", motion_.frame_count, frame),
-                  "the file was cut short, or its number of frames is wrong");
+      words_.fail(fmt::format("{} frames were announced, but there are only {}", motion_.frame_count, frame),
+                  "copy or export the file again: it was cut short, or its number of frames is wrong");
     for (std::size_t channel = 0; channel < motion_.channel_count; ++channel) {
       if (channel > 0) word = words_.next_in_line();
       if (word.empty())
-        words_.fail(
-            fmt::format("frame {} has {} numbers, the joints have {} channels", frame, channel, motion_.channel_count));
+        words_.fail(fmt::format("frame {} has {} numbers, but the joints have {} channels", frame, channel,
+                                motion_.channel_count));
       motion_.values.push_back(words_.number<float>(word, "a channel"));
     }
     if (!words_.next_in_line().empty())

@@ -66,14 +66,14 @@ void note(Humanoid& humanoid, std::string problem) {
 void take_bone(Humanoid& humanoid, std::string name, const json& bone, const Avatar& avatar, const std::string& field) {
   const json* node = member(&bone, "node");
   if (node == nullptr || !node->is_number_unsigned() || node->get<std::size_t>() >= avatar.nodes.size()) {
-    note(humanoid, fmt::format("{}.node is no node of the file: the bone {} is left out", field, name));
+    note(humanoid, fmt::format("{}.node is not a node of the file: the bone {} is left out", field, name));
     return;
   }
   const auto index = node->get<std::size_t>();
   const auto same = std::ranges::find_if(humanoid.node_of, [&](const auto& known) { return known.second == index; });
   if (same != humanoid.node_of.end()) {
     note(humanoid,
-         fmt::format("{}.node is {}, which is the bone {} already: {} is left out", field, index, same->first, name));
+         fmt::format("{}.node is {}, which is already the bone {}: {} is left out", field, index, same->first, name));
     return;
   }
   humanoid.node_of.emplace(std::move(name), index);
@@ -87,7 +87,7 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
     const std::string field = "extensions.VRMC_vrm.humanoid.humanBones";
     const json* bones = member(member(extension, "humanoid"), "humanBones");
     if (bones == nullptr || !bones->is_object()) {
-      note(humanoid, field + " is no object: bones are known by their names");
+      note(humanoid, field + " is not an object: bones are recognised by their names");
       return humanoid;
     }
     for (const auto& [name, bone] : bones->items())
@@ -99,7 +99,7 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
   const std::string field = "extensions.VRM.humanoid.humanBones";
   const json* bones = member(member(extension, "humanoid"), "humanBones");
   if (bones == nullptr || !bones->is_array()) {
-    note(humanoid, field + " is no array: bones are known by their names");
+    note(humanoid, field + " is not an array: bones are recognised by their names");
     return humanoid;
   }
   humanoid.facing = Humanoid::Facing::kMinusZ;
@@ -107,7 +107,7 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
     const json& bone = (*bones)[i];
     const json* name = member(&bone, "bone");
     if (name == nullptr || !name->is_string()) {
-      note(humanoid, fmt::format("{}[{}].bone is no text", field, i));
+      note(humanoid, fmt::format("{}[{}].bone is not a text", field, i));
       continue;
     }
     std::string unity = name->get<std::string>();

@@ -280,9 +280,9 @@ void Retargeter::refuse_other_bodies() const {
   for (const NamedJoint& joint : source_.joints)
     if (names.size() < 8) names.push_back(shown_word(joint.name));
   throw Error(name_,
-              fmt::format("its joints ({}{}) match neither the hips nor a limb of the avatar", fmt::join(names, ", "),
-                          source_.joints.size() > names.size() ? ", …" : ""),
-              "rename joints as VRM, Mixamo or CMU name them: hips, spine, leftUpperArm, …");
+              fmt::format("its joints ({}{}) do not match both the hips and a limb of the avatar",
+                          fmt::join(names, ", "), source_.joints.size() > names.size() ? ", …" : ""),
+              "rename the joints as VRM, Mixamo or CMU name them: hips, spine, leftUpperArm, …");
 }
 
 /// Returns the flatter of two rotations of a foot while the motion rests. Some captures (CMU's) rest with spread legs
@@ -354,8 +354,8 @@ double Retargeter::metres_per_unit(std::optional<double> asked) const {
   const double of_motion = hip_height(source_, source_up_);
   const double of_avatar = hip_height(target_, target_up_);
   if (of_motion > 0 && of_avatar > 0) return of_avatar / of_motion;
-  throw Error(name_, "its feet and the avatar's do not show how tall both are",
-              "'vestige import --motion FILE --unit cm' (or m, or inch) says in what it is measured");
+  throw Error(name_, "its hips and feet, or those of the avatar, do not show how tall the body is",
+              "give the unit of the motion: 'vestige import --motion FILE --unit cm' (or m, or inch)");
 }
 
 /// Returns the height of the motion's hips at rest. Some files count it from the floor, others from the rest pose.
@@ -379,11 +379,11 @@ void Retargeter::refuse_too_many_numbers() const {
   const std::size_t numbers = motion_.frame_count * (followers * 5 + 4);
   const std::size_t most = std::min(kMostNumbers, kAlwaysAllowed + kMostGrowth * motion_.values.size());
   if (numbers > most)
-    throw Error(name_,
-                fmt::format("its {} frames would become {} numbers for the {} joints of the avatar that follow, more "
-                            "than {}",
-                            motion_.frame_count, numbers, followers, most),
-                "cut the motion into parts, or export it with fewer frames a second");
+    throw Error(
+        name_,
+        fmt::format("its {} frames become {} numbers for the {} joints of the avatar that follow it, more than {}",
+                    motion_.frame_count, numbers, followers, most),
+        "cut the motion into parts, or export it with fewer frames a second");
 }
 
 Animation Retargeter::animate(double metres_per_unit) const {
@@ -393,7 +393,7 @@ Animation Retargeter::animate(double metres_per_unit) const {
   for (std::size_t frame = 0; frame < motion_.frame_count; ++frame) {
     times_s.push_back(static_cast<float>(static_cast<double>(frame) * motion_.frame_time_s));
     if (frame > 0 && !(times_s[frame] > times_s[frame - 1]))
-      throw Error(name_, fmt::format("frame {} is too late for its time to be told from the one before", frame),
+      throw Error(name_, fmt::format("the time of frame {} rounds to that of the frame before", frame),
                   "cut the motion into parts");
   }
   const Index hips = *find_role(target_.roles, kHips);

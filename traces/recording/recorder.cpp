@@ -36,7 +36,7 @@ Error too_small(const std::filesystem::path& path, std::uint64_t limit, std::uin
       path.string(),
       fmt::format("{} bytes a file (--max-size, --split) are too few: with avatar and map, one frame takes up to {}",
                   limit, needed),
-      "allow more");
+      "allow more bytes");
 }
 
 /// Whether the file is a trace, judged by its Header.
@@ -137,7 +137,7 @@ Recorder::Implementation::Implementation(Target target) : target_(std::move(targ
                   "choose another name, or give --force to replace all parts");
     for (const auto& part : stale_)
       if (!is_trace(part))
-        throw Error(part.string(), "has the name of a part of an earlier recording, but is no trace of vestige",
+        throw Error(part.string(), "has the name of a part of an earlier recording, but is not a trace of vestige",
                     "move it away, or choose another name");
   }
   if (limits.ring_s) {

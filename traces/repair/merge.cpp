@@ -68,13 +68,13 @@ void require_same(const Map& known, const Map& added, std::string_view kind, con
   for (const auto& [id, record] : added) {
     const auto found = known.find(id);
     if (found == known.end() || found->second == record) continue;
-    throw Error(other.name(), fmt::format("its {} {} is not what it is in {}", kind, id, first.name()), kOneRecording);
+    throw Error(other.name(), fmt::format("its {} {} differs from that of {}", kind, id, first.name()), kOneRecording);
   }
 }
 
 void require_same(const Identity& known, const Identity& added, const ByteSource& first, const ByteSource& other) {
   const auto refuse = [&](std::string_view what) {
-    throw Error(other.name(), fmt::format("its {} is not that of {}", what, first.name()), kOneRecording);
+    throw Error(other.name(), fmt::format("its {} differs from that of {}", what, first.name()), kOneRecording);
   };
   if (added.avatar != known.avatar) refuse("avatar");
   if (added.map_image != known.map_image) refuse("actuator map");
@@ -106,7 +106,7 @@ Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
     mcap::require_mcap(*source);
     Definitions definitions = gather_definitions(*source);
     if (!is_trace(definitions))
-      throw Error(source->name(), "is no trace of ours: it has no channel /pose", "only traces can be merged");
+      throw Error(source->name(), "is not a trace of vestige: it has no channel /pose", "merge only traces");
     TraceIndex index = index_trace(*source);
     const Identity own = identity_of(index);
     if (!identity) {
@@ -275,7 +275,7 @@ const Part& Merger::take_moment(const Moment& moment) {
     });
     if (!(twin == frame))
       throw Error(part->source().name(),
-                  fmt::format("its frame {} (at {} ns) is not that of {}", moment.sequence, moment.time_ns,
+                  fmt::format("its frame {} (at {} ns) differs from that of {}", moment.sequence, moment.time_ns,
                               from->source().name()),
                   kOneRecording);
     result_.duplicates += twin.messages();
@@ -299,7 +299,8 @@ bool Merger::is_ours(const mcap::Message& message) const {
 void Merger::require_next_frame(std::uint32_t sequence, const Part& part) {
   if (last_frame_ && sequence <= *last_frame_)
     throw Error(part.source().name(),
-                fmt::format("by its time, its frame {} comes after frame {}", sequence, *last_frame_), kOneRecording);
+                fmt::format("in order of time, its frame {} comes after frame {}", sequence, *last_frame_),
+                kOneRecording);
   if (last_frame_) result_.missing_frames += sequence - *last_frame_ - 1;
   last_frame_ = sequence;
   ++result_.frames;
@@ -308,8 +309,9 @@ void Merger::require_next_frame(std::uint32_t sequence, const Part& part) {
 void Merger::write(const mcap::Message& message, const Part& part) {
   if (output_.streams().stream_of(message.channel_id) == Stream::kPose) require_next_frame(message.sequence, part);
   if (!output_.write(message))
-    throw Error(part.source().name(), fmt::format("nothing defines channel {} of its messages", message.channel_id),
-                "recover it first");
+    throw Error(part.source().name(),
+                fmt::format("it has messages of channel {}, which is not defined", message.channel_id),
+                "run `vestige recover` on it first");
 }
 
 }  // namespace

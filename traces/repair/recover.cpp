@@ -135,7 +135,7 @@ Recovery Recoverer::run(const std::function<bool(double)>& progress) {
     take_damages();
     take(place);
     if (!progress(static_cast<double>(place.end()) / static_cast<double>(source_.size())))
-      throw Error(source_.name(), "recovering it was stopped; nothing was written", "");
+      throw Error(source_.name(), "the recovery was stopped; nothing was written", "");
   }
   take_damages();
   finish();
@@ -389,7 +389,7 @@ void Recoverer::finish() {
   const bool found_something =
       result_.messages + result_.attachments + result_.damaged_attachments.size() + result_.metadata > 0;
   if (!found_something && (!output_.definitions().header || !walker_.footer_seen() || result_.lost_something()))
-    throw Error(source_.name(), "nothing in it can be recovered", "is it the file you meant?");
+    throw Error(source_.name(), "nothing in it can be recovered", "check that it is the right file");
   output_.write_definitions();
   if (result_.lost_something())
     output_.write(mcap::Metadata{

@@ -56,7 +56,7 @@ Rewritten Rewriter::run(const std::function<bool(double)>& progress) {
       continue;  // the reader notes records whose fields do not fit
     }
     if (!progress(static_cast<double>(record.offset) / static_cast<double>(source_.size())))
-      throw Error(source_.name(), "this was stopped; nothing was written", "");
+      throw Error(source_.name(), "the work was stopped; nothing was written", "");
   }
   require_messages();
   output_.write_definitions();
@@ -105,10 +105,11 @@ void Rewriter::take_message(const mcap::StreamRecord& record) {
   if (!range_.contains(message.log_time)) {
     ++result_.left_out;
   } else if (!output_.write(message) && undefined_.insert(message.channel_id).second) {
-    result_.damages.add({record.offset, 0,
-                         fmt::format("a Message of channel {}, which nothing defines; from here on its messages are "
-                                     "left out",
-                                     message.channel_id)});
+    result_.damages.add(
+        {record.offset, 0,
+         fmt::format(
+             "a Message of channel {}, which is not defined; from here on, messages of this channel are left out",
+             message.channel_id)});
   }
 }
 
@@ -122,13 +123,13 @@ void Rewriter::require_messages() const {
   const mcap::Statistics& written = output_.statistics();
   const bool is_empty = written.message_count + written.attachment_count + written.metadata_count == 0;
   if (is_empty && result_.left_out == 0 && !reader_.damages().empty())
-    throw Error(source_.name(), "nothing in it can be read", "is it the file you meant?");
+    throw Error(source_.name(), "nothing in it can be read", "check that it is the right file");
   if (result_.left_out == 0 || output_.statistics().message_count > 0) return;
   throw Error(source_.name(),
-              fmt::format("none of its messages is in the time asked for; they are of {} to {} s",
+              fmt::format("no message is in the requested time range; its messages are from {} to {} s",
                           static_cast<double>(first_ns_) / kNanosecondsPerSecond,
                           static_cast<double>(last_ns_) / kNanosecondsPerSecond),
-              "choose --from and --to within that");
+              "choose --from and --to in that range");
 }
 
 }  // namespace

@@ -93,13 +93,13 @@ void FrameCheck::end_frame() {
   }
   if (!frame.has_colliders && !frame.is_broken && colliders_channel_)
     report(frame.first, fmt::format("frame {} has no message of /colliders", frame.number),
-           "no collider is there, and nothing leads to the next frame's");
+           "the frame has no colliders, and no collider moves from it to the next frame");
   const std::uint64_t expected = delivered_ ? std::uint64_t{*delivered_} + 1 : frame.number;
   if (frame.number > expected)
     report(frame.first,
            frame.number == expected + 1 ? fmt::format("frame {} is missing", expected)
                                         : fmt::format("frames {} to {} are missing", expected, frame.number - 1),
-           fmt::format("nothing leads to frame {}, so that it has no contacts", frame.number));
+           fmt::format("no collider moves into frame {}, so it has no contacts", frame.number));
   delivered_ = frame.number;
   if (!refused_) ++result_.frames;
 }
@@ -128,12 +128,13 @@ void FrameCheck::take_pose(const CheckedRecord& record, const mcap::Message& mes
   if (frame_->has_pose) refuse(record, fmt::format("frame {} has two poses", frame_->number));
   const std::size_t nodes = decoder_.pose_node_count(message.data);
   if (node_count_ && nodes != *node_count_)
-    refuse(record, fmt::format("frame {}: its pose has {} nodes, the avatar {}", frame_->number, nodes, *node_count_));
+    refuse(record,
+           fmt::format("frame {}: its pose has {} nodes, but the avatar has {}", frame_->number, nodes, *node_count_));
   if (message.log_time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
     refuse(record, fmt::format("frame {}: its time is out of range", frame_->number));
   if (last_time_ns_ && message.log_time < *last_time_ns_)
-    refuse(record, fmt::format("frame {}: its time, {} ns, is before the frame before, {} ns", frame_->number,
-                               message.log_time, *last_time_ns_));
+    refuse(record, fmt::format("frame {}: its time, {} ns, is earlier than that of the frame before, {} ns",
+                               frame_->number, message.log_time, *last_time_ns_));
   last_time_ns_ = message.log_time;
   frame_->has_pose = true;
 }
@@ -149,7 +150,7 @@ void FrameCheck::take_event(const CheckedRecord& record, const mcap::Message& me
   if (event.kind != trace_format::kDroppedKind) return;
   result_.dropped += event.count;
   report(record,
-         fmt::format("{} of {} {} dropped while recording, about frame {}", counted(event.count, "message"),
+         fmt::format("{} of {} {} dropped while recording, near frame {}", counted(event.count, "message"),
                      dropped_topic(event), event.count == 1 ? "was" : "were", message.sequence),
          "they were never in the file");
 }
@@ -161,7 +162,7 @@ class Contents {
 
   void take(const mcap::Metadata& metadata, std::uint64_t offset) {
     if (metadata.name == trace_format::kRecoveredName)
-      report(offset, "it " + describe_recovered(metadata.metadata), "what was lost is not in it");
+      report(offset, "it " + describe_recovered(metadata.metadata), "the lost data is not in the file");
     if (metadata.name != trace_format::kSessionName) return;
     session_ = metadata.metadata;
     session_offset_ = offset;
@@ -190,10 +191,10 @@ void Contents::finish(std::optional<std::size_t> pose_nodes) {
     report(0, fmt::format("there is no undamaged attachment {}", avatar),
            "`vestige replay` has no body to move, and refuses the file");
   if (avatar_nodes_ && pose_nodes && *avatar_nodes_ != *pose_nodes)
-    report(0, fmt::format("its poses have {} nodes, its avatar has {}", *pose_nodes, *avatar_nodes_),
+    report(0, fmt::format("its poses have {} nodes, but its avatar has {}", *pose_nodes, *avatar_nodes_),
            "`vestige replay` refuses the file");
   if (!session_) {
-    report(0, "there is no metadata record 'session'", "nothing says how it was recorded");
+    report(0, "there is no metadata record 'session'", "the file does not say how it was recorded");
     return;
   }
   for (SessionProblem& problem : check_session(*session_, sha256_))

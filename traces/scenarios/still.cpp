@@ -62,7 +62,7 @@ class Still final : public ColliderSource {
 
   std::vector<std::string> warnings() const override {
     if (moves_) return {};
-    return {"the avatar does not move, so it meets no collider that rests; record it with an animation"};
+    return {"the avatar does not move, so it touches no resting collider; record it with an animation"};
   }
 
  private:

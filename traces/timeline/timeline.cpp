@@ -18,10 +18,10 @@ std::unique_ptr<TimelineFile> make_timeline(const std::filesystem::path& path, O
   if (path == "-" || end == ".csv" || is_device)
     return std::make_unique<TimelineCsv>(path, overwrite, actuator_names.size());
   if (end != ".hjif" && end != ".tact")
-    throw UsageError(path.string(), "a timeline's kind shows in the end of its name",
-                     "name it .csv (a row a frame), .hjif (MPEG haptics) or .tact (bHaptics)");
+    throw UsageError(path.string(), "the end of the name must show the kind of timeline",
+                     "name it .csv (one row per frame), .hjif (MPEG haptics) or .tact (bHaptics)");
   if (actuator_names.empty())
-    throw UsageError(path.string(), fmt::format("there is no actuator, and a {} file needs one", end),
+    throw UsageError(path.string(), fmt::format("there is no actuator, but a {} file needs one", end),
                      "give the trace an actuator map with 'vestige record --map', or write a .csv");
   if (end == ".hjif") return std::make_unique<TimelineHjif>(path, overwrite, actuator_names);
   return std::make_unique<TimelineTact>(path, overwrite, actuator_names.size());

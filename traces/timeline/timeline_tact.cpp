@@ -24,7 +24,7 @@ TimelineTact::TimelineTact(const std::filesystem::path& path, Overwrite overwrit
   const std::size_t most = kSideActuators * std::size(kSides);
   if (actuator_count > most)
     throw UsageError(path.string(),
-                     fmt::format("there are {} actuators, and a vest in a .tact file has {}", actuator_count, most),
+                     fmt::format("there are {} actuators, but a vest in a .tact file has {}", actuator_count, most),
                      "write a .hjif or a .csv");
   const nlohmann::json name = path.stem().string();
   file_.write(fmt::format(R"({{"intervalMillis":{},"size":{},"name":{},"feedback":{{)", kBin_ms, kSideActuators,

@@ -50,7 +50,7 @@ void McapOutput::add(mcap::Channel channel) {
 void McapOutput::learn(const mcap::Schema& schema) {
   schema_bytes_ += schema.data.size();
   if (schema_bytes_ > kMostSchemaBytes)
-    throw Error("schemas", fmt::format("take more than {} bytes", kMostSchemaBytes), "no file of any use has so many");
+    throw Error("schemas", fmt::format("take more than {} bytes", kMostSchemaBytes), "use a file with fewer schemas");
   streams_.add(schema);
 }
 

@@ -112,7 +112,7 @@ bool MessageStream::next_in_chunk(TraceMessage& message) {
       if (!mcap::fits_its_fields(record)) {
         // Reports once for each chunk, which may hold millions of misfits.
         if (!std::exchange(misfit_told_, true))
-          report_({chunk_offset_, 0, "records in a Chunk: their fields do not fit into them"});
+          report_({chunk_offset_, 0, "records in a Chunk: they are shorter than their fields"});
         continue;
       }
       if (record.opcode == Opcode::kSchema) table_.add(mcap::decode_schema(record.content));

@@ -11,7 +11,7 @@ std::string describe_recovered(const mcap::StringMap& metadata) {
   constexpr std::array kCounts = {std::tuple{"bytes_lost", "byte", "lost"}, std::tuple{"chunks_lost", "chunk", "lost"},
                                   std::tuple{"messages_lost", "message", "lost"},
                                   std::tuple{"messages_left_out", "message", "left out"},
-                                  std::tuple{"messages_unverified", "message", "that no CRC vouches for"}};
+                                  std::tuple{"messages_unverified", "message", "not verified by a CRC"}};
   std::string counts;
   for (const auto& [key, thing, fate] : kCounts) {
     const auto found = metadata.find(key);

@@ -7,7 +7,7 @@
 namespace vestige {
 
 /// Describes the metadata record `recovered` of a file as one clause: "was recovered from a damaged file: 12 messages
-/// lost, 3 that no CRC vouches for".
+/// lost, 3 not verified by a CRC".
 std::string describe_recovered(const mcap::StringMap& metadata);
 
 }  // namespace vestige

@@ -11,12 +11,12 @@ std::vector<SessionProblem> check_session(const Session& session, const std::map
   for (const auto& [key, value] : session) {
     if (key == trace_format::kVersionKey && value != trace_format::kVersion)
       problems.push_back({fmt::format("its format version is '{}', not {}", value, trace_format::kVersion),
-                          "a later vestige wrote it; what is new in it is not understood"});
+                          "a later version of vestige wrote it; this version does not understand the new parts"});
     if (!key.starts_with(trace_format::kSha256Prefix)) continue;
     const std::string name = key.substr(trace_format::kSha256Prefix.size());
     const auto attached = sha256.find(name);
     if (attached != sha256.end() && attached->second != value)
-      problems.push_back({fmt::format("the attachment {} is not the one that was recorded: its SHA-256 differs", name),
+      problems.push_back({fmt::format("the attachment {} is not the recorded one: its SHA-256 differs", name),
                           "the frames may not fit it"});
   }
   return problems;

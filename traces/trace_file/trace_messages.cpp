@@ -86,7 +86,7 @@ const Table& MessageDecoder::verified(mcap::Bytes message) {
   if (!message.empty()) std::memcpy(aligned_.data(), message.data(), message.size());
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(aligned_.data());
   if (!flatbuffers::Verifier(bytes, message.size()).VerifyBuffer<Table>(nullptr))
-    throw mcap::Malformed("it is no valid FlatBuffer of its schema");
+    throw mcap::Malformed("it is not a valid FlatBuffer of its schema");
   return *flatbuffers::GetRoot<Table>(bytes);
 }
 
@@ -133,7 +133,7 @@ void MessageDecoder::colliders(mcap::Bytes message, std::vector<ColliderSample>&
   for (const ColliderSample& collider : colliders) ids_.push_back(collider.id);
   if (const auto twice = find_duplicate(ids_)) {
     colliders.clear();
-    throw mcap::Malformed(fmt::format("collider {} is in it twice", *twice));
+    throw mcap::Malformed(fmt::format("it has collider {} twice", *twice));
   }
 }
 

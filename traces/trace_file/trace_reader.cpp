@@ -25,7 +25,7 @@ using trace_format::Stream;
 
 constexpr std::size_t kMostWarnings = 1000;
 constexpr std::size_t kMostColliders = 1'000'000;  ///< in a trace; also the most teleports in a frame
-constexpr std::string_view kRecover = "`vestige recover` may still find some of it";
+constexpr std::string_view kRecover = "run `vestige recover`, which may still find a part of it";
 
 }  // namespace
 
@@ -107,7 +107,8 @@ void TraceReader::Implementation::warn(const mcap::Damage& damage) {
   if (warnings_.size() > kMostWarnings) return;
   std::string text = describe(damage, source_.name());
   if (std::find(warnings_.begin(), warnings_.end(), text) != warnings_.end()) return;
-  if (warnings_.size() == kMostWarnings) text = fmt::format("{}: there is more; see `vestige doctor`", source_.name());
+  if (warnings_.size() == kMostWarnings)
+    text = fmt::format("{}: there are more problems; see `vestige doctor`", source_.name());
   warnings_.push_back(std::move(text));
 }
 
@@ -117,12 +118,13 @@ void TraceReader::Implementation::require_trace() {
   frames_.rewind();
   const mcap::Channel* pose = index_.streams.find(Stream::kPose);
   if (pose == nullptr && index_.profile_is_ours && !warnings_.empty())
-    throw Error(warnings_.front(), "so that it holds no frame", kRecover);
+    throw Error(warnings_.front(), "so the file holds no frame", kRecover);
   if (pose == nullptr) {
     throw Error(file,
-                index_.profile_is_ours ? "is a trace without the channel /pose"
-                                       : "is an MCAP file, but no trace of an avatar: it has no channel /pose of ours",
-                "record one with `vestige record`; `vestige inspect` shows what is in this file");
+                index_.profile_is_ours
+                    ? "is a trace without the channel /pose"
+                    : "is an MCAP file, but not a trace of vestige: it has no channel /pose with vestige's schema",
+                "record a trace with `vestige record`; `vestige inspect` shows what is in this file");
   }
   auto names = parse_node_names(*pose);
   if (!names) throw Error(file, "its channel /pose does not say which nodes the poses have", "record it again");
@@ -133,7 +135,7 @@ void TraceReader::Implementation::require_trace() {
   }
   const auto nodes = glb_node_count(index_.avatar_glb);
   if (nodes && *nodes != node_names_.size()) {
-    throw Error(file, fmt::format("its poses have {} nodes, its avatar has {}", node_names_.size(), *nodes),
+    throw Error(file, fmt::format("its poses have {} nodes, but its avatar has {}", node_names_.size(), *nodes),
                 "record it again");
   }
 }
@@ -155,7 +157,7 @@ const TraceReader::Implementation::Census& TraceReader::Implementation::census()
     ids.insert(current.begin(), current.end());
     if (ids.size() > kMostColliders)
       throw Error(source_.name(), fmt::format("has more than {} colliders", kMostColliders),
-                  "number them anew: an id may be used again once it is gone");
+                  "number the colliders anew: an id may be used again when its collider is gone");
   }
   census.collider_ids.assign(ids.begin(), ids.end());
   census.dropped = frames.dropped();
@@ -173,7 +175,7 @@ void TraceReader::Implementation::Frames::rewind() {
 void TraceReader::Implementation::Frames::refuse(std::string_view cause) const {
   throw Error(owner_.source_.name(),
               fmt::format("at byte {}: frame {}: {}", message_.offset, message_.message.sequence, cause),
-              "`vestige recover` leaves out what does not fit");
+              "run `vestige recover`, which leaves out what does not fit");
 }
 
 bool TraceReader::Implementation::Frames::next(TraceFrame& frame) {
@@ -196,7 +198,8 @@ bool TraceReader::Implementation::Frames::next(TraceFrame& frame) {
     } while (peek() && message_.message.sequence == sequence);
     if (pose_taken_) {
       if (!colliders_taken_ && is_whole && owner_.index_.streams.find(Stream::kColliders) != nullptr)
-        owner_.warn({offset, 0, fmt::format("frame {} has no message of /colliders: no collider is there", sequence)});
+        owner_.warn(
+            {offset, 0, fmt::format("frame {} has no message of /colliders, so it has no colliders", sequence)});
       last_sequence_ = sequence;
       last_time_ns_ = frame.time_ns;
       return true;
@@ -227,12 +230,13 @@ void TraceReader::Implementation::Frames::take_pose(TraceFrame& frame) {
   const std::size_t nodes = decoding_ == PoseDecoding::kFull ? decoder_.pose(message_.message.data, frame.pose)
                                                              : decoder_.pose_node_count(message_.message.data);
   if (nodes != owner_.node_names_.size())
-    refuse(fmt::format("its pose has {} nodes, the avatar {}", nodes, owner_.node_names_.size()));
+    refuse(fmt::format("its pose has {} nodes, but the avatar has {}", nodes, owner_.node_names_.size()));
   if (message_.message.log_time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
     refuse("its time is out of range");
   frame.time_ns = static_cast<std::int64_t>(message_.message.log_time);
   if (last_sequence_ && frame.time_ns < last_time_ns_)
-    refuse(fmt::format("its time, {} ns, is before the frame before, {} ns", frame.time_ns, last_time_ns_));
+    refuse(
+        fmt::format("its time, {} ns, is earlier than that of the frame before, {} ns", frame.time_ns, last_time_ns_));
   pose_taken_ = true;
 }
 
@@ -291,7 +295,7 @@ const std::string& TraceReader::recovered() const {
 
 void require_frames(TraceReader& trace, const std::string& name) {
   if (trace.frame_count() > 0) return;
-  if (!trace.warnings().empty()) throw Error(trace.warnings().front(), "so that it holds no frame", kRecover);
+  if (!trace.warnings().empty()) throw Error(trace.warnings().front(), "so the file holds no frame", kRecover);
   throw Error(name, "holds no frame", "record it again");
 }
 

@@ -143,21 +143,22 @@ void TraceWriter::Implementation::refuse(const TraceFrame& frame, std::string_vi
 }
 
 void TraceWriter::Implementation::require_usable() const {
-  if (!usable_) throw Error(path_.string(), "is closed, or failed before", "record it again");
+  if (!usable_) throw Error(path_.string(), "is closed, or an earlier write failed", "record it again");
 }
 
 void TraceWriter::Implementation::require_valid(const TraceFrame& frame) {
   if (frame.index > std::numeric_limits<std::uint32_t>::max()) refuse(frame, "MCAP numbers messages with 32 bits");
   if (frame_count_ > 0 && frame.index <= sequence_) refuse(frame, fmt::format("it comes after frame {}", sequence_));
   if (frame.time_ns < time_ns_)
-    refuse(frame, fmt::format("its time, {} ns, is before the last frame's, {} ns", frame.time_ns, time_ns_));
+    refuse(frame,
+           fmt::format("its time, {} ns, is earlier than that of the last frame, {} ns", frame.time_ns, time_ns_));
   if (frame.pose.nodes.size() != node_count_)
-    refuse(frame, fmt::format("its pose has {} nodes, the avatar {}", frame.pose.nodes.size(), node_count_));
+    refuse(frame, fmt::format("its pose has {} nodes, but the avatar has {}", frame.pose.nodes.size(), node_count_));
   ids_.clear();
   for (const ColliderSample& collider : frame.colliders) ids_.push_back(collider.id);
   std::sort(ids_.begin(), ids_.end());
   const auto twice = std::adjacent_find(ids_.begin(), ids_.end());
-  if (twice != ids_.end()) refuse(frame, fmt::format("collider {} is in it twice", *twice));
+  if (twice != ids_.end()) refuse(frame, fmt::format("it has collider {} twice", *twice));
 }
 
 void TraceWriter::Implementation::write_message(std::uint16_t channel_id, mcap::Bytes data) {

@@ -109,8 +109,8 @@ TEST_F(Files, TheTextureHashSurvivesRecompressTrimAndMerge) {
 
 TEST_F(Files, MergeRefusesAnotherRecordingWithTheReason) {
   ASSERT_EQ(run("vestige record --count 20 --rate 100 --duration 1 --seed 2 -o b.mcap").exit_code, 0);
-  expect_failure("vestige merge a.mcap b.mcap -o c.mcap", 1, {"b.mcap: its frame 0 (at 0 ns) is not that of a.mcap"},
-                 "c.mcap");
+  expect_failure("vestige merge a.mcap b.mcap -o c.mcap", 1,
+                 {"b.mcap: its frame 0 (at 0 ns) differs from that of a.mcap"}, "c.mcap");
 }
 
 TEST_F(Files, NoOutputReplacesWhatIsThereOrWhatIsRead) {
@@ -128,7 +128,7 @@ TEST_F(Files, TrimSaysWhatIsWrongWithItsTimes) {
   expect_failure("vestige trim a.mcap -o b.mcap", 2, {"--from, --to or both"}, "b.mcap");
   expect_failure("vestige trim a.mcap --from 2 --to 1 -o b.mcap", 2, {"--to", "not after --from"}, "b.mcap");
   expect_failure("vestige trim a.mcap --from -1 -o b.mcap", 2, {"--from", "-1"}, "b.mcap");
-  expect_failure("vestige trim a.mcap --from 5 -o b.mcap", 1, {"they are of 0 to 0.99 s"}, "b.mcap");
+  expect_failure("vestige trim a.mcap --from 5 -o b.mcap", 1, {"its messages are from 0 to 0.99 s"}, "b.mcap");
 }
 
 TEST_F(Files, CatPrintsALineOfJsonForEachMessageOfATopic) {

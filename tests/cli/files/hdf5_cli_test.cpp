@@ -142,7 +142,7 @@ TEST_F(Hdf5Exchange, OfAnotherVersionOrOtherNodesOrNumbersIsRefused) {
   refused([](Hdf5Editor& editor) { editor.set_text("session", "format_version", "2"); },
           {"changed.h5: its format version is '2', not 1"});
   refused([](Hdf5Editor& editor) { editor.set_number("/", "format_version", 1); },
-          {"changed.h5: its attribute 'format_version' is no text"});
+          {"changed.h5: its attribute 'format_version' is not a text"});
   refused([](Hdf5Editor& editor) { editor.set_text("/", "format", "another thing"); },
           {"changed.h5: its format is 'another thing'"});
   const std::size_t nodes = test::builtin_avatar().nodes.size();
@@ -157,10 +157,10 @@ TEST_F(Hdf5Exchange, OfAnotherVersionOrOtherNodesOrNumbersIsRefused) {
             {"pose/node_names does not name its avatar's nodes"});
   const std::vector<std::int64_t> ids(30, std::int64_t{1} << 33);
   refused([&](Hdf5Editor& editor) { editor.replace("colliders/id", h5.int64, ids.size(), ids.data()); },
-          {"colliders/id", "may not fit unsigned whole numbers of 32 bits", "astype"});
+          {"colliders/id", "do not fit into unsigned whole numbers of 32 bits", "astype"});
   const std::vector<double> times(300, 0.5);
   refused([&](Hdf5Editor& editor) { editor.replace("time_ns", h5.float64, times.size(), times.data()); },
-          {"time_ns", "may not fit whole numbers of 64 bits"});
+          {"time_ns", "do not fit into whole numbers of 64 bits"});
 }
 
 TEST_F(Hdf5Exchange, WithoutCollidersNeedsNoTablesOfThem) {

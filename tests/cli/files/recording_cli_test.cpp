@@ -132,7 +132,7 @@ TEST_F(Recording, OfALineWithANumberBeyondFloatsLeavesItOut) {
   const test::Outcome outcome = run(
       "printf '{\"pose\":{\"joints\":{\"pelvis\":{\"t\":[1e39,0,0]}}}}\\n{}\\n' | vestige record --live - -o a.mcap");
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_THAT(outcome.standard_error, HasSubstr("line 1: 't' has a number that no float can hold"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("line 1: 't' has a number that does not fit into a float"));
 }
 
 TEST_F(Recording, OfARingIsItsLastSeconds) {

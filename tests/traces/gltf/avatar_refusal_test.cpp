@@ -62,8 +62,8 @@ TEST(RefuseAvatar, NamesAnAccessorThatLeavesItsBuffer) {
       {{"test.glb: accessors[0]: 4 elements", accessor("count", 4)},
        {"accessors[0].count: 2147483648", accessor("count", 2147483648U)},
        {"accessors[0].count: 0 is not in", accessor("count", 0)},
-       {"accessors[0].count: -1 is no whole number", accessor("count", -1)},
-       {"accessors[0].count: 2.5 is no whole number", accessor("count", 2.5)},
+       {"accessors[0].count: -1 is not a whole number", accessor("count", -1)},
+       {"accessors[0].count: 2.5 is not a whole number", accessor("count", 2.5)},
        {"accessors[0].count: is not a number", accessor("count", "3")},
        {"accessors[0]: 3 elements", accessor("byteOffset", 4)},
        {"accessors[0].byteOffset: 18446744073709551608", accessor("byteOffset", 18446744073709551608U)},
@@ -164,7 +164,7 @@ TEST(RefuseAvatar, NamesIndicesThatReferToNothing) {
                   {"JOINTS_0: vertex 1 names joint 2", [=](GltfBuilder& b) { b.bin[joints + 4] = std::byte{2}; }},
                   {"nodes[0].mesh: 1 does not exist: the number of meshes is 1", set("nodes", "mesh", 1)},
                   {"nodes[0].skin: 1 does not exist", set("nodes", "skin", 1)},
-                  {"nodes[0].skin: -1 is no whole number", set("nodes", "skin", -1)},
+                  {"nodes[0].skin: -1 is not a whole number", set("nodes", "skin", -1)},
                   {"skins[0].inverseBindMatrices: 9", set("skins", "inverseBindMatrices", 9)},
                   {"skins[0].skeleton: 9", set("skins", "skeleton", 9)},
                   {"skins[0].joints[1]: 3 does",
@@ -202,7 +202,7 @@ TEST(RefuseAvatar, NamesNodesThatAreNoTree) {
                                        [](GltfBuilder& b) {
                                          b.document["nodes"][0]["rotation"] = {0, 0, 1};
                                        }},
-                                      {"nodes[0].matrix: is no affine", [](GltfBuilder& b) {
+                                      {"nodes[0].matrix: is not an affine", [](GltfBuilder& b) {
                                          b.document["nodes"][0]["matrix"] = {1, 0, 0, 1, 0, 1, 0, 0,
                                                                              0, 0, 1, 0, 0, 0, 0, 1};
                                        }}});
@@ -223,7 +223,8 @@ TEST(RefuseAvatar, NamesSkinsThatCannotBe) {
           skin(b)["joints"] = {0, 1, 2};
         }},
        {"is VEC4 of float, but skins[0]", [&](GltfBuilder& b) { skin(b)["inverseBindMatrices"] = 2; }},
-       {"byteStride: is only for vertex", [](GltfBuilder& b) { b.document["bufferViews"][3]["byteStride"] = 64; }},
+       {"byteStride: is allowed only for vertex",
+        [](GltfBuilder& b) { b.document["bufferViews"][3]["byteStride"] = 64; }},
        {"matrix 0 is not affine",
         [](GltfBuilder& b) { put_float(b, b.document["bufferViews"][3]["byteOffset"].get<std::size_t>() + 12, 1); }},
        {"WEIGHTS_0: vertex 0 has the negative weight",
@@ -251,11 +252,11 @@ TEST(RefuseAvatar, NamesAnimationsThatCannotBePlayed) {
         [&](GltfBuilder& b) { animation(b)["channels"].push_back(nlohmann::json(animation(b)["channels"][0])); }},
        {"samplers[0].interpolation: 'SMOOTH'",
         [&](GltfBuilder& b) { animation(b)["samplers"][0]["interpolation"] = "SMOOTH"; }},
-       {"has 3 elements where 3 times need 9",
+       {"has 3 elements, but 3 times need 9",
         [&](GltfBuilder& b) { animation(b)["samplers"][0]["interpolation"] = "CUBICSPLINE"; }},
-       {"has 3 elements where 2 times need 2", [](GltfBuilder& b) { b.document["accessors"][1]["count"] = 2; }},
+       {"has 3 elements, but 2 times need 2", [](GltfBuilder& b) { b.document["accessors"][1]["count"] = 2; }},
        {"needs VEC3 of float", [&](GltfBuilder& b) { animation(b)["channels"][0]["target"]["path"] = "translation"; }},
-       {"whose `matrix` forbids",
+       {"a node with a `matrix` cannot be animated",
         [](GltfBuilder& b) { b.document["nodes"][0]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }}});
 }
 
@@ -286,12 +287,12 @@ TEST(RefuseAvatar, NamesJsonThatSaysTwoThings) {
     return refusal(test::make_glb(text, builder.bin));
   };
   EXPECT_EQ(with("\"nodes\"", ""), "loaded");
-  EXPECT_THAT(with("\"nodes\"", "\"nodes\":[{}],"), HasSubstr("nodes: is there more than once"));
-  EXPECT_THAT(with("\"nodes\"", "\"n\\u006fdes\":[{}],"), HasSubstr("nodes: is there more than once"));
+  EXPECT_THAT(with("\"nodes\"", "\"nodes\":[{}],"), HasSubstr("nodes: appears more than once"));
+  EXPECT_THAT(with("\"nodes\"", "\"n\\u006fdes\":[{}],"), HasSubstr("nodes: appears more than once"));
   EXPECT_THAT(with("\"mesh\":0", "\"mesh\":1,"), HasSubstr("nodes[0]: has 'mesh' more than once"));
   EXPECT_THAT(with("\"POSITION\"", "\"POSITION\":1,"), HasSubstr("meshes[0]: has 'POSITION' more than once"));
   EXPECT_THAT(with("\"mesh\":0", "\"scale\":[1e400,1,1],"),
-              HasSubstr("nodes[0]: the JSON cannot be read: it holds a number beyond double"));
+              HasSubstr("nodes[0]: the JSON cannot be read: it holds a number too large for a double"));
   EXPECT_THAT(with("\"mesh\":0", "\"name\":\"\\ud800\","),
               HasSubstr("nodes[0]: the JSON cannot be read: it holds half of a surrogate pair"));
   EXPECT_THAT(with("\"version\"", "\"version\":\"2.0\","), HasSubstr("asset: has 'version' more than once"));
@@ -317,13 +318,14 @@ TEST(RefuseAvatar, NamesMeshesThatBreakTheRulesOfTheirFormat) {
         [&](GltfBuilder& b) {
           primitive(b)["targets"] = {{{"POSITION", 99}}};
         }},
-       {"JOINTS_n that do not count up", [](GltfBuilder& b) { attributes(b)["JOINTS_2"] = 1; }},
-       {"WEIGHTS_n that do not count up", [](GltfBuilder& b) { attributes(b)["WEIGHTS_2"] = 2; }},
+       {"JOINTS_n whose numbers do not count up", [](GltfBuilder& b) { attributes(b)["JOINTS_2"] = 1; }},
+       {"WEIGHTS_n whose numbers do not count up", [](GltfBuilder& b) { attributes(b)["WEIGHTS_2"] = 2; }},
        {"accessors[2]: starts at byte", [](GltfBuilder& b) { b.document["bufferViews"][2]["byteOffset"] = 50; }},
-       {"byteStride: 14 is no multiple of 4", [](GltfBuilder& b) { b.document["bufferViews"][0]["byteStride"] = 14; }},
-       {"nodes[2].matrix: stands beside",
+       {"byteStride: 14 is not a multiple of 4",
+        [](GltfBuilder& b) { b.document["bufferViews"][0]["byteStride"] = 14; }},
+       {"nodes[2].matrix: is given together",
         [](GltfBuilder& b) { b.document["nodes"][2]["matrix"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; }},
-       {"is only for vertex attributes, not for meshes[0].primitives[0].indices",
+       {"is allowed only for vertex attributes, not for meshes[0].primitives[0].indices",
         [](GltfBuilder& b) { b.document["bufferViews"][4]["byteStride"] = 4; }},
        {"meshes[1].primitives[0].indices: index 2 is 7", [=](GltfBuilder& b) {
           // A mesh that nothing shows.
@@ -413,7 +415,7 @@ TEST(RefuseAvatar, NamesWhatIsWrongWithATextFilesBuffers) {
   };
   EXPECT_THAT(refusal_of("short.bin"),
               HasSubstr("a.gltf: buffers[0].byteLength: says 36 bytes, but there are only 10"));
-  EXPECT_THAT(refusal_of("missing.bin"), HasSubstr("missing.bin', which is not there"));
+  EXPECT_THAT(refusal_of("missing.bin"), HasSubstr("missing.bin', which does not exist"));
   for (const char* uri : {"../short.bin", "x/../../short.bin", "%2e%2e/short.bin", "..%2Fshort.bin", "/etc/passwd",
                           "%2Fetc/passwd", "..\\short.bin"})
     EXPECT_THAT(refusal_of(uri), HasSubstr("buffers[0].uri: '" + std::string(uri) + "' leaves the folder"));
@@ -427,8 +429,8 @@ TEST(RefuseAvatar, NamesWhatIsWrongWithATextFilesBuffers) {
   EXPECT_THAT(refusal_of("data:,h%65llo"), HasSubstr("says 36 bytes, but there are only 5"));
   EXPECT_THAT(refusal_of("data:,h%6"), HasSubstr("broken %-escape"));
   EXPECT_THAT(refusal_of("data:a/b;base64"), HasSubstr("no comma"));
-  EXPECT_THAT(refusal_of("data:a/b;base64,AA?A"), HasSubstr("base64 does not know"));
-  EXPECT_THAT(refusal_of("data:a/b;base64,AAAAA"), HasSubstr("no whole number of bytes"));
+  EXPECT_THAT(refusal_of("data:a/b;base64,AA?A"), HasSubstr("is not a base64 digit"));
+  EXPECT_THAT(refusal_of("data:a/b;base64,AAAAA"), HasSubstr("do not make whole bytes"));
   EXPECT_THAT(refusal_of("data:a/b;base64,AAAA"), HasSubstr("says 36 bytes, but there are only 3"));
 }
 

@@ -328,12 +328,12 @@ TEST(AvatarVariants, PackedDataThatCannotBeIsRefusedByName) {
   EXPECT_THAT(refusal([](auto&, json& e) { e["buffer"] = 2; }), HasSubstr(path + ".buffer"));
   EXPECT_THAT(refusal([](auto&, json& e) { e["byteOffset"] = 4000000000U; }),
               HasSubstr("do not lie inside buffers[0]"));
-  EXPECT_THAT(refusal([](auto&, json& e) { e["byteLength"] = 20; }), HasSubstr("is not 400 elements packed"));
+  EXPECT_THAT(refusal([](auto&, json& e) { e["byteLength"] = 20; }), HasSubstr("cannot be unpacked to 400 elements"));
   EXPECT_THAT(refusal([](GltfBuilder& b, json& e) {
                 e["count"] = 100000000;
                 b.document["bufferViews"][kPosition]["byteLength"] = 1200000000;
               }),
-              HasSubstr("cannot be packed in this file"));
+              HasSubstr("are too many for a file of this size"));
 }
 
 TEST(AvatarVariants, ATextFileWithManyBuffersOfAllKindsIsTheSame) {

@@ -144,8 +144,8 @@ TEST_F(LiveLines, BehindTheLastNumberAreLeftOut) {
 
 TEST_F(LiveLines, SayWhereANumberIsMissing) {
   read("{\"time_s\":\"soon\"}\n{\"colliders\":[{\"id\":1,\"position\":[0,null,0]}]}\n");
-  EXPECT_THAT(lines_->problems(), ElementsAre("line 1: 'time_s' has string where a number must be",
-                                              "line 2: 'position' has null where a number must be"));
+  EXPECT_THAT(lines_->problems(), ElementsAre("line 1: 'time_s' has string instead of a number",
+                                              "line 2: 'position' has null instead of a number"));
 }
 
 // Open Sound Control.
@@ -253,7 +253,7 @@ TEST(Humanoid, OfBonesInOnePlaceTheSecondIsLeftOutAndSaid) {
                                               R"({"head":{"node":2},"hips":{"node":2}}}}}})"));
   EXPECT_EQ(humanoid.node_of, (decltype(humanoid.node_of){{"Head", 2}}));
   ASSERT_EQ(humanoid.problems.size(), 1U);
-  EXPECT_THAT(humanoid.problems.front(), HasSubstr("humanBones.hips.node is 2, which is the bone Head already"));
+  EXPECT_THAT(humanoid.problems.front(), HasSubstr("humanBones.hips.node is 2, which is already the bone Head"));
 }
 
 TEST(Humanoid, IsWhatVrmSays) {
@@ -265,8 +265,9 @@ TEST(Humanoid, IsWhatVrmSays) {
   EXPECT_EQ(one.facing, Humanoid::Facing::kPlusZ);
   EXPECT_EQ(one.node_of, (decltype(one.node_of){{"Hips", 2}, {"LeftThumbProximal", 3}}));
   const std::string field = "extensions.VRMC_vrm.humanoid.humanBones.";
-  EXPECT_THAT(one.problems, UnorderedElementsAre(field + "head.node is no node of the file: the bone Head is left out",
-                                                 field + "jaw.node is no node of the file: the bone Jaw is left out"));
+  EXPECT_THAT(one.problems,
+              UnorderedElementsAre(field + "head.node is not a node of the file: the bone Head is left out",
+                                   field + "jaw.node is not a node of the file: the bone Jaw is left out"));
   const Humanoid zero = find_humanoid(
       avatar, glb_of(R"({"extensions":{"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1},{"bone":7},5,)"
                      R"({"bone":"leftUpperArm","node":0}]}}}})"));

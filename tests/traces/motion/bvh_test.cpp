@@ -76,7 +76,7 @@ TEST(Bvh, NumbersTooSmallForTheirTypeAreZeroHoweverTheyAreWritten) {
     EXPECT_EQ(parse_bvh(changed("10 90", "10 " + tiny), "walk.bvh").values[1], 0) << tiny;
   for (const std::string& huge : {std::string("1e60"), std::string("1E400"), "1" + zeros, "1" + zeros + "e-10"})
     EXPECT_THAT(refusal(changed("10 90", "10 " + huge)), HasSubstr("out of range")) << huge;
-  EXPECT_THAT(refusal(changed("10 90", "10 1E-60x")), HasSubstr("no number"));
+  EXPECT_THAT(refusal(changed("10 90", "10 1E-60x")), HasSubstr("not a number"));
 }
 
 TEST(Bvh, WordsAreShownInFortyBytesOfWholeLetters) {
@@ -88,16 +88,16 @@ TEST(Bvh, WordsAreShownInFortyBytesOfWholeLetters) {
 TEST(Bvh, MistakesAreNamedByTheirLine) {
   const std::tuple<std::string, const char*, const char*> cases[] = {
       {"", "line 1", "HIERARCHY"},
-      {changed("MOTION\n", ""), "line 7", "has no place"},
+      {changed("MOTION\n", ""), "line 7", "is not allowed here"},
       {kOneJoint.substr(0, kOneJoint.find("MOTION")), "line 7", "before MOTION"},
-      {changed("}\n", ""), "line 6", "has no place"},
+      {changed("}\n", ""), "line 6", "is not allowed here"},
       {changed("CHANNELS 2", "CHANNELS 7"), "line 5", "7 channels"},
       {changed("CHANNELS 2", "CHANNELS 3"), "line 5", "3 channels were announced"},
       {changed("CHANNELS 2", "CHANNELS 1"), "line 5", "'Zrotation' follows"},
       {changed("Xposition", "Wposition"), "line 5", "Wposition"},
       {changed("Xposition", "Zrotation"), "line 5", "twice"},
       {changed("OFFSET 1", "OFFSET nan"), "line 4", "nan"},
-      {changed("Frames: 2", "Frames: 3"), "line 12", "3 frames were announced, and 2 are there"},
+      {changed("Frames: 2", "Frames: 3"), "line 12", "3 frames were announced, but there are only 2"},
       {changed("Frames: 2", "Frames: 1"), "line 11", "follows the last"},
       {changed("Frames: 2", "Frames: 99999999999999"), "line 8", "frames"},
       {changed("Frames: 2", "Frames: 0"), "line 8", "0 frames"},

@@ -118,10 +118,9 @@ TEST(Retarget, AMotionWithFewNumbersDoesNotBecomeVeryMany) {
   motion.joints[0].channels = {BvhChannel::kYPosition};
   motion.channel_count = 1;
   repeat(kFrames);
-  EXPECT_EQ(
-      refusal(),
-      "person.bvh: its 60000 frames would become 5340000 numbers for the 17 joints of the avatar that follow, more "
-      "than 4674304\n  cut the motion into parts, or export it with fewer frames a second");
+  EXPECT_EQ(refusal(),
+            "person.bvh: its 60000 frames become 5340000 numbers for the 17 joints of the avatar that follow it, more "
+            "than 4674304\n  cut the motion into parts, or export it with fewer frames a second");
   repeat(kFrames / 2);
   EXPECT_EQ(refusal(), "retargeted");
 }

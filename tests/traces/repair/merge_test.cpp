@@ -103,10 +103,12 @@ TEST(Merge, CountsFramesThatNoPartHas) {
 TEST(Merge, RefusesWhatIsNoPartOfTheSameRecordingAndSaysWhy) {
   const test::TemporaryFolder folder;
   const Bytes whole = recording(folder, kFrames, test::kNodes, "{}");
-  EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes + 1, "{}")}), HasSubstr("its avatar is not that of"));
+  EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes + 1, "{}")}),
+              HasSubstr("its avatar differs from that of"));
   EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes, "{\"a\":1}")}),
-              HasSubstr("its actuator map's description is not that of"));
-  EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes, "{}", 1)}), HasSubstr("its frame 0 (at 0 ns) is not"));
+              HasSubstr("its actuator map's description differs from that of"));
+  EXPECT_THAT(refusal({whole, recording(folder, 4, test::kNodes, "{}", 1)}),
+              HasSubstr("its frame 0 (at 0 ns) differs"));
 }
 
 TEST(Merge, TakesWhatViewersDrawFromTheFirstFile) {
@@ -201,13 +203,13 @@ TEST(Merge, NotesAMessageThatDoesNotFitItsFieldsAndReadsOn) {
   EXPECT_EQ(result.merged.frames, kFrames - 1);
   ASSERT_EQ(result.merged.damages.size(), 1U);
   ASSERT_EQ(result.merged.damages[0].list.count(), 1U);
-  EXPECT_THAT(result.merged.damages[0].list.kept()[0].what, HasSubstr("do not fit"));
+  EXPECT_THAT(result.merged.damages[0].list.kept()[0].what, HasSubstr("shorter than their fields"));
 }
 
 TEST(Merge, RefusesFilesOfOthers) {
   VESTIGE_REQUIRE_DATA(test::data("mcap"));
   const auto foreign = read_file(test::data("mcap/compressed/multi-zstd.mcap"));
-  EXPECT_THAT(refusal({foreign, foreign}), HasSubstr("is no trace of ours"));
+  EXPECT_THAT(refusal({foreign, foreign}), HasSubstr("is not a trace of vestige"));
 }
 
 }  // namespace

@@ -236,7 +236,7 @@ TEST(Recover, AFileThatItWroteSaysWhatWasLost) {
   const auto outcome = recover(damaged);
   ASSERT_TRUE(outcome);
   ASSERT_GT(outcome->recovery.messages_unverified, 0U);
-  const auto said = testing::AllOf(HasSubstr("was recovered from a damaged file"), HasSubstr("no CRC vouches for"));
+  const auto said = testing::AllOf(HasSubstr("was recovered from a damaged file"), HasSubstr("not verified by a CRC"));
   const test::MemoryFile file;
   file.assign(outcome->bytes);
   EXPECT_THAT(TraceReader(file.path()).recovered(), said);

@@ -107,7 +107,7 @@ TEST(Recompress, SaysThatAMessageDoesNotFitItsFieldsAndKeepsTheOthers) {
   ASSERT_EQ(result.damages.count(), 1U);
   EXPECT_EQ(result.damages.kept()[0].offset, trace.chunks[0].offset);
   EXPECT_EQ(result.damages.kept()[0].bytes, mcap::kRecordHeadBytes + 3);
-  EXPECT_THAT(result.damages.kept()[0].what, HasSubstr("do not fit"));
+  EXPECT_THAT(result.damages.kept()[0].what, HasSubstr("shorter than their fields"));
 }
 
 TEST(Trim, KeepsWhatIsAtTheFirstTimeAndLeavesOutWhatIsAtTheLast) {
@@ -134,7 +134,7 @@ TEST(Trim, RefusesATimeInWhichNothingIsAndSaysWhenSomethingIs) {
     rewrite_mcap(source, test::into(written), {.range = {.from_ns = 1'000'000'000}}, test::go_on);
     FAIL() << "wrote an empty trace";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("they are of 0 to 0.015000045 s"));
+    EXPECT_THAT(error.what(), HasSubstr("its messages are from 0 to 0.015000045 s"));
   }
 }
 

@@ -185,9 +185,9 @@ TEST(TraceCheck, NamesFramesThatContradictAvatarAndEachOther) {
     return result.problems.count() == 0 ? std::string() : result.problems.kept().front().what;
   };
   EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.pose(2, 20, 4); }),
-              HasSubstr("its pose has 4 nodes, the avatar 3"));
+              HasSubstr("its pose has 4 nodes, but the avatar has 3"));
   EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.frame(2, 9); }),
-              HasSubstr("its time, 9 ns, is before the frame before"));
+              HasSubstr("its time, 9 ns, is earlier than that of the frame before"));
   EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.frame(0, 20); }), HasSubstr("frame 0 comes after frame 1"));
   EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.pose(1, 10); }), HasSubstr("frame 1 has two poses"));
   EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.frame(5, 20); }), HasSubstr("frames 2 to 4 are missing"));
@@ -196,8 +196,8 @@ TEST(TraceCheck, NamesFramesThatContradictAvatarAndEachOther) {
                 trace.pose(2, 20);
                 trace.colliders(2, 20, {{.id = 7}, {.id = 8}, {.id = 7}});
               }),
-              HasSubstr("collider 7 is in it twice"));
-  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.message(1, 2, 20, {}); }), HasSubstr("no valid FlatBuffer"));
+              HasSubstr("it has collider 7 twice"));
+  EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.message(1, 2, 20, {}); }), HasSubstr("not a valid FlatBuffer"));
   EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.dropped(1, 12); }),
               HasSubstr("12 messages of /pose were dropped"));
   EXPECT_THAT(only([](test::ForgedTrace& trace) { trace.pose(2, 20); }),
@@ -275,7 +275,8 @@ TEST(TraceCheck, SaysOfBytesBehindTheEndThatNothingIsMissing) {
   bytes.resize(bytes.size() + 5);
   const TraceCheck result = check(bytes);
   ASSERT_EQ(result.problems.count(), 1U) << text_of(result);
-  EXPECT_THAT(text_of(result), HasSubstr("bytes after the file's end, which were not read; readers may refuse"));
+  EXPECT_THAT(text_of(result),
+              HasSubstr("the file ends here; more bytes follow, which are not read; readers may refuse"));
 }
 
 TEST(TraceCheck, TimeDoesNotGrowWithRepeatedDefinitionsAndOffsets) {
@@ -348,7 +349,7 @@ TEST(TraceCheck, NamesAnIndexThatContradictsTheData) {
   EXPECT_THAT(finding([](mcap::Summary& summary) { ++summary.chunk_indexes[1].message_end_time; }),
               HasSubstr("ChunkIndex: says that message_end_time is"));
   EXPECT_THAT(finding([](mcap::Summary& summary) { summary.chunk_indexes[1].chunk_start_offset += 1; }),
-              HasSubstr("where no Chunk begins"));
+              HasSubstr("but no Chunk begins there"));
   EXPECT_THAT(finding([](mcap::Summary& summary) { summary.chunk_indexes.pop_back(); }),
               HasSubstr(fmt::format("{}+{}: Chunk: no index lists it", trace.chunks.back().offset,
                                     trace.chunks.back().end() - trace.chunks.back().offset)));

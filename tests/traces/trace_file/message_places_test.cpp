@@ -286,7 +286,7 @@ TEST_F(IndexedMessages, ThatContradictTheirIndexAreDeliveredAndSaid) {
   for (mcap::Message message; reader.next(message);) ++messages;
   EXPECT_EQ(messages, 51U);
   ASSERT_EQ(reader.damages().count(), 1U);
-  EXPECT_THAT(reader.damages().kept().front().what, HasSubstr("outside the time that its index says"));
+  EXPECT_THAT(reader.damages().kept().front().what, HasSubstr("outside the time range in its index"));
 }
 
 TEST_F(IndexedMessages, OfChunksThatAllOverlapAreSortedEachExpandedOnce) {

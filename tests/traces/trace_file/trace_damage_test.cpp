@@ -190,7 +190,7 @@ TEST(TraceDamage, AMessageWhoseFieldsDoNotFitCostsItsFrameAlone) {
   EXPECT_EQ(test::read_frames(reader).size(), kFrames - 1);
   EXPECT_FALSE(reader.complete());
   ASSERT_FALSE(reader.warnings().empty());
-  EXPECT_THAT(reader.warnings()[0], HasSubstr("their fields do not fit"));
+  EXPECT_THAT(reader.warnings()[0], HasSubstr("they are shorter than their fields"));
 }
 
 TEST(TraceDamage, ABrokenSummaryIsNoLoss) {

@@ -142,11 +142,11 @@ TEST(TraceFile, RefusesFramesThatContradictTheTrace) {
   EXPECT_THAT(error_of([&] { writer.write(test::frame(5, kNodes, 1)); }), HasSubstr("comes after frame 5"));
   TraceFrame early = test::frame(6, kNodes, 1);
   early.time_ns = 1;
-  EXPECT_THAT(error_of([&] { writer.write(early); }), HasSubstr("is before"));
+  EXPECT_THAT(error_of([&] { writer.write(early); }), HasSubstr("is earlier"));
   EXPECT_THAT(error_of([&] { writer.write(test::frame(6, kNodes + 1, 1)); }), HasSubstr("4 nodes"));
   TraceFrame twice = test::frame(6, kNodes, 2);
   twice.colliders[1].id = twice.colliders[0].id;
-  EXPECT_THAT(error_of([&] { writer.write(twice); }), HasSubstr("collider 3 is in it twice"));
+  EXPECT_THAT(error_of([&] { writer.write(twice); }), HasSubstr("it has collider 3 twice"));
   EXPECT_THAT(error_of([&] { writer.write(test::frame(std::uint64_t{1} << 32, kNodes, 1)); }), HasSubstr("32 bits"));
   writer.write(test::frame(6, kNodes, 1));
   writer.finish();
@@ -331,14 +331,14 @@ TEST(TraceFile, ExplainsWhatIsNoTrace) {
   std::ofstream(folder / "empty.mcap").flush();
   EXPECT_THAT(error_of([&] { TraceReader(folder / "empty.mcap"); }), HasSubstr("is empty"));
   std::ofstream(folder / "text.mcap") << "this is not the file you are looking for";
-  EXPECT_THAT(error_of([&] { TraceReader(folder / "text.mcap"); }), HasSubstr("is no MCAP file"));
-  EXPECT_THAT(error_of([&] { summarise_mcap(folder / "text.mcap"); }), HasSubstr("is no MCAP file"));
+  EXPECT_THAT(error_of([&] { TraceReader(folder / "text.mcap"); }), HasSubstr("is not an MCAP file"));
+  EXPECT_THAT(error_of([&] { summarise_mcap(folder / "text.mcap"); }), HasSubstr("is not an MCAP file"));
 }
 
 TEST(TraceFile, OfSomeoneElseIsRefusedByTheReaderButSummarised) {
   const auto file = test::data("mcap/compressed/multi-lz4.mcap");
   VESTIGE_REQUIRE_DATA(file);
-  EXPECT_THAT(error_of([&] { TraceReader reader(file); }), HasSubstr("no trace of an avatar"));
+  EXPECT_THAT(error_of([&] { TraceReader reader(file); }), HasSubstr("not a trace of vestige"));
   const McapSummary summary = summarise_mcap(file);
   EXPECT_EQ(summary.messages, 600U);
   EXPECT_EQ(summary.channels.size(), 3U);
@@ -357,7 +357,7 @@ TEST(TraceFile, RefusesAPoseThatDoesNotFitTheAvatar) {
     writer.finish();
   }
   EXPECT_THAT(error_of([&] { TraceReader reader(folder / "a.mcap"); }),
-              HasSubstr("its poses have 3 nodes, its avatar has 4"));
+              HasSubstr("its poses have 3 nodes, but its avatar has 4"));
 }
 
 TEST(TraceFile, SaysWhereItContradictsItsSession) {
@@ -383,7 +383,7 @@ TEST(TraceFile, SaysWhereItContradictsItsSession) {
   // Behind the key stands the length of the value.
   EXPECT_THAT(changed("format_version", 14 + 4, '9'), HasSubstr("its format version is '9', not 1"));
   EXPECT_THAT(changed(glb_sha256, 5, glb_sha256[5] == '0' ? '1' : '0'),
-              HasSubstr("the attachment avatar.glb is not the one that was recorded"));
+              HasSubstr("the attachment avatar.glb is not the recorded one"));
 }
 
 TEST(TraceSummary, SaysWhatATraceHolds) {

@@ -122,7 +122,7 @@ TEST(OscUrl, SaysWhatIsWrongWithIt) {
   EXPECT_THAT(refusal("osc://host"), HasSubstr("no port"));
   EXPECT_THAT(refusal("osc://[::1]"), HasSubstr("no port"));
   EXPECT_THAT(refusal("osc://[::1]9000"), HasSubstr("no port"));
-  EXPECT_THAT(refusal("osc://[::1:9000"), HasSubstr("does not close"));
+  EXPECT_THAT(refusal("osc://[::1:9000"), HasSubstr("no closing bracket"));
   EXPECT_THAT(refusal("osc://::1:9000"), HasSubstr("brackets"));
   for (const char* port : {"", "0", "65536", "-1", "9000x", "http", " 9000"})
     EXPECT_THAT(refusal(std::string("osc://host:") + port), HasSubstr("from 1 to 65535")) << port;

@@ -29,7 +29,7 @@ json parse(std::string_view text, std::string_view path, const Report& report) {
   try {
     return json::parse(text);
   } catch (const json::out_of_range&) {
-    report.fail(path, "the JSON cannot be read: it holds a number beyond double");
+    report.fail(path, "the JSON cannot be read: it holds a number too large for a double");
   } catch (const json::parse_error&) {
     report.fail(path, "the JSON cannot be read: it holds half of a surrogate pair");
   }

@@ -63,7 +63,7 @@ class Scanner {
         skip_value(2);
         is_new = result.properties.emplace(key, text_.substr(start, at_ - start)).second && !result.lists.contains(key);
       }
-      if (!is_new) report_.fail(key, "is there more than once");
+      if (!is_new) report_.fail(key, "appears more than once");
     });
     skip_space();
     if (at_ != text_.size()) fail("has something after its end");
@@ -227,7 +227,7 @@ class Scanner {
   }
 
   void skip_digits() {
-    if (!is_digit(peek())) fail("has something that is no value");
+    if (!is_digit(peek())) fail("has something that is not a value");
     while (is_digit(peek())) ++at_;
   }
 

@@ -200,7 +200,7 @@ class Checker {
       if (property == nullptr)
         report_.warn(name, kUnknown);
       else if (property->type != Type::kObjects)
-        fail("is not of the type that glTF gives it");
+        fail("does not have the type that glTF requires");
       else if (elements.empty())
         report_.warn(name, "is empty");
     }
@@ -225,7 +225,7 @@ class Checker {
   }
 
  private:
-  static constexpr std::string_view kUnknown = "is no property that glTF knows";
+  static constexpr std::string_view kUnknown = "is not a property that glTF defines";
 
   static const Property* find(Object object, std::string_view name) {
     const auto found =
@@ -294,7 +294,7 @@ class Checker {
     if (!value.is_string()) fail("is not a text");
     const auto& words = property.words;
     if (!words.empty() && std::find(words.begin(), words.end(), value.get_ref<const std::string&>()) == words.end())
-      fail(fmt::format("'{}' is none of {}", value.get_ref<const std::string&>(), fmt::join(words, ", ")));
+      fail(fmt::format("'{}' is not one of {}", value.get_ref<const std::string&>(), fmt::join(words, ", ")));
   }
 
   void check_numbers(json& value, const Property& property) {
@@ -319,7 +319,7 @@ class Checker {
       }
     }
     if (value == 0) value = std::uint64_t{0};  // the text may be -0
-    if (!value.is_number_unsigned()) fail(fmt::format("{} is no whole number from 0 up", value.dump()));
+    if (!value.is_number_unsigned()) fail(fmt::format("{} is not a whole number from 0 up", value.dump()));
     const auto number = value.get<std::uint64_t>();
     if (number < at_least || number > at_most) fail(fmt::format("{} is not in {} … {}", number, at_least, at_most));
   }
@@ -368,7 +368,7 @@ void check_head(json& head, const Outline& outline, Report& report) {
   const std::string least = head["asset"].value("minVersion", "2.0");
   const bool is_number = version.size() > 2 && version.find_first_not_of("0123456789", 2) == std::string::npos;
   if (!version.starts_with("2.") || !is_number || least != "2.0")
-    report.fail("asset.version", fmt::format("is glTF {} (at least {}), only 2.0 can be read", version, least),
+    report.fail("asset.version", fmt::format("is glTF {} (at least {}), but only 2.0 can be read", version, least),
                 "export the file as glTF 2.0");
 }
 

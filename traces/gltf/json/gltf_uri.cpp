@@ -66,14 +66,14 @@ std::vector<std::byte> decode_base64(std::string_view digits, std::string_view p
   for (int padding = 0; padding < 2 && digits.ends_with('='); ++padding) digits.remove_suffix(1);
   const bool padded = digits.size() != written;
   if (digits.size() % 4 == 1 || (padded && written % 4 != 0))
-    report.fail(path, fmt::format("{} base64 digits are no whole number of bytes", written));
+    report.fail(path, fmt::format("{} base64 digits do not make whole bytes", written));
   std::vector<std::byte> bytes;
   bytes.reserve(digits.size() / 4 * 3 + 2);
   std::uint32_t bits = 0;
   int bit_count = 0;
   for (const char digit : digits) {
     const int value = base64_value(digit);
-    if (value < 0) report.fail(path, fmt::format("has the character {} which base64 does not know", int{digit}));
+    if (value < 0) report.fail(path, fmt::format("has the character {}, which is not a base64 digit", int{digit}));
     bits = (bits << 6) | static_cast<std::uint32_t>(value);
     bit_count += 6;
     if (bit_count < 8) continue;

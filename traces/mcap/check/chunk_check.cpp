@@ -32,17 +32,18 @@ void MessageIndexCheck::report(const RecordPlace& place, std::string what) {
   problems_.add({.offset = place.offset,
                  .bytes = place.end() - place.offset,
                  .what = fmt::format("MessageIndex: {}", what),
-                 .consequence = "readers that go by it miss or misread messages; `vestige recover` writes a new one"});
+                 .consequence = "readers that use it miss or misread messages; `vestige recover` writes a new one"});
 }
 
 void MessageIndexCheck::take_index(const RecordPlace& place, const MessageIndex& index) {
-  if (subject_ == Subject::kNone) report(place, "follows no Chunk");
+  if (subject_ == Subject::kNone) report(place, "does not follow a Chunk");
   if (subject_ != Subject::kReadChunk) return;
   last_index_ = place;
   const auto channel = channels_.find(index.channel_id);
   if (channel == channels_.end()) {
     if (!index.entries.empty())
-      report(place, fmt::format("is of channel {}, of which the chunk before it has no message", index.channel_id));
+      report(place, fmt::format("is for channel {}, but the chunk before it has no message of that channel",
+                                index.channel_id));
     return;
   }
   channel->second.indexed = true;
@@ -56,16 +57,17 @@ void MessageIndexCheck::take_index(const RecordPlace& place, const MessageIndex&
   }
   const auto [wrong, right] = std::mismatch(claimed.begin(), claimed.end(), actual.begin(), same);
   if (wrong == claimed.end()) return;
-  report(place,
-         fmt::format("lists a message at time {} and offset {}, where the chunk before it has one at time {} and "
-                     "offset {}",
-                     wrong->log_time, wrong->offset, right->log_time, right->offset));
+  report(place, fmt::format("lists a message at time {} and offset {}, but the chunk before it has one at time {} and "
+                            "offset {}",
+                            wrong->log_time, wrong->offset, right->log_time, right->offset));
 }
 
 void MessageIndexCheck::end() {
   if (subject_ == Subject::kReadChunk && last_index_) {
     for (const auto& [id, entries] : channels_)
-      if (!entries.indexed) report(*last_index_, fmt::format("is there, but none for channel {}", id));
+      if (!entries.indexed)
+        report(*last_index_,
+               fmt::format("the chunk before it also has messages of channel {}, but no MessageIndex lists them", id));
   }
   subject_ = Subject::kNone;
   channels_.clear();

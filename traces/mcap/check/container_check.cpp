@@ -95,21 +95,20 @@ bool Check::is_behind_footer(const Damage& damage) const {
 
 std::string Check::consequence_of(const Damage& damage) const {
   if (damage.offset < kMagicBytes)
-    return "no reader opens the file; `vestige recover` writes one that they open, if it is a trace";
+    return "readers do not open the file; if it is a trace, `vestige recover` writes one that they open";
   if (damage.effect == DamageEffect::kAnotherFile)
-    return fmt::format("no reader sees it: `tail -c +{} FILE > SECOND.mcap` makes a file of it", damage.offset + 1);
+    return fmt::format("readers do not see it; `tail -c +{} FILE > SECOND.mcap` copies it to a file",
+                       damage.offset + 1);
   if (is_behind_footer(damage)) return "readers may refuse the file";
   if (damage.effect == DamageEffect::kMended)
-    return "it is read all the same, but other readers lose what follows; `vestige recover` mends it";
+    return "vestige reads it all the same, but other readers lose the data after it; `vestige recover` mends it";
   if (damage.bytes == 0)
     return "there is no index: the file is read by scanning it; readers that need an index refuse it; `vestige "
-           "recover` "
-           "writes one";
+           "recover` writes one";
   if (damage.offset + damage.bytes == source_.size())
-    return "whatever came from here on is missing, the index too; `vestige recover` keeps what still decodes and "
-           "writes "
-           "an index";
-  return "these bytes are skipped; `vestige recover` keeps what still decodes";
+    return "everything from here on is missing, also the index; `vestige recover` keeps the data that can be decoded "
+           "and writes an index";
+  return "these bytes are skipped; `vestige recover` keeps the data that can be decoded";
 }
 
 void Check::note_framing() {
@@ -133,12 +132,12 @@ ContainerFacts Check::run(const std::function<bool(double)>& progress) {
   while (walker_.next(place)) {
     note_framing();
     if (facts_.records++ == 0 && place.opcode != Opcode::kHeader)
-      report(place, "the first record is no Header", "nothing says who wrote the file and for what");
+      report(place, "the first record is not a Header", "the file does not say who wrote it, and for what purpose");
     const Bytes content = walker_.content(place, content_);
     if (place.opcode != Opcode::kMessageIndex) message_indexes_.end();
     if (least_content_bytes(place.opcode) && place.opcode != Opcode::kMessage && place.opcode != Opcode::kChunk &&
         !natural_content_bytes(place.opcode, content)) {
-      report(place, "its fields do not fit into it", "it is skipped");
+      report(place, "it is shorter than its fields", "it is skipped");
       data_.whole = false;
       message_indexes_.begin_unknown();
     } else {
@@ -169,10 +168,11 @@ void Check::take(const RecordPlace& place, Bytes content) {
   if (section_ == Section::kData && belongs_behind_data(place.opcode)) {
     section_ = Section::kSummary;
     summary_.begin_unknown();
-    problems_.add({.offset = data_end_,
-                   .bytes = place.offset - data_end_,
-                   .what = fmt::format("no DataEnd stands between the data section and the {}", name_of(place.opcode)),
-                   .consequence = "nothing vouches for the data section as a whole"});
+    problems_.add(
+        {.offset = data_end_,
+         .bytes = place.offset - data_end_,
+         .what = fmt::format("there is no DataEnd between the data section and the {}", name_of(place.opcode)),
+         .consequence = "no CRC covers the data section as a whole"});
   }
   if (place.opcode == Opcode::kDataEnd && section_ == Section::kData) {
     take_data_end(place, content);
@@ -231,8 +231,8 @@ void Check::take_data(const RecordPlace& place, Bytes content) {
       break;
     default:
       if (static_cast<std::uint8_t>(place.opcode) >= kFirstPrivateOpcode) break;
-      report(place, fmt::format("its opcode {:#04x} means nothing yet", static_cast<int>(place.opcode)),
-             "it is skipped; is it a record whose opcode was damaged?");
+      report(place, fmt::format("MCAP does not define its opcode {:#04x}", static_cast<int>(place.opcode)),
+             "it is skipped; its opcode may be damaged");
       data_.whole = false;
       message_indexes_.begin_unknown();
   }
@@ -256,7 +256,7 @@ void Check::take_chunk(const RecordPlace& place, Bytes content) {
     take_records_of_chunk(place, records, index);
     readable = true;
   } catch (const Malformed& malformed) {
-    report(place, malformed.what(), "none of its messages is read; `vestige recover` keeps those that still decode");
+    report(place, malformed.what(), "its messages are not read; `vestige recover` keeps those that can be decoded");
     ++facts_.damaged_chunks;
     data_.whole = false;
     message_indexes_.begin_unknown();
@@ -278,7 +278,7 @@ void Check::take_records_of_chunk(const RecordPlace& place, Bytes records, Chunk
       record.opcode = inner.opcode;
       record.content = inner.content;
     } catch (const Malformed& malformed) {
-      report(record, malformed.what(), "whatever follows it in its chunk is not read");
+      report(record, malformed.what(), "the rest of its chunk is not read");
       data_.whole = false;
       message_indexes_.begin_unknown();
       return;
@@ -294,7 +294,7 @@ void Check::take_records_of_chunk(const RecordPlace& place, Bytes records, Chunk
       if (belongs_in_chunks(record.opcode)) {
         take_content(record);
       } else if (least_content_bytes(record.opcode)) {
-        report(record, "stands inside a Chunk, where only schemas, channels and messages may", "it is skipped");
+        report(record, "is inside a Chunk, but a Chunk may hold only schemas, channels and messages", "it is skipped");
       }
     } catch (const Malformed& malformed) {
       report(record, malformed.what(), "it is skipped");
@@ -305,9 +305,9 @@ void Check::take_records_of_chunk(const RecordPlace& place, Bytes records, Chunk
   if (!times || !all_fit) return;
   if (facts.message_start_time == times->first && facts.message_end_time == times->second) return;
   report(place,
-         fmt::format("says that its messages are of {} to {} ns, but they are of {} to {} ns", facts.message_start_time,
-                     facts.message_end_time, times->first, times->second),
-         "readers that look for a time miss messages; `vestige recover` writes the right times");
+         fmt::format("says that its messages are from {} to {} ns, but they are from {} to {} ns",
+                     facts.message_start_time, facts.message_end_time, times->first, times->second),
+         "readers that search by time miss messages; `vestige recover` writes the right times");
 }
 
 void Check::take_content(const CheckedRecord& record) {
@@ -325,13 +325,13 @@ void Check::take_content(const CheckedRecord& record) {
 
 void Check::take_definition(const CheckedRecord& record, const Schema& schema) {
   if (schema.id == 0) {
-    report(record, "its id is 0, which stands for none", "it is skipped");
+    report(record, "its id is 0, which means no schema", "it is skipped");
     return;
   }
   const auto [known, is_new] = data_.schemas.try_emplace(schema.id, without_data(schema));
   if (!is_new && known->second != without_data(schema))
-    report(record, fmt::format("schema {} is not what it was before", schema.id),
-           "which of the two its messages have is unknown");
+    report(record, fmt::format("schema {} differs from its earlier definition", schema.id),
+           "it is unknown which of the two its messages have");
   data_.counted.schema_count = static_cast<std::uint16_t>(data_.schemas.size());
   visit_(record);
 }
@@ -340,11 +340,11 @@ void Check::take_definition(const CheckedRecord& record, const Channel& channel)
   if (channel.schema_id != 0 && !data_.schemas.contains(channel.schema_id))
     report(record,
            fmt::format("channel {} has schema {}, which is not defined before it", channel.id, channel.schema_id),
-           "nothing says what its messages are");
+           "the schema of its messages is unknown");
   const auto [known, is_new] = data_.channels.try_emplace(channel.id, channel);
   if (!is_new && known->second != channel)
-    report(record, fmt::format("channel {} is not what it was before", channel.id),
-           "which of the two its messages belong to is unknown");
+    report(record, fmt::format("channel {} differs from its earlier definition", channel.id),
+           "it is unknown which of the two its messages belong to");
   data_.counted.channel_count = static_cast<std::uint32_t>(data_.channels.size());
   visit_(record);
 }
@@ -359,7 +359,7 @@ void Check::take_message(const CheckedRecord& record) {
   ++counted.channel_message_counts[message.channel_id];
   if (!data_.channels.contains(message.channel_id))
     report(record, fmt::format("its channel {} is not defined before it", message.channel_id),
-           "what it means is unknown");
+           "its meaning is unknown");
   visit_(record);
 }
 
@@ -389,8 +389,9 @@ void Check::take_data_end(const RecordPlace& place, Bytes content) {
   problems_.add({.offset = 0,
                  .bytes = place.end(),
                  .what = fmt::format("data section: the CRC over its first {} bytes is wrong", place.offset),
-                 .consequence = "a byte there has changed; what no other CRC vouches for (header, schemas, channels, "
-                                "metadata, indexes) may be wrong"});
+                 .consequence =
+                     "a byte there has changed; the parts that no other CRC covers (header, schemas, channels, "
+                     "metadata, indexes) may be wrong"});
 }
 
 }  // namespace

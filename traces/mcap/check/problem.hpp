@@ -14,7 +14,7 @@ struct Problem {
   std::uint64_t bytes = 0;   ///< number of affected bytes from `offset` on
   std::optional<std::uint64_t> offset_in_chunk = {};  ///< of a record, from the start of its chunk's expanded records
   std::string what;                                   ///< "Chunk: its CRC is wrong"
-  std::string consequence;                            ///< "none of its messages is read"
+  std::string consequence;                            ///< "its messages are not read"
 };
 
 using ProblemList = Findings<Problem>;

@@ -14,7 +14,7 @@ namespace vestige::mcap {
 namespace {
 
 constexpr std::string_view kIndexConsequence =
-    "readers that go by the index miss or misread what it points to; `vestige recover` writes a new one";
+    "readers that use the index miss or misread the records that it points to; `vestige recover` writes a new one";
 
 template <typename Entry, typename OffsetOf>
 const Entry* find_at(const std::vector<Entry>& entries, std::uint64_t offset, OffsetOf offset_of) {
@@ -92,14 +92,14 @@ void SummaryCheck::take(const RecordPlace& place, Bytes content) {
       const Schema schema = decode_schema(content);
       const auto known = facts_.schemas.find(schema.id);
       if (known == facts_.schemas.end() ? facts_.whole : known->second != without_data(schema))
-        contradiction(place, fmt::format("schema {} is not what the data section says it is", schema.id));
+        contradiction(place, fmt::format("schema {} does not match the data section", schema.id));
       break;
     }
     case Opcode::kChannel: {
       const Channel channel = decode_channel(content);
       const auto known = facts_.channels.find(channel.id);
       if (known == facts_.channels.end() ? facts_.whole : known->second != channel)
-        contradiction(place, fmt::format("channel {} is not what the data section says it is", channel.id));
+        contradiction(place, fmt::format("channel {} does not match the data section", channel.id));
       break;
     }
     case Opcode::kChunkIndex:
@@ -124,7 +124,7 @@ void SummaryCheck::take(const RecordPlace& place, Bytes content) {
     case Opcode::kMetadata:
     case Opcode::kHeader:
     case Opcode::kDataEnd:
-      contradiction(place, "stands after the data section's end");
+      contradiction(place, "is after the end of the data section");
       break;
     case Opcode::kFooter:
       break;
@@ -135,7 +135,7 @@ void SummaryCheck::take(const RecordPlace& place, const ChunkIndex& index) {
   listed_chunks_.push_back(index.chunk_start_offset);
   const DataFacts::ChunkFacts* chunk = find_at(facts_.chunks, index.chunk_start_offset, offset_of);
   if (chunk == nullptr) {
-    contradiction(place, fmt::format("points to byte {}, where no Chunk begins", index.chunk_start_offset));
+    contradiction(place, fmt::format("points to byte {}, but no Chunk begins there", index.chunk_start_offset));
     return;
   }
   compare(place, "chunk_length", index.chunk_length, chunk->index.chunk_length);
@@ -155,7 +155,7 @@ void SummaryCheck::take(const RecordPlace& place, const AttachmentIndex& index) 
   const auto* attachment =
       find_at(facts_.attachments, index.offset, [](const AttachmentIndex& entry) { return entry.offset; });
   if (attachment == nullptr) {
-    contradiction(place, fmt::format("points to byte {}, where no Attachment begins", index.offset));
+    contradiction(place, fmt::format("points to byte {}, but no Attachment begins there", index.offset));
     return;
   }
   compare(place, "length", index.length, attachment->length);
@@ -171,7 +171,7 @@ void SummaryCheck::take(const RecordPlace& place, const MetadataIndex& index) {
   const auto* metadata =
       find_at(facts_.metadata, index.offset, [](const MetadataIndex& entry) { return entry.offset; });
   if (metadata == nullptr) {
-    contradiction(place, fmt::format("points to byte {}, where no Metadata begins", index.offset));
+    contradiction(place, fmt::format("points to byte {}, but no Metadata begins there", index.offset));
     return;
   }
   compare(place, "length", index.length, metadata->length);
@@ -201,7 +201,7 @@ void SummaryCheck::take(const RecordPlace& place, const SummaryOffset& offset) {
   const bool is_there =
       group != nullptr && group->opcode == offset.group_opcode && group->end - group->start == offset.group_length;
   if (!is_there && begin_known_)
-    contradiction(place, fmt::format("says that records of kind {} fill {} bytes from byte {}, which they do not",
+    contradiction(place, fmt::format("says that records of kind {} fill {} bytes from byte {}, but they do not",
                                      name_of(offset.group_opcode), offset.group_length, offset.group_start));
 }
 
