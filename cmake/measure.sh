@@ -30,7 +30,7 @@ name=$(printf %s "${renderer:-no OpenGL}" | tr '[:upper:]' '[:lower:]' | tr -cs 
 out=${out:-results-$(date -u +%Y-%m-%d)-$name}
 out=${out%/}
 for existing in "$out" "$out.tar.gz"; do
-  [ ! -e "$existing" ] || { echo "measure: error: $existing exists already: move it, or name another folder" >&2; exit 1; }
+  [ ! -e "$existing" ] || { echo "measure: error: $existing already exists: move it, or name another folder" >&2; exit 1; }
 done
 mkdir -p "$out/log" || exit 1
 

@@ -282,7 +282,7 @@ TEST_F(CommandLine, WhatItSaysStaysOutOfItsFilesWhereStandardStreamsAreClosed) {
 
 TEST_F(CommandLine, NeverOverwritesWithoutForce) {
   record_small();
-  expect_failure("vestige record -o small.mcap", 1, {"small.mcap", "exists already", "--force"});
+  expect_failure("vestige record -o small.mcap", 1, {"small.mcap", "already exists", "--force"});
   ASSERT_EQ(run("echo precious > c.csv").exit_code, 0);
   expect_failure("vestige replay small.mcap --contacts c.csv --timeline a.csv", 1, {"c.csv", "--force"}, "a.csv");
   EXPECT_EQ(read_text_file(folder_ / "c.csv"), "precious\n");

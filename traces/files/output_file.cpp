@@ -94,7 +94,7 @@ void refuse_overwrite(const std::filesystem::path& path, Overwrite overwrite) {
   }
   if (std::filesystem::is_directory(status)) throw Error(path.string(), "is a folder", "name a file");
   if (overwrite == Overwrite::kRefuse && std::filesystem::is_regular_file(status))
-    throw Error(path.string(), "exists already", "choose another name, or add --force to overwrite it");
+    throw Error(path.string(), "already exists", "choose another name, or add --force to overwrite it");
 }
 
 void refuse_terminal(std::string_view flag) {

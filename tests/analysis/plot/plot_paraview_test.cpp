@@ -131,7 +131,7 @@ TEST_F(ParaviewTest, LeavesWhatIsThereAloneUnlessForced) {
   test::write_text(folder_ / "man" / "notes.txt", "mine");
   const test::Outcome refused = run("paraview man.mcap --every 5");
   EXPECT_EQ(refused.exit_code, 1);
-  EXPECT_THAT(refused.standard_error, AllOf(HasSubstr("man: exists already"), HasSubstr("--force")));
+  EXPECT_THAT(refused.standard_error, AllOf(HasSubstr("man: already exists"), HasSubstr("--force")));
   EXPECT_EQ(read_text_file(folder_ / "man.pvd"), before);
   ASSERT_EQ(run("paraview man.mcap --every 5 --force").exit_code, 0);
   const std::size_t files = 1 + read_pvd(folder_ / "man.pvd").size();

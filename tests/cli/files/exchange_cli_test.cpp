@@ -105,7 +105,7 @@ TEST_F(Exchange, CsvLeavesNoMapOfTheExportBefore) {
   ASSERT_EQ(run("vestige record --map none --duration 0.05 -o no_map.mcap && vestige export a.mcap -o there").exit_code,
             0);
   ASSERT_TRUE(exists("there/actuator_map.png"));
-  expect_failure("vestige export no_map.mcap -o there", 1, {"exists already"});
+  expect_failure("vestige export no_map.mcap -o there", 1, {"already exists"});
   EXPECT_TRUE(exists("there/actuator_map.json"));
   const auto report = json_of("vestige export no_map.mcap -o there --force --json -");
   EXPECT_THAT(report["outputs"], ElementsAre("there/poses.csv", "there/colliders.csv", "there/avatar.glb"));
@@ -359,7 +359,7 @@ TEST_F(Exchange, FlagsThatWouldDoNothingAreRefused) {
   expect_failure("vestige export a.mcap -o a.glb --what poses", 2, {"--what"}, "a.glb");
   expect_failure("vestige export a.mcap -o a.xyz", 2, {"a.xyz", ".ndjson"}, "a.xyz");
   EXPECT_EQ(run("vestige export a.mcap -o there").exit_code, 0);
-  expect_failure("vestige export a.mcap -o there", 1, {"exists already"});
+  expect_failure("vestige export a.mcap -o there", 1, {"already exists"});
   EXPECT_EQ(run("vestige export a.mcap -o there --force").exit_code, 0);
 }
 

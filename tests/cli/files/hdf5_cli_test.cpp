@@ -187,7 +187,7 @@ TEST_F(Hdf5Exchange, NoChangedByteOfAFileCrashesOrChangesAFrame) {
   const std::size_t step = test::is_long() ? 31 : 311;
   int refused = 0;
   for (std::size_t at = 0; at < bytes.size(); at += step) {
-    // Most of the file, for whose bytes its SHA-256 vouches.
+    // Most of the file, which its SHA-256 verifies.
     if (at > avatar + 200 && at + 200 < avatar + builtin_avatar_glb().size()) continue;
     std::string changed = bytes;
     changed[at] = static_cast<char>(~changed[at]);

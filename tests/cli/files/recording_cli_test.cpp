@@ -98,7 +98,7 @@ TEST_F(Recording, InPartsMergesToWhatOneFileWouldHaveBeen) {
   EXPECT_EQ(hash_of("merged2.mcap"), hash_of("whole.mcap"));
 
   // Parts of another recording would be merged with these.
-  expect_failure(scene + "-o part.mcap --split 1", 1, {"part-0001.mcap", "exists already", "--force"});
+  expect_failure(scene + "-o part.mcap --split 1", 1, {"part-0001.mcap", "already exists", "--force"});
   EXPECT_EQ(run(scene + "-o part.mcap --split 1 --force").exit_code, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "part-0003.mcap"));
 }

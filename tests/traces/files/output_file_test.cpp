@@ -44,7 +44,7 @@ TEST(OutputFile, RefusesToOverwriteAndSaysHowTo) {
     const OutputFile unwanted(folder / "a.csv", Overwrite::kRefuse);
     FAIL() << "overwrote";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("exists already"));
+    EXPECT_THAT(error.what(), HasSubstr("already exists"));
     EXPECT_THAT(error.what(), HasSubstr("--force"));
   }
   OutputFile allowed(folder / "a.csv", Overwrite::kAllow);

@@ -308,9 +308,9 @@ TEST(TraceCheck, NamesOfTopicsThatWereDroppedMayBeAnything) {
   test::ForgedTrace trace;
   trace.frame(0, 0);
   const std::string name(1 << 20, 'x');
-  for (std::uint32_t i = 0; i < 100; ++i) trace.dropped(0, 1, name);
+  for (std::uint32_t i = 0; i < 20; ++i) trace.dropped(0, 1, name);
   const TraceCheck result = check(trace.finished());
-  EXPECT_EQ(result.dropped, 100U);
+  EXPECT_EQ(result.dropped, 20U);
   EXPECT_LT(result.problems.kept().front().what.size(), 1000U);
 }
 

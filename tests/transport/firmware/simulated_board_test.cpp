@@ -204,7 +204,7 @@ TEST(SimulatedBoardErrorsTest, EndsAfterItsDuration) {
   EXPECT_THAT(read_text_file(folder / "d.csv"), ::testing::EndsWith("actuator_6\n0,0,0,0,0,0,0\n"));
   const Outcome again = run("simulated_board --duration 9 --duties d.csv '" + firmware() + "'", folder.path());
   EXPECT_EQ(again.exit_code, 1);
-  EXPECT_THAT(again.standard_error, HasSubstr("exists already"));
+  EXPECT_THAT(again.standard_error, HasSubstr("already exists"));
 }
 
 TEST(SimulatedLineTest, TakesTheTimeOfARealOne) {
