@@ -136,7 +136,7 @@ BatchPlan plan_of(const BatchOptions& options) {
   plan.recording.count = options.count;
   if (plan.has_scenario())
     refuse_too_many_frames(plan.recording.rate_hz * plan.recording.duration_s, "--duration",
-                           "record less, or at a lower --rate");
+                           "use a shorter --duration, or a lower --rate");
   return plan;
 }
 

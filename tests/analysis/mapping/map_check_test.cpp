@@ -74,7 +74,7 @@ TEST(MapChecks, FindActuatorsThatCanNeverFire) {
   EXPECT_FALSE(check(square(), painted(128, 2, [](auto x, auto) { return x < 103 ? 1 : 2; })).good());
   const MapCheck missing = check(square(), painted(128, 2, [](auto, auto) { return 1; }));
   ASSERT_THAT(missing.findings, SizeIs(1));
-  EXPECT_THAT(missing.findings[0].cause, HasSubstr("none of its grey"));
+  EXPECT_THAT(missing.findings[0].cause, HasSubstr("no texel of its grey"));
   EXPECT_THAT(check(square(), painted(128, 0, [](auto, auto) { return 0; })).findings[0].cause, HasSubstr("black"));
 }
 

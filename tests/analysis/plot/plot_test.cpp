@@ -196,7 +196,7 @@ TEST_F(PlotTest, ATimelineNamesItsActuatorsAsTheMapDoes) {
   write_text(folder_ / "one.csv", "time_s,actuator_1\n0,255\n");
   const Outcome other = run("timeline one.csv --map builtin");
   EXPECT_EQ(other.exit_code, 1);
-  EXPECT_THAT(other.standard_error, HasSubstr("builtin: has 6 actuators, and one.csv has 1"));
+  EXPECT_THAT(other.standard_error, HasSubstr("builtin: has 6 actuators, but one.csv has 1"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "one.svg"));
 }
 

@@ -397,7 +397,7 @@ TEST_F(StreamCommand, VestCheckSaysThatItWasStoppedAndWhatTheBoardDoesNotDrive) 
   EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_output, HasSubstr("; stopped at actuator "));
   EXPECT_THAT(outcome.standard_output, ::testing::Not(HasSubstr("hears everything")));
-  EXPECT_THAT(outcome.standard_error, HasSubstr("the board drives 6 actuators"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("the first 6 of 12 actuators"));
 }
 
 TEST_F(StreamCommand, VestCheckOfAVestThatIsUnpluggedFails) {
