@@ -1,9 +1,13 @@
 #include "analysis/scoring/law_score.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <stdexcept>
+#include <string_view>
 
 #include "analysis/base/statistics.hpp"
 #include "analysis/scoring/balance.hpp"
@@ -31,6 +35,25 @@ double crossing_s(const Motor& motor, double amplitude, double settled, double t
 
 double ratio(double part, double whole) {
   return whole > 0 ? part / whole : kMissing;
+}
+
+struct NamedScore {
+  std::string_view metric;
+  double value;
+};
+
+/// Throws `std::logic_error` unless each metric has exactly one score.
+Scores in_order_of_metrics(std::span<const NamedScore> named) {
+  if (named.size() != metrics().size())
+    throw std::logic_error(fmt::format("there are {} scores for {} metrics", named.size(), metrics().size()));
+  Scores scores;
+  scores.reserve(named.size());
+  for (const Metric& metric : metrics()) {
+    const auto found = std::ranges::find(named, std::string_view(metric.name), &NamedScore::metric);
+    if (found == named.end()) throw std::logic_error(fmt::format("the metric '{}' has no score", metric.name));
+    scores.push_back(found->value);
+  }
+  return scores;
 }
 
 }  // namespace
@@ -199,33 +222,34 @@ Scores LawScore::scores(double duration_s, std::size_t frames) {
     most_area_m2 = std::max(most_area_m2, layout_.area_m2(i));
   }
   const double bits = observer_.bits(layout_);
-  return {
-      ratio(fired, static_cast<double>(contacts_)),
-      layout_.mapped_area_m2(),
-      ratio(layout_.mapped_area_m2(), layout_.skin_area_m2()),
-      ratio(most_area_m2, least_area_m2),
-      std::sqrt(ratio(squared_error_m2_, fired)) * kMillimetres,
-      std::sqrt(ratio(squared_acuities_, fired)),
-      std::sqrt(ratio(squared_energy_error_m2_, fired)) * kMillimetres,
-      slide_score_.ripple(),
-      slide_score_.largest_jump_m() * kMillimetres,
-      slide_score_.reversals_per_m(),
-      timing_.f1(),
-      timing_.mean_onset_s() * kMilliseconds,
-      timing_.mean_offset_s() * kMilliseconds,
-      timing_.late_share(0),
-      timing_.late_share(1),
-      timing_.late_share(2),
-      bits,
-      portable_exp(bits * 0x1.62e42fefa39efp-1),
-      use_evenness(use_),
-      ratio(use, actuators * static_cast<double>(frames)),
-      ratio(peak_, actuators),
-      ratio(static_cast<double>(switches_), actuators * duration_s),
-      layout_.ambiguous_share(),
-      ratio(static_cast<double>(link_.superseded()), static_cast<double>(link_.changes())),
-      ratio(link_.bytes_sent(), choice_.line_bytes_per_s * duration_s),
+  const NamedScore named[] = {
+      {"coverage", ratio(fired, static_cast<double>(contacts_))},
+      {"mapped_area_m2", layout_.mapped_area_m2()},
+      {"mapped_share", ratio(layout_.mapped_area_m2(), layout_.skin_area_m2())},
+      {"area_ratio", ratio(most_area_m2, least_area_m2)},
+      {"localisation_error_mm", std::sqrt(ratio(squared_error_m2_, fired)) * kMillimetres},
+      {"localisation_error_acuities", std::sqrt(ratio(squared_acuities_, fired))},
+      {"energy_localisation_error_mm", std::sqrt(ratio(squared_energy_error_m2_, fired)) * kMillimetres},
+      {"slide_ripple", slide_score_.ripple()},
+      {"slide_jump_mm", slide_score_.largest_jump_m() * kMillimetres},
+      {"slide_reversals_per_m", slide_score_.reversals_per_m()},
+      {"timing_f1", timing_.f1()},
+      {"onset_error_ms", timing_.mean_onset_s() * kMilliseconds},
+      {"offset_error_ms", timing_.mean_offset_s() * kMilliseconds},
+      {"onset_over_15ms", timing_.late_share(0)},
+      {"onset_over_45ms", timing_.late_share(1)},
+      {"onset_over_50ms", timing_.late_share(2)},
+      {"information_bits", bits},
+      {"information_categories", portable_exp(bits * 0x1.62e42fefa39efp-1)},
+      {"use_evenness", use_evenness(use_)},
+      {"mean_duty", ratio(use, actuators * static_cast<double>(frames))},
+      {"peak_duty", ratio(peak_, actuators)},
+      {"switches_hz", ratio(static_cast<double>(switches_), actuators * duration_s)},
+      {"ambiguous_share", layout_.ambiguous_share()},
+      {"superseded", ratio(static_cast<double>(link_.superseded()), static_cast<double>(link_.changes()))},
+      {"line_load", ratio(link_.bytes_sent(), choice_.line_bytes_per_s * duration_s)},
   };
+  return in_order_of_metrics(named);
 }
 
 }  // namespace vestige

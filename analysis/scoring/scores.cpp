@@ -14,7 +14,7 @@ namespace vestige {
 
 namespace {
 
-/// In the order of `LawScore::scores`.
+/// In the order of listing. `LawScore::scores` names each of them.
 constexpr Metric kMetrics[] = {
     {"coverage", "", Better::kHigher, false, "contacts that fire anything / contacts", "Vestige"},
     {"mapped_area_m2", "m²", Better::kNeither, false, "area of the skin that fires anything, body at rest", "Vestige"},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "cli/help/validators.hpp"
 #include "detector/actuators/mapped_skin.hpp"
@@ -107,7 +108,8 @@ std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, const std:
   if (name == "embree_default") return make_embree_detector(EmbreeMode::kDefault, avatar, map, options);
   if (name == "geometry")
     return make_geometry_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
-  if (name != "paper") return make_cpu_detector(avatar, map, options);
+  if (name == "cpu" || name == "auto") return make_cpu_detector(avatar, map, options);
+  if (name != "paper") throw std::logic_error(fmt::format("nothing here makes the detector '{}'", name));
   if (options.method != Method::kStatic)
     throw UsageError("--method", fmt::format("the published method does not support '{}'", choice.method),
                      "choose --detector geometry or cpu, or --method static");

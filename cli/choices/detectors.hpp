@@ -56,7 +56,7 @@ const std::vector<std::string>& detector_names();
 bool is_detector(const std::string& name);
 
 /// Makes a detector: "cpu" (also "auto"), "exact", "geometry", "embree", "embree_default" or "paper". `context` is
-/// "auto", "egl" or "osmesa".
+/// "auto", "egl" or "osmesa". Throws `std::logic_error` for any other name of a detector.
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes);

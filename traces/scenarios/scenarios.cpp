@@ -1,14 +1,12 @@
 #include "traces/scenarios/scenarios.hpp"
 
-#include <array>
-
 #include "traces/scenarios/makers.hpp"
 #include "traces/scene/colliders.hpp"
 
 namespace vestige {
 
 std::span<const Scenario> scenarios() {
-  static constexpr std::array<Scenario, 7> kScenarios = {{
+  static constexpr Scenario kScenarios[] = {
       {"swarm", "points that pierce the body from all sides while it moves", 100, make_swarm},
       {"rain", "drops that fall through the body from above", 100, make_rain},
       {"orbit", "points on level circles around the body, through its skin", 100, make_orbit},
@@ -16,7 +14,7 @@ std::span<const Scenario> scenarios() {
       {"slide", "one object that slides over the chest, dipping 4 mm into it", 1, make_slide},
       {"hug", "points that wander in and out, always within 2 cm of the skin", 100, make_hug},
       {"still", "points at rest that the moving body runs into", 100, make_still},
-  }};
+  };
   return kScenarios;
 }
 

@@ -9,6 +9,7 @@
 #include "detector/detectors/make_detectors.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
+#include "tests/support/scenario_names.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/simd_targets.hpp"
 #include "tests/support/small_avatar.hpp"
@@ -60,15 +61,8 @@ TEST_P(SkippingOnTheCpu, ChangesNoBitWithAvatarsFromElsewhere) {
   }
 }
 
-std::vector<std::string_view> scenario_names() {
-  std::vector<std::string_view> names;
-  names.reserve(scenarios().size());
-  for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
-  return names;
-}
-
 INSTANTIATE_TEST_SUITE_P(Each, SkippingOnTheCpu,
-                         ::testing::Combine(::testing::ValuesIn(scenario_names()),
+                         ::testing::Combine(::testing::ValuesIn(test::scenario_names()),
                                             ::testing::Values(Method::kStatic, Method::kCarried, Method::kCcd)),
                          [](const auto& test) {
                            return std::string(std::get<0>(test.param)) + "_" + name_of(std::get<1>(test.param));
