@@ -45,7 +45,11 @@ void add_common_options(CLI::App& verb, CommonOptions& options) {
   common(verb.add_flag("-q,--quiet", options.quiet, "Print errors only"));
   common(verb.add_flag("-v,--verbose", options.verbose, "Print more"));
   common(verb.add_flag("--force", options.force, "Overwrite existing files"));
-  common(verb.add_option("--seed", options.seed, "Seed of the random numbers"))->capture_default_str()->check(kSeed);
+  common(verb.add_option("--seed", options.seed,
+                         "Seed of the random numbers that record, sweep, growth, stress, accuracy and batch use; other "
+                         "verbs use none"))
+      ->capture_default_str()
+      ->check(kSeed);
   common(verb.set_help_flag("-h,--help", "Print this help"));
 }
 

@@ -20,7 +20,7 @@ struct Invocation {
   int exit_code = kDone;
 };
 
-/// The flags that every verb has.
+/// The flags of almost every verb.
 struct CommonOptions {
   std::string json;
   bool quiet = false;

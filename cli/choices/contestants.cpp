@@ -12,6 +12,9 @@ namespace vestige::cli {
 
 namespace {
 
+/// exact is too slow to measure.
+const std::vector<std::string> kContestants = {"paper", "geometry", "cpu", "embree", "embree_default"};
+
 bool needs_opengl(const std::string& detector) {
   return detector == "paper" || detector == "geometry";
 }
@@ -23,7 +26,7 @@ bool is_embree(const std::string& detector) {
 }  // namespace
 
 void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
-  verb.add_option("--detector", choice.detectors, "Detectors to measure: paper, geometry, cpu, embree, embree_default")
+  verb.add_option("--detector", choice.detectors, describe_detectors("measure", kContestants))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
@@ -35,7 +38,7 @@ void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
 }
 
 void check_contestant_choice(const ContestantChoice& choice) {
-  parse_names(choice.detectors, {"paper", "geometry", "cpu", "embree", "embree_default"}, "--detector");
+  parse_names(choice.detectors, kContestants, "--detector");
   if (parse_names(choice.contexts, {"egl", "osmesa", "auto"}, "--context").size() > 1 &&
       choice.contexts.find("auto") != std::string::npos)
     throw UsageError("--context", "'auto' already means egl or osmesa", "name egl and osmesa, or auto alone");

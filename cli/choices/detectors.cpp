@@ -16,8 +16,8 @@ namespace vestige::cli {
 namespace {
 
 constexpr const char* kSkipHelp =
-    "on: do not skin or test what bounds prove to miss (the result is the same); off: test every segment against "
-    "every triangle";
+    "on: cpu and geometry do not skin or test what bounds prove to miss (the result is the same); off: they skin the "
+    "whole avatar and consider every pair of segment and triangle";
 
 void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   const auto add = [&](const char* name, auto& value, const char* description) {
@@ -27,12 +27,7 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
       "EGL device, by its number in 'vestige devices' [default: the first GPU, otherwise software]")
       ->check(help::whole_number(0, 1023))
       ->type_name("K");
-  add("--method", choice.method,
-      "static: test each segment against the triangle as it is in this frame, as the paper does; carried: first move "
-      "the segment's start along with the triangle; ccd: segment and triangle both move, and the first time at which "
-      "they meet counts")
-      ->capture_default_str()
-      ->check(CLI::IsMember(kMethodNames));
+  add("--method", choice.method, kMethodHelp)->capture_default_str()->check(CLI::IsMember(kMethodNames));
   add("--surface", choice.surface,
       "all: skin without an actuator hides the skin behind it; mapped: colliders pass through skin without an actuator")
       ->capture_default_str()
@@ -51,7 +46,7 @@ void add_detector_and_context(CLI::App& verb, DetectorChoice& choice) {
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "paper", "geometry", "cpu", "exact", "embree", "embree_default"}));
-  verb.add_option("--context", choice.context, "OpenGL context that paper and geometry run in")
+  verb.add_option("--context", choice.context, kContextHelp)
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
@@ -89,6 +84,14 @@ const std::vector<std::string>& detector_names() {
 
 bool is_detector(const std::string& name) {
   return std::ranges::find(detector_names(), name) != detector_names().end();
+}
+
+std::string describe_detectors(const char* verb, const std::vector<std::string>& names) {
+  return fmt::format("Detectors to {}: {}; 'vestige replay --help' explains each", verb, fmt::join(names, ", "));
+}
+
+std::string describe_methods(const char* verb) {
+  return fmt::format("Methods to {}, with each detector that knows them. {}", verb, kMethodHelp);
 }
 
 ContextKind context_kind(const std::string& context) {

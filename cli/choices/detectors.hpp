@@ -13,6 +13,15 @@ namespace vestige::cli {
 /// The values of --method.
 inline const std::vector<std::string> kMethodNames = {"static", "carried", "ccd"};
 
+/// What each method does, for the help of --method.
+inline constexpr const char* kMethodHelp =
+    "static: test each segment against the triangle as it is in this frame, as the paper does; carried: first move the "
+    "segment's start along with the triangle; ccd: segment and triangle both move, and the first time at which they "
+    "meet counts";
+
+/// The help of --context, for a verb that runs in one context.
+inline constexpr const char* kContextHelp = "OpenGL context that paper and geometry run in";
+
 /// Returns the method of this name; it must be one of `kMethodNames`.
 Method method_named(const std::string& name);
 
@@ -54,6 +63,12 @@ ContextKind context_kind(const std::string& context);
 /// The names that `make_detector` knows, except "auto".
 const std::vector<std::string>& detector_names();
 bool is_detector(const std::string& name);
+
+/// Returns the help of a list of detectors. `verb` is what is done to them: "measure".
+std::string describe_detectors(const char* verb, const std::vector<std::string>& names);
+
+/// Returns the help of a list of methods. `verb` is what is done with them: "measure".
+std::string describe_methods(const char* verb);
 
 /// Makes a detector: "cpu" (also "auto"), "exact", "geometry", "embree", "embree_default" or "paper". `context` is
 /// "auto", "egl" or "osmesa". Throws `std::logic_error` for any other name of a detector.

@@ -16,30 +16,33 @@ constexpr const char* kLawDescription =
     "  phantom  the actuators around the contact share its strength, so that it is felt between them\n"
     "  gaussian all actuators near the contact, by their distance along the skin";
 
+// `vestige plot paraview` explains --hold in the same words.
+constexpr const char* kHoldHelp =
+    "How long a contact is felt, in ms: a coin motor cannot answer a single frame; 0 gives the raw frames";
+
 }  // namespace
 
-void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_description) {
+void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_remark) {
   const std::vector<std::string> names(std::begin(kLawNames), std::end(kLawNames));
   verb.add_option("--law", flags.law, kLawDescription)
       ->group(group)
       ->capture_default_str()
       ->check(CLI::IsMember(names))
       ->type_name("LAW");
-  add_law_parameters(verb, flags, group, hold_description);
+  add_law_parameters(verb, flags, group, hold_remark);
 }
 
-void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group,
-                        const std::string& hold_description) {
+void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_remark) {
   verb.add_option(
           "--full-speed", flags.full_speed_m_per_s,
-          "With --law speed: the speed along the skin's normal that drives an actuator fully, in metres per second "
+          "With the law speed: the speed along the skin's normal that drives an actuator fully, in metres per second "
           "[default: 1]")
       ->group(group)
       ->check(help::kPositive)
       ->type_name("SPEED");
   verb.add_option(
           "--sigma", flags.sigma_mm,
-          "With --law gaussian: the width (standard deviation) of a contact, in mm along the skin [default: half "
+          "With the law gaussian: the width (standard deviation) of a contact, in mm along the skin [default: half "
           "the median distance between neighbouring actuators]")
       ->group(group)
       ->check(help::kPositive)
@@ -48,7 +51,7 @@ void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& grou
                   "A description of the motors in JSON: the duty for each amplitude, and a kick that starts them")
       ->group(group)
       ->type_name("FILE.json");
-  verb.add_option("--hold", flags.hold_ms, hold_description)
+  verb.add_option("--hold", flags.hold_ms, kHoldHelp + hold_remark)
       ->group(group)
       ->capture_default_str()
       ->check(help::kNotNegative)

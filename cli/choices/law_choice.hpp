@@ -7,9 +7,9 @@
 
 namespace vestige::cli {
 
-/// Adds --full-speed, --sigma, --actuator and --hold to a help group.
-void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_description);
+/// Adds --full-speed, --sigma, --actuator and --hold to a help group. `hold_remark` follows the help of --hold.
+void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_remark = "");
 /// Adds --law and the flags of `add_law_parameters`.
-void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_description);
+void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_remark = "");
 
 }  // namespace vestige::cli

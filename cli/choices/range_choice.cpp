@@ -25,12 +25,13 @@ void add_range_options(CLI::App& command, RangeChoice& choice, const std::string
                        const std::string& from_remark) {
   command
       .add_option("--from", choice.from_s,
-                  fmt::format("{} messages at this time or later, in seconds of the trace.{} [default: its start]",
-                              verb, from_remark))
+                  fmt::format("{} messages at this time and later, in seconds of the trace{} [default: its start]",
+                              verb, from_remark.empty() ? "" : ". " + from_remark))
       ->type_name("S");
   command
-      .add_option("--to", choice.to_s,
-                  fmt::format("{} messages before this time, in seconds of the trace [default: its end]", verb))
+      .add_option(
+          "--to", choice.to_s,
+          fmt::format("{} messages before this time, not at it, in seconds of the trace [default: its end]", verb))
       ->type_name("S");
 }
 

@@ -14,7 +14,8 @@ struct RangeChoice {
   std::optional<double> to_s;
 };
 
-/// Adds --from and --to. `from_remark` explains what --from does beyond the obvious. `verb` is "Keep" or "Print".
+/// Adds --from and --to. `from_remark` is more sentences about --from, without a last full stop. `verb` is "Keep" or
+/// "Print".
 void add_range_options(CLI::App& command, RangeChoice& choice, const std::string& verb,
                        const std::string& from_remark = "");
 

@@ -34,14 +34,6 @@ std::string describe_colliders() {
   return text + "\nor a file of rows time_s,id,x,y,z, or the animated nodes of a glTF file";
 }
 
-std::string describe_count() {
-  std::string text = fmt::format("Number of colliders of a scenario [default: {}", scenarios().front().default_count);
-  for (const Scenario& scenario : scenarios())
-    if (scenario.default_count != scenarios().front().default_count)
-      fmt::format_to(std::back_inserter(text), "; {}: {}", scenario.name, scenario.default_count);
-  return text + "]";
-}
-
 /// Samples of a file that the scene does not reach are said, and when it reaches none it is refused.
 void check_span(const TimeSpan& span, const SceneChoice& choice, double duration_s, Verbosity verbosity) {
   const std::string times = fmt::format("the samples last from {} s to {} s, and the scene from 0 s to {} s",
@@ -56,6 +48,14 @@ void check_span(const TimeSpan& span, const SceneChoice& choice, double duration
 
 }  // namespace
 
+std::string describe_count() {
+  std::string text = fmt::format("Number of colliders of a scenario [default: {}", scenarios().front().default_count);
+  for (const Scenario& scenario : scenarios())
+    if (scenario.default_count != scenarios().front().default_count)
+      fmt::format_to(std::back_inserter(text), "; {}: {}", scenario.name, scenario.default_count);
+  return text + "]";
+}
+
 std::uint32_t SceneChoice::collider_count() const {
   return count.value_or(find_scenario(colliders)->default_count);
 }
@@ -64,9 +64,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
   verb.add_option("--avatar", choice.avatar, "The avatar: the built-in one, or a glTF file (.glb, .gltf, .vrm)")
       ->capture_default_str()
       ->type_name("builtin|FILE");
-  verb.add_option("--animation", choice.animation,
-                  "The avatar's animation, which loops: a name, an index, none, or motion capture, whose joints are "
-                  "matched to the avatar's by their names ('vestige import' reports more) [default: the first]")
+  verb.add_option("--animation", choice.animation, std::string(kAnimationHelp) + " [default: the first]")
       ->type_name("NAME|INDEX|none|FILE.bvh");
   add_unit_option(verb, choice.unit);
   verb.add_option("--map", choice.map,

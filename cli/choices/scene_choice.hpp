@@ -29,6 +29,14 @@ struct SceneChoice {
   std::uint32_t collider_count() const;
 };
 
+/// The help of --animation, without its default.
+inline constexpr const char* kAnimationHelp =
+    "The avatar's animation, which loops: a name, an index, none, or motion capture, whose joints are matched to the "
+    "avatar's by their names ('vestige import' reports more)";
+
+/// Returns the help of --count, for the number of colliders of a scenario.
+std::string describe_count();
+
 /// Adds --avatar, --animation, --unit, --map, --colliders, --nodes and --count.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 

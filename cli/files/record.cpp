@@ -200,10 +200,9 @@ void add_record(CLI::App& program, Invocation& invocation) {
       ->type_name("HZ")
       ->capture_default_str()
       ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
-  verb->add_option(
-          "--duration", options->recording.duration_s,
-          "How long to record, in seconds. Without this flag, a live recording lasts until the end of its input or "
-          "Ctrl-C. With datagrams, the time counts from the first one")
+  verb->add_option("--duration", options->recording.duration_s,
+                   "How long the scene lasts, in seconds. Without this flag, a live recording lasts until the end of "
+                   "its input or Ctrl-C. With datagrams, the time counts from the first one")
       ->type_name("S")
       ->capture_default_str()
       ->check(help::kPositive);

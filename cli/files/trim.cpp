@@ -32,8 +32,7 @@ void add_trim(CLI::App& program, Invocation& invocation) {
   verb->add_option("FILE", options->file, "The trace, or any MCAP file, or '-' for standard input")->required();
   add_range_options(
       *verb, options->range, "Keep",
-      " The first kept frame has no contacts, because no frame comes before it. Frames keep their numbers "
-      "and times.");
+      "The first kept frame has no contacts, because no frame comes before it. Frames keep their numbers and times");
   verb->add_option("-o,--output", options->output, "The file to write, or '-' for standard output")
       ->required()
       ->type_name("OUT.mcap|-");

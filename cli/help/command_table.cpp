@@ -18,9 +18,11 @@ std::vector<std::string> split(const std::string& text, char separator) {
   return parts;
 }
 
-/// CLI11 writes "TEXT:{a,b}", "UINT:INT in [1 - 10]" or "FLOAT:above 0": a type, and what a validator says of it.
+/// CLI11 writes "TEXT:{a,b}", "UINT:INT in [1 - 10]" or "FLOAT:above 0": a type, and what a validator says of it. A
+/// colon before a "|", as in "file:OUT|-", belongs to the type.
 void describe_value(const std::string& type, FlagTable& flag) {
-  const std::size_t colon = type.find(':');
+  const std::size_t last_bar = type.rfind('|');
+  const std::size_t colon = type.find(':', last_bar == std::string::npos ? 0 : last_bar);
   flag.value = type.substr(0, colon);
   if (flag.value == "UINT" || flag.value == "INT") flag.value = "N";
   if (flag.value == "FLOAT") flag.value = "X";
@@ -103,7 +105,7 @@ std::vector<std::string> path_words(const FlagTable& flag) {
   std::vector<std::string> words =
       split(flag.positional && flag.value == "TEXT" ? flag.names.front() : flag.value, '|');
   std::erase_if(words, [](const std::string& full) {
-    const std::string word = full.substr(full.find('=') + 1);
+    const std::string word = full.substr(full.find_last_of("=:") + 1);
     return !word.starts_with("FILE") && !word.starts_with("OUT") && word != "DIR" && word != "TRACE" &&
            word != "MCAP" && word != "JSON" && word != "CSV" && word != "EXR";
   });
@@ -112,7 +114,7 @@ std::vector<std::string> path_words(const FlagTable& flag) {
 
 bool takes_path(const FlagTable& flag) {
   return std::ranges::any_of(path_words(flag),
-                             [](const std::string& word) { return word.find('=') == std::string::npos; });
+                             [](const std::string& word) { return word.find_first_of("=:") == std::string::npos; });
 }
 
 }  // namespace vestige::help

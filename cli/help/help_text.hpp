@@ -6,8 +6,8 @@
 
 namespace vestige::help {
 
-/// The help group of the flags that every verb has; it comes last.
-inline constexpr const char* kCommonGroup = "Common to all verbs";
+/// The help group of the flags that almost every verb has. It comes last.
+inline constexpr const char* kCommonGroup = "Common flags";
 
 /// Formats the text of --help: two examples that run as they are, then usage, arguments and flags with every default,
 /// in 100 columns.

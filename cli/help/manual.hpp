@@ -21,7 +21,7 @@ inline constexpr std::array<std::pair<int, const char*>, 5> kExitCodes = {{
 
 /// The environment variables that the program reads, and what each does.
 inline constexpr std::array<std::pair<const char*, const char*>, 1> kEnvironment = {{
-    {"NO_COLOR", "When set, progress bars on a terminal have no colour."},
+    {"NO_COLOR", "If it is set, progress bars on a terminal have no colour."},
 }};
 
 /// Returns a man page of section 1 (roff with the man macros). Verbs of `command` without a page of their own are

@@ -116,10 +116,7 @@ std::string flag_lists(const CommandTable& command, std::size_t level) {
     }
   }
   if (shared.empty()) return text;
-  return text +
-         wrapped(fmt::format("Flags that are [common to all verbs]({}#common-to-all-verbs): {}.", kIndexName, shared),
-                 0, 0) +
-         "\n";
+  return text + wrapped(fmt::format("[Common flags]({}#common-flags): {}.", kIndexName, shared), 0, 0) + "\n";
 }
 
 std::string usage_and_examples(const CommandTable& command) {
@@ -147,8 +144,9 @@ std::string verb_table(const CommandTable& command, std::size_t level, const Lin
 
 /// An option's OUT is written, and so is its folder.
 bool is_written(const FlagTable& flag, const std::vector<std::string>& paths) {
-  return !flag.positional &&
-         std::ranges::any_of(paths, [](const std::string& word) { return word.starts_with("OUT") || word == "DIR"; });
+  return !flag.positional && std::ranges::any_of(paths, [](const std::string& word) {
+    return word.starts_with("OUT") || word == "file:OUT" || word == "DIR";
+  });
 }
 
 /// A row of a verb that names files, and of each of its verbs. A verb without flags is another program's.

@@ -11,6 +11,7 @@
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/scoring/scores.hpp"
+#include "cli/choices/scene_choice.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "detector/actuators/intensity.hpp"
@@ -70,7 +71,7 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
   verb.add_option("--laws", options.laws, "The laws that turn a contact into intensities")
       ->capture_default_str()
       ->type_name("LIST");
-  add_law_parameters(verb, options.law_parameters, "Options", "How long an actuator stays on after a contact");
+  add_law_parameters(verb, options.law_parameters, "Options");
   options.rank_by = default_metric_to_rank_by();
   add_rank_by(verb, options.rank_by)->capture_default_str();
   verb.add_option("-o,--output", options.output,
@@ -82,15 +83,14 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
           "The avatar that maps and traces are for [default: the first trace's avatar; for a scenario, the built-in "
           "one]")
       ->type_name("builtin|FILE");
-  const auto add_recording = [&](const char* name, auto& value, const char* description, const char* type) {
+  const auto add_recording = [&](const char* name, auto& value, const std::string& description, const char* type) {
     return verb.add_option(name, value, description)->group(kScenarioGroup)->type_name(type);
   };
   add_recording("--rate", options.rate_hz, "Frames per second [default: 1000]", "HZ")
       ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
-  add_recording("--duration", options.duration_s, "Length of the recording, in seconds [default: 2]", "S")
+  add_recording("--duration", options.duration_s, "How long the scene lasts, in seconds [default: 2]", "S")
       ->check(help::kPositive);
-  add_recording("--count", options.count, "Number of colliders [default: 100; slide: 1]", "N")
-      ->check(help::whole_number(1, 1000000));
+  add_recording("--count", options.count, describe_count(), "N")->check(help::whole_number(1, 1000000));
   add_detector_and_context(verb, options.choice);
   add_detector_options(verb, options.choice);
   add_common_options(verb, options.common);

@@ -113,7 +113,7 @@ std::vector<SceneChoice> scene_choices(const AccuracyOptions& options) {
     check_scene_choice(choices.back());
     if (choices.back().avatar == "builtin" && choices.back().animation.empty()) choices.back().animation = "walk";
   }
-  if (choices.empty()) throw UsageError("--colliders", "the list is empty", "name a scenario or a .csv file");
+  if (choices.empty()) throw UsageError("--colliders", "the list is empty", "name a scenario, or a .csv or .glb file");
   return choices;
 }
 
@@ -233,35 +233,30 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
   verb->add_option("--rate", options->rates, "Frame rates at which the scene is sampled, in Hz")
       ->capture_default_str()
       ->type_name("LIST");
-  verb->add_option("--detector", options->detectors, "Detectors to measure")
+  verb->add_option("--detector", options->detectors, describe_detectors("measure", detector_names()))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
   add_detector_options(*verb, options->choice);
   verb->remove_option(verb->get_option("--method"));  // here it is a list
-  verb->add_option(
-          "--method", options->methods,
-          "Methods to measure: static: each segment against the triangle as it is now, as the paper does; "
-          "carried: the segment's start moves along with the triangle; ccd: both move, and the first time that "
-          "they meet counts")
+  verb->add_option("--method", options->methods, describe_methods("measure"))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
-  verb->add_option("--context", options->choice.context, "OpenGL context that paper and geometry run in")
+  verb->add_option("--context", options->choice.context, kContextHelp)
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
   add_scene_options(*verb, options->scene);
   verb->get_option("--animation")
-      ->description(
-          "The avatar's animation, in a loop: a name, an index, or none [default: walk for the built-in avatar, "
-          "otherwise the first]");
+      ->description(std::string(kAnimationHelp) + " [default: walk for the built-in avatar, otherwise the first]");
   verb->remove_option(verb->get_option("--colliders"));  // here it is a list, too
   verb->add_option("--colliders", options->colliders,
-                   "Scenarios or files, each measured separately; 'vestige record --help' explains them")
+                   "Where the colliders come from: scenarios and files, with commas between them, each measured "
+                   "separately; 'vestige record --help' explains them")
       ->capture_default_str()
-      ->type_name("LIST");
-  verb->add_option("--duration", options->duration_s, "How long the scene is, in seconds")
+      ->type_name("SCENARIO|FILE.csv|FILE.glb");
+  verb->add_option("--duration", options->duration_s, "How long the scene lasts, in seconds")
       ->type_name("S")
       ->capture_default_str()
       ->check(help::kPositive);

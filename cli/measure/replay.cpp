@@ -153,8 +153,9 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
       return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, planes);
     });
   } else if (options.verify == "-" || options.verify == "auto") {
-    throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
-                     "name cpu, exact, geometry, paper or embree, or a file that an earlier replay wrote");
+    throw UsageError(
+        "--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
+        "name cpu, exact, geometry, paper, embree or embree_default, or a file that an earlier replay wrote");
   } else if (options.verify.ends_with(".csv")) {
     verification.contacts = read_contacts_csv(options.verify);
     verification.from_csv = true;
@@ -162,8 +163,8 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
     const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
     if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
       throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
-                  "name cpu, exact, geometry, paper or embree, or a file that 'vestige replay --contacts FILE.csv' or "
-                  "'--json FILE' wrote");
+                  "name cpu, exact, geometry, paper, embree or embree_default, or a file that 'vestige replay "
+                  "--contacts FILE.csv' or '--json FILE' wrote");
     verification.texture_hash = json["texture_hash"].get<std::string>();
   }
   return verification;
@@ -429,12 +430,10 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->take_all();
   add_result(
       "--verify", options->verify,
-      "Compare with another detector (cpu, exact, geometry, paper, embree), or with the --contacts (.csv) or --json "
-      "of an earlier replay; exit 4 if contacts differ by more than their times")
+      "Compare with another detector (cpu, exact, geometry, paper, embree, embree_default), or with the --contacts "
+      "(.csv) or --json of an earlier replay; exit 4 if contacts differ by more than their times")
       ->type_name("DETECTOR|FILE");
-  add_law_options(
-      *verb, options->law, "Intensity",
-      "How long a contact is felt, in ms: a coin motor cannot answer a single frame; 0 gives the raw frames");
+  add_law_options(*verb, options->law, "Intensity");
   add_common_options(*verb, options->common);
   // Flags that would do nothing are refused.
   verb->get_option("--planes")->needs(verb->get_option("--textures"));

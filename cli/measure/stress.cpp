@@ -143,19 +143,15 @@ void add_stress(CLI::App& program, Invocation& invocation) {
   verb->add_option("--n", options->settings.cases, "Number of cases for each family and magnitude")
       ->capture_default_str()
       ->check(help::whole_number(1, 100000000));
-  verb->add_option(
-          "--detector", options->detectors,
-          fmt::format("Detectors to attack: {}; embree is Embree's robust configuration, embree_default its default",
-                      fmt::join(detector_names(), ", ")))
+  verb->add_option("--detector", options->detectors, describe_detectors("attack", detector_names()))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
-  verb->add_option("--method", options->methods,
-                   "Methods, any of: static, carried, ccd; each detector runs with the methods that it knows")
+  verb->add_option("--method", options->methods, describe_methods("attack"))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
-  verb->add_option("--context", options->context, "OpenGL context that shaders run in")
+  verb->add_option("--context", options->context, kContextHelp)
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));

@@ -120,10 +120,12 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
       ->check(CLI::Range(1, 24));
   scene
       .add_option("--from", options.moments.from_s,
-                  "Leave out the frames before this time [default: the trace's beginning]")
+                  "Draw frames at this time and later, in seconds of the trace [default: its start]")
       ->type_name("SECONDS")
       ->check(help::kFinite);
-  scene.add_option("--to", options.moments.to_s, "Leave out the frames after this time [default: the trace's end]")
+  scene
+      .add_option("--to", options.moments.to_s,
+                  "Draw frames before this time and at it, in seconds of the trace [default: its end]")
       ->type_name("SECONDS")
       ->check(help::kFinite);
   scene.add_option("--trail", options.trail_ms, "How far back paths and contacts are shown")
@@ -178,7 +180,10 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
       .add_option("--law", options.law, "The intensity law, which says how strongly a contact drives the actuators")
       ->capture_default_str()
       ->type_name("binary|speed|phantom|gaussian");
-  paraview.add_option("--hold", options.hold_ms, "How long a contact is felt")
+  paraview
+      .add_option(
+          "--hold", options.hold_ms,
+          "How long a contact is felt, in ms: a coin motor cannot answer a single frame; 0 gives the raw frames")
       ->capture_default_str()
       ->type_name("MS")
       ->check(help::between(0, 10000));

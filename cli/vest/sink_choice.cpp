@@ -82,7 +82,7 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
             return std::string();
           },
           ""))
-      ->type_name("DEVICE|URL|-");
+      ->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
   add("--baud", choice.baud, "Baud of the serial line; the board must be built for the same")
       ->capture_default_str()
       ->check(help::whole_number(1, 4'000'000))
@@ -94,8 +94,7 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
       ->check(help::whole_number(50, 2550))
       ->type_name("MS");
   add("--levels", choice.levels,
-      "duty: of vibrators; pressure: of pneumatic cells, by the speed at which a collider pushes into the skin, as a "
-      "share of 1 m/s")
+      "What the levels say. duty: duty cycles of vibrators; pressure: pressures of pneumatic cells")
       ->capture_default_str()
       ->check(CLI::IsMember({"duty", "pressure"}));
   CLI::Option* xbee =

@@ -277,6 +277,9 @@ void add_stream(CLI::App& program, Invocation& invocation) {
                             "  vestige stream man.mcap --port osc://127.0.0.1:9000 --rate 2\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   add_sink_options(*verb, options->sink);
+  CLI::Option* levels = verb->get_option("--levels");
+  levels->description(levels->get_description() +
+                      ", by the speed at which a collider pushes into the skin, as a share of 1 m/s");
   const auto add_playing = [&](const char* name, auto& value, const char* description) {
     return verb->add_option(name, value, description)->group("Playing");
   };
@@ -288,8 +291,7 @@ void add_stream(CLI::App& program, Invocation& invocation) {
   add_playing("--map", options->map,
               "Use this actuator map instead of the trace's, and read it again whenever it changes on disk")
       ->type_name("builtin|LAYOUT|FILE.png");
-  add_law_options(*verb, options->law, "Intensity",
-                  "How long a contact is felt, in ms of the vest's time: a coin motor cannot answer a single frame");
+  add_law_options(*verb, options->law, "Intensity", "; --rate does not change it");
   add_detector_and_context(*verb, options->choice);
   add_detector_options(*verb, options->choice);
   verb->add_option("--log", options->log,

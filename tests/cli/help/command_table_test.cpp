@@ -84,10 +84,11 @@ TEST_F(Tables, MarkdownPagesListOptionsWithRangeDefaultAndValues) {
 TEST_F(Tables, TheMarkdownIndexLeadsToThePagesAndTellsWhatIsReadAndWritten) {
   CLI::App* undo = program_.get_subcommand("draw")->add_subcommand("undo", "Take a | back");
   undo->add_option("DIR", kind_, "Where")->required();
+  undo->add_option("--port", output_, "Whereto")->type_name("DEVICE|udp://HOST:PORT|file:OUT|-");
   const std::string index = markdown_index(command_table(program_));
   EXPECT_THAT(index, HasSubstr("| [draw](draw.md) | Draw a thing |\n"));
   EXPECT_THAT(index, HasSubstr("| [draw](draw.md) | `--kind FILE` | `--output OUT` |\n"));
-  EXPECT_THAT(index, HasSubstr("| [draw undo](draw.md#prog-draw-undo) | `DIR` |  |\n"));
+  EXPECT_THAT(index, HasSubstr("| [draw undo](draw.md#prog-draw-undo) | `DIR` | `--port file:OUT` |\n"));
   EXPECT_THAT(index, HasSubstr("| 2 | wrong usage |\n"));
   const std::string page = markdown_page(command_table(*program_.get_subcommand("draw")));
   EXPECT_THAT(page, HasSubstr("| [undo](#prog-draw-undo) | Take a \\| back |\n"));
