@@ -23,10 +23,7 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   const auto add = [&](const char* name, auto& value, const char* description) {
     return verb.add_option(name, value, description)->group(kDetectorGroup);
   };
-  add("--device", choice.device,
-      "EGL device, by its number in 'vestige devices' [default: the first GPU, otherwise software]")
-      ->check(help::whole_number(0, 1023))
-      ->type_name("K");
+  add("--device", choice.device, kDeviceHelp)->check(help::whole_number(0, 1023))->type_name("K");
   add("--method", choice.method, kMethodHelp)->capture_default_str()->check(CLI::IsMember(kMethodNames));
   add("--surface", choice.surface,
       "all: skin without an actuator hides the skin behind it; mapped: colliders pass through skin without an actuator")

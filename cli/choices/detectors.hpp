@@ -64,6 +64,9 @@ ContextKind context_kind(const std::string& context);
 const std::vector<std::string>& detector_names();
 bool is_detector(const std::string& name);
 
+inline constexpr const char* kDeviceHelp =
+    "EGL device, by its number in 'vestige devices' [default: the first GPU, otherwise software]";
+
 /// Returns the help of a list of detectors. `verb` is what is done to them: "measure".
 std::string describe_detectors(const char* verb, const std::vector<std::string>& names);
 

@@ -75,10 +75,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
   verb.add_option("--colliders", choice.colliders, describe_colliders())
       ->capture_default_str()
       ->type_name("SCENARIO|FILE.csv|FILE.glb");
-  verb.add_option("--nodes", choice.nodes,
-                  "The nodes of a glTF file that are colliders, as a pattern of names: 'ball*' [default: nodes named "
-                  "collider*, or if there are none, all nodes with an animated translation]")
-      ->type_name("PATTERN");
+  verb.add_option("--nodes", choice.nodes, kNodesHelp)->type_name("PATTERN");
   verb.add_option("--count", choice.count, describe_count())->check(help::whole_number(1, 1000000));
 }
 

@@ -34,6 +34,10 @@ inline constexpr const char* kAnimationHelp =
     "The avatar's animation, which loops: a name, an index, none, or motion capture, whose joints are matched to the "
     "avatar's by their names ('vestige import' reports more)";
 
+inline constexpr const char* kNodesHelp =
+    "The nodes of a glTF file that are colliders, as a pattern of names: 'ball*' [default: nodes named "
+    "collider*, or if there are none, all nodes with an animated translation]";
+
 /// Returns the help of --count, for the number of colliders of a scenario.
 std::string describe_count();
 

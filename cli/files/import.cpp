@@ -10,6 +10,7 @@
 #include "analysis/base/provenance.hpp"
 #include "cli/choices/motion.hpp"
 #include "cli/choices/scene.hpp"
+#include "cli/choices/scene_choice.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
@@ -295,10 +296,7 @@ void add_import(CLI::App& program, Invocation& invocation) {
           "Colliders: rows time_s,id,x,y,z, a file that 'vestige export' wrote, or the animated nodes of a glTF "
           "file [default: none]")
       ->type_name("FILE.csv|FILE.glb");
-  verb->add_option("--nodes", options->nodes,
-                   "The nodes of a glTF file that are colliders, as a pattern of names: 'ball*' [default: nodes named "
-                   "collider*, or if there are none, all nodes with an animated translation]")
-      ->type_name("PATTERN");
+  verb->add_option("--nodes", options->nodes, kNodesHelp)->type_name("PATTERN");
   verb->add_option("--avatar", options->avatar,
                    "The avatar that moves: the built-in one, or a glTF file (.glb, .gltf, .vrm) [default: builtin]")
       ->type_name("builtin|FILE");

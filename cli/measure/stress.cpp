@@ -155,8 +155,7 @@ void add_stress(CLI::App& program, Invocation& invocation) {
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
-  verb->add_option("--device", options->device,
-                   "EGL device, by its number in 'vestige devices' [default: the first GPU, otherwise software]")
+  verb->add_option("--device", options->device, kDeviceHelp)
       ->group(kDetectorGroup)
       ->check(help::whole_number(0, 1023))
       ->type_name("K");

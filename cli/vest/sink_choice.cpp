@@ -67,9 +67,9 @@ std::string SinkChoice::output_path() const {
   return port.starts_with(kFilePrefix) ? port.substr(kFilePrefix.size()) : "";
 }
 
-void add_sink_options(CLI::App& verb, SinkChoice& choice) {
+void add_sink_options(CLI::App& verb, SinkChoice& choice, const std::string& levels_remark) {
   choice.baud = kDefaultBaud;
-  const auto add = [&](const char* name, auto& value, const char* description) {
+  const auto add = [&](const char* name, auto& value, const std::string& description) {
     return verb.add_option(name, value, description)->group(kVestGroup);
   };
   add("--port", choice.port,
@@ -94,7 +94,7 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice) {
       ->check(help::whole_number(50, 2550))
       ->type_name("MS");
   add("--levels", choice.levels,
-      "What the levels say. duty: duty cycles of vibrators; pressure: pressures of pneumatic cells")
+      "What the levels say. duty: duty cycles of vibrators; pressure: pressures of pneumatic cells" + levels_remark)
       ->capture_default_str()
       ->check(CLI::IsMember({"duty", "pressure"}));
   CLI::Option* xbee =

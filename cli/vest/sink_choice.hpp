@@ -43,8 +43,8 @@ struct SinkChoice {
 };
 
 /// Adds --port, --baud, --ttl, --levels, --xbee-api, --xbee-request, --xbee-address, --xbee-escaped, --osc-address and
-/// --osc-value.
-void add_sink_options(CLI::App& verb, SinkChoice& choice);
+/// --osc-value. `levels_remark` follows the help of --levels.
+void add_sink_options(CLI::App& verb, SinkChoice& choice, const std::string& levels_remark = "");
 
 /// The actuators that a frame addresses, if a board reports how many it has.
 enum class Driven { kThoseNamed, kAllOfTheBoard };

@@ -276,10 +276,8 @@ void add_stream(CLI::App& program, Invocation& invocation) {
                             "  vestige stream man.mcap --port /dev/ttyUSB0\n"
                             "  vestige stream man.mcap --port osc://127.0.0.1:9000 --rate 2\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
-  add_sink_options(*verb, options->sink);
-  CLI::Option* levels = verb->get_option("--levels");
-  levels->description(levels->get_description() +
-                      ", by the speed at which a collider pushes into the skin, as a share of 1 m/s");
+  add_sink_options(*verb, options->sink,
+                   ", by the speed at which a collider pushes into the skin, as a share of 1 m/s");
   const auto add_playing = [&](const char* name, auto& value, const char* description) {
     return verb->add_option(name, value, description)->group("Playing");
   };
