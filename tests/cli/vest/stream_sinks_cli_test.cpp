@@ -1,0 +1,198 @@
+// Streams traces as a user does, to whatever is no board: files, pipes, OSC, radios, and lines that nobody answers.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/support/command_line.hpp"
+#include "tests/support/duty_rows.hpp"
+
+namespace vestige {
+namespace {
+
+using test::Levels;
+using test::read_log;
+using test::Row;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class StreamToOtherSinks : public test::CommandLineTest {
+ protected:
+  void record(const std::string& flags) const {
+    ASSERT_EQ(run("vestige record -q -o trace.mcap " + flags).exit_code, 0);
+  }
+};
+
+TEST_F(StreamToOtherSinks, AMapThatIsEditedWhileItIsFeltIsReadAgainAndABadOneIsNot) {
+  record("--colliders hug --rate 100 --duration 0.5");
+  // A map of one actuator everywhere, then of the second everywhere, then no map at all.
+  const std::string make =
+      "python3 -c \"import struct,zlib,sys\n"
+      "def png(grey):\n"
+      "  chunk=lambda n,d: struct.pack('>I',len(d))+n+d+struct.pack('>I',zlib.crc32(n+d))\n"
+      "  return b'\\x89PNG\\r\\n\\x1a\\n'+chunk(b'IHDR',struct.pack('>IIBBBBB',1,1,8,0,0,0,0))"
+      "+chunk(b'IDAT',zlib.compress(bytes([0,grey])))+chunk(b'IEND',b'')\n"
+      "open(sys.argv[2],'wb').write(png(int(sys.argv[1])))\" ";
+  ASSERT_EQ(
+      run("echo '{\"actuators\": [{\"grey\": 10, \"name\": \"a\"}, {\"grey\": 20, \"name\": \"b\"}]}' >map.json\n" +
+          make + "10 map.png")
+          .exit_code,
+      0);
+  const test::Outcome outcome =
+      run("vestige stream trace.mcap --port file:frames --map map.png --loop --log log.csv "
+          "--json stream.json & stream=$!\nsleep 3\n" +
+          make +
+          "20 new.png; mv new.png map.png\nsleep 3\necho nonsense >map.png\nsleep 3\n"
+          "kill -INT $stream; wait $stream");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_EQ(json_in("stream.json")["maps_reloaded"], 1);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("map.png"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("The previous map stays in use"));
+  const std::vector<Row> log = read_log(folder_ / "log.csv");
+  ASSERT_FALSE(log.empty());
+  EXPECT_TRUE(std::ranges::any_of(log, [](const Row& row) { return row.level == Levels{255, 0}; }));
+  EXPECT_EQ(log.back().level[0], 0);
+  EXPECT_TRUE(std::ranges::any_of(log, [](const Row& row) { return row.level == Levels{0, 255}; }));
+}
+
+TEST_F(StreamToOtherSinks, FramesGoToStandardOutputAsTheyWouldGoDownTheWire) {
+  record("--count 20 --rate 60 --duration 1");
+  ASSERT_EQ(run("vestige stream trace.mcap --port - --rate 10 --json stream.json >frames.bin").exit_code, 0);
+  std::ifstream stream(folder_ / "frames.bin", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  ASSERT_GE(bytes.size(), 14U + 8U);
+  EXPECT_EQ(bytes[1], 'S');
+  EXPECT_EQ(bytes[13], '\0');
+  EXPECT_EQ(bytes.back(), '\0');
+  EXPECT_EQ(bytes[bytes.size() - 7], 'X');
+  EXPECT_EQ(std::ranges::count(bytes, '\0'), json_in("stream.json")["sent"]);
+  EXPECT_EQ(bytes.size(), json_in("stream.json")["link"]["bytes"]);
+}
+
+TEST_F(StreamToOtherSinks, ParametersGoByOscToWhoeverListens) {
+  record("--colliders hug --rate 100 --duration 1");
+  const test::Outcome outcome =
+      run("python3 -c \"import socket\ns=socket.socket(socket.AF_INET,socket.SOCK_DGRAM)\ns.bind(('127.0.0.1',0))\n"
+          "open('port.new','w').write(str(s.getsockname()[1]))\nimport os\nos.rename('port.new','port')\n"
+          "s.settimeout(60)\nheard=open('heard','wb')\n"
+          "try:\n  while True: heard.write(s.recv(65536)); s.settimeout(3)\nexcept TimeoutError: pass\" & listener=$!\n"
+          "for i in $(seq 100); do [ -e port ] && break; sleep 0.05; done\n"
+          "vestige stream trace.mcap --port osc://127.0.0.1:$(cat port) --osc-address '/vest/{n}' --json stream.json; "
+          "code=$?; wait $listener; exit $code");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  const std::string heard = read_text_file(folder_ / "heard");
+  for (int motor = 1; motor <= 6; ++motor) EXPECT_THAT(heard, HasSubstr(fmt::format("/vest/{}", motor)));
+  // Both ends of a motor's strength, as OSC's big-endian floats.
+  EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\x3f\x80\0\0", 8)));
+  EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\0\0\0\0", 8)));
+  EXPECT_GT(json_in("stream.json")["sent"], 0);
+  EXPECT_THAT(outcome.standard_error, Not(HasSubstr("no program listens")));
+  // That listener has gone.
+  const test::Outcome alone = run("vestige stream trace.mcap --port OSC://127.0.0.1:$(cat port)");
+  EXPECT_EQ(alone.exit_code, 0) << alone.standard_error;
+  EXPECT_THAT(alone.standard_error, HasSubstr("no program listens there now"));
+}
+
+TEST_F(StreamToOtherSinks, AnXbeeInApiModeGetsItsFrames) {
+  record("--colliders hug --rate 100 --duration 0.5");
+  // A radio that nobody answers through: what it is told is kept.
+  const test::Outcome outcome =
+      run("python3 -c \"import os,pty,select,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'radio')\n"
+          "told=open('told','wb',0)\nwait=60\nwhile select.select([m],[],[],wait)[0]: told.write(os.read(m,4096)); "
+          "wait=4\" & radio=$!\n"
+          "for i in $(seq 100); do [ -e radio ] && break; sleep 0.05; done\n"
+          "vestige stream trace.mcap --port radio --xbee-api --xbee-address 0013A20041AABBCC --json stream.json\n"
+          "code=$?; wait $radio; exit $code");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;  // no board acknowledges
+  const std::string told = read_text_file(folder_ / "told");
+  std::size_t frames = 0;
+  for (std::size_t at = 0; at < told.size();) {
+    const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(told.at(at + i)); };
+    ASSERT_EQ(byte(0), 0x7E) << at;
+    const std::size_t length = 256U * byte(1) + byte(2);
+    unsigned sum = 0;
+    for (std::size_t i = 3; i <= 3 + length; ++i) sum += byte(i);
+    EXPECT_EQ(sum % 256, 0xFFU) << at;
+    EXPECT_EQ(byte(3), 0x10);
+    EXPECT_EQ(told.substr(at + 5, 8), std::string("\0\x13\xA2\0\x41\xAA\xBB\xCC", 8));
+    if (byte(18) == 'S' || byte(18) == 'X') ++frames;  // behind the head of the request, and COBS' first byte
+    at += length + 4;
+  }
+  EXPECT_GT(frames, 2U);
+  EXPECT_EQ(frames, json_in("stream.json")["sent"]);
+}
+
+TEST_F(StreamToOtherSinks, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame) {
+  record("--count 20 --rate 60 --duration 0.5");
+  const test::Outcome outcome =
+      run("python3 -c \"import os,pty,time,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'vest')\n"
+          "time.sleep(60)\" & pty=$!\nfor i in $(seq 100); do [ -e vest ] && break; sleep 0.05; done\n"
+          "vestige stream trace.mcap --port vest --json stream.json; code=$?; kill $pty; exit $code");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("no board answers"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("were not acknowledged"));
+  EXPECT_EQ(json_in("stream.json")["acknowledged"], 0);
+  EXPECT_FALSE(json_in("stream.json")["off_acknowledged"]);
+}
+
+TEST_F(StreamToOtherSinks, ADetectorThatCannotKeepUpIsSaid) {
+  record("--rate 10000 --duration 0.03");
+  const test::Outcome outcome =
+      run("vestige stream trace.mcap --port file:frames --detector exact --rate 10 --json stream.json");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("'exact' does not keep up with the trace"));
+  EXPECT_GT(json_in("stream.json")["most_late_s"].get<double>(), 1);
+}
+
+TEST_F(StreamToOtherSinks, AMapThatBecomesAPipeIsRefusedAndTheStreamEnds) {
+  record("--colliders hug --rate 100 --duration 1");
+  ASSERT_EQ(run("vestige map make --layout paper6 -o map.png").exit_code, 0);
+  const test::Outcome outcome =
+      run("timeout 20 vestige stream trace.mcap --port file:frames --map map.png --loop & stream=$!\n"
+          "sleep 3; rm map.png; mkfifo map.png; sleep 3; kill -INT $stream; wait $stream");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_error, HasSubstr("map.png: is no longer a regular file"));
+}
+
+TEST_F(StreamToOtherSinks, WhatCannotBeStreamedIsRefusedWithItsReason) {
+  record("--count 2 --rate 60 --duration 0.2");
+  expect_failure("vestige stream trace.mcap --port ./ttyUSB9", 1, {"ttyUSB9", "no such device"});
+  expect_failure("vestige stream trace.mcap --port trace.mcap", 1, {"trace.mcap", "not a serial device"});
+  expect_failure("vestige stream trace.mcap --port ./x --baud 12345", 2, {"--baud", "57600"});
+  for (const char* ttl : {"49", "2560", "abc"})
+    expect_failure(fmt::format("vestige stream trace.mcap --port ./ttyUSB9 --ttl {}", ttl), 2,
+                   {"--ttl", "whole number from 50 to 2550"});
+  expect_failure("vestige stream trace.mcap --port ./ttyUSB9 --ttl 51", 2, {"--ttl", "multiple of 10"});
+  expect_failure("vestige stream trace.mcap --port osc://localhost", 2, {"--port", "has no port"});
+  expect_failure("vestige stream trace.mcap --port osc://localhost:9000 --baud 9600", 2, {"--baud"});
+  expect_failure("vestige stream trace.mcap --port file:x --osc-address /a/{n}", 2, {"--osc-address"});
+  expect_failure("vestige stream trace.mcap", 2, {"--port"});
+  expect_failure("vestige stream nothing.mcap --port file:x", 1, {"nothing.mcap"});
+  expect_failure("vestige stream /dev/zero --port file:x", 1, {"/dev/zero", "is a device"}, "x");
+  expect_failure("vestige stream trace.mcap --port file:x --loop=3", 2, {"--loop takes no value"}, "x");
+  expect_failure("ulimit -f 16; vestige avatar builtin -q -o x.glb", 1, {"x.glb", "File too large"}, "x.glb");
+  expect_failure("vestige stream trace.mcap --port file:trace.mcap", 2, {"trace.mcap"});
+  expect_failure("vestige stream trace.mcap --port file:x --rate nan", 2, {"--rate"});
+  expect_failure("vestige stream trace.mcap --port file:x --map builtin --surface mapped", 2, {"--map", "--surface"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "x"));
+  ASSERT_EQ(run("vestige record -q -o bare.mcap --map none --count 2 --rate 60 --duration 0.2").exit_code, 0);
+  expect_failure("vestige stream bare.mcap --port file:x", 1, {"bare.mcap: has no actuator", "--map"});
+  EXPECT_EQ(run("vestige stream bare.mcap --port file:x --map builtin").exit_code, 0);
+}
+
+TEST_F(StreamToOtherSinks, VestCheckOfADeadLineFails) {
+  const test::Outcome outcome =
+      run("python3 -c \"import os,pty,time,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'vest')\n"
+          "time.sleep(60)\" & pty=$!\nfor i in $(seq 100); do [ -e vest ] && break; sleep 0.05; done\n"
+          "vestige vest check --port vest --seconds 0.05; code=$?; kill $pty; exit $code");
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_THAT(outcome.standard_output, HasSubstr("DOES NOT HEAR"));
+}
+
+}  // namespace
+}  // namespace vestige
