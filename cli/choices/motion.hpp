@@ -22,11 +22,19 @@ inline bool is_motion_file(const std::string& animation) {
 void warn_of_names(const std::string& path, std::string_view what, const std::vector<std::string>& names,
                    Verbosity verbosity);
 
-/// Adds the flag --unit, of a motion.
-void add_unit_option(CLI::App& verb, std::string& unit);
+/// The flags that say how a motion capture file is to be understood.
+struct MotionChoice {
+  std::string unit = "auto";
+  std::string up = "auto";
 
-/// Returns how many metres the unit "cm", "m", … has; nothing for "auto".
-std::optional<double> metres_of_unit(const std::string& unit);
+  /// Returns the first flag that is given.
+  std::optional<std::string> given() const {
+    return unit != "auto" ? std::optional("--unit") : up != "auto" ? std::optional("--up") : std::nullopt;
+  }
+};
+
+/// Adds --unit and --up.
+void add_motion_options(CLI::App& verb, MotionChoice& choice);
 
 /// A motion, and the result of its retargeting to an avatar.
 struct LoadedMotion {
@@ -37,8 +45,9 @@ struct LoadedMotion {
 };
 
 /// Reads a BVH file, retargets it to the avatar and adds it to the avatar's animations, under the path of the file.
-/// Reports which joints matched.
-LoadedMotion add_motion(Avatar& avatar, const std::string& path, const std::string& unit, Verbosity verbosity);
+/// Reports which joints matched, and what differs from the motion. `force` is RetargetOptions::force.
+LoadedMotion add_motion(Avatar& avatar, const std::string& path, const MotionChoice& choice, bool force,
+                        Verbosity verbosity);
 
 /// Describes joints and units in one line.
 std::string describe(const LoadedMotion& motion);

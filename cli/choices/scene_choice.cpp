@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "analysis/mapping/layouts.hpp"
-#include "cli/choices/motion.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "traces/base/error.hpp"
@@ -66,7 +65,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->type_name("builtin|FILE");
   verb.add_option("--animation", choice.animation, std::string(kAnimationHelp) + " [default: the first]")
       ->type_name("NAME|INDEX|none|FILE.bvh");
-  add_unit_option(verb, choice.unit);
+  add_motion_options(verb, choice.motion);
   verb.add_option("--map", choice.map,
                   "The actuator map: a layout," + layout_list() +
                       "\nor a greyscale PNG in UV space or by triangle; FILE.json, if it exists, names the actuators "
@@ -81,8 +80,9 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
 
 void check_scene_choice(const SceneChoice& choice) {
   if (!choice.from_file() && find_scenario(choice.colliders) == nullptr) throw no_scenario(choice.colliders);
-  if (choice.unit != "auto" && !is_motion_file(choice.animation))
-    throw UsageError("--unit", "no motion capture is played", "leave --unit out, or name a .bvh as --animation");
+  if (const auto flag = choice.motion.given(); flag && !is_motion_file(choice.animation))
+    throw UsageError(*flag, "no motion capture is played",
+                     fmt::format("leave {} out, or name a .bvh as --animation", *flag));
   if (!choice.nodes.empty() && !choice.from_gltf())
     throw UsageError("--nodes", "the colliders do not come from a glTF file",
                      "leave --nodes out, or name a .glb as --colliders");
@@ -90,8 +90,8 @@ void check_scene_choice(const SceneChoice& choice) {
     throw UsageError("--count", "the file sets the number of colliders", "leave --count out");
 }
 
-void load_motion(const SceneChoice& choice, Avatar& avatar, Verbosity verbosity) {
-  if (is_motion_file(choice.animation)) add_motion(avatar, choice.animation, choice.unit, verbosity);
+void load_motion(const SceneChoice& choice, Avatar& avatar, bool force, Verbosity verbosity) {
+  if (is_motion_file(choice.animation)) add_motion(avatar, choice.animation, choice.motion, force, verbosity);
 }
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/choices/motion.hpp"
 #include "cli/terminal.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/colliders.hpp"
@@ -17,7 +18,7 @@ namespace vestige::cli {
 struct SceneChoice {
   std::string avatar = "builtin";
   std::string animation;
-  std::string unit = "auto";  ///< of the motion capture
+  MotionChoice motion;
   std::string map;
   std::string colliders = "swarm";
   std::string nodes;                   ///< of a glTF of colliders: a pattern of names
@@ -41,15 +42,17 @@ inline constexpr const char* kNodesHelp =
 /// Returns the help of --count, for the number of colliders of a scenario.
 std::string describe_count();
 
-/// Adds --avatar, --animation, --unit, --map, --colliders, --nodes and --count.
+/// Adds --avatar, --animation, --unit, --up, --map, --colliders, --nodes and --count.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
-/// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit without motion capture,
+/// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit and --up without motion
+/// capture,
 /// --count with colliders from a file, --nodes with colliders that come from no glTF.
 void check_scene_choice(const SceneChoice& choice);
 
-/// If --animation names a motion file, adds the motion to the avatar's animations under that name.
-void load_motion(const SceneChoice& choice, Avatar& avatar, Verbosity verbosity);
+/// If --animation names a motion file, adds the motion to the avatar's animations under that name. `force` is
+/// RetargetOptions::force.
+void load_motion(const SceneChoice& choice, Avatar& avatar, bool force, Verbosity verbosity);
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
                                                const Animation* animation, std::uint64_t seed);

@@ -36,7 +36,7 @@ struct ImportOptions {
   std::string nodes;
   std::string avatar;
   std::string map;
-  std::string unit = "auto";
+  MotionChoice motion_choice;
   std::optional<double> rate_hz;
   std::string compression = "zstd";
   std::string output;
@@ -69,7 +69,8 @@ void refuse_parts(const ImportOptions& options) {
                                                 {"--map", !options.map.empty()},
                                                 {"--nodes", !options.nodes.empty()},
                                                 {"--rate", options.rate_hz.has_value()},
-                                                {"--unit", options.unit != "auto"}};
+                                                {"--unit", options.motion_choice.unit != "auto"},
+                                                {"--up", options.motion_choice.up != "auto"}};
   for (const auto& [flag, is_named] : parts)
     if (is_named)
       throw UsageError(flag, fmt::format("'{}' has poses, colliders, avatar and map", options.from),
@@ -109,8 +110,9 @@ void check_flags(const ImportOptions& options) {
         "give one of these: --motion FILE.bvh, --poses FILE.csv, or a folder that 'vestige export' wrote");
   if (options.motion.empty() && options.rate_hz)
     throw UsageError("--rate", "the file of poses sets the frame times", "leave --rate out, or give a --motion");
-  if (options.motion.empty() && options.unit != "auto")
-    throw UsageError("--unit", "a file of poses is in metres", "leave --unit out, or give a --motion");
+  if (const auto flag = options.motion_choice.given(); flag && options.motion.empty())
+    throw UsageError(*flag, "a file of poses is in metres, with +Y up",
+                     fmt::format("leave {} out, or give a --motion", *flag));
   const bool from_gltf = options.colliders.ends_with(".glb") || options.colliders.ends_with(".gltf");
   if (!options.nodes.empty() && !from_gltf)
     throw UsageError("--nodes", "the colliders do not come from a glTF file",
@@ -229,7 +231,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
   Session session = provenance_texts(invocation.argv);
   session["colliders"] = options.colliders;
   if (!options.motion.empty()) {
-    motion = add_motion(scene.avatar, options.motion, options.unit, verbosity);
+    motion = add_motion(scene.avatar, options.motion, options.motion_choice, options.common.force, verbosity);
     play_motion(scene.avatar, *motion, options.rate_hz, frames);
     session["animation"] = options.motion;
     session["rate_hz"] = fmt::format("{}", options.rate_hz.value_or(1 / motion->frame_time_s));
@@ -305,7 +307,7 @@ void add_import(CLI::App& program, Invocation& invocation) {
           "The actuator map: a layout, or a greyscale PNG in UV space or by triangle; FILE.json, if it exists, "
           "names the actuators [default: builtin for the built-in avatar, otherwise none]")
       ->type_name("builtin|none|LAYOUT|FILE.png");
-  add_unit_option(*verb, options->unit);
+  add_motion_options(*verb, options->motion_choice);
   verb->add_option("--rate", options->rate_hz, "Frames per second of --motion [default: those of the motion]")
       ->type_name("HZ")
       ->check(help::kPositive);

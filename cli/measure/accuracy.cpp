@@ -195,7 +195,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
 
   catch_interrupts();
   Scene scene = load_scene(options.scene.avatar, options.scene.map, options.common.verbosity());
-  load_motion(options.scene, scene.avatar, options.common.verbosity());
+  load_motion(options.scene, scene.avatar, options.common.force, options.common.verbosity());
   const Measurement measurement(options, scene, rates_hz);
   std::vector<AccuracyScene> scenes;
   scenes.reserve(choices.size());

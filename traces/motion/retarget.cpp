@@ -13,7 +13,8 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
-#include "traces/motion/body_roles.hpp"
+#include "traces/motion/compare_directions.hpp"
+#include "traces/motion/skeleton.hpp"
 
 namespace vestige {
 
@@ -22,115 +23,14 @@ namespace {
 using Index = std::size_t;
 using Roles = std::vector<std::optional<BodyRole>>;
 
+// Left hand and right hand must not change sides.
+constexpr double kHandTolerance_deg = 90;
+
 // The limit of a glTF animation, too: half an hour of 60 joints at 120 Hz. A file may also give only one number a frame
 // for all of its joints. So beyond some minutes, at most eight numbers are stored for each number in the file.
 constexpr std::size_t kMostNumbers = std::size_t{1} << 26;
 constexpr std::size_t kAlwaysAllowed = std::size_t{1} << 22;
 constexpr std::size_t kMostGrowth = 8;
-
-constexpr BodyRole kHips = {BodyPart::kHips, BodySide::kNone, 0};
-
-std::optional<Index> find_role(const Roles& roles, const BodyRole& role) {
-  const auto found = std::ranges::find(roles, std::optional(role));
-  return found == roles.end() ? std::nullopt : std::optional(static_cast<Index>(found - roles.begin()));
-}
-
-/// A skeleton at rest, of a motion or an avatar: joints with parents before children.
-struct Skeleton {
-  std::vector<NamedJoint> joints;
-  Roles roles;
-  std::vector<glm::dvec3> position;
-  std::vector<bool> usable;
-};
-
-Skeleton skeleton_of(const BvhMotion& motion) {
-  Skeleton skeleton;
-  for (const BvhJoint& joint : motion.joints) skeleton.joints.push_back({joint.name, joint.parent});
-  for (const BvhPlace& place : bvh_rest(motion)) skeleton.position.push_back(place.position);
-  skeleton.roles = body_roles(skeleton.joints);
-  skeleton.usable.assign(skeleton.joints.size(), true);
-  return skeleton;
-}
-
-glm::dquat rotation_of(const glm::dmat4& matrix) {
-  glm::dmat3 linear(matrix);
-  for (int axis = 0; axis < 3; ++axis)
-    if (const double length = glm::length(linear[axis]); length > 0) linear[axis] /= length;
-  if (glm::determinant(linear) < 0) linear[0] = -linear[0];
-  return glm::normalize(glm::quat_cast(linear));
-}
-
-/// Returns the avatar's skeleton; its joints are in the order of `avatar.node_order`.
-Skeleton skeleton_of(const Avatar& avatar, const std::vector<glm::dmat4>& rest) {
-  Skeleton skeleton;
-  std::vector<int> place(avatar.nodes.size(), -1);
-  for (const int index : avatar.node_order) {
-    const Node& node = avatar.nodes[static_cast<Index>(index)];
-    place[static_cast<Index>(index)] = static_cast<int>(skeleton.joints.size());
-    skeleton.joints.push_back({node.name, node.parent < 0 ? -1 : place[static_cast<Index>(node.parent)]});
-    skeleton.position.emplace_back(rest[static_cast<Index>(index)][3]);
-    skeleton.usable.push_back(!node.fixed_matrix);
-  }
-  skeleton.roles = body_roles(skeleton.joints);
-  return skeleton;
-}
-
-/// Returns the unit vector of the axis closest to `direction`, perpendicular to `other`.
-glm::dvec3 nearest_axis(const glm::dvec3& direction, const glm::dvec3& other, const glm::dvec3& fallback) {
-  int best = -1;
-  for (int axis = 0; axis < 3; ++axis)
-    if (other[axis] == 0 && std::abs(direction[axis]) > (best < 0 ? 0 : std::abs(direction[best]))) best = axis;
-  if (best < 0) return fallback;
-  glm::dvec3 nearest(0);
-  nearest[best] = direction[best] > 0 ? 1 : -1;
-  return nearest;
-}
-
-/// Returns the directions left, up and forward as columns.
-glm::dmat3 axes_of(const Skeleton& skeleton) {
-  const auto at = [&](BodyPart part, BodySide side) -> std::optional<glm::dvec3> {
-    const auto joint = find_role(skeleton.roles, {part, side, 0});
-    return joint ? std::optional(skeleton.position[*joint]) : std::nullopt;
-  };
-  glm::dvec3 upwards(0);
-  glm::dvec3 leftwards(0);
-  for (const BodyPart part : {BodyPart::kUpperLeg, BodyPart::kUpperArm, BodyPart::kShoulder, BodyPart::kFoot}) {
-    const auto left = at(part, BodySide::kLeft);
-    const auto right = at(part, BodySide::kRight);
-    if (left && right) leftwards += *left - *right;
-  }
-  for (const BodySide side : {BodySide::kLeft, BodySide::kRight}) {
-    const auto foot = at(BodyPart::kFoot, side);
-    const auto thigh = at(BodyPart::kUpperLeg, side);
-    if (foot && thigh) upwards += *thigh - *foot;
-  }
-  const auto hips = at(BodyPart::kHips, BodySide::kNone);
-  if (const auto head = at(BodyPart::kHead, BodySide::kNone); head && hips) upwards += *head - *hips;
-  const glm::dvec3 up = nearest_axis(upwards, glm::dvec3(0), glm::dvec3(0, 1, 0));
-  const glm::dvec3 left = nearest_axis(leftwards, up, glm::dvec3(up.x == 0 ? 1 : 0, up.x == 0 ? 0 : 1, 0));
-  return {left, up, glm::cross(left, up)};
-}
-
-/// Returns the height of the hips above the lowest joint of the legs.
-double hip_height(const Skeleton& skeleton, const glm::dvec3& up) {
-  const auto hips = find_role(skeleton.roles, kHips);
-  double lowest = std::numeric_limits<double>::infinity();
-  for (Index i = 0; i < skeleton.roles.size(); ++i)
-    if (skeleton.roles[i] && skeleton.roles[i]->part == BodyPart::kFoot)
-      lowest = std::min(lowest, glm::dot(skeleton.position[i], up));
-  return hips && std::isfinite(lowest) ? glm::dot(skeleton.position[*hips], up) - lowest : 0;
-}
-
-double height(const BvhMotion& motion, const Skeleton& skeleton, const glm::dvec3& up) {
-  double lowest = std::numeric_limits<double>::infinity();
-  double highest = -lowest;
-  for (Index i = 0; i < skeleton.position.size(); ++i)
-    for (const double at : {glm::dot(skeleton.position[i], up), glm::dot(skeleton.position[i] + motion.ends[i], up)}) {
-      lowest = std::min(lowest, at);
-      highest = std::max(highest, at);
-    }
-  return highest - lowest;
-}
 
 std::string likely_unit(double height) {
   constexpr double kTall_m = 1.7;
@@ -169,7 +69,7 @@ class Matcher {
     for (Index node = 0; node < avatar_.roles.size(); ++node) {
       const auto& role = avatar_.roles[node];
       if (!role || role->part == BodyPart::kSpine) continue;
-      if (const auto joint = find_role(motion_.roles, *role)) match(node, *joint);
+      if (const auto joint = find_role(motion_, *role)) match(node, *joint);
     }
   }
 
@@ -191,8 +91,14 @@ class Matcher {
       match(avatar[k], motion[((k + 1) * motion.size() + avatar.size() - 1) / avatar.size() - 1]);
   }
 
-  /// Matches joints that are no part of a body (tails, skirts) by equal names, if neither has a role.
+  /// Matches joints that are no part of a body (tails, skirts) by equal names, if neither has a role. What is above the
+  /// hips keeps its place: the hips' rotation and travel count in the world.
   void match_names() {
+    std::vector<bool> is_above_hips(avatar_.joints.size());
+    for (auto i = find_role(avatar_, kHips); i && avatar_.joints[*i].parent >= 0;) {
+      i = static_cast<Index>(avatar_.joints[*i].parent);
+      is_above_hips[*i] = true;
+    }
     static const std::set<std::string> anyones = {"", "root", "armature", "scene", "reference"};
     std::map<std::string, Index> by_name;
     for (Index joint = 0; joint < motion_.joints.size(); ++joint)
@@ -200,7 +106,7 @@ class Matcher {
     for (Index node = 0; node < avatar_.joints.size(); ++node) {
       const std::string name = plain_joint_name(avatar_.joints[node].name);
       const auto same = by_name.find(name);
-      if (same == by_name.end() || anyones.contains(name)) continue;
+      if (same == by_name.end() || anyones.contains(name) || is_above_hips[node]) continue;
       if (!taken_[same->second] && !avatar_.roles[node] && !motion_.roles[same->second]) match(node, same->second);
     }
   }
@@ -211,61 +117,70 @@ class Matcher {
   std::vector<bool> taken_;
 };
 
-/// Returns the shortest rotation from one direction to another, or the identity if either has length 0.
-glm::dquat turn(const glm::dvec3& from, const glm::dvec3& to) {
-  if (!(glm::length(from) > 0) || !(glm::length(to) > 0)) return {1, 0, 0, 0};
-  const glm::dvec3 a = glm::normalize(from);
-  const glm::dvec3 b = glm::normalize(to);
-  const glm::dquat twice(1 + glm::dot(a, b), glm::cross(a, b));
-  if (glm::length(twice) > 1e-6) return glm::normalize(twice);
-  // Opposite directions: half a turn about any perpendicular axis.
-  return glm::angleAxis(glm::pi<double>(),
-                        glm::normalize(glm::cross(a, std::abs(a.x) < 0.5 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))));
-}
-
 class Retargeter {
  public:
-  Retargeter(const BvhMotion& motion, const Avatar& avatar, const std::string& name)
-      : motion_(motion), avatar_(avatar), name_(name), source_(skeleton_of(motion)) {
+  Retargeter(const BvhMotion& motion, const Avatar& avatar, const RetargetOptions& options, const std::string& name)
+      : motion_(motion),
+        avatar_(avatar),
+        name_(name),
+        samples_(sample_motion(motion)),
+        source_(skeleton_of(motion, samples_.now)) {
     world_matrices(avatar, rest_pose(avatar), rest_);
     target_ = skeleton_of(avatar, rest_);
-    const glm::dmat3 source_axes = axes_of(source_);
-    const glm::dmat3 target_axes = axes_of(target_);
-    to_avatar_ = target_axes * glm::transpose(source_axes);
-    source_up_ = source_axes[1];
-    target_up_ = target_axes[1];
     follows_ = Matcher(source_, target_).follows();
     refuse_other_bodies();
-    align();
+    find_axes(options.up);
+    metres_per_unit_ = options.metres_per_unit ? *options.metres_per_unit : ratio_of_legs();
+    if (rests_as_person_)
+      align();
+    else
+      align_by_frames();
   }
 
   void report(RetargetReport& report) const;
-  double metres_per_unit(std::optional<double> asked) const;
-  Animation animate(double metres_per_unit) const;
+  Animation animate() const;
+  std::vector<Deviation> deviations(const Animation& animation, bool force) const;
 
  private:
   void refuse_other_bodies() const;
   void refuse_too_many_numbers() const;
+  void find_axes(const std::optional<glm::dvec3>& up);
   void align();
+  void align_by_frames();
+  glm::dquat hips_by_frames() const;
+  std::optional<Index> bone_end(Index node) const;
+  glm::dquat mean_turn(Index joint, Index reference) const;
+  glm::dvec3 mean_direction(Index joint, Index from, Index to) const;
   glm::dquat flatter(Index foot, const glm::dquat& with_leg) const;
   /// Returns the avatar's joint with this role, if it follows a joint of the motion.
   std::optional<Index> followed(const BodyRole& role) const {
-    const auto node = find_role(target_.roles, role);
+    const auto node = find_role(target_, role);
     return node && follows_[*node] ? node : std::nullopt;
   }
+  glm::dquat rest_rotation(Index node) const {
+    return rotation_of(rest_[static_cast<Index>(avatar_.node_order[node])]);
+  }
+  std::vector<Index> body() const;
+  double height() const;
+  double ratio_of_legs() const;
   double reference_height() const;
 
   const BvhMotion& motion_;
   const Avatar& avatar_;
   const std::string& name_;
+  MotionSamples samples_;
   Skeleton source_;
   Skeleton target_;
-  std::vector<glm::dmat4> rest_;          ///< world matrices of the avatar's nodes at rest, by node index
-  glm::dmat3 to_avatar_ = glm::dmat3(1);  ///< from the motion's axes to the avatar's
-  glm::dvec3 source_up_ = glm::dvec3(0, 1, 0);
-  glm::dvec3 target_up_ = glm::dvec3(0, 1, 0);
+  std::vector<glm::dmat4> rest_;               ///< world matrices of the avatar's nodes at rest, by node index
   std::vector<std::optional<Index>> follows_;  ///< for each joint of `target_` one of `source_`
-  std::vector<glm::dquat> at_rest_;            ///< for each of `target_`: its rotation while the motion rests
+  bool rests_as_person_ = false;
+  UpAxis up_;
+  glm::dmat3 to_avatar_ = glm::dmat3(1);       ///< from the axes of the motion's world to the avatar's
+  glm::dmat3 body_to_avatar_ = glm::dmat3(1);  ///< the same of the skeletons at rest, if the motion's rests as a person
+  glm::dvec3 target_up_ = glm::dvec3(0, 1, 0);
+  double metres_per_unit_ = 0;
+  std::vector<glm::dquat> at_rest_;               ///< for each of `target_`: its rotation while its joint's is zero
+  std::vector<std::pair<Index, Index>> aligned_;  ///< bones of `target_` that point where the motion's do
 };
 
 void Retargeter::refuse_other_bodies() const {
@@ -285,17 +200,52 @@ void Retargeter::refuse_other_bodies() const {
               "rename the joints as VRM, Mixamo or CMU name them: hips, spine, leftUpperArm, …");
 }
 
+/// Finds the axes of the world and of both bodies.
+void Retargeter::find_axes(const std::optional<glm::dvec3>& up) {
+  const glm::dmat3 source_axes = axes_of(source_);
+  const glm::dmat3 target_axes = axes_of(target_);
+  target_up_ = target_axes[1];
+  rests_as_person_ = is_person(source_, source_axes);
+  if (rests_as_person_) body_to_avatar_ = target_axes * glm::transpose(source_axes);
+  up_ = up ? UpAxis{*up, UpAxis::By::kAsked}
+           : find_up(motion_, body(), samples_, rests_as_person_ ? std::optional(source_axes[1]) : std::nullopt);
+  if (rests_as_person_ && up_.up == source_axes[1]) {
+    to_avatar_ = body_to_avatar_;
+    return;
+  }
+  // What the skeleton at rest does not tell: the body faces forward in the first frame.
+  glm::dvec3 left(0);
+  for (const BodyPart part : {BodyPart::kUpperLeg, BodyPart::kUpperArm, BodyPart::kShoulder}) {
+    const auto left_joint = find_role(source_, {part, BodySide::kLeft, 0});
+    const auto right_joint = find_role(source_, {part, BodySide::kRight, 0});
+    if (left_joint && right_joint)
+      left += samples_.now.front()[*left_joint].position - samples_.now.front()[*right_joint].position;
+  }
+  const glm::dvec3 fallback = up_.up.z == 0 ? glm::dvec3(0, 0, 1) : glm::dvec3(0, -1, 0);
+  const glm::dvec3 forward = nearest_axis(glm::cross(left, up_.up), up_.up, fallback);
+  to_avatar_ = target_axes * glm::transpose(glm::dmat3(glm::cross(up_.up, forward), up_.up, forward));
+}
+
+/// Returns the joints of the motion that move the avatar's body.
+std::vector<Index> Retargeter::body() const {
+  std::set<Index> joints;
+  for (Index node = 0; node < follows_.size(); ++node)
+    if (follows_[node] && target_.roles[node]) joints.insert(*follows_[node]);
+  return {joints.begin(), joints.end()};
+}
+
 /// Returns the flatter of two rotations of a foot while the motion rests. Some captures (CMU's) rest with spread legs
 /// and feet turned with them, others with feet flat on the floor.
 glm::dquat Retargeter::flatter(Index foot, const glm::dquat& with_leg) const {
   constexpr std::size_t kSamples = 64;
   const glm::dquat turn_to_avatar = glm::normalize(glm::quat_cast(to_avatar_));
+  const glm::dquat turn_back = glm::conjugate(glm::normalize(glm::quat_cast(body_to_avatar_)));
   const std::size_t step = motion_.frame_count / kSamples + 1;
   double lead = 0;
   std::vector<BvhPlace> places;
   for (std::size_t frame = 0; frame < motion_.frame_count; frame += step) {
     bvh_places(motion_, frame, places);
-    const glm::dquat turned = turn_to_avatar * places[*follows_[foot]].rotation * glm::conjugate(turn_to_avatar);
+    const glm::dquat turned = turn_to_avatar * places[*follows_[foot]].rotation * turn_back;
     lead += glm::dot(turned * with_leg * target_up_ - turned * target_up_, target_up_);
   }
   return lead > 0 ? with_leg : glm::dquat(1, 0, 0, 0);
@@ -319,11 +269,111 @@ void Retargeter::align() {
     if (role && follows_[i] && role->part == BodyPart::kFoot) swing[i] = flatter(i, swing[i]);
     if (role && follows_[i] && next.contains(role->part)) {
       const auto end = followed({next.at(role->part), role->side, 0});
-      if (end)
+      if (end) {
         swing[i] = turn(target_.position[*end] - target_.position[i],
-                        to_avatar_ * (source_.position[*follows_[*end]] - source_.position[*follows_[i]]));
+                        body_to_avatar_ * (source_.position[*follows_[*end]] - source_.position[*follows_[i]]));
+        aligned_.emplace_back(i, *end);
+      }
     }
-    at_rest_[i] = swing[i] * rotation_of(rest_[static_cast<Index>(avatar_.node_order[i])]);
+    at_rest_[i] = swing[i] * rest_rotation(i);
+  }
+}
+
+/// Returns the mean direction between two joints of the motion, in the axes of `joint`.
+glm::dvec3 Retargeter::mean_direction(Index joint, Index from, Index to) const {
+  glm::dvec3 sum(0);
+  for (const auto& places : samples_.now)
+    sum += glm::conjugate(places[joint].rotation) * (places[to].position - places[from].position);
+  return sum;
+}
+
+/// Returns the mean rotation from the axes of `reference` to those of `joint`.
+glm::dquat Retargeter::mean_turn(Index joint, Index reference) const {
+  glm::dquat sum(0, 0, 0, 0);
+  for (const auto& places : samples_.now) {
+    const glm::dquat one = glm::conjugate(places[joint].rotation) * places[reference].rotation;
+    sum = sum + (glm::dot(one, sum) < 0 ? -one : one);
+  }
+  return glm::length(sum) > 0 ? glm::normalize(sum) : glm::dquat(1, 0, 0, 0);
+}
+
+/// Returns the joint at which a bone of the avatar ends, if both skeletons have that bone.
+std::optional<Index> Retargeter::bone_end(Index node) const {
+  static const std::map<BodyPart, std::vector<BodyPart>> ends = {
+      {BodyPart::kNeck, {BodyPart::kHead}},         {BodyPart::kShoulder, {BodyPart::kUpperArm}},
+      {BodyPart::kUpperArm, {BodyPart::kLowerArm}}, {BodyPart::kLowerArm, {BodyPart::kHand}},
+      {BodyPart::kUpperLeg, {BodyPart::kLowerLeg}}, {BodyPart::kLowerLeg, {BodyPart::kFoot}},
+      {BodyPart::kFoot, {BodyPart::kToes}},         {BodyPart::kHand, {BodyPart::kMiddle, BodyPart::kIndex}}};
+  const auto& role = target_.roles[node];
+  if (!role) return {};
+  std::vector<BodyRole> candidates;
+  if (role->part == BodyPart::kSpine) {
+    for (int segment = role->segment + 1; segment < static_cast<int>(target_.roles.size()); ++segment)
+      candidates.push_back({BodyPart::kSpine, BodySide::kNone, segment});
+    candidates.push_back({BodyPart::kNeck, BodySide::kNone, 0});
+    candidates.push_back({BodyPart::kHead, BodySide::kNone, 0});
+  } else if (role->segment > 0) {
+    candidates.push_back({role->part, role->side, role->segment + 1});
+  } else if (const auto known = ends.find(role->part); known != ends.end()) {
+    for (const BodyPart part : known->second)
+      candidates.push_back({part, role->side, part == BodyPart::kMiddle || part == BodyPart::kIndex ? 1 : 0});
+  }
+  for (const BodyRole& candidate : candidates)
+    if (const auto end = followed(candidate); end && *follows_[*end] != *follows_[node]) return end;
+  return {};
+}
+
+/// Returns the rotation from the avatar's hips at rest to the axes of the motion's: by the line of the hip joints (or
+/// the shoulders) and the direction of the neck.
+glm::dquat Retargeter::hips_by_frames() const {
+  const Index hips = *followed(kHips);
+  const auto frame = [](const glm::dvec3& left, const glm::dvec3& up) {
+    const glm::dvec3 x = glm::normalize(left);
+    const glm::dvec3 z = glm::normalize(glm::cross(x, up));
+    return glm::dmat3(x, glm::cross(z, x), z);
+  };
+  std::optional<Index> top;
+  for (const BodyPart part : {BodyPart::kNeck, BodyPart::kHead})
+    if (!top) top = followed({part, BodySide::kNone, 0});
+  for (const BodyPart part : {BodyPart::kUpperLeg, BodyPart::kUpperArm}) {
+    const auto left = followed({part, BodySide::kLeft, 0});
+    const auto right = followed({part, BodySide::kRight, 0});
+    if (!top || !left || !right) continue;
+    const glm::dmat3 source = frame(mean_direction(*follows_[hips], *follows_[*right], *follows_[*left]),
+                                    mean_direction(*follows_[hips], *follows_[hips], *follows_[*top]));
+    const glm::dmat3 target =
+        frame(target_.position[*left] - target_.position[*right], target_.position[*top] - target_.position[hips]);
+    const glm::dquat rotation = glm::quat_cast(source * glm::transpose(target));
+    if (std::isfinite(glm::length(rotation))) return glm::normalize(rotation);
+  }
+  throw Error(name_, "its skeleton at rest is no standing person, and hips, neck and legs do not show how it is turned",
+              "export it with a T pose as its rest pose");
+}
+
+/// Turns every joint as its parent is on average over the motion, and then by the shortest way to its bone's direction.
+void Retargeter::align_by_frames() {
+  at_rest_.resize(target_.joints.size());
+  const Index hips = *followed(kHips);
+  // From the avatar's rest to the axes of the joint that the node follows.
+  std::vector<glm::dquat> turned(target_.joints.size());
+  turned[hips] = hips_by_frames();
+  for (Index i = 0; i < target_.joints.size(); ++i) {
+    if (follows_[i] && i != hips) {
+      Index reference = hips;
+      for (int above = target_.joints[i].parent; above >= 0; above = target_.joints[static_cast<Index>(above)].parent)
+        if (follows_[static_cast<Index>(above)]) {
+          reference = static_cast<Index>(above);
+          break;
+        }
+      turned[i] = mean_turn(*follows_[i], *follows_[reference]) * turned[reference];
+      if (const auto end = bone_end(i)) {
+        turned[i] = turn(turned[i] * (target_.position[*end] - target_.position[i]),
+                         mean_direction(*follows_[i], *follows_[i], *follows_[*end])) *
+                    turned[i];
+        aligned_.emplace_back(i, *end);
+      }
+    }
+    at_rest_[i] = turned[i] * rest_rotation(i);
   }
 }
 
@@ -345,31 +395,76 @@ void Retargeter::report(RetargetReport& report) const {
   for (Index node = 0; node < follows_.size(); ++node)
     if (!follows_[node] && moving.contains(avatar_.node_order[node]))
       report.unmatched_nodes.push_back(target_.joints[node].name);
-  report.height = height(motion_, source_, source_up_);
+  report.height = height();
   report.likely_unit = likely_unit(report.height);
+  report.up = up_;
+  report.metres_per_unit = metres_per_unit_;
 }
 
-double Retargeter::metres_per_unit(std::optional<double> asked) const {
-  if (asked) return *asked;
-  const double of_motion = hip_height(source_, source_up_);
-  const double of_avatar = hip_height(target_, target_up_);
+/// Returns the height of the motion's skeleton: at rest, or the lengths of its bones from the feet to the head.
+double Retargeter::height() const {
+  if (!rests_as_person_) {
+    double sum = leg_length(source_);
+    const Index hips = *follows_[*followed(kHips)];
+    for (auto i = find_role(source_, {BodyPart::kHead, BodySide::kNone, 0}); i && *i != hips;) {
+      const int parent = source_.joints[*i].parent;
+      if (parent < 0) break;
+      sum += glm::length(source_.position[*i] - source_.position[static_cast<Index>(parent)]);
+      i = static_cast<Index>(parent);
+    }
+    return sum;
+  }
+  const glm::dvec3 up = glm::transpose(body_to_avatar_) * target_up_;
+  double lowest = std::numeric_limits<double>::infinity();
+  double highest = -lowest;
+  for (Index i = 0; i < source_.position.size(); ++i)
+    for (const glm::dvec3& end : {source_.position[i], source_.position[i] + motion_.ends[i]}) {
+      lowest = std::min(lowest, glm::dot(end, up));
+      highest = std::max(highest, glm::dot(end, up));
+    }
+  return highest - lowest;
+}
+
+double Retargeter::ratio_of_legs() const {
+  const bool by_height = rests_as_person_;
+  const double of_motion =
+      by_height ? hip_height(source_, glm::transpose(body_to_avatar_) * target_up_) : leg_length(source_);
+  const double of_avatar = by_height ? hip_height(target_, target_up_) : leg_length(target_);
   if (of_motion > 0 && of_avatar > 0) return of_avatar / of_motion;
   throw Error(name_, "its hips and feet, or those of the avatar, do not show how tall the body is",
               "give the unit of the motion: 'vestige import --motion FILE --unit cm' (or m, or inch)");
 }
 
-/// Returns the height of the motion's hips at rest. Some files count it from the floor, others from the rest pose.
+/// Returns the height of the motion's hips while its body stands as the avatar does at rest. Files count it from the
+/// floor or from the rest pose; the floor on which the motion happens says which. If neither fits, the lowest joint is
+/// on that floor.
 double Retargeter::reference_height() const {
-  const auto hips = *follows_[*find_role(target_.roles, kHips)];
-  std::vector<BvhPlace> places;
-  bvh_places(motion_, 0, places);
-  const double first = glm::dot(places[hips].position, source_up_);
-  const double standing = hip_height(source_, source_up_);
-  const double at_rest = glm::dot(source_.position[hips], source_up_);
-  double reference = 0;
-  for (const double candidate : {standing, at_rest})
-    if (std::abs(first - candidate) < std::abs(first - reference)) reference = candidate;
-  return reference;
+  constexpr double kFits = 0.05;     // share of the height of the hips
+  constexpr double kOverZero = 0.2;  // share of it: the lowest joint of a body on a floor at 0
+  const Index hips = *followed(kHips);
+  const double floor = floor_level(body(), samples_, up_.up);
+  const auto is_zero = [&](double standing) { return floor > -kFits * standing && floor < kOverZero * standing; };
+  if (rests_as_person_) {
+    const glm::dvec3 up = glm::transpose(body_to_avatar_) * target_up_;
+    const double at_rest = glm::dot(source_.position[*follows_[hips]], up);
+    double lowest = at_rest;
+    for (const Index joint : body())
+      lowest = std::min(
+          {lowest, glm::dot(source_.position[joint], up), glm::dot(source_.position[joint] + motion_.ends[joint], up)});
+    const double standing = at_rest - lowest;
+    const double by_floor = floor + standing;
+    const auto distance = [&](double candidate) { return std::abs(candidate - by_floor); };
+    const double above_zero = distance(at_rest) < distance(standing) ? at_rest : standing;
+    if (is_zero(standing)) return above_zero;
+    return distance(0) < kFits * standing ? 0 : by_floor;
+  }
+  double lowest = std::numeric_limits<double>::infinity();
+  for (Index node = 0; node < follows_.size(); ++node)
+    if (follows_[node] && target_.roles[node]) lowest = std::min(lowest, glm::dot(target_.position[node], target_up_));
+  const double legs = leg_length(source_) / leg_length(target_);
+  const double hips_height = glm::dot(target_.position[hips], target_up_);
+  const double standing = (hips_height - lowest) * legs;
+  return is_zero(standing) && lowest >= 0 ? hips_height * legs : floor + standing;
 }
 
 /// Counts the numbers that `animate` stores: a time with each rotation, and with the hips' position.
@@ -386,7 +481,7 @@ void Retargeter::refuse_too_many_numbers() const {
         "cut the motion into parts, or export it with fewer frames a second");
 }
 
-Animation Retargeter::animate(double metres_per_unit) const {
+Animation Retargeter::animate() const {
   refuse_too_many_numbers();
   Animation animation;
   std::vector<float> times_s;
@@ -396,7 +491,7 @@ Animation Retargeter::animate(double metres_per_unit) const {
       throw Error(name_, fmt::format("the time of frame {} rounds to that of the frame before", frame),
                   "cut the motion into parts");
   }
-  const Index hips = *find_role(target_.roles, kHips);
+  const Index hips = *followed(kHips);
   std::vector<std::optional<Index>> channel_of(target_.joints.size());
   const auto add = [&](Index node, AnimatedProperty property) {
     AnimationChannel channel;
@@ -412,7 +507,7 @@ Animation Retargeter::animate(double metres_per_unit) const {
   const Index travel = add(hips, AnimatedProperty::kTranslation);
 
   const glm::dquat turn_to_avatar = glm::normalize(glm::quat_cast(to_avatar_));
-  const glm::dquat turn_back = glm::conjugate(turn_to_avatar);
+  const glm::dquat turn_back = glm::conjugate(glm::normalize(glm::quat_cast(body_to_avatar_)));
   const glm::dvec3 hips_at_rest = target_.position[hips];
   const int above_hips = target_.joints[hips].parent;
   const glm::dmat4 into_parent =
@@ -439,8 +534,8 @@ Animation Retargeter::animate(double metres_per_unit) const {
       values.insert(values.end(), {local.x, local.y, local.z, local.w});
     }
     const glm::dvec3 position = places[*follows_[hips]].position;
-    if (frame == 0) start = position + (reference - glm::dot(position, source_up_)) * source_up_;
-    const glm::dvec3 wanted = hips_at_rest + metres_per_unit * (to_avatar_ * (position - start));
+    if (frame == 0) start = position + (reference - glm::dot(position, up_.up)) * up_.up;
+    const glm::dvec3 wanted = hips_at_rest + metres_per_unit_ * (to_avatar_ * (position - start));
     const glm::vec3 local(into_parent * glm::dvec4(wanted, 1));
     std::vector<float>& values = animation.channels[travel].values;
     values.insert(values.end(), {local.x, local.y, local.z});
@@ -451,15 +546,47 @@ Animation Retargeter::animate(double metres_per_unit) const {
   return animation;
 }
 
+std::vector<Deviation> Retargeter::deviations(const Animation& animation, bool force) const {
+  std::vector<ComparedDirection> compared;
+  const auto add = [&](Index from, Index to, std::string what, double tolerance_deg) {
+    compared.push_back({what.empty() ? fmt::format("{} to {}", shown_word(source_.joints[*follows_[from]].name),
+                                                   shown_word(source_.joints[*follows_[to]].name))
+                                     : std::move(what),
+                        {*follows_[from], *follows_[to]},
+                        {static_cast<Index>(avatar_.node_order[from]), static_cast<Index>(avatar_.node_order[to])},
+                        tolerance_deg});
+  };
+  for (const auto& [from, to] : aligned_) add(from, to, "", kBoneTolerance_deg);
+  const auto add_pair = [&](BodyPart part, const char* what, double tolerance_deg) {
+    const auto left = followed({part, BodySide::kLeft, 0});
+    const auto right = followed({part, BodySide::kRight, 0});
+    if (left && right) add(*right, *left, what, tolerance_deg);
+  };
+  add_pair(BodyPart::kUpperLeg, "right hip to left hip", 3 * kBoneTolerance_deg);
+  add_pair(BodyPart::kHand, "right hand to left hand", kHandTolerance_deg);
+  const auto head = followed({BodyPart::kHead, BodySide::kNone, 0});
+  const std::string body = "hips to head";
+  if (head) add(*followed(kHips), *head, body, 3 * kBoneTolerance_deg);
+  std::vector<Deviation> found = compare_directions(motion_, avatar_, animation, to_avatar_, compared);
+  const auto leaning = std::ranges::find(found, body, &Deviation::what);
+  if (!force && leaning != found.end() && leaning->degrees > kBodyTolerance_deg)
+    throw Error(name_,
+                fmt::format("frame {}: from hips to head, the avatar points {:.0f} degrees away from the motion",
+                            leaning->frame, leaning->degrees),
+                "check the joints that match ('--verbose' names them), or give --force to accept it");
+  return found;
+}
+
 }  // namespace
 
-Animation retarget(const BvhMotion& motion, const Avatar& avatar, std::optional<double> metres_per_unit,
+Animation retarget(const BvhMotion& motion, const Avatar& avatar, const RetargetOptions& options,
                    const std::string& name, RetargetReport& report) {
-  const Retargeter retargeter(motion, avatar, name);
+  const Retargeter retargeter(motion, avatar, options, name);
   report = {};
   retargeter.report(report);
-  report.metres_per_unit = retargeter.metres_per_unit(metres_per_unit);
-  return retargeter.animate(report.metres_per_unit);
+  Animation animation = retargeter.animate();
+  report.deviations = retargeter.deviations(animation, options.force);
+  return animation;
 }
 
 }  // namespace vestige

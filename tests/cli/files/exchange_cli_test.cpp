@@ -285,6 +285,22 @@ TEST_F(Exchange, MotionCaptureMovesTheBuiltInAvatar) {
   expect_failure("vestige record --animation walk --unit cm -o b.mcap", 2, {"--unit", ".bvh"}, "b.mcap");
 }
 
+TEST_F(Exchange, WhoLiesInMotionCaptureLiesInTheTrace) {
+  // +Z is up, and all bones lie along +X while their rotations are zero.
+  write("lying.bvh", test::made_bvh(test::made_motion("lie"), "z", "x"));
+  const auto motion = json_of("vestige import --motion lying.bvh -o lying.mcap --json -")["motion"];
+  EXPECT_EQ(motion["up"], "+z");
+  EXPECT_EQ(motion["up_by"], "floor");
+  EXPECT_EQ(motion["deviations"].size(), 0U) << motion.dump(1);
+  const auto asked = json_of("vestige import --motion lying.bvh --up y -o standing.mcap --json -")["motion"];
+  EXPECT_EQ(asked["up"], "+y");
+  EXPECT_EQ(asked["up_by"], "flag");
+  const auto recorded = run("vestige record --animation lying.bvh --rate 100 --duration 0.5 --up=-z -o upside.mcap");
+  EXPECT_EQ(recorded.exit_code, 0) << recorded.standard_error;
+  expect_failure("vestige record --animation walk --up z -o b.mcap", 2, {"--up", ".bvh"}, "b.mcap");
+  expect_failure("vestige import --motion lying.bvh --up x -o b.mcap", 2, {"--up"}, "b.mcap");
+}
+
 TEST_F(Exchange, JointsOfAnyNameAreNamedBriefly) {
   std::string walk = kWalk;
   walk.replace(walk.find("mixamorig:Spine"), 15, "\x1b[31mtail" + std::string(100'000, 'x'));

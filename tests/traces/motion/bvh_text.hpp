@@ -40,7 +40,8 @@ inline std::string bvh_frame(const std::string& hips, std::size_t turned = 0, do
   return line + "\n";
 }
 
-// Channels of the person above: Zrotation of the left arm, and of the left thigh.
+// Channels of the person above: Xrotation of the spine, Zrotation of the left arm, and Xrotation of the left thigh.
+inline constexpr std::size_t kSpineX = 7;
 inline constexpr std::size_t kLeftArmZ = 9;
 inline constexpr std::size_t kLeftThighX = 34;
 

@@ -6,9 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "tests/support/test_data.hpp"
 #include "tests/traces/motion/bvh_text.hpp"
+#include "tests/traces/motion/made_motion.hpp"
 #include "traces/base/error.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/motion/body_roles.hpp"
@@ -84,7 +87,7 @@ TEST(Retarget, TheHipsTravelByTheRatioOfTheirHeightsOrInTrueMetres) {
   expect_near(Stage(mannequin(), fitted, 0)["pelvis"], at_rest["pelvis"], 1e-5, "it starts at the avatar's place");
   expect_near(Stage(mannequin(), fitted, 0.5)["pelvis"], at_rest["pelvis"] + ratio * glm::dvec3(0, 10, 100), 1e-5,
               "and travels");
-  const Animation metric = retarget(motion, mannequin(), 0.01, "person.bvh", report);
+  const Animation metric = retarget(motion, mannequin(), {.metres_per_unit = 0.01}, "person.bvh", report);
   expect_near(Stage(mannequin(), metric, 0.5)["pelvis"], at_rest["pelvis"] + glm::dvec3(0, 0.1, 1), 1e-5, "in metres");
 }
 
@@ -166,6 +169,94 @@ TEST(Retarget, RealMotionsStandUprightOnRealAvatars) {
       EXPECT_NEAR(lowest, floor, 0.12 * height) << "feet on the floor";
     }
   }
+}
+
+/// Whatever axis is up and however the skeleton lies at rest: who walks, walks, and who lies, lies.
+TEST(Retarget, PeopleDoWhatTheMotionDoesInEveryConvention) {
+  const Avatar same = test::made_avatar();
+  constexpr double kStature_m = 1.73;
+  for (const std::string motion : {"walk", "lie", "crawl", "handstand"}) {
+    const std::vector<test::MadeFrame> frames = test::made_motion(motion);
+    for (const std::string up : {"y", "z", "-y", "-z"})
+      for (const std::string rest : {"T", "A", "standing", "lying", "x", "mirrored"}) {
+        const std::string name = motion + ", up " + up + ", rest " + rest;
+        SCOPED_TRACE(name);
+        const BvhMotion bvh = parse_bvh(test::made_bvh(frames, up, rest), name);
+        RetargetReport report;
+        const Animation on_same = retarget(bvh, same, {}, name, report);
+        EXPECT_TRUE(report.deviations.empty()) << report.deviations.front().what;
+        EXPECT_NEAR(report.metres_per_unit, 0.01, 1e-4);
+        const Animation on_other = retarget(bvh, mannequin(), {}, name, report);
+        EXPECT_TRUE(report.deviations.empty()) << report.deviations.front().what;
+        double farthest = 0;
+        double most_turned = 0;
+        for (std::size_t k = 0; k < frames.size(); ++k) {
+          const double time_s = double{static_cast<float>(static_cast<double>(k) * bvh.frame_time_s)};
+          const Stage stage(same, on_same, time_s);
+          const Stage other(mannequin(), on_other, time_s);
+          const auto at = [&](const std::string& joint) {
+            const auto& joints = test::made_person();
+            const auto found = std::ranges::find(joints, joint, &test::MadeJoint::name);
+            return frames[k].position[static_cast<std::size_t>(found - joints.begin())];
+          };
+          for (const char* joint : {"Hips", "Head", "Hand_L", "Hand_R", "Foot_L", "Foot_R"})
+            farthest = std::max(farthest, glm::length(stage[joint] - at(joint)));
+          const std::array<std::array<const char*, 4>, 9> bones = {{
+              {"UpperArm_L", "LowerArm_L", "upper_arm_left", "forearm_left"},
+              {"LowerArm_L", "Hand_L", "forearm_left", "hand_left"},
+              {"UpperArm_R", "LowerArm_R", "upper_arm_right", "forearm_right"},
+              {"LowerArm_R", "Hand_R", "forearm_right", "hand_right"},
+              {"UpperLeg_L", "LowerLeg_L", "thigh_left", "shin_left"},
+              {"LowerLeg_L", "Foot_L", "shin_left", "foot_left"},
+              {"UpperLeg_R", "LowerLeg_R", "thigh_right", "shin_right"},
+              {"LowerLeg_R", "Foot_R", "shin_right", "foot_right"},
+              {"Hips", "Head", "pelvis", "head"},
+          }};
+          for (const auto& [from, to, node, end] : bones)
+            most_turned = std::max(
+                most_turned,
+                std::acos(std::min(1.0, glm::dot(glm::normalize(at(to) - at(from)), other.direction(node, end)))));
+        }
+        EXPECT_LT(farthest, 0.05 * kStature_m);
+        EXPECT_LT(glm::degrees(most_turned), 5);
+      }
+  }
+}
+
+TEST(Retarget, ABodyThatCannotBendAsTheMotionDoesIsRefusedUnlessForced) {
+  Avatar stiff = mannequin();
+  for (Node& node : stiff.nodes)
+    if (node.name.ends_with("_spine") || node.name == "neck") node.name = "stick";
+  const BvhMotion motion =
+      person(test::bvh_frame("0 95 0") + test::bvh_frame("0 95 0", test::kSpineX, 20) + test::bvh_frame("0 95 0"), 3);
+  RetargetReport report;
+  retarget(motion, stiff, {}, "nod.bvh", report);
+  ASSERT_FALSE(report.deviations.empty());
+  const auto body = std::ranges::find(report.deviations, "hips to head", &Deviation::what);
+  ASSERT_NE(body, report.deviations.end());
+  EXPECT_NEAR(body->degrees, 18, 4);
+  EXPECT_EQ(body->frame, 1U);
+  const BvhMotion bow = person(test::bvh_frame("0 95 0") + test::bvh_frame("0 95 0", test::kSpineX, 80), 2);
+  try {
+    retarget(bow, stiff, {}, "bow.bvh", report);
+    ADD_FAILURE() << "retargeted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("bow.bvh: frame 1: from hips to head, the avatar points"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("--force"));
+  }
+  retarget(bow, stiff, {.force = true}, "bow.bvh", report);
+  EXPECT_FALSE(report.deviations.empty());
+}
+
+TEST(Retarget, TheAxisThatIsAskedForIsUp) {
+  const BvhMotion motion = parse_bvh(test::made_bvh(test::made_motion("walk"), "y", "x"), "walk.bvh");
+  RetargetReport report;
+  retarget(motion, mannequin(), {}, "walk.bvh", report);
+  EXPECT_EQ(report.up.up, glm::dvec3(0, 1, 0));
+  EXPECT_EQ(report.up.by, UpAxis::By::kGround);
+  const Animation animation = retarget(motion, mannequin(), {.up = glm::dvec3(0, 0, 1)}, "walk.bvh", report);
+  EXPECT_EQ(report.up.by, UpAxis::By::kAsked);
+  EXPECT_GT(std::abs(Stage(mannequin(), animation, 0).direction("pelvis", "head").z), 0.99) << "who walked, lies";
 }
 
 TEST(BodyRoles, AreFoundInTheNamesOfManyPrograms) {
