@@ -46,8 +46,7 @@ std::string describe_count();
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
 /// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit and --up without motion
-/// capture,
-/// --count with colliders from a file, --nodes with colliders that come from no glTF.
+/// capture, --count with colliders from a file, --nodes with colliders that come from no glTF.
 void check_scene_choice(const SceneChoice& choice);
 
 /// If --animation names a motion file, adds the motion to the avatar's animations under that name. `force` is

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <map>
@@ -14,6 +13,7 @@
 
 #include "traces/base/error.hpp"
 #include "traces/motion/compare_directions.hpp"
+#include "traces/motion/joint_matching.hpp"
 #include "traces/motion/skeleton.hpp"
 
 namespace vestige {
@@ -21,7 +21,6 @@ namespace vestige {
 namespace {
 
 using Index = std::size_t;
-using Roles = std::vector<std::optional<BodyRole>>;
 
 // Left hand and right hand must not change sides.
 constexpr double kHandTolerance_deg = 90;
@@ -46,77 +45,6 @@ std::string likely_unit(double height) {
   return {};
 }
 
-/// Finds the joint of the motion that each joint of the avatar follows.
-class Matcher {
- public:
-  Matcher(const Skeleton& motion, const Skeleton& avatar) : motion_(motion), avatar_(avatar) {
-    follows_.resize(avatar.joints.size());
-    taken_.resize(motion.joints.size());
-    match_roles();
-    match_spines();
-    match_names();
-  }
-  const std::vector<std::optional<Index>>& follows() const { return follows_; }
-
- private:
-  void match(Index node, Index joint) {
-    if (!avatar_.usable[node] || follows_[node]) return;
-    follows_[node] = joint;
-    taken_[joint] = true;
-  }
-
-  void match_roles() {
-    for (Index node = 0; node < avatar_.roles.size(); ++node) {
-      const auto& role = avatar_.roles[node];
-      if (!role || role->part == BodyPart::kSpine) continue;
-      if (const auto joint = find_role(motion_, *role)) match(node, *joint);
-    }
-  }
-
-  static std::vector<Index> spine_of(const Roles& roles) {
-    std::map<int, Index> spine;
-    for (Index i = 0; i < roles.size(); ++i)
-      if (roles[i] && roles[i]->part == BodyPart::kSpine) spine.emplace(roles[i]->segment, i);
-    std::vector<Index> joints;
-    joints.reserve(spine.size());
-    for (const auto& [segment, joint] : spine) joints.push_back(joint);
-    return joints;
-  }
-
-  /// Matches the upper end of each spine bone with the bone of the other spine that ends there.
-  void match_spines() {
-    const std::vector<Index> motion = spine_of(motion_.roles);
-    const std::vector<Index> avatar = spine_of(avatar_.roles);
-    for (Index k = 0; !motion.empty() && k < avatar.size(); ++k)
-      match(avatar[k], motion[((k + 1) * motion.size() + avatar.size() - 1) / avatar.size() - 1]);
-  }
-
-  /// Matches joints that are no part of a body (tails, skirts) by equal names, if neither has a role. What is above the
-  /// hips keeps its place: the hips' rotation and travel count in the world.
-  void match_names() {
-    std::vector<bool> is_above_hips(avatar_.joints.size());
-    for (auto i = find_role(avatar_, kHips); i && avatar_.joints[*i].parent >= 0;) {
-      i = static_cast<Index>(avatar_.joints[*i].parent);
-      is_above_hips[*i] = true;
-    }
-    static const std::set<std::string> anyones = {"", "root", "armature", "scene", "reference"};
-    std::map<std::string, Index> by_name;
-    for (Index joint = 0; joint < motion_.joints.size(); ++joint)
-      if (!taken_[joint]) by_name.emplace(plain_joint_name(motion_.joints[joint].name), joint);
-    for (Index node = 0; node < avatar_.joints.size(); ++node) {
-      const std::string name = plain_joint_name(avatar_.joints[node].name);
-      const auto same = by_name.find(name);
-      if (same == by_name.end() || anyones.contains(name) || is_above_hips[node]) continue;
-      if (!taken_[same->second] && !avatar_.roles[node] && !motion_.roles[same->second]) match(node, same->second);
-    }
-  }
-
-  const Skeleton& motion_;
-  const Skeleton& avatar_;
-  std::vector<std::optional<Index>> follows_;
-  std::vector<bool> taken_;
-};
-
 class Retargeter {
  public:
   Retargeter(const BvhMotion& motion, const Avatar& avatar, const RetargetOptions& options, const std::string& name)
@@ -127,7 +55,7 @@ class Retargeter {
         source_(skeleton_of(motion, samples_.now)) {
     world_matrices(avatar, rest_pose(avatar), rest_);
     target_ = skeleton_of(avatar, rest_);
-    follows_ = Matcher(source_, target_).follows();
+    follows_ = match_joints(source_, target_);
     refuse_other_bodies();
     find_axes(options.up);
     metres_per_unit_ = options.metres_per_unit ? *options.metres_per_unit : ratio_of_legs();
@@ -461,7 +389,8 @@ double Retargeter::reference_height() const {
   double lowest = std::numeric_limits<double>::infinity();
   for (Index node = 0; node < follows_.size(); ++node)
     if (follows_[node] && target_.roles[node]) lowest = std::min(lowest, glm::dot(target_.position[node], target_up_));
-  const double legs = leg_length(source_) / leg_length(target_);
+  const bool have_legs = leg_length(source_) > 0 && leg_length(target_) > 0;
+  const double legs = have_legs ? leg_length(source_) / leg_length(target_) : 1 / metres_per_unit_;
   const double hips_height = glm::dot(target_.position[hips], target_up_);
   const double standing = (hips_height - lowest) * legs;
   return is_zero(standing) && lowest >= 0 ? hips_height * legs : floor + standing;
