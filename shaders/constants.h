@@ -26,6 +26,7 @@
 #define VESTIGE_UNIFORM_PALETTE_SIZE 5     // uint, entries; those of the previous frame follow them
 #define VESTIGE_UNIFORM_LEAST_RADIUS 6     // float, metres: the error of a skinned vertex by flushed denormals
 #define VESTIGE_UNIFORM_WORLD_TO_CLIP 7    // mat4, for the drawn scene
+#define VESTIGE_UNIFORM_FIRST_TRIANGLE 8   // int, number of the first triangle of the draw
 
 // How a collider's motion and the moving skin meet (detector/method.hpp).
 #define VESTIGE_METHOD_STATIC 0

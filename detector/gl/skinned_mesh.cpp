@@ -56,6 +56,12 @@ void SkinnedMesh::draw(GLsizei instances) const {
   gl_.DrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr, instances);
 }
 
+void SkinnedMesh::draw_range(std::size_t first, std::size_t count) const {
+  // The offset in the index buffer is passed as a pointer.
+  gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
+                            reinterpret_cast<const void*>(first * sizeof(glm::uvec3)), 1);
+}
+
 void SkinnedMesh::capture(std::vector<glm::vec3>& out) {
   out.resize(vertex_count_);
   const std::size_t bytes = out.size() * sizeof(glm::vec3);
