@@ -5,6 +5,7 @@
 
 #define VESTIGE_BINDING_CAPTURED 2    // a count, and the (segment, triangle) pairs that `geometry` could not reject
 #define VESTIGE_BINDING_CANDIDATES 3  // touched meshlets, and the segments that may meet each (candidates.geom)
+#define VESTIGE_BINDING_QUESTIONS 4   // of the probe of the shaders' arithmetic
 
 #define VESTIGE_ATTRIBUTE_CORNERS 0         // candidates.vert: vec3 a, b, c
 #define VESTIGE_ATTRIBUTE_CORNERS_BEFORE 3  // the same in the previous frame

@@ -99,6 +99,7 @@ class GeometryDetector final : public Detector {
   const char* name() const override { return "geometry"; }
   Method method() const override { return method_; }
   GlInfo gl_info() const override { return context_->info(); }
+  bool skins_in_shader() const override { return true; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
@@ -216,8 +217,16 @@ class GeometryDetector final : public Detector {
 
 std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options) {
+  require_proofs(context->info());
   if (options.skip == Skip::kOn) return make_skipping_geometry_detector(std::move(context), avatar, map, options);
   return std::make_unique<GeometryDetector>(std::move(context), avatar, map, options);
+}
+
+void require_proofs(const GlInfo& gl) {
+  const std::string cause = breaks_proofs(gl.arithmetic);
+  if (!cause.empty())
+    throw Error("--detector geometry", fmt::format("is not exact on {} ({}): {}", gl.context, gl.renderer, cause),
+                "use --detector cpu, which finds the same contacts, or another --context or --device");
 }
 
 }  // namespace vestige
