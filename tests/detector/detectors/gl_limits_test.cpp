@@ -9,7 +9,7 @@
 
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/captured_pairs.hpp"
-#include "tests/support/limited_context.hpp"
+#include "tests/detector/detectors/limited_context.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/small_avatar.hpp"
 
@@ -95,6 +95,48 @@ TEST(SmallViewports, HaveRoomForEveryCollider) {
   ContactRow row;
   paper->detect(frame_through(avatar, 1000), row);
   for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(row[i].hit()) << i;
+}
+
+TEST(DriversThatLinkNoLargeBlocks, AreGivenSmallerOnesAndLoseNoContact) {
+  const Avatar avatar = pile_of(1);
+  const ActuatorMap map;
+  ContactRow row;
+  {
+    const auto paper = make_paper_detector(LimitedContext::make({}, 4), avatar, map, {});
+    for (const std::uint32_t colliders : {100U, 3U, 200U}) {
+      paper->detect(frame_through(avatar, colliders), row);
+      for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(row[i].hit()) << i;
+    }
+  }
+  const auto refused = make_paper_detector(LimitedContext::make({}, 0), avatar, map, {});
+  EXPECT_THAT(test::message_of([&] { refused->detect(frame_through(avatar, 100), row); }),
+              HasSubstr("the driver does not accept a shader"));
+}
+
+TEST(ShaderArithmeticOfThisDriver, IsMeasuredInBothStagesAndBreaksNoProof) {
+  for (const auto make_context : {make_egl_surfaceless_context, make_osmesa_context}) {
+    const auto context = make_context();
+    const std::vector<StageArithmetic>& stages = context->info().arithmetic;
+    ASSERT_EQ(stages.size(), 2U);
+    EXPECT_EQ(stages[0].stage, "vertex");
+    EXPECT_EQ(stages[1].stage, "geometry");
+    for (const StageArithmetic& stage : stages) {
+      EXPECT_EQ(stage.rounding, "nearest even") << stage.misrounded;
+      EXPECT_LE(stage.division_error_ulp, 2.5);
+    }
+    require_proofs(context->info());
+  }
+}
+
+TEST(ShaderArithmeticThatBreaksAProof, RefusesGeometryByNameWithTheCauseAndTheRemedy) {
+  const GlInfo gl = {.context = "egl-device-7",
+                     .renderer = "Chopper",
+                     .version = "4.5",
+                     .vendor = "",
+                     .arithmetic = {{.stage = "vertex", .rounding = "toward zero", .misrounded = "1 + 2 is 2, not 3"}}};
+  EXPECT_THAT(test::message_of([&] { require_proofs(gl); }),
+              ::testing::AllOf(HasSubstr("--detector geometry"), HasSubstr("Chopper"), HasSubstr("toward zero"),
+                               HasSubstr("1 + 2 is 2, not 3"), HasSubstr("--detector cpu")));
 }
 
 }  // namespace

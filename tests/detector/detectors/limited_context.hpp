@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -13,11 +14,12 @@ namespace vestige::test {
 /// Limits that a driver might have, by their GL_MAX_ names. A viewport has both of its sides from one number.
 using Limits = std::map<GLenum, GLint>;
 
-/// An EGL context whose driver says that some of its limits are lower. It clamps viewports, as drivers do. Only one may
-/// live at a time.
+/// An EGL context whose driver says that some of its limits are lower. It clamps viewports, as drivers do. It says that
+/// a program does not link whose head defines a BLOCK_SEGMENTS above `largest_block`. Only one may live at a time.
 class LimitedContext final : public GlContext {
  public:
-  static std::unique_ptr<GlContext> make(Limits limits) {
+  static std::unique_ptr<GlContext> make(Limits limits, int largest_block = 1 << 30) {
+    largest_block_ = largest_block;
     return loaded(std::unique_ptr<GlContext>(new LimitedContext(std::move(limits))), "limited");
   }
   ~LimitedContext() override { leave(); }
@@ -40,6 +42,8 @@ class LimitedContext final : public GlContext {
     if (name == "glGetInteger64v") return reinterpret_cast<void*>(get_integer_64);
     if (name == "glViewport") return reinterpret_cast<void*>(viewport);
     if (name == "glNamedBufferData") return reinterpret_cast<void*>(named_buffer_data);
+    if (name == "glShaderSource") return reinterpret_cast<void*>(shader_source);
+    if (name == "glGetProgramiv") return reinterpret_cast<void*>(get_program);
 #define VESTIGE_TEST_FIND(type, member) \
   if (name == "gl" #member) return reinterpret_cast<void*>(real_->gl().member);
     VESTIGE_GL_FUNCTIONS(VESTIGE_TEST_FIND)
@@ -69,11 +73,25 @@ class LimitedContext final : public GlContext {
     real_functions_->NamedBufferData(buffer, bytes, data, usage);
   }
 
+  static void APIENTRY shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
+    constexpr std::string_view kDefine = "#define BLOCK_SEGMENTS ";
+    const std::string head(texts[0], static_cast<std::size_t>(lengths[0]));
+    const std::size_t place = head.find(kDefine);
+    latest_block_ = place == std::string::npos ? 0 : std::stoi(head.substr(place + kDefine.size()));
+    real_functions_->ShaderSource(shader, count, texts, lengths);
+  }
+  static void APIENTRY get_program(GLuint program, GLenum name, GLint* value) {
+    real_functions_->GetProgramiv(program, name, value);
+    if (name == GL_LINK_STATUS && latest_block_ > largest_block_) *value = GL_FALSE;
+  }
+
   std::unique_ptr<GlContext> real_;
   // Functions of OpenGL have no place for more arguments.
   static inline Limits limits_;
   static inline const GlFunctions* real_functions_ = nullptr;
   static inline GLsizeiptr largest_buffer_bytes_ = 0;
+  static inline int largest_block_ = 0;
+  static inline int latest_block_ = 0;
 };
 
 }  // namespace vestige::test
