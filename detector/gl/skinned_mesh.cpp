@@ -57,9 +57,9 @@ void SkinnedMesh::draw(GLsizei instances) const {
 }
 
 void SkinnedMesh::draw_range(std::size_t first, std::size_t count) const {
-  // The offset in the index buffer is passed as a pointer.
-  gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT,
-                            reinterpret_cast<const void*>(first * sizeof(glm::uvec3)), 1);
+  // OpenGL takes the offset in the index buffer as a pointer.
+  const auto* offset = reinterpret_cast<const void*>(first * sizeof(glm::uvec3));  // NOLINT(performance-no-int-to-ptr)
+  gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT, offset, 1);
 }
 
 void SkinnedMesh::capture(std::vector<glm::vec3>& out) {
