@@ -11,6 +11,7 @@
 #include "detector/contact.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
+#include "detector/shader_arithmetic.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
@@ -59,6 +60,8 @@ struct GlInfo {
   std::string version;
   std::string vendor;
   bool software = false;  ///< true if the renderer runs on the CPU
+  /// What was measured of the shaders' arithmetic, by stage. Empty if the driver refused the probe.
+  std::vector<StageArithmetic> arithmetic = {};
 };
 
 /// Finds, for every collider, where its segment first meets the avatar's skin.
@@ -76,6 +79,8 @@ class Detector {
   /// Frames for `detect` must come from a FrameBuilder with this method.
   virtual Method method() const { return Method::kStatic; }
   virtual GlInfo gl_info() const { return {}; }
+  /// Whether `skinned_vertices` come from a shader. If not, they are the CPU's.
+  virtual bool skins_in_shader() const { return false; }
   /// The number of the avatar's triangles that are left out because they are proven to fire nothing (`on_mapped_skin`).
   virtual std::size_t triangles_left_out() const { return 0; }
 

@@ -23,6 +23,16 @@ bool within_reach(const glm::vec3& v) {
   return size.x < kLargestCollider_m && size.y < kLargestCollider_m && size.z < kLargestCollider_m;
 }
 
+using IdPlace = std::vector<std::uint32_t>::const_iterator;
+
+/// Returns the place of `id` in the ascending `ids`, or their end. Looks at `next` first: ids mostly come in ascending
+/// order.
+IdPlace place_of(const std::vector<std::uint32_t>& ids, std::uint32_t id, IdPlace next) {
+  if (next != ids.end() && *next == id) return next;
+  const auto place = std::ranges::lower_bound(ids, id);
+  return place != ids.end() && *place == id ? place : ids.end();
+}
+
 }  // namespace
 
 FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method)
@@ -99,17 +109,21 @@ void FrameBuilder::follow_origin(const Pose& pose) {
 
 void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
   frame_.segments.clear();
-  auto place = collider_ids_.begin();  // samples mostly come in ascending order, so try the next one first
+  IdPlace next = collider_ids_.begin();
+  for (const std::uint32_t id : trace_frame.teleported) {
+    const IdPlace place = place_of(collider_ids_, id, next);
+    if (place == collider_ids_.end()) continue;
+    columns_[static_cast<std::size_t>(place - collider_ids_.begin())].seen_in = 0;
+    next = place + 1;
+  }
+  next = collider_ids_.begin();
   for (const ColliderSample& sample : trace_frame.colliders) {
-    if (place == collider_ids_.end() || *place != sample.id) {
-      place = std::ranges::lower_bound(collider_ids_, sample.id);
-      if (place == collider_ids_.end() || *place != sample.id) continue;
-    }
+    const IdPlace place = place_of(collider_ids_, sample.id, next);
+    if (place == collider_ids_.end()) continue;
+    next = place + 1;
     const auto column = static_cast<std::size_t>(place - collider_ids_.begin());
     Column& before = columns_[column];
-    const bool has_start = before.seen_in != 0 && before.seen_in == trace_frame.index &&
-                           std::ranges::find(trace_frame.teleported, sample.id) == trace_frame.teleported.end();
-    if (has_start) {
+    if (before.seen_in != 0 && before.seen_in == trace_frame.index) {
       const Segment segment = {static_cast<std::uint32_t>(column), glm::vec3(before.position_m - frame_.origin_m),
                                glm::vec3(sample.position_m - frame_.origin_m)};
       if (within_reach(segment.start) && within_reach(segment.end)) {
@@ -120,7 +134,6 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
       }
     }
     before = {sample.position_m, trace_frame.index + 1};
-    ++place;
   }
   if (!std::ranges::is_sorted(frame_.segments, {}, &Segment::column))
     std::ranges::sort(frame_.segments, {}, &Segment::column);

@@ -57,7 +57,8 @@ class FrameBuilder {
  private:
   struct Column {
     glm::dvec3 position_m = glm::dvec3(0);
-    std::uint64_t seen_in = 0;  ///< 1 + index of the last frame that had the collider; 0 if no frame had it
+    /// 1 + index of the last frame that had the collider; 0 if no frame had it, or if it teleported since.
+    std::uint64_t seen_in = 0;
   };
 
   void follow_origin(const Pose& pose);

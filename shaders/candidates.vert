@@ -88,7 +88,7 @@ void main() {
   low = min(low, low_before);
   high = max(high, high_before);
 #else
-  vec3 moved = ((a - a_before) + (b - b_before) + (c - c_before)) * kThird;
+  precise vec3 moved = ((a - a_before) + (b - b_before) + (c - c_before)) * kThird;
   vec2 slab_start = slab - dot(normal, moved);
   low -= max(moved, vec3(0.0)) + kMargin * largest;
   high += max(-moved, vec3(0.0)) + kMargin * largest;

@@ -5,6 +5,7 @@
 
 #define VESTIGE_BINDING_CAPTURED 2    // a count, and the (segment, triangle) pairs that `geometry` could not reject
 #define VESTIGE_BINDING_CANDIDATES 3  // touched meshlets, and the segments that may meet each (candidates.geom)
+#define VESTIGE_BINDING_QUESTIONS 4   // of the probe of the shaders' arithmetic
 
 #define VESTIGE_ATTRIBUTE_CORNERS 0         // candidates.vert: vec3 a, b, c
 #define VESTIGE_ATTRIBUTE_CORNERS_BEFORE 3  // the same in the previous frame
@@ -26,6 +27,7 @@
 #define VESTIGE_UNIFORM_PALETTE_SIZE 5     // uint, entries; those of the previous frame follow them
 #define VESTIGE_UNIFORM_LEAST_RADIUS 6     // float, metres: the error of a skinned vertex by flushed denormals
 #define VESTIGE_UNIFORM_WORLD_TO_CLIP 7    // mat4, for the drawn scene
+#define VESTIGE_UNIFORM_FIRST_TRIANGLE 8   // int, number of the first triangle of the draw
 
 // How a collider's motion and the moving skin meet (detector/method.hpp).
 #define VESTIGE_METHOD_STATIC 0

@@ -7,7 +7,8 @@
 // `static` and `carried`, segment against resting triangle, the hull is their Minkowski difference, and the converse
 // holds too.) So any axis m on which all six lie on one side of 0 proves a miss: the separating axis theorem. The axes
 // are those that suffice for a segment and a triangle, and for both in one plane. An axis need not be accurate. It only
-// has to be the same for all six, so its own rounding does not affect the proof.
+// has to be the same for all six, so its own rounding does not affect the proof. `precise` keeps a compiler from
+// computing it, or anything that it is made of, in several ways.
 //
 // The bound. Let u = 2^-24 (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 3.1). A coordinate of X_i
 // is the difference of a vertex and an end of the segment. It lies within radius + u |X_i| of the true one. m . X_i, in
@@ -47,6 +48,7 @@ layout(std430, binding = VESTIGE_BINDING_CAPTURED) buffer Captured {
 
 layout(location = VESTIGE_UNIFORM_SEGMENT_COUNT) uniform int segment_count;  // in this block
 layout(location = VESTIGE_UNIFORM_FIRST_SEGMENT) uniform int first_segment;
+layout(location = VESTIGE_UNIFORM_FIRST_TRIANGLE) uniform int first_triangle;
 
 const float kLargest = 67108864.0;
 const float kSlack = 1.001;
@@ -62,12 +64,13 @@ float together;  // error of a determinant if two or three corners move
 #endif
 
 #if METHOD == VESTIGE_METHOD_CARRIED
-vec3 carried;         // the mean displacement, which moves the segment's start
-vec3 carried_radius;  // largest distance from the true displacement
+precise vec3 carried;  // the mean displacement, which moves the segment's start
+vec3 carried_radius;   // largest distance from the true displacement
 #endif
 
-// Returns whether all corners are proven to lie on one side of the origin along `axis`.
-bool apart_along(vec3 axis) {
+// Returns whether all corners are proven to lie on one side of the origin along the axis a x b.
+bool apart_along_cross(vec3 a, vec3 b) {
+  precise vec3 axis = cross(a, b);
   vec3 magnitude = abs(axis);
   bool above = true;
   bool below = true;
@@ -92,8 +95,8 @@ void set_relative(int i, vec3 vertex, vec3 vertex_radius, vec3 end, vec3 end_rad
 // most gamma_5 times the sum of the magnitudes of its six products. The rounding of the cross products is at most
 // gamma_2 times the sum of theirs.
 void add_determinant(int x, int y, int z, inout float sum, inout float error) {
-  vec3 plus_yz = relative[y].yzx * relative[z].zxy;
-  vec3 minus_yz = relative[y].zxy * relative[z].yzx;
+  precise vec3 plus_yz = relative[y].yzx * relative[z].zxy;
+  precise vec3 minus_yz = relative[y].zxy * relative[z].yzx;
   vec3 size_yz = abs(plus_yz) + abs(minus_yz);
   precise vec3 cross_yz = plus_yz - minus_yz;
   vec3 x_size = abs(relative[x]);
@@ -135,7 +138,8 @@ bool never_in_one_plane() {
 }
 #endif
 
-bool proven_apart(vec3 start, vec3 end) {
+bool proven_apart(vec3 segment_start, vec3 end) {
+  precise vec3 start = segment_start;
   vec3 start_radius = vec3(0.0);
 #if METHOD == VESTIGE_METHOD_CARRIED
   start += carried;
@@ -153,14 +157,14 @@ bool proven_apart(vec3 start, vec3 end) {
   for (int i = 0; i < 6; ++i) largest = max(largest, max(abs(relative[i]), relative_radius[i]));
   if (!(largest.x <= kLargest && largest.y <= kLargest && largest.z <= kLargest)) return false;
 
-  vec3 ab = relative[4] - relative[3];
-  vec3 bc = relative[5] - relative[4];
-  vec3 ca = relative[3] - relative[5];
-  vec3 normal = cross(ab, ca);
-  vec3 way = (relative[3] - relative[0]) + (relative[4] - relative[1]) + (relative[5] - relative[2]);
-  return apart_along(normal) || apart_along(cross(way, ab)) || apart_along(cross(way, bc)) ||
-         apart_along(cross(way, ca)) || apart_along(cross(normal, ab)) || apart_along(cross(normal, bc)) ||
-         apart_along(cross(normal, ca)) || apart_along(cross(normal, way))
+  precise vec3 ab = relative[4] - relative[3];
+  precise vec3 bc = relative[5] - relative[4];
+  precise vec3 ca = relative[3] - relative[5];
+  precise vec3 normal = cross(ab, ca);
+  precise vec3 way = (relative[3] - relative[0]) + (relative[4] - relative[1]) + (relative[5] - relative[2]);
+  return apart_along_cross(ab, ca) || apart_along_cross(way, ab) || apart_along_cross(way, bc) ||
+         apart_along_cross(way, ca) || apart_along_cross(normal, ab) || apart_along_cross(normal, bc) ||
+         apart_along_cross(normal, ca) || apart_along_cross(normal, way)
 #if METHOD == VESTIGE_METHOD_CCD
          || never_in_one_plane()
 #endif
@@ -169,13 +173,13 @@ bool proven_apart(vec3 start, vec3 end) {
 
 void capture(int segment) {
   uint place = atomicAdd(captured_count, 1u);
-  if (place < capacity) captured[place] = uvec2(first_segment + segment, gl_PrimitiveIDIn);
+  if (place < capacity) captured[place] = uvec2(first_segment + segment, first_triangle + gl_PrimitiveIDIn);
 }
 
 void main() {
   // A box around everything that the triangle covers. The margin includes the rounding of the box, u |corner|.
-  vec3 low = vec3(3.402823466e38);
-  vec3 high = -low;
+  precise vec3 low = vec3(3.402823466e38);
+  precise vec3 high = -low;
   for (int i = 0; i < 3; ++i) {
     vec3 margin = kSlack * skinned[i].radius + kFourUlps * abs(skinned[i].position);
     low = min(low, skinned[i].position - margin);

@@ -15,5 +15,6 @@ extern const std::string_view kCandidatesVert;
 extern const std::string_view kCandidatesGeom;
 extern const std::string_view kSceneVert;
 extern const std::string_view kSceneFrag;
+extern const std::string_view kProbeGlsl;
 
 }  // namespace vestige::shaders

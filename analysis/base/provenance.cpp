@@ -74,11 +74,16 @@ nlohmann::ordered_json to_json(const Machine& machine) {
 
 nlohmann::ordered_json to_json(const GlInfo& gl) {
   if (gl.context.empty()) return nullptr;
-  return {{"renderer", gl.renderer},
-          {"version", gl.version},
-          {"context", gl.context},
-          {"vendor", gl.vendor},
-          {"software", gl.software}};
+  nlohmann::ordered_json arithmetic = nlohmann::ordered_json::array();
+  for (const StageArithmetic& stage : gl.arithmetic)
+    arithmetic.push_back({{"stage", stage.stage},
+                          {"rounding", stage.rounding},
+                          {"keeps_denormal_operands", stage.keeps_denormal_operands},
+                          {"keeps_denormal_results", stage.keeps_denormal_results},
+                          {"contracts", stage.contracts},
+                          {"division_error_ulp", stage.division_error_ulp}});
+  return {{"renderer", gl.renderer}, {"version", gl.version},   {"context", gl.context},
+          {"vendor", gl.vendor},     {"software", gl.software}, {"arithmetic", arithmetic}};
 }
 
 nlohmann::ordered_json to_json(const Avatar& avatar) {

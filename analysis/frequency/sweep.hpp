@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analysis/base/statistics.hpp"
@@ -14,6 +15,9 @@
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
+
+/// Returns whether a detector promises the same bits as all others that do (detector/CONTRACT.md, 10).
+bool promises_same_bits(std::string_view detector);
 
 /// A detector that is measured against others.
 struct Contestant {
@@ -45,6 +49,8 @@ struct SweepPoint {
   std::uint64_t contacts = 0;     ///< contacts in one pass
   DetectorWork work;              ///< work of one pass
   std::string texture_hash;       ///< hash of one pass
+  /// Results of one pass (one for each collider and frame) whose hit or actuator differs from the reference.
+  std::uint64_t disagreements = 0;
 
   std::uint64_t skipped_timed = 0;    ///< timed frames that bounds alone showed to be without contact
   double skipped_us = 0;              ///< total duration of these frames
@@ -71,9 +77,10 @@ struct SweepSeries {
 /// If the scene is drawn during the measurement of a contestant, it is measured in stretches of a fifth of a second, so
 /// that the renderer's 90 Hz take effect. Outside of these stretches, the scene is not drawn.
 ///
-/// Every timed row is compared with a row that was computed separately with all planes that the hash needs. Throws
-/// `Error` if hits or actuators of the two rows differ. `progress` receives the share done, 0 … 1, and returns false to
-/// stop. A stopped sweep returns what was measured so far, which may lack repetitions.
+/// Every timed row is compared with a reference: a row that was computed separately, with all planes that the hash
+/// needs and with the most colliders. If hits or actuators of the two rows differ, the point counts it, or, if the
+/// detector promises the same bits, this function throws `Error`. `progress` receives the share done, 0 … 1, and
+/// returns false to stop. A stopped sweep returns what was measured so far, which may lack repetitions.
 std::vector<SweepSeries> run_sweep(TraceReader& trace, const Avatar& avatar, const std::vector<Contestant>& contestants,
                                    const SweepSettings& settings, const std::function<bool(double)>& progress);
 

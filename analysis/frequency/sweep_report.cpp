@@ -92,7 +92,8 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"pairs_meeting", point.work.pairs_meeting},
           {"triangles_tested", point.work.triangles_tested},
           {"meshlets_skinned", point.work.meshlets_skinned},
-          {"texture_hash", point.texture_hash}};
+          {"texture_hash", point.texture_hash},
+          {"disagreements", point.disagreements}};
 }
 
 /// Empty where nothing was drawn.
@@ -113,6 +114,20 @@ std::string rendered_table(std::span<const SweepSeries> series) {
     }
   }
   return table + "\n";
+}
+
+/// Returns one line for each point that disagreed with its reference.
+std::string disagreement_lines(std::span<const SweepSeries> series) {
+  std::string lines;
+  for (const SweepSeries& one : series)
+    for (const SweepPoint& point : one.points)
+      if (point.disagreements != 0)
+        fmt::format_to(std::back_inserter(lines),
+                       "{} with {} collider{}: {} of {} results differ from its own with other planes and the most "
+                       "colliders.\n",
+                       name_of(one), point.colliders, point.colliders == 1 ? "" : "s", point.disagreements,
+                       point.pass_frames * point.colliders);
+  return lines.empty() ? "" : "\n" + lines;
 }
 
 }  // namespace
@@ -185,6 +200,7 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
   table += "Hz: frames / total time, whole round trip (95 % bootstrap interval).\n";
   for (const Rival& rival : kRivals) table += ratio_table(series, rival);
   table += rendered_table(series);
+  table += disagreement_lines(series);
   return table;
 }
 
@@ -192,7 +208,7 @@ std::vector<std::string> disagreements(std::span<const SweepSeries> series) {
   std::vector<std::string> found;
   const SweepSeries* first = nullptr;
   for (const SweepSeries& one : series) {
-    if (one.detector != "cpu" && one.detector != "geometry") continue;
+    if (!promises_same_bits(one.detector)) continue;
     if (first == nullptr) first = &one;
     for (std::size_t p = 0; p < one.points.size(); ++p) {
       const std::string& expected = first->points[p].texture_hash;

@@ -20,7 +20,8 @@ std::string frame_times_csv(std::span<const SweepSeries> series);
 
 /// Returns a table for people: the frequency of every series at every count, beside the paper's figures. Below, the
 /// table says how many times as fast each series is as the fastest `paper` and the fastest Embree detector, where they
-/// were measured without a renderer. It also says how many frames of the scene were drawn.
+/// were measured without a renderer. It also says how many frames of the scene were drawn, and which points disagreed
+/// with their reference.
 std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed);
 
 /// Returns one sentence, with cause and remedy, for each series whose repetitions scatter too much to be quoted.

@@ -18,10 +18,11 @@ void SkinningError::add(const Avatar& avatar, const TraceFrame& trace_frame, con
   skin_reference(avatar, trace_frame.pose, frame.origin_m, reference);
   detector.skinned_vertices(frame, own);
   skin_vertices(avatar, frame.palette, contract);
+  if (detector.skins_in_shader() && !identical) identical = 0;
   for (std::size_t i = 0; i < reference.size(); ++i) {
     largest_m = std::max(largest_m, glm::distance(glm::dvec3(own[i]), reference[i]));
     largest_cpu_m = std::max(largest_cpu_m, glm::distance(glm::dvec3(contract[i]), reference[i]));
-    if (own[i] == contract[i]) ++identical;
+    if (identical && own[i] == contract[i]) ++*identical;
   }
   vertices += reference.size();
   ++frames;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "detector/detector.hpp"
 #include "traces/scene/avatar.hpp"
@@ -13,8 +14,9 @@ namespace vestige {
 struct SkinningError {
   std::uint64_t frames = 0;
   std::uint64_t vertices = 0;  ///< vertices compared, over all frames
-  /// Vertices whose position equals the contract's fp32 skinning.
-  std::uint64_t identical = 0;
+  /// Vertices whose position equals the contract's fp32 skinning. Absent if the CPU skinned them: then nothing was
+  /// compared.
+  std::optional<std::uint64_t> identical;
   double largest_m = 0;      ///< largest distance to the double reference
   double largest_cpu_m = 0;  ///< largest distance of the contract's fp32 skinning to the double reference
   double height_m = 0;       ///< longest side of the avatar's box, in the double reference

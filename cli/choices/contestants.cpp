@@ -6,6 +6,7 @@
 
 #include "cli/options.hpp"
 #include "detector/detectors/embree_detector.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {
@@ -69,7 +70,10 @@ std::vector<Contestant> make_contestants(const ContestantChoice& choice, const A
     for (const std::string& context :
          needs_opengl(detector) ? parse_list(choice.contexts) : std::vector<std::string>{""}) {
       try {
-        if (needs_opengl(detector)) make_gl_context(context_kind(context), choice.choice.device);
+        if (needs_opengl(detector)) {
+          const auto gl = make_gl_context(context_kind(context), choice.choice.device);
+          if (detector == "geometry") require_proofs(gl->info());
+        }
         if (is_embree(detector)) require_embree();
       } catch (const Error& error) {
         if (choice.choice.device >= 0 && needs_opengl(detector)) throw;  // who names a device means no other

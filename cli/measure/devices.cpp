@@ -76,6 +76,8 @@ nlohmann::ordered_json to_json(const Offer& offer) {
     json.update(vestige::to_json(offer.info));
     for (const GlLimit& limit : offer.limits) json["limits"][limit.name] = limit.value;
     const std::string lacks = shortcomings(offer);
+    const std::string broken = breaks_proofs(offer.info.arithmetic);
+    json["geometry_refused"] = broken.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(broken);
     json["paper_lacks"] = lacks.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(lacks);
   } else {
     json["unusable"] = offer.unusable;
@@ -100,6 +102,19 @@ std::string describe(const EglDevice& device) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
+/// Returns one line for each stage.
+std::vector<std::string> describe(const std::vector<StageArithmetic>& stages) {
+  std::vector<std::string> lines;
+  const auto add = [&](const std::string& name, const StageArithmetic& stage) {
+    const bool keeps = stage.keeps_denormal_operands && stage.keeps_denormal_results;
+    lines.push_back(fmt::format("{} shaders: round {}{}, {} denormals, {}, divide to {:.2g} ulp", name,
+                                stage.misrounded.empty() ? "to " : "", stage.rounding, keeps ? "keep" : "flush",
+                                stage.contracts ? "use fma" : "no fma", stage.division_error_ulp));
+  };
+  for (const StageArithmetic& stage : stages) add(stage.stage, stage);
+  return lines;
+}
+
 std::string describe(const Offer& offer, const std::string& automatic) {
   const auto line = [](const std::string& text) { return text.empty() ? "" : fmt::format("{:20}{}\n", "", text); };
   const char mark = offer.name == automatic ? '*' : ' ';
@@ -108,11 +123,14 @@ std::string describe(const Offer& offer, const std::string& automatic) {
     text = fmt::format("{} {:<16}  {}: {}\n", mark, offer.name, offer.info.software ? "software" : "hardware",
                        offer.info.renderer);
     text += line(fmt::format("OpenGL {}; vendor {}", offer.info.version, offer.info.vendor));
+    for (const std::string& measured : describe(offer.info.arithmetic)) text += line(measured);
   } else {
     text = fmt::format("{} {:<16}  unusable: {}\n", mark, offer.name, offer.unusable);
   }
   if (offer.device) text += line("EGL device: " + describe(*offer.device));
   const std::string lacks = shortcomings(offer);
+  const std::string broken = breaks_proofs(offer.info.arithmetic);
+  if (!broken.empty()) text += line("'geometry' is refused there: " + broken);
   return text + line(lacks.empty() ? "" : "'paper' cannot run there: " + lacks);
 }
 

@@ -183,13 +183,14 @@ nlohmann::ordered_json to_json(const Comparison& comparison, const std::string& 
 }
 
 nlohmann::ordered_json to_json(const SkinningError& skinning) {
-  return {{"frames", skinning.frames},
-          {"vertices", skinning.vertices},
-          {"identical_to_cpu", skinning.identical},
-          {"largest_error_m", skinning.largest_m},
-          {"largest_error_cpu_m", skinning.largest_cpu_m},
-          {"height_m", skinning.height_m},
-          {"largest_error_of_height", skinning.largest_m / skinning.height_m}};
+  return {
+      {"frames", skinning.frames},
+      {"vertices", skinning.vertices},
+      {"identical_to_cpu", skinning.identical ? nlohmann::ordered_json(*skinning.identical) : nlohmann::ordered_json()},
+      {"largest_error_m", skinning.largest_m},
+      {"largest_error_cpu_m", skinning.largest_cpu_m},
+      {"height_m", skinning.height_m},
+      {"largest_error_of_height", skinning.largest_m / skinning.height_m}};
 }
 
 /// Whether the GPU passes pairs on to the CPU, which is worth a line.
@@ -275,10 +276,12 @@ std::string summary(const ReplayResult& result, const Run& run) {
   if (detector.triangles_left_out() != 0)
     text += fmt::format("left out: {} of {} triangles, which no actuator covers\n", detector.triangles_left_out(),
                         run.trace.avatar.triangles.size());
-  text += fmt::format(
-      "skinning: at most {:.2g} of the avatar's height from the double-precision reference; {} of {} "
-      "vertices have the same bits as on the CPU\n",
-      result.skinning.largest_m / result.skinning.height_m, result.skinning.identical, result.skinning.vertices);
+  text += fmt::format("skinning by {}: at most {:.2g} of the avatar's height from the double-precision reference{}\n",
+                      detector.skins_in_shader() ? "a shader" : "the CPU",
+                      result.skinning.largest_m / result.skinning.height_m,
+                      result.skinning.identical ? fmt::format("; {} of {} vertices have the same bits as on the CPU",
+                                                              *result.skinning.identical, result.skinning.vertices)
+                                                : "");
   if (captures(detector))
     text += fmt::format("captured {} of {} pairs; {} of these pairs touch\n", result.work.pairs_captured,
                         result.work.pairs_tested, result.work.pairs_meeting);

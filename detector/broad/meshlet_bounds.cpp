@@ -143,7 +143,8 @@ glm::vec4 prepare(std::span<const SkinMatrix> palette, const std::vector<RestBox
     const glm::vec4 of_entry = t.magnitude[0] * extent.half_extent.x + t.magnitude[1] * extent.half_extent.y +
                                t.magnitude[2] * extent.half_extent.z + magnitude(t.column[3]);
     for (int axis = 0; axis < 3; ++axis)
-      if (!(of_entry[axis] <= reach[axis])) reach[axis] = of_entry[axis];  // once NaN, it stays NaN
+      // Once `reach` is NaN, it stays NaN: then no comparison with it is true.
+      if (of_entry[axis] > reach[axis] || std::isnan(of_entry[axis])) reach[axis] = of_entry[axis];
   }
   return reach;
 }

@@ -99,6 +99,7 @@ class GeometryDetector final : public Detector {
   const char* name() const override { return "geometry"; }
   Method method() const override { return method_; }
   GlInfo gl_info() const override { return context_->info(); }
+  bool skins_in_shader() const override { return true; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
@@ -107,20 +108,19 @@ class GeometryDetector final : public Detector {
     gl_.UseProgram(program_.name());
     upload_palette(frame, program_);
     upload_segments(frame);
-    do {
-      captured_.begin();
-      draw(frame.segments.size());
-    } while (!captured_.read(pairs_));
-    check_gl(gl_, "capturing pairs");
-
-    for (const CapturedPair& pair : pairs_) {
-      const Segment& segment = frame.segments[pair.segment];
-      const MovingCorners corners = skin_corners(avatar_, frame, method_, pair.triangle);
-      finder_.offer(frame, corners, segment, pair.triangle, row[segment.column]);
-    }
+    std::uint64_t pairs_captured = 0;
+    captured_.capture(
+        avatar_.triangles.size(), frame.segments.size(),
+        [&](std::size_t first, std::size_t count) { draw(frame.segments.size(), first, count); },
+        [&](const CapturedPair& pair) {
+          const Segment& segment = frame.segments[pair.segment];
+          const MovingCorners corners = skin_corners(avatar_, frame, method_, pair.triangle);
+          finder_.offer(frame, corners, segment, pair.triangle, row[segment.column]);
+          ++pairs_captured;
+        });
     return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
             .triangles_tested = avatar_.triangles.size(),
-            .pairs_captured = pairs_.size(),
+            .pairs_captured = pairs_captured,
             .pairs_meeting = finder_.take_meeting(),
             .unsure = finder_.take_unsure()};
   }
@@ -182,7 +182,9 @@ class GeometryDetector final : public Detector {
     segments_.upload(gpu_segments_.data(), gpu_segments_.size() * sizeof(GpuSegment), GL_STREAM_DRAW);
   }
 
-  void draw(std::size_t segments) {
+  /// Draws `triangles` triangles from `first_triangle` on against all segments.
+  void draw(std::size_t segments, std::size_t first_triangle, std::size_t triangles) {
+    gl_.ProgramUniform1i(program_.name(), VESTIGE_UNIFORM_FIRST_TRIANGLE, static_cast<GLint>(first_triangle));
     for (std::size_t first = 0; first < segments; first += kBlockSegments) {
       gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_SEGMENTS, segments_.name(),
                           static_cast<GLintptr>(first * sizeof(GpuSegment)),
@@ -190,7 +192,7 @@ class GeometryDetector final : public Detector {
       gl_.ProgramUniform1i(program_.name(), VESTIGE_UNIFORM_SEGMENT_COUNT,
                            static_cast<GLint>(std::min(segments - first, kBlockSegments)));
       gl_.ProgramUniform1i(program_.name(), VESTIGE_UNIFORM_FIRST_SEGMENT, static_cast<GLint>(first));
-      mesh_.draw(1);
+      mesh_.draw_range(first_triangle, triangles);
     }
   }
 
@@ -209,15 +211,22 @@ class GeometryDetector final : public Detector {
   std::optional<GlProgram> skinning_program_;
   std::vector<SkinMatrix> gpu_palette_;
   std::vector<GpuSegment> gpu_segments_;
-  std::vector<CapturedPair> pairs_;
 };
 
 }  // namespace
 
 std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options) {
+  require_proofs(context->info());
   if (options.skip == Skip::kOn) return make_skipping_geometry_detector(std::move(context), avatar, map, options);
   return std::make_unique<GeometryDetector>(std::move(context), avatar, map, options);
+}
+
+void require_proofs(const GlInfo& gl) {
+  const std::string cause = breaks_proofs(gl.arithmetic);
+  if (!cause.empty())
+    throw Error("--detector geometry", fmt::format("is not exact on {} ({}): {}", gl.context, gl.renderer, cause),
+                "use --detector cpu, which finds the same contacts, or another --context or --device");
 }
 
 }  // namespace vestige

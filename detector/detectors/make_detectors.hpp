@@ -24,8 +24,11 @@ std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context
                                               const ActuatorMap& map, const DetectorOptions& options);
 
 /// A geometry shader proves misses and captures the pairs that it cannot prove to miss. The CPU decides those pairs
-/// exactly. Needs OpenGL 4.5. Throws `Error` with the driver's own message otherwise.
+/// exactly. Needs OpenGL 4.5. Throws `Error` with the driver's own message otherwise, and as `require_proofs` does.
 std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options);
+
+/// Throws `Error` with the measured cause if the proofs of `geometry` do not hold with the arithmetic of this driver.
+void require_proofs(const GlInfo& gl);
 
 }  // namespace vestige

@@ -75,6 +75,7 @@ class PaperDetector final : public Detector {
 
   const char* name() const override { return "paper"; }
   GlInfo gl_info() const override { return context_->info(); }
+  bool skins_in_shader() const override { return true; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     context_->make_current();
@@ -82,8 +83,8 @@ class PaperDetector final : public Detector {
     upload_frame(frame);
     texture_.begin(frame.columns);
 
+    const GLuint program = program_for(frame.segments.size()).name();
     const std::size_t block = block_for(frame.segments.size());
-    const GLuint program = program_for(block).name();
     gl_.UseProgram(program);
     gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_SEGMENT_COUNT, static_cast<GLint>(frame.segments.size()));
     gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_TEXTURE_COLUMNS, texture_.width());
@@ -153,7 +154,21 @@ class PaperDetector final : public Detector {
     return std::min(std::bit_ceil(std::max<std::size_t>(segments, 1)), largest_block_);
   }
 
-  const GlProgram& program_for(std::size_t block) {
+  /// Returns the program for so many segments. If the driver refuses it, tries blocks of half the size, which every
+  /// later call uses too: a driver may link less than its limits allow.
+  const GlProgram& program_for(std::size_t segments) {
+    for (;;) {
+      const std::size_t block = block_for(segments);
+      try {
+        return program_of(block);
+      } catch (const Error&) {
+        if (block == 1) throw;
+        largest_block_ = block / 2;
+      }
+    }
+  }
+
+  const GlProgram& program_of(std::size_t block) {
     auto& program = programs_[static_cast<std::size_t>(std::countr_zero(block))];
     if (!program) {
       program.emplace(gl_, head(block),

@@ -53,6 +53,7 @@ static_assert(sizeof(Block) ==
 
 /// The slots and segments that one draw tests. A slot is a meshlet with all of its triangles.
 struct Draw {
+  std::size_t first_slot = 0;  ///< number of its first slot in the frame
   std::size_t slots = 0;
   std::size_t segments = 0;
 };
@@ -121,12 +122,10 @@ class SkippingGeometryDetector final : public Detector {
     skin_touched(frame, work);
     fill_slots(frame);
     upload();
-    do {
-      captured_.begin();
-      draw();
-    } while (!captured_.read(pairs_));
-    check_gl(gl_, "capturing pairs");
-    for (const CapturedPair& pair : pairs_) work.pairs_captured += decide(frame, pair, row);
+    captured_.capture(
+        draws_.size(), kBlockSegments * kMeshletTriangles,
+        [this](std::size_t first, std::size_t count) { draw(first, count); },
+        [&](const CapturedPair& pair) { work.pairs_captured += decide(frame, pair, row); });
     work.pairs_meeting = finder_.take_meeting();
     work.unsure = finder_.take_unsure();
     return work;
@@ -179,7 +178,7 @@ class SkippingGeometryDetector final : public Detector {
       const std::span<const std::uint32_t> numbers = candidates_.segments(touched[i]);
       for (std::size_t offset = 0; offset < numbers.size();) {
         if (draws_.empty() || draws_.back().slots == kBlockSlots || draws_.back().segments == kBlockSegments) {
-          draws_.emplace_back();
+          draws_.push_back({.first_slot = draws_.empty() ? 0 : draws_.back().first_slot + draws_.back().slots});
           if (gpu_blocks_.size() < draws_.size()) gpu_blocks_.resize(draws_.size());
         }
         Draw& draw = draws_.back();
@@ -218,14 +217,12 @@ class SkippingGeometryDetector final : public Detector {
                    GL_STREAM_DRAW);
   }
 
-  void draw() {
-    std::size_t first_slot = 0;
-    for (std::size_t i = 0; i < draws_.size(); ++i) {
+  void draw(std::size_t first, std::size_t count) {
+    for (std::size_t i = first; i < first + count; ++i) {
       gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_CANDIDATES, blocks_.name(),
                           static_cast<GLintptr>(i * sizeof(Block)), static_cast<GLsizeiptr>(sizeof(Block)));
-      gl_.DrawArrays(GL_POINTS, static_cast<GLint>(first_slot * kMeshletTriangles),
+      gl_.DrawArrays(GL_POINTS, static_cast<GLint>(draws_[i].first_slot * kMeshletTriangles),
                      static_cast<GLsizei>(draws_[i].slots * kMeshletTriangles));
-      first_slot += draws_[i].slots;
     }
   }
 
@@ -262,7 +259,6 @@ class SkippingGeometryDetector final : public Detector {
   std::vector<Draw> draws_;
   std::vector<Block> gpu_blocks_;       ///< one for each draw
   std::vector<glm::vec3> gpu_corners_;  ///< for the triangles of each slot
-  std::vector<CapturedPair> pairs_;
 };
 
 }  // namespace

@@ -10,6 +10,18 @@
 
 namespace vestige {
 
+namespace {
+
+/// Returns the most pixels along a side of everything that the collision texture is made of or drawn through.
+std::size_t largest_side(const GlFunctions& gl) {
+  std::array<GLint, 2> viewport = {};
+  gl.GetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+  return static_cast<std::size_t>(
+      std::min({gl_limit(gl, GL_MAX_TEXTURE_SIZE), gl_limit(gl, GL_MAX_RENDERBUFFER_SIZE), viewport[0], viewport[1]}));
+}
+
+}  // namespace
+
 void CollisionTexture::begin(std::size_t texels) {
   if (texels > texels_ || framebuffer_ == 0) create(texels);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
@@ -40,7 +52,7 @@ void CollisionTexture::read(std::size_t plane_index, std::vector<std::uint32_t>&
 
 void CollisionTexture::create(std::size_t texels) {
   release();
-  const auto side = static_cast<std::size_t>(gl_limit(gl_, GL_MAX_TEXTURE_SIZE));
+  const std::size_t side = largest_side(gl_);
   const std::size_t wanted = std::max<std::size_t>(texels, 1);
   const std::size_t columns = std::min(wanted, side);
   const std::size_t rows = (wanted + columns - 1) / columns;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <utility>
 
+#include "detector/gl/arithmetic_probe.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {
@@ -59,8 +60,12 @@ std::unique_ptr<GlContext> GlContext::loaded(std::unique_ptr<GlContext> context,
   VESTIGE_GL_FUNCTIONS(VESTIGE_GL_LOAD)
 #undef VESTIGE_GL_LOAD
   const std::string renderer = text_of(functions.GetString(GL_RENDERER));
-  context->info_ = {std::move(name), renderer, text_of(functions.GetString(GL_VERSION)),
-                    text_of(functions.GetString(GL_VENDOR)), is_software_renderer(renderer)};
+  context->info_ = {std::move(name),
+                    renderer,
+                    text_of(functions.GetString(GL_VERSION)),
+                    text_of(functions.GetString(GL_VENDOR)),
+                    is_software_renderer(renderer),
+                    {}};
   GLint major = 0;
   GLint minor = 0;
   functions.GetIntegerv(GL_MAJOR_VERSION, &major);
@@ -68,6 +73,11 @@ std::unique_ptr<GlContext> GlContext::loaded(std::unique_ptr<GlContext> context,
   if (major * 10 + minor < 45)
     throw Error(context->info_.context, fmt::format("offers OpenGL {}.{} ({}); 4.5 is needed", major, minor, renderer),
                 "use a newer driver, or another --context");
+  try {
+    context->info_.arithmetic = probe_arithmetic(functions);
+  } catch (const Error&) {
+    // A driver that refuses the probe will refuse the detectors' shaders too, and say why.
+  }
   return context;
 }
 

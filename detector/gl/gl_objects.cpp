@@ -71,7 +71,8 @@ GlProgram::GlProgram(const GlFunctions& gl, std::string_view head, std::initiali
     gl_.LinkProgram(name_);
     GLint linked = GL_FALSE;
     gl_.GetProgramiv(name_, GL_LINK_STATUS, &linked);
-    if (linked != GL_TRUE) failure = info_log(name_, gl_.GetProgramiv, gl_.GetProgramInfoLog);
+    if (linked != GL_TRUE)
+      failure = fmt::format("linking: {}", info_log(name_, gl_.GetProgramiv, gl_.GetProgramInfoLog));
   }
   for (const GLuint shader : shaders) gl_.DeleteShader(shader);  // kept alive by the program
   if (failure.empty()) return;

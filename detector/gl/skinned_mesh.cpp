@@ -56,6 +56,12 @@ void SkinnedMesh::draw(GLsizei instances) const {
   gl_.DrawElementsInstanced(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr, instances);
 }
 
+void SkinnedMesh::draw_range(std::size_t first, std::size_t count) const {
+  // OpenGL takes the offset in the index buffer as a pointer.
+  const auto* offset = reinterpret_cast<const void*>(first * sizeof(glm::uvec3));  // NOLINT(performance-no-int-to-ptr)
+  gl_.DrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(3 * count), GL_UNSIGNED_INT, offset, 1);
+}
+
 void SkinnedMesh::capture(std::vector<glm::vec3>& out) {
   out.resize(vertex_count_);
   const std::size_t bytes = out.size() * sizeof(glm::vec3);

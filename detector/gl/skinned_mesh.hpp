@@ -23,6 +23,9 @@ class SkinnedMesh {
   /// Draws all triangles. The mesh must be bound.
   void draw(GLsizei instances) const;
 
+  /// Draws `count` triangles from number `first` on, once. The mesh must be bound. gl_PrimitiveIDIn counts from 0.
+  void draw_range(std::size_t first, std::size_t count) const;
+
   /// Runs the current program over all vertices and reads back its transform feedback. The program must be linked to
   /// capture one vec3. Some framebuffer must be bound: a draw without one fails in a surfaceless context.
   void capture(std::vector<glm::vec3>& out);

@@ -51,6 +51,18 @@ TEST_F(FrameBuilderTest, TestsNothingAfterAGapOrATeleport) {
   EXPECT_EQ(builder.next(frame_at(3, {{3, {0, 0, 1}}, {7, {0, 0, 2}}})).segments.size(), 2U);
 }
 
+TEST_F(FrameBuilderTest, KnowsATeleportInWhateverOrderIdsComeAndPassesOverUnknownIds) {
+  FrameBuilder builder(avatar_, ids_);
+  const std::vector<ColliderSample> colliders = {{9, {0, 0, 0}}, {3, {0, 0, 0}}, {5, {0, 0, 0}}, {7, {0, 0, 0}}};
+  builder.next(frame_at(0, colliders));
+  TraceFrame second = frame_at(1, colliders);
+  second.teleported = {100, 9, 5, 3, 9};
+  const DetectorFrame& frame = builder.next(second);
+  ASSERT_EQ(frame.segments.size(), 1U);
+  EXPECT_EQ(frame.segments[0].column, 1U);
+  EXPECT_EQ(builder.next(frame_at(2, colliders)).segments.size(), 3U);
+}
+
 TEST_F(FrameBuilderTest, TestsNothingAcrossFramesThatADamagedTraceLost) {
   FrameBuilder builder(avatar_, ids_);
   builder.next(frame_at(0, {{3, {0, 0, 0}}}));

@@ -103,6 +103,20 @@ TEST(Claims, SayWhoWritesTheSameTexture) {
                        "by `ccd`"));
 }
 
+TEST(Claims, CompareVerticesWithTheCpusOnlyIfAShaderSkinnedThem) {
+  auto paper = test::replay("paper", gl("softpipe"), "a");
+  paper["skinning"]["largest_error_of_height"] = 2e-7;
+  auto skipping = test::replay("geometry", gl("softpipe"), "b");
+  skipping["skip"] = "on";
+  auto newer = skipping;
+  newer["skinning"]["identical_to_cpu"] = nullptr;
+  EXPECT_THAT(texts_of({result("1.json", paper), result("2.json", skipping), result("3.json", newer)}),
+              Contains(HasSubstr("1e-07 on the CPU; 2e-07 on softpipe (software), with the CPU's bits in 5 of 5")));
+  skipping["skip"] = "off";
+  EXPECT_THAT(texts_of({result("1.json", paper), result("2.json", skipping)}),
+              Contains(HasSubstr("2e-07 on softpipe (software), with the CPU's bits in 10 of 10")));
+}
+
 TEST(Claims, SumAStressUpAndTakeItsOriginFromTheRunBesideIt) {
   const auto row = [](const char* detector, const char* family, int missed) {
     return nlohmann::json{{"detector", detector}, {"name", family},   {"method", "static"},

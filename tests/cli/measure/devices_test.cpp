@@ -32,7 +32,7 @@ TEST_F(Devices, AreListedWithLimitsInAHundredColumns) {
   EXPECT_EQ(list.exit_code, 0);
   EXPECT_THAT(list.standard_output,
               AllOf(HasSubstr("egl-surfaceless"), HasSubstr("osmesa"), HasSubstr("* marks the context"),
-                    HasSubstr("points from a geometry shader")));
+                    HasSubstr("points from a geometry shader"), HasSubstr("vertex shaders: round to nearest even")));
   std::istringstream lines(list.standard_output);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 100U) << line;
 }
@@ -49,6 +49,27 @@ TEST_F(Devices, SayWhichContextAutoTakesWhetherItIsSoftwareAndThatPaperCanRun) {
   EXPECT_GE(osmesa["limits"]["geometry_output_vertices"], 256);
   EXPECT_GE(osmesa["limits"]["texture_side"], 4096);
   EXPECT_EQ(find(json, "egl-device-0")["egl_device"]["number"], 0);
+  ASSERT_EQ(osmesa["arithmetic"].size(), 2U);
+  EXPECT_EQ(osmesa["arithmetic"][1]["stage"], "geometry");
+  EXPECT_EQ(osmesa["arithmetic"][1]["rounding"], "nearest even");
+  EXPECT_TRUE(osmesa["geometry_refused"].is_null());
+  EXPECT_EQ(replay["gl"]["arithmetic"], json["auto"]["arithmetic"]);
+}
+
+/// What the CPU skinned is not compared with the CPU.
+TEST_F(Devices, AreComparedWithTheCpuOnlyWhereAShaderSkins) {
+  ASSERT_EQ(run("vestige record --count 5 --rate 60 --duration 0.1 -o t.mcap").exit_code, 0);
+  const auto identical = [&](const std::string& detector) {
+    return json_of("vestige replay t.mcap --json - --detector " + detector)["skinning"]["identical_to_cpu"];
+  };
+  EXPECT_TRUE(identical("cpu").is_null());
+  EXPECT_TRUE(identical("geometry").is_null());
+  EXPECT_GT(identical("geometry --skip off"), 0);
+  EXPECT_GT(identical("paper"), 0);
+  EXPECT_THAT(run("vestige replay t.mcap --detector geometry").standard_output,
+              AllOf(HasSubstr("skinning by the CPU"), testing::Not(HasSubstr("same bits as on the CPU"))));
+  EXPECT_THAT(run("vestige replay t.mcap --detector paper").standard_output,
+              AllOf(HasSubstr("skinning by a shader"), HasSubstr("same bits as on the CPU")));
 }
 
 TEST_F(Devices, ThatCannotBeMadeAreListedWithTheReason) {

@@ -199,6 +199,35 @@ TEST(MeshletBounds, AreNoneWhereAPaletteMayOverflowOrAWeightIsNegative) {
   EXPECT_TRUE(inside(far, box()));
 }
 
+TEST(MeshletBounds, AreNoneWhereverInAPaletteSomethingIsNoNumber) {
+  constexpr int kEntries = 21;
+  test::RandomRig rig({.seed = 3, .triangles = 400, .entries = kEntries, .influences = 4});
+  const Meshlets meshlets(rig.avatar);
+  MeshletBounds bounds(rig.avatar, meshlets);
+  DetectorFrame frame;
+  frame.palette = frame.palette_before = rig.palette();
+  const auto root_is_bounded = [&](Method method) {
+    bounds.begin(frame, method);
+    SkinBox root;
+    bounds.boxes(meshlets.levels() - 1, 0, std::span(&root, 1));
+    return !inside(glm::vec3(1e30F, -1e30F, 1e30F), root);
+  };
+  for (const Method method : kMethods) {
+    EXPECT_TRUE(root_is_bounded(method));
+    for (std::vector<SkinMatrix>* palette : {&frame.palette, &frame.palette_before}) {
+      if (method == Method::kStatic && palette == &frame.palette_before) continue;  // not read
+      for (std::size_t entry = 0; entry < kEntries; ++entry)
+        for (std::size_t column = 0; column < 4; ++column)
+          for (int axis = 0; axis < 3; ++axis) {
+            float& number = (*palette)[entry].column[column][axis];
+            const float kept = std::exchange(number, std::numeric_limits<float>::quiet_NaN());
+            EXPECT_FALSE(root_is_bounded(method)) << "entry " << entry << ", column " << column << ", axis " << axis;
+            number = kept;
+          }
+    }
+  }
+}
+
 TEST(SkinVertices, HaveTheBitsOfSkinVertexOnEveryInstructionSet) {
   test::on_every_simd_target([](const char* target) {
     SCOPED_TRACE(target);

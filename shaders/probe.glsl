@@ -1,0 +1,41 @@
+// Answers the questions of detector/shader_arithmetic.hpp, in the stage that is compiled: VERTEX, or a geometry stage
+// after a vertex stage that does nothing. The operands come from a buffer, so that no compiler computes the answers. The
+// answers are `precise`, as is everything that the proofs of `geometry` depend on.
+
+#ifdef GEOMETRY_FOLLOWS
+void main() {}
+#else
+
+#if !VERTEX
+layout(points) in;
+layout(points, max_vertices = 1) out;
+#endif
+
+layout(std140, binding = VESTIGE_BINDING_QUESTIONS) uniform Questions {
+  uvec4 questions[QUESTIONS];  // bits of a, b and c, and the operation
+};
+
+out float probe_answer;
+
+float answer(uvec4 question) {
+  float a = uintBitsToFloat(question.x);
+  float b = uintBitsToFloat(question.y);
+  float c = uintBitsToFloat(question.z);
+  precise float result = 0.0;
+  if (question.w == 0u) result = a + b;
+  if (question.w == 1u) result = a - b;
+  if (question.w == 2u) result = a * b;
+  if (question.w == 3u) result = a / b;
+  if (question.w == 4u) result = a * b + c;
+  return result;
+}
+
+void main() {
+#if VERTEX
+  probe_answer = answer(questions[gl_VertexID]);
+#else
+  probe_answer = answer(questions[gl_PrimitiveIDIn]);
+  EmitVertex();
+#endif
+}
+#endif

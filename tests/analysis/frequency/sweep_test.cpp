@@ -1,0 +1,68 @@
+// A detector whose result depends on what it was compiled for.
+
+#include "analysis/frequency/sweep.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "analysis/frequency/sweep_report.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/traces/trace_file/trace_fixture.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Finds the first collider's contact with the planes of the hash only.
+class Fickle final : public Detector {
+ public:
+  explicit Fickle(PlaneSet planes) : planes_(planes) {}
+  const char* name() const override { return "fickle"; }
+  DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
+    row.assign(frame.columns, Contact());
+    if (planes_ == kHashedPlanes) row[0].triangle = 0;
+    return {};
+  }
+  void skinned_vertices(const DetectorFrame& /*frame*/, std::vector<glm::vec3>& out) override { out.clear(); }
+
+ private:
+  PlaneSet planes_;
+};
+
+class SweptFickleDetector : public ::testing::Test {
+ protected:
+  SweptFickleDetector() { test::write_trace(path_, 5, test::steady_options()); }
+  ~SweptFickleDetector() override { std::filesystem::remove(path_); }
+
+  std::vector<SweepSeries> sweep_as(const std::string& detector) {
+    TraceReader trace(path_);
+    const Contestant fickle = {detector, Skip::kOff, [](PlaneSet planes) { return std::make_unique<Fickle>(planes); }};
+    return run_sweep(trace, avatar_, {fickle}, {.counts = {1, 2}, .runs = 1, .min_time_s = 0},
+                     [](double) { return true; });
+  }
+
+  const Avatar avatar_ = test::skeleton(test::kNodes);
+  const std::filesystem::path path_ = std::filesystem::path(::testing::TempDir()) / "fickle.mcap";
+};
+
+TEST_F(SweptFickleDetector, ThatPromisesNoBitsIsCountedNotRefused) {
+  std::vector<SweepSeries> series = sweep_as("paper");
+  const auto json = to_json(series, 1)[0]["points"];
+  EXPECT_EQ(json[0]["disagreements"], 4);
+  EXPECT_EQ(json[1]["disagreements"], 4);
+  EXPECT_THAT(sweep_table(series, 1), HasSubstr("paper with 2 colliders: 4 of 8 results differ"));
+  for (SweepPoint& point : series[0].points) point.disagreements = 0;
+  EXPECT_THAT(sweep_table(series, 1), Not(HasSubstr("differ")));
+}
+
+TEST_F(SweptFickleDetector, ThatPromisesTheSameBitsEndsTheSweep) {
+  EXPECT_THAT(test::message_of([&] { sweep_as("geometry"); }), HasSubstr("gave other contacts"));
+}
+
+}  // namespace
+}  // namespace vestige

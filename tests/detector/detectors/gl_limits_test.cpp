@@ -1,0 +1,143 @@
+// Drivers whose limits are low: nothing is lost, or an error says what does not fit.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "detector/detectors/make_detectors.hpp"
+#include "detector/gl/captured_pairs.hpp"
+#include "tests/detector/detectors/limited_context.hpp"
+#include "tests/support/message_of.hpp"
+#include "tests/support/small_avatar.hpp"
+
+namespace vestige {
+namespace {
+
+using test::LimitedContext;
+using ::testing::HasSubstr;
+
+/// Triangles above each other, and segments that pass through all of them.
+Avatar pile_of(std::uint32_t triangle_count) {
+  std::vector<glm::vec3> vertices;
+  std::vector<glm::uvec3> triangles;
+  for (std::uint32_t i = 0; i < triangle_count; ++i) {
+    for (const glm::vec2 corner : {glm::vec2(0, 0), glm::vec2(1, 0), glm::vec2(0, 1)})
+      vertices.emplace_back(corner.x, corner.y, 0.001F * static_cast<float>(i));
+    triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  return test::rigid_avatar(vertices, triangles);
+}
+
+DetectorFrame frame_through(const Avatar& pile, std::uint32_t segment_count) {
+  std::vector<Segment> segments;
+  for (std::uint32_t i = 0; i < segment_count; ++i) {
+    const float x = 0.4F * static_cast<float>(i) / static_cast<float>(segment_count);
+    segments.push_back({i, {x, 0.3F, 1}, {x, 0.3F, -1}});
+  }
+  return test::frame_of(pile, segments);
+}
+
+constexpr GLint kHeadBytes = 8;
+constexpr GLint kPairBytes = 8;
+
+TEST(SmallStorageBlocks, LoseNoPairAndAreNeverExceeded) {
+  constexpr GLint kLimit = kHeadBytes + kPairBytes * 12288;  // what one draw of `--skip on` can capture
+  const Avatar pile = pile_of(300);
+  const ActuatorMap map;
+  const DetectorFrame frame = frame_through(pile, 100);
+  for (const Skip skip : {Skip::kOff, Skip::kOn}) {
+    const auto geometry = make_geometry_detector(LimitedContext::make({{GL_MAX_SHADER_STORAGE_BLOCK_SIZE, kLimit}}),
+                                                 pile, map, {Surface::kAll, PlaneSet(), Method::kStatic, skip});
+    ContactRow row;
+    for (int i = 0; i < 2; ++i) {  // growing, and grown
+      const DetectorWork work = geometry->detect(frame, row);
+      EXPECT_EQ(work.pairs_captured, 300U * 100U);
+      EXPECT_EQ(work.pairs_meeting, 300U * 100U);
+      for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 299U);
+    }
+    EXPECT_LE(LimitedContext::largest_buffer_bytes(), kLimit);
+  }
+}
+
+TEST(SmallStorageBlocks, ThatCannotHoldThePairsOfOneTriangleAreNamed) {
+  const Avatar pile = pile_of(3);
+  const ActuatorMap map;
+  const auto geometry =
+      make_geometry_detector(LimitedContext::make({{GL_MAX_SHADER_STORAGE_BLOCK_SIZE, kHeadBytes + kPairBytes * 100}}),
+                             pile, map, {Surface::kAll, PlaneSet(), Method::kStatic, Skip::kOff});
+  ContactRow row;
+  EXPECT_EQ(geometry->detect(frame_through(pile, 100), row).pairs_meeting, 300U);
+  EXPECT_THAT(test::message_of([&] { geometry->detect(frame_through(pile, 101), row); }),
+              HasSubstr("101 pairs of segment and triangle do not fit"));
+}
+
+TEST(CapturedPairs, AreDrawnInRangesWhoseCountCannotWrap) {
+  const auto context = make_egl_surfaceless_context();
+  CapturedPairs captured(current_gl(*context));
+  std::vector<std::size_t> firsts;
+  captured.capture(
+      7, std::size_t{1} << 30,
+      [&](std::size_t first, std::size_t count) {
+        firsts.push_back(first);
+        EXPECT_LT(count << 30, std::size_t{1} << 32);
+      },
+      [](const CapturedPair&) { FAIL() << "nothing was drawn"; });
+  EXPECT_THAT(firsts, ::testing::ElementsAre(0, 3, 6));
+}
+
+TEST(SmallViewports, HaveRoomForEveryCollider) {
+  const Avatar avatar = pile_of(1);
+  const ActuatorMap map;
+  const auto paper = make_paper_detector(LimitedContext::make({{GL_MAX_VIEWPORT_DIMS, 64}}), avatar, map, {});
+  ContactRow row;
+  paper->detect(frame_through(avatar, 1000), row);
+  for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(row[i].hit()) << i;
+}
+
+TEST(DriversThatLinkNoLargeBlocks, AreGivenSmallerOnesAndLoseNoContact) {
+  const Avatar avatar = pile_of(1);
+  const ActuatorMap map;
+  ContactRow row;
+  {
+    const auto paper = make_paper_detector(LimitedContext::make({}, 4), avatar, map, {});
+    for (const std::uint32_t colliders : {100U, 3U, 200U}) {
+      paper->detect(frame_through(avatar, colliders), row);
+      for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(row[i].hit()) << i;
+    }
+  }
+  const auto refused = make_paper_detector(LimitedContext::make({}, 0), avatar, map, {});
+  EXPECT_THAT(test::message_of([&] { refused->detect(frame_through(avatar, 100), row); }),
+              HasSubstr("the driver does not accept a shader"));
+}
+
+TEST(ShaderArithmeticOfThisDriver, IsMeasuredInBothStagesAndBreaksNoProof) {
+  for (const auto make_context : {make_egl_surfaceless_context, make_osmesa_context}) {
+    const auto context = make_context();
+    const std::vector<StageArithmetic>& stages = context->info().arithmetic;
+    ASSERT_EQ(stages.size(), 2U);
+    EXPECT_EQ(stages[0].stage, "vertex");
+    EXPECT_EQ(stages[1].stage, "geometry");
+    for (const StageArithmetic& stage : stages) {
+      EXPECT_EQ(stage.rounding, "nearest even") << stage.misrounded;
+      EXPECT_LE(stage.division_error_ulp, 2.5);
+    }
+    require_proofs(context->info());
+  }
+}
+
+TEST(ShaderArithmeticThatBreaksAProof, RefusesGeometryByNameWithTheCauseAndTheRemedy) {
+  const GlInfo gl = {.context = "egl-device-7",
+                     .renderer = "Chopper",
+                     .version = "4.5",
+                     .vendor = "",
+                     .arithmetic = {{.stage = "vertex", .rounding = "toward zero", .misrounded = "1 + 2 is 2, not 3"}}};
+  EXPECT_THAT(test::message_of([&] { require_proofs(gl); }),
+              ::testing::AllOf(HasSubstr("--detector geometry"), HasSubstr("Chopper"), HasSubstr("toward zero"),
+                               HasSubstr("1 + 2 is 2, not 3"), HasSubstr("--detector cpu")));
+}
+
+}  // namespace
+}  // namespace vestige

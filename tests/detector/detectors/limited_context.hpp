@@ -1,0 +1,97 @@
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "detector/gl/gl_context.hpp"
+
+namespace vestige::test {
+
+/// Limits that a driver might have, by their GL_MAX_ names. A viewport has both of its sides from one number.
+using Limits = std::map<GLenum, GLint>;
+
+/// An EGL context whose driver says that some of its limits are lower. It clamps viewports, as drivers do. It says that
+/// a program does not link whose head defines a BLOCK_SEGMENTS above `largest_block`. Only one may live at a time.
+class LimitedContext final : public GlContext {
+ public:
+  static std::unique_ptr<GlContext> make(Limits limits, int largest_block = 1 << 30) {
+    largest_block_ = largest_block;
+    return loaded(std::unique_ptr<GlContext>(new LimitedContext(std::move(limits))), "limited");
+  }
+  ~LimitedContext() override { leave(); }
+
+  /// The largest buffer that was ever made in the latest of these contexts.
+  static GLsizeiptr largest_buffer_bytes() { return largest_buffer_bytes_; }
+
+ private:
+  explicit LimitedContext(Limits limits) : real_(make_egl_surfaceless_context()) {
+    limits_ = std::move(limits);
+    real_functions_ = &real_->gl();
+    largest_buffer_bytes_ = 0;
+  }
+
+  void bind() override { real_->make_current(); }
+  void unbind() override {}  // the next context takes its place
+  void* address_of(const char* function) const override {
+    const std::string_view name = function;
+    if (name == "glGetIntegerv") return reinterpret_cast<void*>(get_integer);
+    if (name == "glGetInteger64v") return reinterpret_cast<void*>(get_integer_64);
+    if (name == "glViewport") return reinterpret_cast<void*>(viewport);
+    if (name == "glNamedBufferData") return reinterpret_cast<void*>(named_buffer_data);
+    if (name == "glShaderSource") return reinterpret_cast<void*>(shader_source);
+    if (name == "glGetProgramiv") return reinterpret_cast<void*>(get_program);
+#define VESTIGE_TEST_FIND(type, member) \
+  if (name == "gl" #member) return reinterpret_cast<void*>(real_->gl().member);
+    VESTIGE_GL_FUNCTIONS(VESTIGE_TEST_FIND)
+#undef VESTIGE_TEST_FIND
+    return nullptr;
+  }
+
+  static void APIENTRY get_integer(GLenum name, GLint* value) {
+    real_functions_->GetIntegerv(name, value);
+    const auto limit = limits_.find(name);
+    if (limit == limits_.end()) return;
+    value[0] = limit->second;
+    if (name == GL_MAX_VIEWPORT_DIMS) value[1] = limit->second;
+  }
+  static void APIENTRY get_integer_64(GLenum name, GLint64* value) {
+    real_functions_->GetInteger64v(name, value);
+    if (const auto limit = limits_.find(name); limit != limits_.end()) value[0] = limit->second;
+  }
+
+  static void APIENTRY viewport(GLint x, GLint y, GLsizei width, GLsizei height) {
+    const auto limit = limits_.find(GL_MAX_VIEWPORT_DIMS);
+    const GLsizei most = limit == limits_.end() ? std::max(width, height) : limit->second;
+    real_functions_->Viewport(x, y, std::min(width, most), std::min(height, most));
+  }
+  static void APIENTRY named_buffer_data(GLuint buffer, GLsizeiptr bytes, const void* data, GLenum usage) {
+    largest_buffer_bytes_ = std::max(largest_buffer_bytes_, bytes);
+    real_functions_->NamedBufferData(buffer, bytes, data, usage);
+  }
+
+  static void APIENTRY shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
+    constexpr std::string_view kDefine = "#define BLOCK_SEGMENTS ";
+    const std::string head(texts[0], static_cast<std::size_t>(lengths[0]));
+    const std::size_t place = head.find(kDefine);
+    latest_block_ = place == std::string::npos ? 0 : std::stoi(head.substr(place + kDefine.size()));
+    real_functions_->ShaderSource(shader, count, texts, lengths);
+  }
+  static void APIENTRY get_program(GLuint program, GLenum name, GLint* value) {
+    real_functions_->GetProgramiv(program, name, value);
+    if (name == GL_LINK_STATUS && latest_block_ > largest_block_) *value = GL_FALSE;
+  }
+
+  std::unique_ptr<GlContext> real_;
+  // Functions of OpenGL have no place for more arguments.
+  static inline Limits limits_;
+  static inline const GlFunctions* real_functions_ = nullptr;
+  static inline GLsizeiptr largest_buffer_bytes_ = 0;
+  static inline int largest_block_ = 0;
+  static inline int latest_block_ = 0;
+};
+
+}  // namespace vestige::test
