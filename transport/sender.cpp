@@ -100,7 +100,7 @@ void Sender::run() {
   } catch (...) {
     failure_ = std::current_exception();
     try {
-      sink_.send_off(next_sequence(nullptr));
+      send_all_off();
     } catch (const std::exception&) {
       // The first failure tells more.
     }
@@ -134,8 +134,7 @@ bool Sender::has_changed() {
 void Sender::look_for_life(Clock::time_point now) {
   const bool deserted = now > Clock::time_point(Clock::duration(alive_)) + options_.deserted;
   if (deserted && !deserted_ && linked_ && has_state_) {
-    sink_.send_off(next_sequence(nullptr));
-    note_sent();
+    send_all_off();
     // Called last, because a stopped terminal would block here while the motors keep running.
     on_event_(fmt::format("{}: the playback has stopped; all actuators are off until it continues", sink_.name()));
   }
@@ -279,6 +278,23 @@ void Sender::wait_for_last_answer(Clock::duration patience) {
   }
 }
 
+/// A board that knows only states stays off after the first of the two frames. The other frame also closes what is not
+/// part of a state, such as actuators beyond it.
+Sender::OffFrames Sender::send_all_off() {
+  OffFrames frames;
+  if (has_state_) {
+    ActuatorFrame zeros = state_;
+    std::ranges::fill(zeros.duty, std::uint8_t{0});
+    frames.zeros = next_sequence(nullptr);
+    sink_.send(zeros, *frames.zeros);
+    note_sent();
+  }
+  frames.off = next_sequence(nullptr);
+  sink_.send_off(frames.off);
+  note_sent();
+  return frames;
+}
+
 void Sender::switch_off() try {
   if (!linked_ && !sink_.reconnect()) return;  // the board's ttl has switched it off
   linked_ = true;
@@ -295,23 +311,20 @@ void Sender::switch_off() try {
     receive();
   }
   wait_for_last_answer(kPatience);
-  sink_.send_off(next_sequence(nullptr));
-  note_sent();
+  const Clock::duration patience = statistics_.acknowledged == 0 ? kPatience : kPatienceForOff;
+  const auto is_answered = [&](std::uint8_t sequence) { return !outstanding_[sequence].waiting; };
+  const OffFrames first = send_all_off();
+  OffFrames last = first;
   statistics_.off_sent = true;
   if (!sink_.acknowledges()) return;
-  const Clock::duration patience = statistics_.acknowledged == 0 ? kPatience : kPatienceForOff;
-  const std::uint8_t first_off = sequence_;
   wait_for_last_answer(patience);
-  if (outstanding_[first_off].waiting) {
-    std::ranges::fill(state_.duty, std::uint8_t{0});  // every board understands this frame
-    sink_.send(state_, next_sequence(nullptr));
-    note_sent();
-    sink_.send_off(next_sequence(nullptr));
-    note_sent();
+  if (!is_answered(first.off)) {
+    last = send_all_off();
     wait_for_last_answer(patience);
   }
-  // The answer to the first frame may have come late.
-  statistics_.off_acknowledged = !outstanding_[first_off].waiting || !outstanding_[sequence_].waiting;
+  // The answer to a first frame may have come late.
+  statistics_.off_acknowledged = is_answered(first.off) || is_answered(last.off);
+  statistics_.zeros_acknowledged = first.zeros && last.zeros && (is_answered(*first.zeros) || is_answered(*last.zeros));
 } catch (const LinkLost& lost) {
   lose_link(lost);
 }

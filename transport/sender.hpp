@@ -51,7 +51,8 @@ struct SenderStatistics {
   LatencyHistogram written;  ///< of changes: from `since` until the last byte was written
   LatencyHistogram acknowledged_after;  ///< of changes: from `since` until their answer
   bool off_sent = false;
-  bool off_acknowledged = false;  ///< the board acknowledged that all is off; false if it never answers
+  bool off_acknowledged = false;    ///< the board acknowledged the frame OFF; false if it never answers
+  bool zeros_acknowledged = false;  ///< it acknowledged the state before OFF, in which all levels are 0
 };
 
 /// Sends states to a sink from its own thread, at the sink's pace. States go through a mailbox of one slot, in which
@@ -83,9 +84,9 @@ class Sender {
   /// With `keep_log`: returns the fates of states, in order, as far as they are known and were not returned before.
   std::vector<SentState> take_log();
 
-  /// Sends the last state and waits at most 0.25 s for its answer. Then switches everything off and waits at most 1 s
-  /// for that answer (0.25 s if nothing was ever answered). If no answer comes, does this once more. Throws the
-  /// exception of the sink, if it threw one.
+  /// Sends the last state and waits at most 0.25 s for its answer. Then switches everything off: by a state with all
+  /// levels 0, which every board understands, and by OFF. Waits at most 1 s for the answer to OFF (0.25 s if nothing
+  /// was ever answered). If no answer comes, does this once more. Throws the exception of the sink, if it threw one.
   SenderStatistics finish();
 
  private:
@@ -106,11 +107,18 @@ class Sender {
     std::uint64_t number = 0;  ///< number of the state that the frame carried; 0: none, or off
   };
 
+  /// The sequences of the frames that switch everything off.
+  struct OffFrames {
+    std::optional<std::uint8_t> zeros;  ///< nothing if no state was sent before
+    std::uint8_t off = 0;
+  };
+
   /// Removes a state from the mailbox that will not be sent.
   void supersede();
   void run();
   void loop();
   void switch_off();
+  OffFrames send_all_off();
   /// Waits until a state is posted, an answer arrives, or the time `until`.
   void wait(Clock::time_point until);
   bool has_changed();

@@ -6,6 +6,7 @@
 #include <map>
 #include <tuple>
 
+#include "detector/actuators/texture_stretch.hpp"
 #include "traces/base/error.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
@@ -64,6 +65,16 @@ double BodySurface::longest_edge_m(std::uint32_t triangle) const {
 glm::uvec3 BodySurface::places(std::uint32_t triangle) const {
   const glm::uvec3& corner = avatar_.triangles[triangle];
   return {place_[corner.x], place_[corner.y], place_[corner.z]};
+}
+
+double texture_layers(const BodySurface& surface) {
+  double layers = 0;
+  for (std::uint32_t i = 0; i < surface.avatar().triangles.size(); ++i) {
+    const auto [a, b, c] = surface.texels(i, glm::dvec2(1));
+    const double area = std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x)) / 2;
+    if (fits_texture({a, b, c}, glm::dvec2(1))) layers += area;
+  }
+  return layers;
 }
 
 bool has_texture_coordinates(const Avatar& avatar) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <string_view>
@@ -45,6 +46,23 @@ class BodySurface {
   std::size_t place_count_ = 0;
   Box bounds_;
 };
+
+/// Returns how many times over the triangles cover the texture.
+double texture_layers(const BodySurface& surface);
+
+/// Takes the finished share of a long work, 0 … 1.
+using WorkProgress = std::function<void(double)>;
+
+/// Calls `visit` for the number of each triangle, and `progress` now and then unless it is empty.
+template <typename Visit>
+void for_each_triangle(const BodySurface& surface, const WorkProgress& progress, const Visit& visit) {
+  constexpr std::uint32_t kReported = 256;
+  const auto count = static_cast<std::uint32_t>(surface.avatar().triangles.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (progress && i % kReported == 0) progress(static_cast<double>(i) / count);
+    visit(i);
+  }
+}
 
 /// Returns whether any two vertices differ in their texture coordinates.
 bool has_texture_coordinates(const Avatar& avatar);

@@ -21,6 +21,8 @@ struct Layout {
 
 /// Of a layout's skin: borders are no finer than texels.
 constexpr double kTolerablyMisplaced = 0.05;
+/// A texture that shows more skin than this tells little apart, and takes minutes to draw.
+constexpr double kMostLayers = 4;
 
 constexpr std::array kLayouts = {Layout{"paper6", "three heights of the torso, right and left", R"({
   "regions": [
@@ -116,12 +118,24 @@ EmptyRegions layout_empty_regions(std::string_view layout) {
   return find_layout(layout).empty;
 }
 
-MadeMap make_layout_map(const Avatar& avatar, std::string_view layout) {
+MadeMap make_layout_map(const Avatar& avatar, std::string_view layout, const WorkProgress& progress) {
   const Layout& found = find_layout(layout);
   const Body body(avatar);
   const RegionPlan plan(body, parse_region_file(found.regions, layout), layout);
   MapSettings settings;
   settings.empty = found.empty;
+  settings.progress = progress;
+  const double layers = texture_layers(body.surface());
+  if (layers > kMostLayers) {
+    settings.per_triangle = true;
+    settings.empty = EmptyRegions::kLeaveOut;
+    MadeMap by_triangle = make_map(body, plan, settings, layout, "the avatar");
+    by_triangle.warnings.push_back(
+        fmt::format("the avatar's texture coordinates cannot tell its skin apart: they cover the texture {:.0f} times "
+                    "over, so the map gives each triangle an actuator instead",
+                    layers));
+    return by_triangle;
+  }
   settings.per_triangle = !has_texture_coordinates(avatar);
   MadeMap map = make_map(body, plan, settings, layout, "the avatar");
   const double misplaced = map.misplaced_share;

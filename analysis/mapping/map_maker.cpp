@@ -18,6 +18,7 @@ namespace vestige {
 namespace {
 
 constexpr std::size_t kMostInEightBits = 240;
+constexpr double kMostPatches = 1 << 20;
 
 /// The skin of an actuator. Entry [0] is skin without an actuator.
 struct SkinOfActuator {
@@ -27,13 +28,35 @@ struct SkinOfActuator {
   double distance_squared = std::numeric_limits<double>::infinity();
 };
 
-template <typename Visit>
-void for_each_patch(const BodySurface& surface, const Visit& visit) {
-  for (std::uint32_t i = 0; i < surface.avatar().triangles.size(); ++i) {
-    const SkinPatches patches = patches_of_body(surface, i);
-    const double area_m2 = surface.area_m2(i) / static_cast<double>(patches.count());
-    patches.for_each([&](const SkinPoint& point) { visit(point, area_m2); });
+/// A body cut into patches.
+class CutBody {
+ public:
+  explicit CutBody(const BodySurface& surface)
+      : surface_(surface), step_(affordable_step(surface, kMostPatches, [&](std::uint32_t triangle, double step) {
+          return patches_of_body(surface, triangle, step);
+        })) {}
+
+  const BodySurface& surface() const { return surface_; }
+  SkinPatches patches_of(std::uint32_t triangle) const { return patches_of_body(surface_, triangle, step_); }
+
+  template <typename Visit>
+  void for_each_patch(const WorkProgress& progress, const Visit& visit) const {
+    for_each_triangle(surface_, progress, [&](std::uint32_t triangle) {
+      const SkinPatches patches = patches_of(triangle);
+      const double area_m2 = surface_.area_m2(triangle) / static_cast<double>(patches.count());
+      patches.for_each([&](const SkinPoint& point) { visit(point, area_m2); });
+    });
   }
+
+ private:
+  const BodySurface& surface_;
+  double step_;
+};
+
+/// Returns the progress of the whole from that of its `part`-th part of `parts`, from 0.
+WorkProgress part_of(const WorkProgress& progress, int part, int parts) {
+  if (!progress) return {};
+  return [progress, part, parts](double share) { progress((part + share) / parts); };
 }
 
 /// Share of the body's longest side. A region whose middle is this near to the body's middle has its actuator there.
@@ -41,8 +64,8 @@ constexpr double kCentral = 0.01;
 
 /// Returns for each triangle the actuator that has most of it; the first one if several have the same share. But each
 /// actuator with skin gets at least one triangle: the one of which it has most area.
-std::vector<std::uint16_t> actuator_of_triangle(const BodySurface& surface, const ActuatorAt& actuator_at,
-                                                std::size_t actuator_count) {
+std::vector<std::uint16_t> actuator_of_triangle(const CutBody& body, const ActuatorAt& actuator_at,
+                                                std::size_t actuator_count, const WorkProgress& progress) {
   struct Most {
     double area_m2 = 0;
     std::uint32_t triangle = 0;
@@ -50,19 +73,19 @@ std::vector<std::uint16_t> actuator_of_triangle(const BodySurface& surface, cons
   std::vector<Most> most_of(actuator_count + 1);
   std::vector<bool> has_one(actuator_count + 1, false);
   std::vector<std::uint16_t> actuators;
-  const auto triangles = static_cast<std::uint32_t>(surface.avatar().triangles.size());
-  actuators.reserve(triangles);
-  for (std::uint32_t i = 0; i < triangles; ++i) {
-    const SkinPatches patches = patches_of_body(surface, i);
+  actuators.reserve(body.surface().avatar().triangles.size());
+  for_each_triangle(body.surface(), progress, [&](std::uint32_t i) {
+    const SkinPatches patches = body.patches_of(i);
     std::map<std::uint16_t, std::size_t> count_of;
     patches.for_each([&](const SkinPoint& point) { ++count_of[actuator_at(point)]; });
     for (const auto& [actuator, count] : count_of) {
-      const double area_m2 = surface.area_m2(i) * static_cast<double>(count) / static_cast<double>(patches.count());
+      const double area_m2 =
+          body.surface().area_m2(i) * static_cast<double>(count) / static_cast<double>(patches.count());
       if (area_m2 > most_of[actuator].area_m2) most_of[actuator] = {area_m2, i};
     }
     actuators.push_back(std::ranges::max_element(count_of, {}, [](const auto& of) { return of.second; })->first);
     has_one[actuators.back()] = true;
-  }
+  });
   for (std::size_t actuator = 1; actuator <= actuator_count; ++actuator)
     if (!has_one[actuator] && most_of[actuator].area_m2 > 0)
       actuators[most_of[actuator].triangle] = static_cast<std::uint16_t>(actuator);
@@ -70,15 +93,16 @@ std::vector<std::uint16_t> actuator_of_triangle(const BodySurface& surface, cons
 }
 
 /// Returns the share of skin that does not fire its own actuator, of all skin that should fire or does.
-double misplaced_share(const BodySurface& surface, const MapRaster& raster, const ActuatorAt& actuator_at) {
+double misplaced_share(const CutBody& body, const MapRaster& raster, const ActuatorAt& actuator_at,
+                       const WorkProgress& progress) {
   ActuatorMap map;
   map.width = map.height = raster.side;
   map.actuator = raster.actuator;
   double misplaced_m2 = 0;
   double all_m2 = 0;
-  for_each_patch(surface, [&](const SkinPoint& point, double area_m2) {
+  body.for_each_patch(progress, [&](const SkinPoint& point, double area_m2) {
     const std::uint16_t meant = actuator_at(point);
-    const std::uint16_t found = map.at(surface.texture_coordinate(point));
+    const std::uint16_t found = map.at(body.surface().texture_coordinate(point));
     if (meant == 0 && found == 0) return;
     all_m2 += area_m2;
     if (meant != found) misplaced_m2 += area_m2;
@@ -86,7 +110,8 @@ double misplaced_share(const BodySurface& surface, const MapRaster& raster, cons
   return all_m2 > 0 ? misplaced_m2 / all_m2 : 0;
 }
 
-std::vector<SkinOfActuator> measure(const Body& body, const ActuatorAt& actuator_at, std::size_t actuator_count) {
+std::vector<SkinOfActuator> measure(const Body& body, const CutBody& cut, const ActuatorAt& actuator_at,
+                                    std::size_t actuator_count, const WorkProgress& progress) {
   const BodySurface& surface = body.surface();
   const double central_m = kCentral * surface.bounds().longest_side();
   const auto is_central = [&](double x_m) { return std::abs(x_m - body.middle_x_m()) < central_m; };
@@ -96,7 +121,7 @@ std::vector<SkinOfActuator> measure(const Body& body, const ActuatorAt& actuator
     glm::dvec3 position_m;
   };
   std::vector<Patch> patches;
-  for_each_patch(surface, [&](const SkinPoint& point, double area_m2) {
+  cut.for_each_patch(progress, [&](const SkinPoint& point, double area_m2) {
     const Patch& patch = patches.emplace_back(Patch{actuator_at(point), surface.position_m(point)});
     skin[patch.actuator].area_m2 += area_m2;
     skin[patch.actuator].sum += area_m2 * patch.position_m;
@@ -180,12 +205,15 @@ MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& se
                  std::string_view avatar_name) {
   if (!settings.per_triangle) require_texture_coordinates(body.avatar(), avatar_name);
   ActuatorAt actuator_at = [&](const SkinPoint& point) { return plan.at(point); };
+  const CutBody cut(body.surface());
+  const int parts = settings.per_triangle ? 2 : 3;
   std::vector<std::uint16_t> of_triangle;
   if (settings.per_triangle) {
-    of_triangle = actuator_of_triangle(body.surface(), actuator_at, plan.actuator_count());
+    of_triangle = actuator_of_triangle(cut, actuator_at, plan.actuator_count(), part_of(settings.progress, 0, parts));
     actuator_at = [&](const SkinPoint& point) { return of_triangle[point.triangle]; };
   }
-  const std::vector<SkinOfActuator> skin = measure(body, actuator_at, plan.actuator_count());
+  const std::vector<SkinOfActuator> skin = measure(body, cut, actuator_at, plan.actuator_count(),
+                                                   part_of(settings.progress, settings.per_triangle ? 1 : 0, parts));
   MadeMap map;
   std::vector<std::uint16_t> number(plan.actuator_count() + 1, 0);
   for (std::size_t i = 0; i < plan.actuator_count(); ++i) {
@@ -216,8 +244,9 @@ MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& se
     map.triangle_count = of_triangle.size();
   } else {
     const ActuatorAt numbered = [&](const SkinPoint& point) { return number[plan.at(point)]; };
-    map.raster = rasterise(body.surface(), numbered, settings.side, settings.padding);
-    map.misplaced_share = misplaced_share(body.surface(), map.raster, numbered);
+    map.raster =
+        rasterise(body.surface(), numbered, settings.side, settings.padding, part_of(settings.progress, 1, parts));
+    map.misplaced_share = misplaced_share(cut, map.raster, numbered, part_of(settings.progress, 2, parts));
   }
   map.files = {png_of(map), sidecar_of(map.actuators, map.triangle_count == 0 ? nullptr : &body.avatar())};
   warn_of(map.raster, avatar_name, map);

@@ -152,12 +152,12 @@ void Painter::pad(std::uint32_t padding) {
 }  // namespace
 
 MapRaster rasterise(const BodySurface& surface, const ActuatorAt& actuator_at, std::uint32_t side,
-                    std::uint32_t padding) {
+                    std::uint32_t padding, const WorkProgress& progress) {
   MapRaster map;
   map.side = side;
   map.actuator.assign(std::size_t{side} * side, 0);
   Painter painter(surface, actuator_at, map);
-  for (std::uint32_t i = 0; i < surface.avatar().triangles.size(); ++i) painter.paint(i);
+  for_each_triangle(surface, progress, [&](std::uint32_t triangle) { painter.paint(triangle); });
   painter.pad(padding);
   return map;
 }

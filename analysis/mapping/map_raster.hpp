@@ -35,6 +35,6 @@ using ActuatorAt = std::function<std::uint16_t(const SkinPoint&)>;
 /// still finds an actuator. Texels that belong to a chart keep their actuator, black ones too. Where charts overlap, an
 /// actuator takes precedence over none, and the earlier triangle over the later.
 MapRaster rasterise(const BodySurface& surface, const ActuatorAt& actuator_at, std::uint32_t side,
-                    std::uint32_t padding);
+                    std::uint32_t padding, const WorkProgress& progress);
 
 }  // namespace vestige

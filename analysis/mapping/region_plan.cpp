@@ -18,6 +18,7 @@ namespace {
 
 /// Sampling step on the skin for a region's extent and middle, as a share of the body's longest side.
 constexpr double kPlanStep = 0.005;
+constexpr double kMostSamples = 1 << 20;
 /// The number of heights at which the axis between front and back is computed.
 constexpr std::size_t kAxisPoints = 24;
 
@@ -162,9 +163,12 @@ std::uint16_t RegionPlan::number_of(const std::string& actuator_name) {
 template <typename Visit>
 void RegionPlan::for_each_sample(const Visit& visit) const {
   const BodySurface& surface = body_.surface();
-  const double step_m = kPlanStep * surface.bounds().longest_side();
+  const auto patches_of = [&](std::uint32_t triangle, double step) {
+    return patches_of_length(surface, triangle, step * kPlanStep * surface.bounds().longest_side());
+  };
+  const double step = affordable_step(surface, kMostSamples, patches_of);
   for (std::uint32_t i = 0; i < body_.avatar().triangles.size(); ++i)
-    patches_of_length(surface, i, step_m).for_each([&](const SkinPoint& point) { visit(ask(point)); });
+    patches_of(i, step).for_each([&](const SkinPoint& point) { visit(ask(point)); });
 }
 
 RegionPlan::PartChoice RegionPlan::part_choice(const std::string& text, const std::string& where) const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 #include "analysis/mapping/body_surface.hpp"
 
@@ -35,6 +36,20 @@ struct SkinPatches {
     return std::size_t{i} * (2 * std::size_t{n} - i) + 2 * std::size_t{j};
   }
 };
+
+/// Returns the least step, of 1, √2, 2 …, with which all triangles together have at most `most` patches: a body of many
+/// large triangles would otherwise take minutes. `patches_of` returns the patches of a triangle with a step.
+template <typename PatchesOf>
+double affordable_step(const BodySurface& surface, double most, const PatchesOf& patches_of) {
+  double step = 1;
+  for (int round = 0; round < 20; ++round, step *= std::numbers::sqrt2) {
+    double total = 0;
+    for (std::uint32_t i = 0; i < surface.avatar().triangles.size(); ++i)
+      total += static_cast<double>(patches_of(i, step).count());
+    if (total <= most) break;
+  }
+  return step;
+}
 
 /// Cuts so finely that no patch is longer than `step_m`, but into at most 64 x 64 patches.
 SkinPatches patches_of_length(const BodySurface& surface, std::uint32_t triangle, double step_m);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -41,20 +40,12 @@ class Pieces {
 
   void cut() {
     const auto triangles = static_cast<std::uint32_t>(surface_.avatar().triangles.size());
-    double step = 1;
-    const auto patches_of = [&](std::uint32_t triangle) {
+    const auto patches_of = [&](std::uint32_t triangle, double step) {
       return map_.triangle_count == 0 ? patches_of_texels(surface_, triangle, size_, step)
                                       : patches_of_body(surface_, triangle, step);
     };
-    for (int round = 0; round < 20; ++round, step *= std::numbers::sqrt2) {
-      cuts_.clear();
-      double total = 0;
-      for (std::uint32_t i = 0; i < triangles; ++i) {
-        cuts_.push_back(patches_of(i));
-        total += static_cast<double>(cuts_.back().count());
-      }
-      if (total <= kMostPatches) break;
-    }
+    const double step = affordable_step(surface_, kMostPatches, patches_of);
+    for (std::uint32_t i = 0; i < triangles; ++i) cuts_.push_back(patches_of(i, step));
     for (const SkinPatches& cut : cuts_) {
       first_.push_back(patches_.size());
       const auto area_m2 = static_cast<float>(surface_.area_m2(cut.triangle) / static_cast<double>(cut.count()));

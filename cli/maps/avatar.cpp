@@ -13,6 +13,7 @@
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
+#include "traces/gltf/clean/clean_avatar.hpp"
 #include "traces/scene/box.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/reference_skinning.hpp"
@@ -124,7 +125,8 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
   for (const std::string& warning : avatar.warnings) warn(warning, options.common.verbosity());
   const UvCoverage coverage = uv_coverage(avatar, kTextureSide);
 
-  write_bytes(options.output, glb, options.common);
+  if (!options.output.empty())
+    write_bytes(options.output, is_builtin ? glb : clean_avatar_glb(glb, options.avatar), options.common);
   if (!options.map_output.empty()) {
     write_bytes(options.map_output, builtin_actuator_map_png(), options.common);
     const std::string json = builtin_actuator_map_json();

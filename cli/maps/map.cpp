@@ -130,12 +130,15 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
   const std::string name = options.layout.empty() ? options.regions : options.layout;
   const std::string regions =
       options.layout.empty() ? read_text_file(options.regions) : layout_regions_json(options.layout);
-  MapSettings settings = options.settings;
-  if (!options.layout.empty()) settings.empty = layout_empty_regions(options.layout);
   const Body body(avatar);
   const MadeMap map = with_suggestions([&] {
+    Progress bar("Drawing", options.common.verbosity());
+    MapSettings settings = options.settings;
+    if (!options.layout.empty()) settings.empty = layout_empty_regions(options.layout);
+    settings.progress = [&](double share) { bar.update(share); };
     // As where a layout stands for a map, unless it is said how.
-    if (!options.layout.empty() && !options.is_given_texels) return make_layout_map(avatar, options.layout);
+    if (!options.layout.empty() && !options.is_given_texels)
+      return make_layout_map(avatar, options.layout, settings.progress);
     const RegionPlan plan(body, parse_region_file(regions, name), name);
     return make_map(body, plan, settings, name, options.avatar);
   });

@@ -10,6 +10,7 @@
 
 #include "cli/options.hpp"
 #include "transport/actuator_sink.hpp"
+#include "transport/sender.hpp"
 #include "transport/wire/vest_frame.hpp"
 
 namespace vestige {
@@ -85,5 +86,9 @@ class OpenSink {
   std::optional<Greeting> greeting_;
   std::size_t frame_bytes_ = 0;  ///< size of a state frame on the line
 };
+
+/// Returns what is not confirmed about the switching off at the end; empty if nothing is in doubt. Of a sink that never
+/// answers, only frames that could not be sent are in doubt.
+std::string doubt_about_off(const SenderStatistics& statistics, const ActuatorSink& sink);
 
 }  // namespace vestige::cli

@@ -94,7 +94,9 @@ nlohmann::ordered_json to_json(const Streamed& streamed, const StreamOptions& op
   json["changes"] = sender.changes;
   json["superseded"] = sender.superseded;
   json["acknowledged"] = sender.acknowledged;
+  json["off_sent"] = sender.off_sent;
   json["off_acknowledged"] = sender.off_acknowledged;
+  json["zeros_acknowledged"] = sender.zeros_acknowledged;
   json["most_unanswered"] = sender.most_unanswered;
   json["fail_safes"] = sender.fail_safes;
   json["overruns"] = sender.overruns;
@@ -127,6 +129,10 @@ std::string summary(const Streamed& streamed, const OpenSink& sink) {
   if (sender.written.count() != 0) text += fmt::format("contact to last byte written: {}\n", describe(sender.written));
   if (sender.acknowledged_after.count() != 0)
     text += fmt::format("contact to acknowledgement:   {}\n", describe(sender.acknowledged_after));
+  const bool is_doubtful = !doubt_about_off(sender, sink.sink()).empty();
+  text += fmt::format("all actuators off at the end: {}\n", is_doubtful                  ? "NOT CONFIRMED"
+                                                            : sink.sink().acknowledges() ? "acknowledged"
+                                                                                         : "sent");
   return text + sink.describe_link(sender.bytes);
 }
 
@@ -153,8 +159,7 @@ int report_losses(const Streamed& streamed, const OpenSink& sink, Verbosity verb
   if (acknowledges && sender.acknowledged != sender.sent)
     say(fmt::format("{} of {} frames were not acknowledged{}", sender.sent - sender.acknowledged, sender.sent,
                     sink.greeting() && sender.acknowledged <= 2 ? "; check that the board takes these --levels" : ""));
-  if (!sender.off_sent || (acknowledges && !sender.off_acknowledged))
-    say("nothing confirms that all actuators are off at the end; a board that has a time-out switches them off itself");
+  if (const std::string doubt = doubt_about_off(sender, sink.sink()); !doubt.empty()) say(doubt);
   return code;
 }
 

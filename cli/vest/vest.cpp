@@ -106,11 +106,7 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   if (statistics.links_lost > 0)
     verdict += fmt::format(", the link was lost {}", counted(statistics.links_lost, "time"));
   if (statistics.superseded > 0) verdict += fmt::format(", {} could not be sent in time", statistics.superseded);
-  if (!statistics.off_sent) {
-    verdict += ", the last frame, which switches all off, could not be sent";
-  } else if (acknowledges && !statistics.off_acknowledged) {
-    verdict += ", the last frame, which switches all off, was not acknowledged";
-  }
+  if (const std::string doubt = doubt_about_off(statistics, sink.sink()); !doubt.empty()) verdict += "; " + doubt;
   if (checked.stopped) verdict += fmt::format("; stopped at actuator {} of {}", checked.actuators, actuators);
   if (!good) {
     verdict += ": THE VEST DOES NOT HEAR EVERYTHING";
@@ -135,6 +131,7 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   json["links_lost"] = statistics.links_lost;
   json["off_sent"] = statistics.off_sent;
   json["off_acknowledged"] = statistics.off_acknowledged;
+  json["zeros_acknowledged"] = statistics.zeros_acknowledged;
   json["link"] = sink.link_json();
   json["link"]["bytes"] = statistics.bytes;
   json["good"] = good;

@@ -57,8 +57,14 @@ class PretendedVest : public ActuatorSink {
     return locked([&] { return told_; });
   }
 
+  /// What its actuators do.
+  Duties levels() {
+    return locked([&] { return levels_; });
+  }
+
   bool busy = false;
   bool silent = false;
+  bool knows_off = true;           ///< otherwise it neither obeys nor answers it
   bool answers_offs_late = false;  ///< the first when the second comes, the second never
   bool unplugged = false;
   bool broken = false;
@@ -74,6 +80,8 @@ class PretendedVest : public ActuatorSink {
       if (broken || std::exchange(breaks_once, false)) throw Error("a vest", "burns", "use water");
       if (unplugged) throw LinkLost("a vest", "is unplugged", "plug it in");
       told_.push_back(told);
+      if (told.off && !knows_off) return;
+      levels_ = told.off ? Duties(levels_.size(), 0) : told.duty;
       if (silent) return;
       const Acknowledgement answer = {told.sequence, std::exchange(restarted, false), false, receive_errors};
       if (told.off && answers_offs_late) {
@@ -87,6 +95,7 @@ class PretendedVest : public ActuatorSink {
 
   std::mutex mutex_;
   std::vector<Told> told_;
+  Duties levels_;
   std::optional<Acknowledgement> late_;
 };
 
@@ -128,12 +137,28 @@ TEST_F(SenderTest, AStateIsSentAndRefreshedUntilTheEndSwitchesItOff) {
   post(sender, {255, 0});
   until([&] { return vest.told().size() >= 4; });
   const SenderStatistics statistics = sender.finish();
-  EXPECT_THAT(changes(), ElementsAre(Duties{255, 0}, Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{255, 0}, Duties{0, 0}, Duties{}));
   EXPECT_EQ(statistics.changes, 1U);
   EXPECT_EQ(statistics.sent, vest.told().size());
   EXPECT_EQ(statistics.acknowledged, statistics.sent);
   EXPECT_EQ(statistics.superseded, 0U);
   EXPECT_TRUE(statistics.off_acknowledged);
+  EXPECT_TRUE(statistics.zeros_acknowledged);
+}
+
+TEST_F(SenderTest, ABoardThatDoesNotKnowOffEndsOffAllTheSame) {
+  vest.knows_off = false;
+  Sender sender(vest, options(1s), note);
+  post(sender, {200, 7});
+  until([&] { return changes().size() >= 3; });  // nobody calls, so the vest is switched off
+  EXPECT_THAT(changes(), ElementsAre(Duties{200, 7}, Duties{0, 0}, Duties{}));
+  post(sender, {1, 2});
+  until([&] { return sender.heard(); });
+  const SenderStatistics statistics = sender.finish();
+  EXPECT_EQ(vest.levels(), (Duties{0, 0}));
+  EXPECT_TRUE(statistics.off_sent);
+  EXPECT_FALSE(statistics.off_acknowledged);
+  EXPECT_TRUE(statistics.zeros_acknowledged);
 }
 
 TEST_F(SenderTest, NothingIsSentBeforeThereIsAStateButTheOffAtTheEnd) {
@@ -151,7 +176,7 @@ TEST_F(SenderTest, ABusyLineGetsTheLatestStateAndTheOthersAreReported) {
   vest.locked([&] { vest.busy = false; });
   until([&] { return !vest.told().empty(); });
   const SenderStatistics statistics = sender.finish();
-  EXPECT_THAT(changes(), ElementsAre(Duties{30}, Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{30}, Duties{0}, Duties{}));
   EXPECT_EQ(statistics.superseded, 2U);
   const std::vector<SentState> log = sender.take_log();
   ASSERT_EQ(log.size(), 3U);
@@ -186,16 +211,16 @@ TEST_F(SenderTest, TheLastStateIsStillSentBeforeTheOff) {
   until([&] { return !vest.told().empty(); });
   post(sender, {2});  // within the floor of the first
   sender.finish();
-  EXPECT_THAT(changes(), ElementsAre(Duties{1}, Duties{2}, Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{1}, Duties{2}, Duties{0}, Duties{}));
 }
 
-TEST_F(SenderTest, AnOffThatIsNotAnsweredIsRepeatedWithZeros) {
+TEST_F(SenderTest, AnOffThatIsNotAnsweredIsRepeated) {
   vest.silent = true;
   Sender sender(vest, options(), note);
   post(sender, {200});
   until([&] { return !vest.told().empty(); });
   const SenderStatistics statistics = sender.finish();
-  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}, Duties{0}, Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{0}, Duties{}, Duties{0}, Duties{}));
   EXPECT_FALSE(statistics.off_acknowledged);
   EXPECT_EQ(statistics.acknowledged, 0U);
 }
@@ -206,7 +231,7 @@ TEST_F(SenderTest, AnOffThatIsAnsweredLateIsAnswered) {
   post(sender, {200});
   until([&] { return sender.heard(); });
   const SenderStatistics statistics = sender.finish();
-  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}, Duties{0}, Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{0}, Duties{}, Duties{0}, Duties{}));
   EXPECT_TRUE(statistics.off_acknowledged);
 }
 
@@ -227,7 +252,7 @@ TEST_F(SenderTest, AVestThatWasUnpluggedGetsTheLatestStateWhenItIsBack) {
   vest.locked([&] { vest.tries_until_back = 0; });
   until([&] { return changes().size() == 2; });
   const SenderStatistics statistics = sender.finish();
-  EXPECT_THAT(changes(), ElementsAre(Duties{1}, Duties{3}, Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{1}, Duties{3}, Duties{0}, Duties{}));
   EXPECT_THAT(events, ElementsAre(HasSubstr("is unplugged"), HasSubstr("the link is back")));
   EXPECT_EQ(statistics.links_lost, 1U);
   EXPECT_EQ(statistics.superseded, 1U);
@@ -240,7 +265,7 @@ TEST_F(SenderTest, AStateThatCouldNotBeWrittenIsSentWhenTheLinkIsBackAndLoggedOn
   post(sender, {7});
   until([&] { return !vest.told().empty(); });
   const SenderStatistics statistics = sender.finish();
-  EXPECT_THAT(changes(), ElementsAre(Duties{7}, Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{7}, Duties{0}, Duties{}));
   EXPECT_EQ(statistics.changes, 1U);
   EXPECT_EQ(statistics.superseded, 0U);
   const std::vector<SentState> log = sender.take_log();
@@ -275,21 +300,21 @@ TEST_F(SenderTest, AfterAnErrorTheVestIsSwitchedOffIfItStillListens) {
   vest.breaks_once = true;
   Sender sender(vest, options(), note);
   post(sender, {200});
-  until([&] { return !vest.told().empty(); });
+  until([&] { return vest.told().size() == 2; });
   EXPECT_THROW(sender.finish(), Error);
-  EXPECT_THAT(changes(), ElementsAre(Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{0}, Duties{}));
 }
 
 TEST_F(SenderTest, AVestWhosePlaybackHasStoppedIsSwitchedOffUntilItGoesOn) {
   Sender sender(vest, options(1s), note);
   post(sender, {200});
-  until([&] { return changes().size() == 2; });
-  std::this_thread::sleep_for(100ms);
-  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}));
-  sender.still_here();
   until([&] { return changes().size() == 3; });
+  std::this_thread::sleep_for(100ms);
+  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{0}, Duties{}));
+  sender.still_here();
+  until([&] { return changes().size() == 4; });
   sender.finish();
-  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{}, Duties{200}, Duties{}));
+  EXPECT_THAT(changes(), ElementsAre(Duties{200}, Duties{0}, Duties{}, Duties{200}, Duties{0}, Duties{}));
   EXPECT_THAT(events, ElementsAre(HasSubstr("the playback has stopped")));
 }
 
@@ -300,10 +325,10 @@ TEST_F(SenderTest, AVestWhosePlaybackHasStoppedIsSwitchedOffBeforeAnybodyIsTold)
     when_told = changes();
   });
   post(sender, {200});
-  until([&] { return changes().size() == 2; });
+  until([&] { return changes().size() == 3; });
   sender.finish();
   EXPECT_THAT(events, ElementsAre(HasSubstr("the playback has stopped")));
-  EXPECT_THAT(when_told, ElementsAre(Duties{200}, Duties{}));
+  EXPECT_THAT(when_told, ElementsAre(Duties{200}, Duties{0}, Duties{}));
 }
 
 TEST_F(SenderTest, AStateThatOnlyTheOffReplacesIsReported) {

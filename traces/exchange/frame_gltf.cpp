@@ -16,18 +16,19 @@
 #include "traces/base/number_text.hpp"
 #include "traces/exchange/trace_export.hpp"
 #include "traces/files/column_file.hpp"
+#include "traces/gltf/clean/clean_avatar.hpp"
+#include "traces/gltf/clean/glb_builder.hpp"
 #include "traces/gltf/glb_container.hpp"
-#include "traces/gltf/gltf_meshopt.hpp"
 
 namespace vestige {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Builder = gltf::GlbBuilder;
+using Json = Builder::Json;
 
 constexpr std::uint64_t kMostGlbBytes = std::numeric_limits<std::uint32_t>::max();
 constexpr int kFloat = 5126;
-constexpr int kUnsignedShort = 5123;
 constexpr const char* kTooLarge = "export fewer frames: use --rate 60, or cut out a part with 'vestige trim'";
 
 struct Sphere {
@@ -67,78 +68,21 @@ Sphere make_sphere() {
   return sphere;
 }
 
-/// A glTF under construction. Data appended to its buffer are either in memory or a column of frames.
-class Builder {
- public:
-  Builder(std::span<const std::byte> glb) {
-    const gltf::Report report("avatar.glb");
-    gltf::Report quiet = report;
-    const gltf::GlbChunks chunks = gltf::split_glb(glb, quiet);
-    try {
-      json = Json::parse(chunks.json);
-    } catch (const Json::exception&) {
-      // The avatar's reader skips the JSON that it does not need, but here all of it is copied.
-      throw Error("the trace's avatar.glb", "has JSON that cannot be copied, such as a number too large for a double",
-                  "mend the avatar and record again, or export to another format");
-    }
-    if (chunks.bin.empty() && json.contains("buffers")) {
-      // The avatar's data are in data: URIs, and a GLB's own buffer must be the first.
-      for (Json& view : json["bufferViews"]) {
-        view["buffer"] = view["buffer"].get<int>() + 1;
-        if (view.contains("extensions") && view["extensions"].contains(gltf::kMeshopt))
-          view["extensions"][gltf::kMeshopt]["buffer"] = view["extensions"][gltf::kMeshopt]["buffer"].get<int>() + 1;
-      }
-      json["buffers"].insert(json["buffers"].begin(), Json::object());
-    } else if (!json.contains("buffers")) {
-      json["buffers"] = Json::array({Json::object()});
-    }
-    bin.assign(chunks.bin.begin(), chunks.bin.end());
-    align();
-  }
-
-  int add(const char* list, Json element) {
-    json[list].push_back(std::move(element));
-    return static_cast<int>(json[list].size()) - 1;
-  }
-
-  template <typename Number>
-  int add_accessor(const std::vector<Number>& numbers, int component_type, const char* type, std::size_t components,
-                   int target) {
-    const int view = add("bufferViews", {{"buffer", 0},
-                                         {"byteOffset", bin.size()},
-                                         {"byteLength", numbers.size() * sizeof(Number)},
-                                         {"target", target}});
-    const auto bytes = std::as_bytes(std::span(numbers));
-    bin.insert(bin.end(), bytes.begin(), bytes.end());
-    align();
-    return add("accessors", {{"bufferView", view},
-                             {"componentType", component_type},
-                             {"count", numbers.size() / components},
-                             {"type", type}});
-  }
-
-  Json json;
-  std::vector<std::byte> bin;  ///< its size is a multiple of 4
-
- private:
-  void align() { bin.resize((bin.size() + 3) / 4 * 4); }
-};
+/// Returns a file that `clean_avatar_glb` made, to be continued.
+Builder continued(std::span<const std::byte> glb) {
+  gltf::Report unused("avatar.glb");
+  const gltf::GlbChunks chunks = gltf::split_glb(glb, unused);
+  Builder builder;
+  builder.json = Json::parse(chunks.json);
+  builder.bin.assign(chunks.bin.begin(), chunks.bin.end());
+  return builder;
+}
 
 int add_sphere(Builder& builder) {
   const Sphere sphere = make_sphere();
-  const int position = builder.add_accessor(sphere.positions, kFloat, "VEC3", 3, 34962);
-  glm::vec3 low(std::numeric_limits<float>::max());
-  glm::vec3 high(-low);
-  for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
-    const int axis = static_cast<int>(i % 3);
-    low[axis] = std::min(low[axis], sphere.positions[i]);
-    high[axis] = std::max(high[axis], sphere.positions[i]);
-  }
-  Json& accessor = builder.json["accessors"].back();
-  accessor["min"] = {low.x, low.y, low.z};
-  accessor["max"] = {high.x, high.y, high.z};
-  const int normal = builder.add_accessor(sphere.normals, kFloat, "VEC3", 3, 34962);
-  const int indices = builder.add_accessor(sphere.indices, kUnsignedShort, "SCALAR", 1, 34963);
+  const int position = builder.add_bounded_accessor(sphere.positions, "VEC3", 3, gltf::Target::kVertices);
+  const int normal = builder.add_accessor(sphere.normals, "VEC3", 3, gltf::Target::kVertices);
+  const int indices = builder.add_accessor(sphere.indices, "SCALAR", 1, gltf::Target::kIndices);
   const int material = builder.add(
       "materials", {{"name", "collider"},
                     {"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.3, 0.1, 1.0}}, {"metallicFactor", 0.0}}}});
@@ -156,11 +100,10 @@ class FrameGltf final : public TraceExport {
       : file_(path, overwrite),
         path_(path),
         avatar_(avatar),
-        glb_(glb),
+        glb_(clean_avatar_glb(glb, "avatar.glb")),
         ids_(std::move(ids)),
         columns_(path, widths(avatar.nodes.size(), ids_.size())),
         varies_(2 + 3 * avatar.nodes.size() + 2 * ids_.size()) {
-    static_cast<void>(Builder(glb_));  // reports what cannot be copied before the work begins
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     last_position_.resize(ids_.size(), glm::vec3(0));
   }
@@ -205,7 +148,7 @@ class FrameGltf final : public TraceExport {
   OutputFile file_;
   std::filesystem::path path_;
   const Avatar& avatar_;
-  std::span<const std::byte> glb_;
+  std::vector<std::byte> glb_;  ///< the avatar without faults
   std::vector<std::uint32_t> ids_;
   std::map<std::uint32_t, std::size_t> place_of_;
   ColumnFile columns_;
@@ -303,7 +246,6 @@ void FrameGltf::place_nodes(Builder& builder) const {
   for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
     if (avatar_.nodes[i].fixed_matrix) continue;
     Json& node = builder.json["nodes"][i];
-    node.erase("matrix");
     const float* numbers = &first_row_[4 + 10 * i];
     node["translation"] = {numbers[0], numbers[1], numbers[2]};
     node["rotation"] = {numbers[3], numbers[4], numbers[5], numbers[6]};
@@ -422,7 +364,7 @@ FrameGltf::Columns FrameGltf::add_animation(Builder& builder, std::optional<int>
 void FrameGltf::commit() {
   if (columns_.rows() == 0) throw Error(path_.string(), "there is no frame to export", "");
   columns_.finish();
-  Builder builder(glb_);
+  Builder builder = continued(glb_);
   builder.json["asset"]["generator"] = fmt::format("vestige {}", kVersion);
   builder.json.erase("animations");
   place_nodes(builder);

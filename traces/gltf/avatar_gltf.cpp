@@ -9,6 +9,7 @@
 
 #include "traces/gltf/gltf_animation.hpp"
 #include "traces/gltf/gltf_document.hpp"
+#include "traces/gltf/gltf_load.hpp"
 #include "traces/gltf/gltf_mesh.hpp"
 #include "traces/gltf/gltf_nodes.hpp"
 #include "traces/scene/reference_skinning.hpp"
@@ -96,24 +97,29 @@ void refuse_rest_pose_beyond_float(const Avatar& avatar, const Report& report) {
 }  // namespace
 
 Avatar parse_avatar_glb(std::span<const std::byte> glb, std::string_view name) {
+  return gltf::load_avatar(glb, name).avatar;
+}
+
+gltf::LoadedAvatar gltf::load_avatar(std::span<const std::byte> glb, std::string_view name, DrawnMeshes* details) {
   Report report(name);
-  const gltf::Document document = gltf::load_document(glb, report);
-  Avatar avatar;
-  gltf::read_nodes(document, avatar, report);
-  const std::vector<gltf::Skin> skins = gltf::read_skins(document, avatar, report);
-  const std::vector<bool> drawn = gltf::nodes_drawn(document, avatar, report);
-  gltf::read_meshes(document, skins, drawn, avatar, report);
+  const Document document = load_document(glb, report);
+  LoadedAvatar loaded;
+  Avatar& avatar = loaded.avatar;
+  read_nodes(document, avatar, report);
+  loaded.skins = read_skins(document, avatar, report);
+  const std::vector<bool> drawn = nodes_drawn(document, avatar, report);
+  read_meshes(document, loaded.skins, drawn, avatar, report, details);
   refuse_rest_pose_beyond_float(avatar, report);
-  gltf::read_animations(document, avatar, report);
+  read_animations(document, avatar, report);
   if (avatar.triangles.empty()) fail_without_triangles(report);
 
   avatar.root_node = find_root(document, drawn, avatar);
   warn_of_joints_outside(document, drawn, report);
   std::set<int> joints;
-  for (const gltf::Skin& skin : skins) joints.insert(skin.joints.begin(), skin.joints.end());
+  for (const Skin& skin : loaded.skins) joints.insert(skin.joints.begin(), skin.joints.end());
   avatar.joint_count = joints.size();
   avatar.warnings = report.warnings();
-  return avatar;
+  return loaded;
 }
 
 }  // namespace vestige

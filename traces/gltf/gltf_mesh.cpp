@@ -83,12 +83,17 @@ class MeshReader {
     return parts;
   }
 
-  void read(const std::vector<Part>& parts) {
+  void read(const std::vector<Part>& parts, DrawnMeshes* details = nullptr) {
     reserve(parts);
+    details_ = details;
     for (const Part& part : parts) {
       const auto [vertices, is_new] = first_vertex_.try_emplace(key(part), avatar_.position_bind.size());
       if (is_new) read_vertices(part);
+      const std::size_t first_triangle = avatar_.triangles.size();
       read_triangles(part, vertices->second);
+      if (details != nullptr)
+        details->parts.push_back({part.node, part.skin, part.mesh, part.primitive, vertices->second, part.vertex_count,
+                                  first_triangle, avatar_.triangles.size() - first_triangle, is_mirrored(part)});
     }
   }
 
@@ -225,6 +230,19 @@ class MeshReader {
     rigid.palette[0] = palette_index(part.node, glm::dmat4(1.0), part);
     rigid.weight[0] = 1;
     avatar_.influences.resize(avatar_.position_bind.size(), rigid);
+    if (details_ != nullptr) details_->weights.resize(avatar_.position_bind.size(), rigid.weight);
+  }
+
+  /// Keeps the weights that `combine_influences` has left.
+  void keep_weights(const std::vector<Influence>& influences) {
+    std::array<float, kMaxInfluences> weights = {};
+    for (std::size_t i = 0; i < influences.size(); ++i) weights[i] = static_cast<float>(influences[i].weight);
+    details_->weights.push_back(weights);
+  }
+
+  bool is_mirrored(const Part& part) const {
+    return part.skin < 0 && part.node != kNoNode &&
+           glm::determinant(glm::dmat3(world_[static_cast<std::size_t>(part.node)])) < 0;
   }
 
   /// One pair of attributes, JOINTS_n and WEIGHTS_n.
@@ -284,6 +302,7 @@ class MeshReader {
       const std::uint16_t first = influences.empty() ? palette.front() : influences.front().palette;
       avatar_.influences.push_back(combine_influences(influences, first, sets.front().weights_path, report_));
       avatar_.influence_count = std::max(avatar_.influence_count, influences.size());
+      if (details_ != nullptr) keep_weights(influences);
     }
   }
 
@@ -331,14 +350,13 @@ class MeshReader {
                        fmt::format("index {} is {}, but there are {} vertices", i, corners[i], part.vertex_count));
       }
     }
-    const bool is_mirrored = part.skin < 0 && part.node != kNoNode &&
-                             glm::determinant(glm::dmat3(world_[static_cast<std::size_t>(part.node)])) < 0;
+    const bool mirrors = is_mirrored(part);
     const std::size_t count = triangle_count(source.mode, corners.size());
     for (std::size_t i = 0; i < count; ++i) {
       std::array<std::size_t, 3> at = {3 * i, 3 * i + 1, 3 * i + 2};
       if (source.mode == TINYGLTF_MODE_TRIANGLE_STRIP) at = {i, i + 1 + i % 2, i + 2 - i % 2};
       if (source.mode == TINYGLTF_MODE_TRIANGLE_FAN) at = {i + 1, i + 2, 0};
-      if (is_mirrored) std::swap(at[1], at[2]);
+      if (mirrors) std::swap(at[1], at[2]);
       const glm::uvec3 triangle(corners[at[0]], corners[at[1]], corners[at[2]]);
       avatar_.triangles.push_back(triangle + static_cast<std::uint32_t>(first_vertex));
     }
@@ -350,6 +368,7 @@ class MeshReader {
   std::vector<glm::dmat4> world_;                         ///< of each node, in the rest pose
   std::map<std::pair<int, std::array<double, 16>>, std::size_t> palette_;
   std::map<Key, std::size_t> first_vertex_;
+  DrawnMeshes* details_ = nullptr;
   Avatar& avatar_;
   Report& report_;
 };
@@ -357,9 +376,9 @@ class MeshReader {
 }  // namespace
 
 void read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
-                 Avatar& avatar, Report& report) {
+                 Avatar& avatar, Report& report, DrawnMeshes* details) {
   MeshReader reader(document, skins, avatar, report);
-  reader.read(reader.shown(drawn));
+  reader.read(reader.shown(drawn), details);
 
   std::vector<bool> is_shown(document.model.meshes.size());
   for (std::size_t node = 0; node < drawn.size(); ++node)

@@ -99,6 +99,30 @@ TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
   EXPECT_THAT(outcome.standard_output, HasSubstr("of them changes"));
 }
 
+TEST_F(StreamCommand, NothingIsLostInSilenceWhenEveryProcessorIsBusy) {
+  record("--count 60 --rate 500 --duration 3");
+  const test::Outcome outcome = run_with_board(
+      "neighbours=; for i in $(seq $(nproc)); do (while :; do :; done) & neighbours=\"$neighbours $!\"; done\n"
+      "vestige stream trace.mcap --port vest --ttl 2000 --log log.csv --json stream.json; busy=$?\n"
+      "kill $neighbours; (exit $busy)");
+  const nlohmann::json json = json_in("stream.json");
+  // Every state is in the log: it was sent, or a newer one took its place.
+  const std::vector<Row> log = read_log(folder_ / "log.csv");
+  const auto sent = std::ranges::count(log, "sent", &Row::state);
+  EXPECT_EQ(json["changes"], sent);
+  EXPECT_EQ(json["superseded"], log.size() - static_cast<std::size_t>(sent));
+  // Every frame was acknowledged, or it is said that it was not.
+  const bool all_heard = json["acknowledged"] == json["sent"];
+  const bool is_said = outcome.standard_error.find("were not acknowledged") != std::string::npos;
+  EXPECT_EQ(is_said, !all_heard) << outcome.standard_error;
+  if (!all_heard) {
+    EXPECT_EQ(outcome.exit_code, 3);
+  }
+  EXPECT_TRUE(json["off_sent"]);
+  ASSERT_FALSE(read_timeline(folder_ / "pins.csv").empty());
+  EXPECT_THAT(read_timeline(folder_ / "pins.csv").back().level, Each(0));
+}
+
 TEST_F(StreamCommand, PressuresArriveAtTheValvesInAllTheirLevels) {
   record("--count 60 --rate 500 --duration 2");
   const test::Outcome outcome = run_with_board(

@@ -138,6 +138,82 @@ TEST_F(StreamToOtherSinks, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame)
   EXPECT_THAT(outcome.standard_error, HasSubstr("were not acknowledged"));
   EXPECT_EQ(json_in("stream.json")["acknowledged"], 0);
   EXPECT_FALSE(json_in("stream.json")["off_acknowledged"]);
+  EXPECT_FALSE(json_in("stream.json")["zeros_acknowledged"]);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("nothing confirms that all actuators are off"));
+}
+
+/// A board that knows hello and states, and takes all other frames for noise. It writes its levels to 'levels' whenever
+/// they change.
+constexpr const char* kForeignBoard = R"(
+import os, pty, tty
+master, slave = pty.openpty()
+tty.setraw(slave)
+os.symlink(os.ttyname(slave), 'vest')
+
+def crc(data):
+    value = 0xFFFF
+    for byte in data:
+        value ^= byte << 8
+        for _ in range(8):
+            value = (value << 1 ^ 0x1021 if value & 0x8000 else value << 1) & 0xFFFF
+    return bytes([value & 255, value >> 8])
+
+def decode(data):
+    out, at = b'', 0
+    while at < len(data):
+        code = data[at]
+        out += data[at + 1:at + code]
+        at += code
+        if code < 255 and at < len(data):
+            out += b'\0'
+    return out
+
+def send(data):
+    data += crc(data)
+    os.write(master, b''.join(bytes([len(part) + 1]) + part for part in data.split(b'\0')) + b'\0')
+
+line = b''
+while True:
+    line += os.read(master, 4096)
+    *frames, line = line.split(b'\0')
+    for frame in map(decode, frames):
+        if len(frame) < 4 or crc(frame[:-2]) != frame[-2:]:
+            continue
+        if frame[:1] == b'H':
+            send(b'H' + frame[1:2] + bytes([1, 6, 0]))
+        if frame[:1] == b'S':
+            open('levels', 'a').write(' '.join(map(str, frame[4:-2])) + '\n')
+            send(b'A' + frame[1:2] + bytes([0, 0]))
+)";
+
+TEST_F(StreamToOtherSinks, ABoardThatDoesNotKnowOffEndsOffAndWhatItDidNotConfirmIsSaid) {
+  record("--colliders hug --rate 100 --duration 0.5");
+  std::ofstream(folder_ / "board.py") << kForeignBoard;
+  const auto with_board = [&](const std::string& command) {
+    return run(
+        "rm -f vest levels; python3 board.py & board=$!\n"
+        "for i in $(seq 100); do [ -e vest ] && break; sleep 0.05; done\n" +
+        command + "; code=$?; kill $board; exit $code");
+  };
+  const auto expect_off = [&] {
+    const std::string levels = read_text_file(folder_ / "levels");
+    EXPECT_THAT(levels, HasSubstr("255"));
+    EXPECT_TRUE(levels.ends_with("\n0 0 0 0 0 0\n")) << levels;
+  };
+  const test::Outcome outcome = with_board("vestige stream trace.mcap --port vest --hold 1e6 --json stream.json");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_error, HasSubstr("the board may not know OFF"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("all actuators off at the end: NOT CONFIRMED"));
+  EXPECT_TRUE(json_in("stream.json")["off_sent"]);
+  EXPECT_FALSE(json_in("stream.json")["off_acknowledged"]);
+  EXPECT_TRUE(json_in("stream.json")["zeros_acknowledged"]);
+  expect_off();
+
+  const test::Outcome check = with_board("vestige vest check --port vest --seconds 0.1 --json check.json");
+  EXPECT_EQ(check.exit_code, 4) << check.standard_error;
+  EXPECT_THAT(check.standard_output, HasSubstr("the board may not know OFF"));
+  EXPECT_TRUE(json_in("check.json")["zeros_acknowledged"]);
+  expect_off();
 }
 
 TEST_F(StreamToOtherSinks, ADetectorThatCannotKeepUpIsSaid) {

@@ -1,15 +1,18 @@
-// The built-in avatar, judged by the Khronos glTF validator: npm's gltf-validator, fetched into tests/npm/node_modules
-// when it is not there yet.
+// The built-in avatar and an exported trace, judged by the Khronos glTF validator: npm's gltf-validator, fetched into
+// tests/npm/node_modules when it is not there yet.
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "tests/support/npm.hpp"
 #include "tests/support/test_data.hpp"
+#include "tests/traces/gltf/gltf_builder.hpp"
+#include "traces/exchange/trace_export.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
@@ -24,6 +27,32 @@ TEST(GltfValidator, FindsNoFaultInTheMannequin) {
   const nlohmann::json issues = nlohmann::json::parse(test::run_node("validate_gltf.mjs", folder / "mannequin.glb"));
   EXPECT_EQ(issues["numErrors"], 0) << issues.dump(2);
   EXPECT_EQ(issues["numWarnings"], 0) << issues.dump(2);
+}
+
+TEST(GltfValidator, FindsNoErrorInTheExportOfATraceWhoseAvatarHasFaults) {
+  VESTIGE_REQUIRE_DATA(test::npm_package("gltf-validator"));
+  test::GltfBuilder builder = test::skinned_triangle();
+  const std::vector<float> weights = {7, 5, 0, 0};
+  std::memcpy(builder.bin.data() + builder.document["bufferViews"][2]["byteOffset"].get<std::size_t>(), weights.data(),
+              weights.size() * sizeof(float));
+  builder.document["skins"][0]["skeleton"] = 0;
+  builder.document["nodes"][1]["matrix"] = {1, 0.5, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 4, 5, 1};
+  const std::vector<std::byte> glb = builder.glb();
+  const Avatar avatar = parse_avatar_glb(glb, "a.glb");
+  const test::TemporaryFolder folder;
+  const auto file = make_frame_gltf(folder / "a.glb", Overwrite::kRefuse, avatar, glb, {7});
+  for (int i = 0; i < 3; ++i) {
+    TraceFrame frame;
+    frame.time_ns = i * 1'000'000;
+    frame.pose = rest_pose(avatar);
+    frame.pose.origin_m.x = i;
+    frame.pose.nodes[2].translation.y = static_cast<float>(i);
+    frame.colliders = {{7, glm::dvec3(0.5 * i, 0, 0)}};
+    file->write(frame);
+  }
+  file->commit();
+  const nlohmann::json issues = nlohmann::json::parse(test::run_node("validate_gltf.mjs", folder / "a.glb"));
+  EXPECT_EQ(issues["numErrors"], 0) << issues.dump(2);
 }
 
 }  // namespace
