@@ -43,6 +43,7 @@ std::optional<double> metres_of_unit(const std::string& unit) {
 
 LoadedMotion add_motion(Avatar& avatar, const std::string& path, const std::string& unit, Verbosity verbosity) {
   const BvhMotion motion = read_bvh(path);
+  for (const std::string& warning : motion.warnings) warn(warning, verbosity);
   LoadedMotion loaded = {motion.frame_time_s, motion.frame_count, motion.joints.size(), {}};
   Animation animation = retarget(motion, avatar, metres_of_unit(unit), path, loaded.report);
   animation.name = path;
