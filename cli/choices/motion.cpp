@@ -4,6 +4,9 @@
 
 #include <map>
 
+#include "traces/base/error.hpp"
+#include "traces/motion/animation_choice.hpp"
+
 namespace vestige::cli {
 
 namespace {
@@ -33,6 +36,25 @@ void add_unit_option(CLI::App& verb, std::string& unit) {
                   "slide; a unit keeps true distances")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "mm", "cm", "inch", "m"}));
+}
+
+CLI::Option* add_morph_option(CLI::App& verb, MorphChoice& choice) {
+  return verb.add_flag(
+      "--ignore-morphs", choice.ignored,
+      "Play an animation that also moves the skin by morph targets (a face, breathing): this motion is left "
+      "out, with a warning that says how far it goes");
+}
+
+const Animation* choose_animation(const Avatar& avatar, const std::string& name_or_index, const MorphChoice& morphs,
+                                  Verbosity verbosity) {
+  const Animation* animation = find_animation(avatar, name_or_index);
+  if (animation == nullptr || !animation->morph) return animation;
+  const std::string cause = describe_morph(*animation);
+  if (!morphs.ignored)
+    throw Error(animation->morph->where, cause + ", which cannot be played",
+                "add --ignore-morphs to leave this motion out, or choose another --animation");
+  warn(fmt::format("{}: {}; this motion is left out", animation->morph->where, cause), verbosity);
+  return animation;
 }
 
 std::optional<double> metres_of_unit(const std::string& unit) {

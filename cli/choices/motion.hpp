@@ -25,6 +25,19 @@ void warn_of_names(const std::string& path, std::string_view what, const std::ve
 /// Adds the flag --unit, of a motion.
 void add_unit_option(CLI::App& verb, std::string& unit);
 
+/// Whether the part of an animation that moves the skin by morph targets is left out.
+struct MorphChoice {
+  bool ignored = false;
+};
+
+/// Adds the flag --ignore-morphs, of a verb that plays an animation of the avatar.
+CLI::Option* add_morph_option(CLI::App& verb, MorphChoice& choice);
+
+/// Returns the animation that `find_animation` returns. If it moves the skin by morph targets: throws `Error`, or with
+/// --ignore-morphs warns how far.
+const Animation* choose_animation(const Avatar& avatar, const std::string& name_or_index, const MorphChoice& morphs,
+                                  Verbosity verbosity);
+
 /// Returns how many metres the unit "cm", "m", … has; nothing for "auto".
 std::optional<double> metres_of_unit(const std::string& unit);
 

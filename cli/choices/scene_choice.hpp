@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "cli/choices/motion.hpp"
 #include "cli/terminal.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/colliders.hpp"
@@ -17,6 +18,7 @@ namespace vestige::cli {
 struct SceneChoice {
   std::string avatar = "builtin";
   std::string animation;
+  MorphChoice morphs;
   std::string unit = "auto";  ///< of the motion capture
   std::string map;
   std::string colliders = "swarm";
@@ -41,7 +43,7 @@ inline constexpr const char* kNodesHelp =
 /// Returns the help of --count, for the number of colliders of a scenario.
 std::string describe_count();
 
-/// Adds --avatar, --animation, --unit, --map, --colliders, --nodes and --count.
+/// Adds --avatar, --animation, --ignore-morphs, --unit, --map, --colliders, --nodes and --count.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
 /// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit without motion capture,

@@ -102,9 +102,9 @@ Avatar parse_avatar_glb(std::span<const std::byte> glb, std::string_view name) {
   gltf::read_nodes(document, avatar, report);
   const std::vector<gltf::Skin> skins = gltf::read_skins(document, avatar, report);
   const std::vector<bool> drawn = gltf::nodes_drawn(document, avatar, report);
-  gltf::read_meshes(document, skins, drawn, avatar, report);
+  gltf::MorphTargets morphs = gltf::read_meshes(document, skins, drawn, avatar, report);
   refuse_rest_pose_beyond_float(avatar, report);
-  gltf::read_animations(document, avatar, report);
+  gltf::read_animations(document, morphs, avatar, report);
   if (avatar.triangles.empty()) fail_without_triangles(report);
 
   avatar.root_node = find_root(document, drawn, avatar);
