@@ -5,6 +5,9 @@
 #include <map>
 #include <utility>
 
+#include "traces/base/error.hpp"
+#include "traces/motion/animation_choice.hpp"
+
 namespace vestige::cli {
 
 namespace {
@@ -79,9 +82,29 @@ void add_motion_options(CLI::App& verb, MotionChoice& choice) {
       ->check(CLI::IsMember({"auto", "y", "z", "-y", "-z"}));
 }
 
+CLI::Option* add_morph_option(CLI::App& verb, MorphChoice& choice) {
+  return verb.add_flag(
+      "--ignore-morphs", choice.ignored,
+      "Play an animation that also moves the skin by morph targets (a face, breathing): this motion is left "
+      "out, with a warning that says how far it goes");
+}
+
+const Animation* choose_animation(const Avatar& avatar, const std::string& name_or_index, const MorphChoice& morphs,
+                                  Verbosity verbosity) {
+  const Animation* animation = find_animation(avatar, name_or_index);
+  if (animation == nullptr || !animation->morph) return animation;
+  const std::string cause = describe_morph(*animation);
+  if (!morphs.ignored)
+    throw Error(animation->morph->where, cause + ", which cannot be played",
+                "add --ignore-morphs to leave this motion out, or choose another --animation");
+  warn(fmt::format("{}: {}; this motion is left out", animation->morph->where, cause), verbosity);
+  return animation;
+}
+
 LoadedMotion add_motion(Avatar& avatar, const std::string& path, const MotionChoice& choice, bool force,
                         Verbosity verbosity) {
   const BvhMotion motion = read_bvh(path);
+  for (const std::string& warning : motion.warnings) warn(warning, verbosity);
   LoadedMotion loaded = {motion.frame_time_s, motion.frame_count, motion.joints.size(), {}};
   const RetargetOptions options = {metres_of_unit(choice.unit), direction_of(choice.up), force};
   Animation animation = retarget(motion, avatar, options, path, loaded.report);

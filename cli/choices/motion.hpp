@@ -36,6 +36,19 @@ struct MotionChoice {
 /// Adds --unit and --up.
 void add_motion_options(CLI::App& verb, MotionChoice& choice);
 
+/// Whether the part of an animation that moves the skin by morph targets is left out.
+struct MorphChoice {
+  bool ignored = false;
+};
+
+/// Adds the flag --ignore-morphs, of a verb that plays an animation of the avatar.
+CLI::Option* add_morph_option(CLI::App& verb, MorphChoice& choice);
+
+/// Returns the animation that `find_animation` returns. If it moves the skin by morph targets: throws `Error`, or with
+/// --ignore-morphs warns how far.
+const Animation* choose_animation(const Avatar& avatar, const std::string& name_or_index, const MorphChoice& morphs,
+                                  Verbosity verbosity);
+
 /// A motion, and the result of its retargeting to an avatar.
 struct LoadedMotion {
   double frame_time_s = 0;

@@ -65,6 +65,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->type_name("builtin|FILE");
   verb.add_option("--animation", choice.animation, std::string(kAnimationHelp) + " [default: the first]")
       ->type_name("NAME|INDEX|none|FILE.bvh");
+  add_morph_option(verb, choice.morphs);
   add_motion_options(verb, choice.motion);
   verb.add_option("--map", choice.map,
                   "The actuator map: a layout," + layout_list() +

@@ -18,6 +18,7 @@ namespace vestige::cli {
 struct SceneChoice {
   std::string avatar = "builtin";
   std::string animation;
+  MorphChoice morphs;
   MotionChoice motion;
   std::string map;
   std::string colliders = "swarm";
@@ -42,7 +43,7 @@ inline constexpr const char* kNodesHelp =
 /// Returns the help of --count, for the number of colliders of a scenario.
 std::string describe_count();
 
-/// Adds --avatar, --animation, --unit, --up, --map, --colliders, --nodes and --count.
+/// Adds --avatar, --animation, --ignore-morphs, --unit, --up, --map, --colliders, --nodes and --count.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
 /// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit and --up without motion

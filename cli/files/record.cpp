@@ -125,7 +125,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   std::unique_ptr<ColliderSource> colliders;
   if (!options.live.is_live()) {
     load_motion(options.scene, scene.avatar, options.common.force, verbosity);
-    animation = find_animation(scene.avatar, options.scene.animation);
+    animation = choose_animation(scene.avatar, options.scene.animation, options.scene.morphs, verbosity);
     colliders = make_colliders(options.scene, scene.avatar, animation, options.common.seed);
     check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
   }

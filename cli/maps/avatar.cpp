@@ -51,7 +51,9 @@ nlohmann::ordered_json describe(const Avatar& avatar, const UvCoverage& coverage
   json["welded_vertices"] = welded_vertices(avatar);
   json["animations"] = nlohmann::ordered_json::array();
   for (const Animation& animation : avatar.animations)
-    json["animations"].push_back({{"name", animation.name}, {"duration_s", animation.duration_s}});
+    json["animations"].push_back({{"name", animation.name},
+                                  {"duration_s", animation.duration_s},
+                                  {"morph_m", animation.morph ? animation.morph->reach_m : 0}});
   json["influences"] = avatar.influence_count;
   const Box bounds = rest_bounds(avatar);
   json["bounds"] = {{"min", {bounds.low.x, bounds.low.y, bounds.low.z}},
@@ -84,9 +86,10 @@ std::string summary(const std::string& name, const nlohmann::ordered_json& json,
   text += fmt::format("  UV overlap     {}\n", overlap_text(coverage));
   if (avatar.animations.empty()) text += "  no animation\n";
   for (std::size_t i = 0; i < avatar.animations.size(); ++i)
-    text += fmt::format("  animation {:>3}  {} ({:.4g} s)\n", i,
+    text += fmt::format("  animation {:>3}  {} ({:.4g} s){}\n", i,
                         avatar.animations[i].name.empty() ? "unnamed" : avatar.animations[i].name,
-                        avatar.animations[i].duration_s);
+                        avatar.animations[i].duration_s,
+                        avatar.animations[i].morph ? ", moves the skin by morph targets, too" : "");
   return text;
 }
 

@@ -14,6 +14,7 @@
 #include "analysis/batch/batch_run.hpp"
 #include "analysis/batch/rank_by.hpp"
 #include "analysis/scoring/contact_recording.hpp"
+#include "cli/choices/motion.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/maps/batch_options.hpp"
 #include "cli/verbs.hpp"
@@ -175,6 +176,7 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   if (failures.size() == plan.maps.size())
     throw Error("--maps", fmt::format("none of the maps can be used: {}", failures.front().cause),
                 failures.front().remedy);
+  if (plan.has_scenario()) choose_animation(plan.avatar, "", batch.morphs, verbosity);  // which is what they play
 
   const nlohmann::ordered_json identity = to_json(plan);
   const BatchFolder folder(batch.output, identity, shard,

@@ -90,6 +90,7 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
       ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
   add_recording("--duration", options.duration_s, "How long the scene lasts, in seconds [default: 2]", "S")
       ->check(help::kPositive);
+  add_morph_option(verb, options.morphs)->group(kScenarioGroup);
   add_recording("--count", options.count, describe_count(), "N")->check(help::whole_number(1, 1000000));
   add_detector_and_context(verb, options.choice);
   add_detector_options(verb, options.choice);
@@ -165,6 +166,7 @@ std::vector<std::string> arguments_of(const BatchOptions& options) {
   add("--hold", fmt::format("{}", parameters.hold_ms));
   add("--rank-by", options.rank_by);
   if (!options.avatar.empty()) add("--avatar", options.avatar);
+  if (options.morphs.ignored) words.emplace_back("--ignore-morphs");
   if (options.rate_hz) add("--rate", fmt::format("{}", *options.rate_hz));
   if (options.duration_s) add("--duration", fmt::format("{}", *options.duration_s));
   if (options.count) add("--count", fmt::format("{}", *options.count));

@@ -8,6 +8,7 @@
 #include "analysis/batch/batch_plan.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/law_choice.hpp"
+#include "cli/choices/motion.hpp"
 #include "cli/options.hpp"
 
 namespace vestige::cli {
@@ -21,6 +22,7 @@ struct BatchOptions {
   std::string laws;
   LawFlags law_parameters;  ///< for all laws
   std::string avatar;
+  MorphChoice morphs;
   std::string rank_by;
   std::optional<double> rate_hz;
   std::optional<double> duration_s;

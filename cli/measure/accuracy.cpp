@@ -119,16 +119,20 @@ std::vector<SceneChoice> scene_choices(const AccuracyOptions& options) {
 
 class Measurement {
  public:
-  Measurement(const AccuracyOptions& options, const Scene& scene, const std::vector<double>& rates_hz)
-      : options_(options), scene_(scene), rates_hz_(rates_hz), contestants_(make_contestants(options, scene)) {}
+  Measurement(const AccuracyOptions& options, const Scene& scene, const Animation* animation,
+              const std::vector<double>& rates_hz)
+      : options_(options),
+        scene_(scene),
+        animation_(animation),
+        rates_hz_(rates_hz),
+        contestants_(make_contestants(options, scene)) {}
 
   const std::vector<AccuracyContestant>& contestants() const { return contestants_; }
 
   AccuracyScene measure(const SceneChoice& choice) const {
-    MovingScene moving{
-        scene_.avatar, find_animation(scene_.avatar, choice.animation), nullptr, {}, options_.duration_s};
-    moving.make_colliders = [this, &choice, animation = moving.animation] {
-      return make_colliders(choice, scene_.avatar, animation, options_.common.seed);
+    MovingScene moving{scene_.avatar, animation_, nullptr, {}, options_.duration_s};
+    moving.make_colliders = [this, &choice] {
+      return make_colliders(choice, scene_.avatar, animation_, options_.common.seed);
     };
     const std::unique_ptr<ColliderSource> colliders = moving.make_colliders();
     check_colliders(choice, *colliders, options_.duration_s, options_.common.verbosity());
@@ -165,6 +169,7 @@ class Measurement {
 
   const AccuracyOptions& options_;
   const Scene& scene_;
+  const Animation* animation_;  ///< null: none
   const std::vector<double>& rates_hz_;
   std::vector<AccuracyContestant> contestants_;
 };
@@ -196,7 +201,9 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   catch_interrupts();
   Scene scene = load_scene(options.scene.avatar, options.scene.map, options.common.verbosity());
   load_motion(options.scene, scene.avatar, options.common.force, options.common.verbosity());
-  const Measurement measurement(options, scene, rates_hz);
+  const Animation* animation =
+      choose_animation(scene.avatar, choices.front().animation, options.scene.morphs, options.common.verbosity());
+  const Measurement measurement(options, scene, animation, rates_hz);
   std::vector<AccuracyScene> scenes;
   scenes.reserve(choices.size());
   for (const SceneChoice& choice : choices) {

@@ -20,6 +20,7 @@
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/output_file.hpp"
+#include "traces/motion/animation_choice.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::plot {
@@ -155,6 +156,10 @@ int draw_avatar(Options options) {
                        sheet.animations.size(), kMostAnimations));
       sheet.animations.resize(kMostAnimations);
     }
+    for (const Animation* animation : sheet.animations)
+      if (animation != nullptr && animation->morph)
+        warn(options,
+             fmt::format("{}: {}; this motion is not drawn", animation->morph->where, describe_morph(*animation)));
     return avatar_figure(sheet);
   });
 }

@@ -47,6 +47,8 @@ void check(const Avatar& avatar) {
   for (const Animation& animation : avatar.animations)
     for (const double part : {-1.0, 0.0, 0.3, 1.0, 2.0})
       sample_animation(avatar, animation, part * animation.duration_s);
+  for (const Animation& animation : avatar.animations)
+    require(!animation.morph || std::isfinite(animation.morph->reach_m), "morph targets go a finite way");
 }
 
 /// JSON, a zero and binary data are taken as the chunks of a GLB: so one byte more or less breaks no length.

@@ -83,6 +83,18 @@ GltfBuilder indexed(int mode) {
   return builder;
 }
 
+GltfBuilder morphed() {
+  GltfBuilder builder = skinned_triangle();
+  const std::size_t times = builder.add("SCALAR", std::vector<float>{0, 1});
+  const std::size_t weights = builder.add("SCALAR", std::vector<float>{0, 1, 0.5F, 0});
+  primitive(builder)["targets"] = {{{"POSITION", 0}}, {{"POSITION", builder.add("VEC3", std::vector<float>(9, 0.5F))}}};
+  builder.document["meshes"][0]["weights"] = {0, 0.25};
+  builder.document["nodes"][0]["weights"] = {1, -1};
+  builder.document["animations"] = {{{"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}},
+                                     {"samplers", {{{"input", times}, {"output", weights}}}}}};
+  return builder;
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -96,6 +108,7 @@ int main(int count, char** arguments) {
   save("sparse", sparse());
   save("quantised", quantised());
   save("packed", packed());
+  save("morphed", morphed());
   for (const int mode : {4, 5, 6}) save("mode" + std::to_string(mode), indexed(mode));
   for (const char* interpolation : {"STEP", "LINEAR"}) {
     GltfBuilder builder = skinned_triangle();

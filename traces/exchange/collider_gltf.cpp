@@ -52,7 +52,8 @@ Scene load(const std::filesystem::path& path) {
   gltf::Report report(path.string());
   const gltf::Document document = gltf::load_document(glb, report);
   gltf::read_nodes(document, scene.nodes, report);
-  gltf::read_animations(document, scene.nodes, report);
+  gltf::MorphTargets no_skin(document, report);
+  gltf::read_animations(document, no_skin, scene.nodes, report);
   scene.joints = joints_of(document);
   std::set<std::pair<int, AnimatedProperty>> animated;
   for (Animation& animation : scene.nodes.animations)

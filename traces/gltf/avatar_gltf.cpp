@@ -108,9 +108,9 @@ gltf::LoadedAvatar gltf::load_avatar(std::span<const std::byte> glb, std::string
   read_nodes(document, avatar, report);
   loaded.skins = read_skins(document, avatar, report);
   const std::vector<bool> drawn = nodes_drawn(document, avatar, report);
-  read_meshes(document, loaded.skins, drawn, avatar, report, details);
+  MorphTargets morphs = read_meshes(document, loaded.skins, drawn, avatar, report, details);
   refuse_rest_pose_beyond_float(avatar, report);
-  read_animations(document, avatar, report);
+  read_animations(document, morphs, avatar, report);
   if (avatar.triangles.empty()) fail_without_triangles(report);
 
   avatar.root_node = find_root(document, drawn, avatar);

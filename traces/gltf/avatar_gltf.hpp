@@ -26,8 +26,11 @@ std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std
 /// out-of-range indices, accessors beyond their buffer, non-finite values (in the rest pose, too), node cycles,
 /// negative weights, animation times that do not increase, required extensions that are not supported, no triangle at
 /// all. Harmless faults become `Avatar::warnings`: unknown properties, wrong min and max, weights whose sum is not 1
-/// (normalised), vertices without any weight (they follow their first joint), joints outside the scene, morph targets
-/// and other motion that moves no node.
+/// (normalised), vertices without any weight (they follow their first joint), joints outside the scene, misaligned
+/// data, motion that moves neither node nor skin.
+///
+/// The weights of morph targets at rest displace `position_bind` (glTF 2.0 §3.7.2.2). Animated weights are not played:
+/// `Animation::morph` names those that would move the skin.
 ///
 /// `root_node` belongs to the skin with the lowest index that is drawn: it is the lowest joint without a joint above
 /// it. Without a skin, it is the first node that is drawn. `joint_count` counts all skins. Primitives that share their

@@ -64,7 +64,7 @@ GlbChunks split_glb(std::span<const std::byte> glb, Report& report) {
     const std::size_t left = file.size() - offset - kChunkHeaderBytes;
     if (length > left)
       report.fail(at(offset), fmt::format("the chunk claims {} bytes, but only {} are left", length, left));
-    if (length % 4 != 0) report.fail(at(offset), fmt::format("the chunk's length {} is not a multiple of 4", length));
+    if (length % 4 != 0) report.warn(at(offset), "the chunk's length is not a multiple of 4");
     const std::span<const std::byte> content = file.subspan(offset + kChunkHeaderBytes, length);
     if (index == 0 && type != kJsonChunk) report.fail(at(offset), "the first chunk is not JSON");
     if (index == 0 && content.empty()) report.fail(at(offset), "the JSON chunk is empty");

@@ -104,18 +104,27 @@ void check_range(const Document& document, int view_index, const Elements& eleme
                                   count, size, offset, stride, index, view.length));
 }
 
-/// glTF 2.0 §3.6.2.4: `offset` and the resulting offset in the buffer are multiples of the component's size.
+/// glTF 2.0 §3.6.2.4: `offset` and the resulting offset in the buffer are multiples of the component's size. Numbers
+/// elsewhere are read just as well.
 void check_alignment(const Document& document, int view, std::uint64_t offset, std::uint64_t component_bytes,
-                     const std::string& path, const Report& report) {
+                     const std::string& path, Report& report) {
   const std::uint64_t start = document.views[static_cast<std::size_t>(view)].offset + offset;
   if (offset % component_bytes != 0 || start % component_bytes != 0)
-    report.fail(
-        path, fmt::format("starts at byte {} of its buffer, which is not a multiple of its component's {} bytes", start,
-                          component_bytes));
+    report.warn(path, "does not start at a multiple of its component's size");
+}
+
+/// Only vertex attributes may be interleaved (glTF 2.0 §3.6.2.1). A byteStride of `size` interleaves nothing.
+void refuse_interleaving(const Document& document, int view, std::size_t size, std::string_view use, Report& report) {
+  const std::uint64_t stride = document.views[static_cast<std::size_t>(view)].stride;
+  if (stride == 0) return;
+  const std::string path = fmt::format("bufferViews[{}].byteStride", view);
+  if (stride != size)
+    report.fail(path, fmt::format("is {}, but only vertex attributes may be interleaved, not {}", stride, use));
+  report.warn(path, "is meant for vertex attributes only; as it is the size of an element, it changes nothing");
 }
 
 void check_sparse(const Document& document, const Accessor& accessor, std::size_t index, std::size_t size,
-                  const Report& report) {
+                  Report& report) {
   const Accessor::Sparse& sparse = *accessor.sparse;
   if (sparse.count > accessor.count)
     report.fail(accessor_path(index, ".sparse.count"),
@@ -131,10 +140,8 @@ void check_sparse(const Document& document, const Accessor& accessor, std::size_
   check_alignment(document, sparse.indices_view, sparse.indices_offset, type.bytes, indices, report);
   check_alignment(document, sparse.values_view, sparse.values_offset, component_type(accessor.component_type).bytes,
                   values, report);
-  for (const int view : {sparse.indices_view, sparse.values_view})
-    if (document.views[static_cast<std::size_t>(view)].stride != 0)
-      report.fail(fmt::format("bufferViews[{}].byteStride", view),
-                  fmt::format("is allowed only for vertex attributes, not for {}", accessor_path(index, ".sparse")));
+  refuse_interleaving(document, sparse.indices_view, type.bytes, indices, report);
+  refuse_interleaving(document, sparse.values_view, size, values, report);
 }
 
 std::uint32_t read_unsigned(const std::byte* bytes, std::size_t size) {
@@ -151,6 +158,12 @@ double read_as(const std::byte* bytes) {
 }
 
 }  // namespace
+
+Format position_format(const Document& document) {
+  constexpr unsigned kQuantized =
+      kInt8 | kUint8 | kInt16 | kUint16 | kNormalizedInt8 | kNormalizedUint8 | kNormalizedInt16 | kNormalizedUint16;
+  return {TINYGLTF_TYPE_VEC3, kFloat | (document.quantized ? kQuantized : 0U)};
+}
 
 void check_accessors(const Document& document, Report& report) {
   for (std::size_t i = 0; i < document.accessors.size(); ++i) {
@@ -171,6 +184,9 @@ void check_accessors(const Document& document, Report& report) {
       if (stride < size)
         report.fail(accessor_path(i),
                     fmt::format("elements of {} bytes overlap at a byteStride of {}", size, view.stride));
+      if (stride % 4 != 0 && stride != size)
+        report.fail(fmt::format("bufferViews[{}].byteStride", accessor.view),
+                    fmt::format("{} is not a multiple of 4", stride));
       check_range(document, accessor.view, {accessor.offset, accessor.count, stride, size}, accessor_path(i), report);
       check_alignment(document, accessor.view, accessor.offset, type.bytes, accessor_path(i), report);
     } else if (accessor.offset != 0) {
@@ -178,6 +194,13 @@ void check_accessors(const Document& document, Report& report) {
     }
     if (accessor.sparse) check_sparse(document, accessor, i, size, report);
   }
+}
+
+void refuse_stride(const Document& document, int accessor, std::string_view use, Report& report) {
+  const Accessor& source = document.accessors[static_cast<std::size_t>(accessor)];
+  if (source.view < 0) return;
+  const std::size_t size = element_bytes(source.type, component_type(source.component_type).bytes);
+  refuse_interleaving(document, source.view, size, use, report);
 }
 
 AccessorReader::AccessorReader(const Document& document, int accessor, const Format& format, std::string_view use,

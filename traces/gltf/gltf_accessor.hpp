@@ -29,9 +29,17 @@ struct Format {
   unsigned components = 0;  ///< a set of `Component`
 };
 
+/// Returns the format of vertex positions, and of displacements of morph targets: VEC3 of float, or also of small
+/// integers if KHR_mesh_quantization allows them.
+Format position_format(const Document& document);
+
 /// Checks, without reading data, that all accessors lie inside their buffer views and all buffer views inside their
 /// buffers, including sparse ones. Fails with the name of the accessor.
 void check_accessors(const Document& document, Report& report);
+
+/// Fails, with the name `use`, if the accessor's elements are interleaved with others, as only those of vertex
+/// attributes may be (glTF 2.0 §3.6.2.1). Warns of a byteStride that equals the element's size.
+void refuse_stride(const Document& document, int accessor, std::string_view use, Report& report);
 
 /// Random access to the elements of an accessor. Handles strides, sparse substitution, missing data (zeros) and
 /// normalisation. Keeps a reference to the document's buffers.

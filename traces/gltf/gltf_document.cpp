@@ -115,20 +115,21 @@ void read_accessors(Document& document, Report& report) {
 
 void read_views(Document& document, Report& report) {
   document.views.reserve(document.json.count("bufferViews"));
+  std::vector<std::uint64_t> strides;  // tinygltf refuses those that are no multiple of 4
   read_list(
       document.json, "bufferViews", report,
       [&](json& view, std::size_t i) {
         const std::string path = fmt::format("bufferViews[{}]", i);
-        const auto stride = view.value("byteStride", std::uint64_t{0});
-        if (stride % 4 != 0) report.fail(path + ".byteStride", fmt::format("{} is not a multiple of 4", stride));
         if (const auto packed = read_packed_view(view, path, document.json.count("buffers"), report))
           document.packed.emplace(i, *packed);
+        strides.push_back(view.value("byteStride", std::uint64_t{0}));
+        view.erase("byteStride");
         view.erase("name");
       },
       [&](tinygltf::Model&& model) {
         for (const tinygltf::BufferView& view : model.bufferViews)
-          document.views.push_back(
-              {static_cast<std::size_t>(view.buffer), view.byteOffset, view.byteLength, view.byteStride});
+          document.views.push_back({static_cast<std::size_t>(view.buffer), view.byteOffset, view.byteLength,
+                                    strides[document.views.size()]});
       });
 }
 
@@ -238,7 +239,7 @@ void read_model(Document& document, Report& report) {
   all.defaultScene = document.json.head().value("scene", -1);
 }
 
-void check_strides(const Document& document, const Report& report) {
+void check_strides(const Document& document, Report& report) {
   for (std::size_t i = 0; i < document.model.skins.size(); ++i)
     if (const int matrices = document.model.skins[i].inverseBindMatrices; matrices >= 0)
       refuse_stride(document, matrices, fmt::format("skins[{}].inverseBindMatrices", i), report);
@@ -269,13 +270,6 @@ void check_inside_buffer(std::uint64_t offset, std::uint64_t length, std::size_t
   if (offset + length > buffer_bytes)
     report.fail(path, fmt::format("{} bytes from byte {} on do not lie inside buffers[{}] of {} bytes", length, offset,
                                   buffer, buffer_bytes));
-}
-
-void refuse_stride(const Document& document, int accessor, std::string_view use, const Report& report) {
-  const int view = document.accessors[static_cast<std::size_t>(accessor)].view;
-  if (view >= 0 && document.views[static_cast<std::size_t>(view)].stride != 0)
-    report.fail(fmt::format("bufferViews[{}].byteStride", view),
-                fmt::format("is allowed only for vertex attributes, not for {}", use));
 }
 
 Document parse_document(Json json, Report& report) {

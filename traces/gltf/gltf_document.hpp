@@ -84,8 +84,4 @@ tinygltf::Animation load_animation(const Document& document, std::size_t index, 
 void check_inside_buffer(std::uint64_t offset, std::uint64_t length, std::size_t buffer, std::uint64_t buffer_bytes,
                          std::string_view path, const Report& report);
 
-/// Fails, with the name `use`, if the accessor's buffer view has a byteStride. Only vertex attributes may be
-/// interleaved (glTF 2.0 §3.6.2.1).
-void refuse_stride(const Document& document, int accessor, std::string_view use, const Report& report);
-
 }  // namespace vestige::gltf

@@ -6,6 +6,8 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <span>
+#include <tuple>
 #include <utility>
 
 #include "traces/gltf/gltf_accessor.hpp"
@@ -31,6 +33,7 @@ struct Part {
   std::size_t primitive = 0;
   std::size_t vertex_count = 0;
   std::size_t corner_count = 0;  ///< number of indices, or of vertices if there are no indices
+  std::vector<MorphTarget> targets;
 };
 
 std::string part_path(const Part& part, std::string_view property = {}) {
@@ -53,6 +56,11 @@ bool is_known_attribute(std::string_view name) {
          std::any_of(kNumbered.begin(), kNumbered.end(), [&](auto prefix) { return name.starts_with(prefix); });
 }
 
+/// Whether the count of an attribute matters: others, such as normals and colours, are never read.
+bool is_read(std::string_view name) {
+  return name == "POSITION" || name == "TEXCOORD_0" || name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_");
+}
+
 std::uint32_t largest_index(int component_type) {
   if (component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE) return 0xFF;
   return component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ? 0xFFFF : 0xFFFFFFFF;
@@ -60,8 +68,14 @@ std::uint32_t largest_index(int component_type) {
 
 class MeshReader {
  public:
-  MeshReader(const Document& document, const std::vector<Skin>& skins, Avatar& avatar, Report& report)
-      : document_(document), skins_(skins), skin_palette_(skins.size()), avatar_(avatar), report_(report) {
+  MeshReader(const Document& document, const std::vector<Skin>& skins, MorphTargets& morphs, Avatar& avatar,
+             Report& report)
+      : document_(document),
+        skins_(skins),
+        skin_palette_(skins.size()),
+        morphs_(morphs),
+        avatar_(avatar),
+        report_(report) {
     world_matrices(avatar, rest_pose(avatar), world_);
   }
 
@@ -94,12 +108,17 @@ class MeshReader {
       if (details != nullptr)
         details->parts.push_back({part.node, part.skin, part.mesh, part.primitive, vertices->second, part.vertex_count,
                                   first_triangle, avatar_.triangles.size() - first_triangle, is_mirrored(part)});
+      const auto displaces = [](const MorphTarget& target) { return target.displacement.has_value(); };
+      if (part.node != kNoNode && std::any_of(part.targets.begin(), part.targets.end(), displaces))
+        morphs_.add(part.node, {part.targets, vertices->second, part.vertex_count, part_path(part)});
     }
   }
 
  private:
-  /// The key of a part's vertices. Parts with the same key share their vertices.
-  using Key = std::pair<std::array<int, 2>, std::vector<std::pair<std::string, int>>>;
+  /// The key of a part's vertices: skin or node, attributes, and morph targets with their weights. Parts with the same
+  /// key share their vertices.
+  using Key =
+      std::tuple<std::array<int, 2>, std::vector<std::pair<std::string, int>>, std::vector<std::pair<int, float>>>;
 
   const tinygltf::Primitive& primitive(const Part& part) const {
     return document_.model.meshes[part.mesh].primitives[part.primitive];
@@ -108,11 +127,14 @@ class MeshReader {
   const Accessor& accessor(int index) const { return document_.accessors[static_cast<std::size_t>(index)]; }
 
   Key key(const Part& part) const {
-    Key result = {{part.skin, part.skin < 0 ? part.node : -1}, {}};
+    Key result = {{part.skin, part.skin < 0 ? part.node : -1}, {}, {}};
+    auto& [follows, attributes, targets] = result;
     for (const auto& [name, index] : primitive(part).attributes)
       if (name == "POSITION" || name == "TEXCOORD_0" ||
           (part.skin >= 0 && (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_"))))
-        result.second.emplace_back(name, index);
+        attributes.emplace_back(name, index);
+    for (const MorphTarget& target : part.targets)
+      if (target.displacement && target.weight != 0) targets.emplace_back(*target.displacement, target.weight);
     return result;
   }
 
@@ -139,6 +161,7 @@ class MeshReader {
     }
     part.vertex_count = accessor(position->second).count;
     check_counts(part);
+    part.targets = morphs_.at_rest(part.mesh, part.primitive, part.node);
     check_binding(part);
     part.corner_count = source.indices < 0 ? part.vertex_count : accessor(source.indices).count;
     if (triangle_count(source.mode, part.corner_count) == 0 ||
@@ -147,21 +170,21 @@ class MeshReader {
     return triangle_count(source.mode, part.corner_count) > 0;
   }
 
-  /// Checks that all attributes, read or not, and morph targets, which are not read, have the same number of vertices.
+  /// Checks that all attributes and morph targets have the same number of vertices.
   void check_counts(const Part& part) {
-    const auto check = [&](const std::string& path, int index) {
-      if (accessor(index).count != part.vertex_count)
-        report_.fail(path, fmt::format("has {} elements for {} vertices", accessor(index).count, part.vertex_count));
+    const auto check = [&](const std::string& path, std::string_view name, int index) {
+      if (accessor(index).count == part.vertex_count) return;
+      if (!is_read(name)) return report_.warn(path, "does not have one element for each vertex, and is not read");
+      report_.fail(path, fmt::format("has {} elements for {} vertices", accessor(index).count, part.vertex_count));
     };
     const tinygltf::Primitive& source = primitive(part);
     for (const auto& [name, index] : source.attributes) {
-      check(attribute_path(part, name), index);
+      check(attribute_path(part, name), name, index);
       if (!is_known_attribute(name)) report_.warn(attribute_path(part, name), "is not an attribute that glTF defines");
     }
     for (std::size_t i = 0; i < source.targets.size(); ++i)
       for (const auto& [name, index] : source.targets[i])
-        check(part_path(part, fmt::format(".targets[{}].{}", i, name)), index);
-    if (!source.targets.empty()) report_.warn(part_path(part, ".targets"), "ignored morph targets");
+        check(part_path(part, fmt::format(".targets[{}].{}", i, name)), name, index);
   }
 
   void check_binding(const Part& part) {
@@ -194,26 +217,26 @@ class MeshReader {
     avatar_.triangles.reserve(triangles);
   }
 
-  AccessorReader attribute(const Part& part, const std::string& name, int type, unsigned components) {
+  AccessorReader attribute(const Part& part, const std::string& name, const Format& format) {
     const auto found = primitive(part).attributes.find(name);
     const std::string path = attribute_path(part, name);
     if (found == primitive(part).attributes.end()) report_.fail(path, "is missing");
-    AccessorReader reader(document_, found->second, {type, components}, path, report_);
+    AccessorReader reader(document_, found->second, format, path, report_);
     reader.check_vertex_alignment(report_);
     return reader;
   }
 
   void read_vertices(const Part& part) {
-    constexpr unsigned kSmall = kInt8 | kUint8 | kInt16 | kUint16;
-    constexpr unsigned kNormalized = kNormalizedInt8 | kNormalizedUint8 | kNormalizedInt16 | kNormalizedUint16;
-    const unsigned quantized = document_.quantized ? kSmall | kNormalized : 0U;
-    const AccessorReader position = attribute(part, "POSITION", TINYGLTF_TYPE_VEC3, kFloat | quantized);
+    const Format format = position_format(document_);
+    const AccessorReader position = attribute(part, "POSITION", format);
     position.compare_bounds(report_);
+    const std::size_t first = avatar_.position_bind.size();
     for (std::size_t i = 0; i < part.vertex_count; ++i)
       avatar_.position_bind.emplace_back(position.finite(i, 0), position.finite(i, 1), position.finite(i, 2));
+    morphs_.bake(part.targets, part_path(part), std::span(avatar_.position_bind).subspan(first));
     if (primitive(part).attributes.contains("TEXCOORD_0")) {
       const AccessorReader uv =
-          attribute(part, "TEXCOORD_0", TINYGLTF_TYPE_VEC2, kFloat | kNormalizedUint8 | kNormalizedUint16 | quantized);
+          attribute(part, "TEXCOORD_0", {TINYGLTF_TYPE_VEC2, format.components | kNormalizedUint8 | kNormalizedUint16});
       for (std::size_t i = 0; i < part.vertex_count; ++i)
         avatar_.texture_coordinate.emplace_back(uv.finite(i, 0), uv.finite(i, 1));
     } else {
@@ -260,8 +283,8 @@ class MeshReader {
       const std::string joints = fmt::format("JOINTS_{}", n);
       const std::string weights = fmt::format("WEIGHTS_{}", n);
       if (!attributes.contains(joints) && !attributes.contains(weights)) break;
-      sets.push_back({attribute(part, joints, TINYGLTF_TYPE_VEC4, kUint8 | kUint16),
-                      attribute(part, weights, TINYGLTF_TYPE_VEC4, kFloat | kNormalizedUint8 | kNormalizedUint16),
+      sets.push_back({attribute(part, joints, {TINYGLTF_TYPE_VEC4, kUint8 | kUint16}),
+                      attribute(part, weights, {TINYGLTF_TYPE_VEC4, kFloat | kNormalizedUint8 | kNormalizedUint16}),
                       attribute_path(part, joints), attribute_path(part, weights)});
     }
     for (const std::string_view prefix : {"JOINTS_", "WEIGHTS_"}) {
@@ -369,15 +392,17 @@ class MeshReader {
   std::map<std::pair<int, std::array<double, 16>>, std::size_t> palette_;
   std::map<Key, std::size_t> first_vertex_;
   DrawnMeshes* details_ = nullptr;
+  MorphTargets& morphs_;
   Avatar& avatar_;
   Report& report_;
 };
 
 }  // namespace
 
-void read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
-                 Avatar& avatar, Report& report, DrawnMeshes* details) {
-  MeshReader reader(document, skins, avatar, report);
+MorphTargets read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
+                         Avatar& avatar, Report& report, DrawnMeshes* details) {
+  MorphTargets morphs(document, report);
+  MeshReader reader(document, skins, morphs, avatar, report);
   reader.read(reader.shown(drawn), details);
 
   std::vector<bool> is_shown(document.model.meshes.size());
@@ -387,9 +412,10 @@ void read_meshes(const Document& document, const std::vector<Skin>& skins, const
   for (std::size_t mesh = 0; mesh < is_shown.size(); ++mesh) {
     if (is_shown[mesh]) continue;
     Avatar unseen;
-    MeshReader checker(document, skins, unseen, report);
+    MeshReader checker(document, skins, morphs, unseen, report);
     checker.read(checker.unshown(mesh));
   }
+  return morphs;
 }
 
 }  // namespace vestige::gltf

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "traces/gltf/gltf_document.hpp"
+#include "traces/gltf/gltf_morph.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige::gltf {
@@ -38,10 +39,11 @@ struct DrawnMeshes {
   std::vector<std::array<float, kMaxInfluences>> weights;  ///< for each vertex: as in the file, not normalised
 };
 
-/// Fills palette, vertices and triangles with the meshes of the nodes that are drawn. The other meshes are checked,
-/// too. A mirroring rigid node (whose global matrix at rest has a negative determinant) reverses its triangles, so that
-/// their front stays outside (glTF 2.0 §3.7.4). Fills `details` unless it is null.
-void read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
-                 Avatar& avatar, Report& report, DrawnMeshes* details = nullptr);
+/// Fills palette, vertices and triangles with the meshes of the nodes that are drawn, morphed by their weights at rest.
+/// Returns the morph targets of these nodes. The other meshes are checked, too. A mirroring rigid node (whose global
+/// matrix at rest has a negative determinant) reverses its triangles, so that their front stays outside (glTF 2.0
+/// §3.7.4). Fills `details` unless it is null.
+MorphTargets read_meshes(const Document& document, const std::vector<Skin>& skins, const std::vector<bool>& drawn,
+                         Avatar& avatar, Report& report, DrawnMeshes* details = nullptr);
 
 }  // namespace vestige::gltf

@@ -36,4 +36,10 @@ const Animation* find_animation(const Avatar& avatar, const std::string& name_or
   throw UsageError("--animation", fmt::format("there is no animation '{}'", name_or_index), list_animations(avatar));
 }
 
+std::string describe_morph(const Animation& animation) {
+  return fmt::format("{} moves the skin by morph targets, by at most {:.3g} m (all at their most, in the rest pose)",
+                     animation.name.empty() ? "an unnamed animation" : fmt::format("animation '{}'", animation.name),
+                     animation.morph->reach_m);
+}
+
 }  // namespace vestige

@@ -10,4 +10,7 @@ namespace vestige {
 /// returns the first animation, or null if there is none. Throws `UsageError` with a list of the animations.
 const Animation* find_animation(const Avatar& avatar, const std::string& name_or_index);
 
+/// Says that the animation moves the skin by morph targets, and how far. Precondition: `animation.morph`.
+std::string describe_morph(const Animation& animation);
+
 }  // namespace vestige

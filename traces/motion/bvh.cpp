@@ -71,6 +71,17 @@ class Words {
     if (!same_word(word, wanted)) fail(fmt::format("expected {} instead of {}", wanted, quoted(word)));
   }
 
+  /// Reads a label and its colon, perhaps with space before the colon or none after it.
+  void expect_label(std::string_view label) {
+    std::string_view word = next();
+    const std::size_t length = std::min(word.find(':'), word.size());
+    if (!same_word(word.substr(0, length), label)) fail(fmt::format("expected {}: instead of {}", label, quoted(word)));
+    word.remove_prefix(length);
+    if (word.empty()) word = next();
+    if (!word.starts_with(':')) fail(fmt::format("expected a colon after {} instead of {}", label, quoted(word)));
+    text_ = {word.data() + 1, word.size() - 1 + text_.size()};
+  }
+
   template <typename Number>
   Number number(std::string_view word, std::string_view what) const {
     if (word.starts_with('+')) word.remove_prefix(1);
@@ -96,7 +107,11 @@ class Words {
     throw Error(fmt::format("{}, line {}", name_, line_), cause, remedy);
   }
 
+  const std::string& name() const { return name_; }
+
   std::size_t bytes_left() const { return text_.size(); }
+
+  bool is_only_space_left() const { return text_.find_first_not_of(" \t\r\v\f\n") == std::string_view::npos; }
 
  private:
   std::string_view text_;
@@ -199,10 +214,7 @@ class Parser {
   }
 
   void parse_motion() {
-    if (const std::string_view word = words_.next(); same_word(word, "Frames"))
-      words_.expect(":");
-    else if (!same_word(word, "Frames:"))
-      words_.fail(fmt::format("expected Frames: instead of {}", Words::quoted(word)));
+    words_.expect_label("Frames");
     const auto frames = words_.number<std::uint64_t>(words_.next(), "the number of frames");
     if (frames == 0) words_.fail("there are 0 frames");
     // A number takes at least a digit and a space, so the file's size bounds the allocation.
@@ -212,32 +224,46 @@ class Parser {
                               motion_.channel_count, words_.bytes_left()),
                   "copy or export the file again: it was cut short, or its number of frames is wrong");
     words_.expect("Frame");
-    if (const std::string_view word = words_.next(); same_word(word, "Time"))
-      words_.expect(":");
-    else if (!same_word(word, "Time:"))
-      words_.fail(fmt::format("expected Frame Time: instead of {}", Words::quoted(word)));
+    words_.expect_label("Time");
     motion_.frame_time_s = words_.number<double>(words_.next(), "the frame time");
     if (!(motion_.frame_time_s > 0)) words_.fail("the frame time is not positive");
     if (motion_.frame_time_s < kShortestFrame_s)
       words_.fail(fmt::format("the frame time is {} s, less than 1e-9 s", motion_.frame_time_s),
                   "write it in seconds: 0.00833333 for 120 frames a second");
-    if (static_cast<double>(frames) * motion_.frame_time_s > kLongest_s)
+    parse_frames(static_cast<std::size_t>(frames));
+    if (static_cast<double>(motion_.frame_count) * motion_.frame_time_s > kLongest_s)
       words_.fail("the motion lasts longer than 1e9 s", "check the frame time");
-    motion_.frame_count = static_cast<std::size_t>(frames);
-    motion_.values.reserve(motion_.frame_count * motion_.channel_count);
-    for (std::size_t frame = 0; frame < motion_.frame_count; ++frame) parse_frame(frame);
-    if (const std::string_view more = words_.next(); !more.empty())
-      words_.fail(fmt::format("'{}' follows the last of {} frames", shown_word(more), motion_.frame_count),
-                  "correct the number of frames");
   }
 
-  void parse_frame(std::size_t frame) {
+  /// Like other programs (Blender's importer), takes all frames that are there, even if more than were announced.
+  void parse_frames(std::size_t announced) {
+    motion_.values.reserve(announced * motion_.channel_count);
+    std::string_view left_out;
+    while (motion_.frame_count < announced || !words_.is_only_space_left()) {
+      const std::size_t numbers = parse_frame(announced);
+      if (numbers == motion_.channel_count) {
+        ++motion_.frame_count;
+        continue;
+      }
+      motion_.values.resize(motion_.frame_count * motion_.channel_count);
+      left_out = "; a last one, which is cut short, is left out";
+    }
+    if (motion_.frame_count > announced || !left_out.empty())
+      motion_.warnings.push_back(
+          fmt::format("{}: {} frames were announced, but there are {}, and all of these are read{}", words_.name(),
+                      announced, motion_.frame_count, left_out));
+  }
+
+  /// Returns how many numbers the frame has: all, or fewer if it is the last one of more than were announced.
+  std::size_t parse_frame(std::size_t announced) {
+    const std::size_t frame = motion_.frame_count;
     std::string_view word = words_.next();
     if (word.empty())
-      words_.fail(fmt::format("{} frames were announced, but there are only {}", motion_.frame_count, frame),
+      words_.fail(fmt::format("{} frames were announced, but there are only {}", announced, frame),
                   "copy or export the file again: it was cut short, or its number of frames is wrong");
     for (std::size_t channel = 0; channel < motion_.channel_count; ++channel) {
       if (channel > 0) word = words_.next_in_line();
+      if (word.empty() && frame >= announced && words_.is_only_space_left()) return channel;
       if (word.empty())
         words_.fail(fmt::format("frame {} has {} numbers, but the joints have {} channels", frame, channel,
                                 motion_.channel_count));
@@ -246,6 +272,7 @@ class Parser {
     if (!words_.next_in_line().empty())
       words_.fail(
           fmt::format("frame {} has more than the {} numbers of the joints' channels", frame, motion_.channel_count));
+    return motion_.channel_count;
   }
 
   Words words_;

@@ -28,8 +28,9 @@ struct BvhMotion {
   std::vector<glm::dvec3> ends;  ///< one for each joint: offset of its end site, or (0, 0, 0) without one
   double frame_time_s = 0;
   std::size_t frame_count = 0;
-  std::size_t channel_count = 0;  ///< count of numbers in a frame
-  std::vector<float> values;      ///< frame after frame
+  std::size_t channel_count = 0;      ///< count of numbers in a frame
+  std::vector<float> values;          ///< frame after frame
+  std::vector<std::string> warnings;  ///< oddities of the file that do no harm, one sentence each
 
   float value(std::size_t frame, std::size_t channel) const { return values[frame * channel_count + channel]; }
 };
@@ -51,8 +52,9 @@ std::string shown_word(std::string_view word);
 
 /// Parses a BVH file. Throws `Error` with file and line if it is not valid: an unknown word, a missing brace or MOTION,
 /// joints nested deeper than 256, channels that do not exist or occur twice, a frame whose count of numbers differs
-/// from the count of channels, more or fewer frames than the file says, numbers that are invalid or not finite, a frame
-/// time that is not positive. Memory is bounded by the file's size.
+/// from the count of channels, fewer frames than the file says, numbers that are invalid or not finite, a frame time
+/// that is not positive. If the file has more frames than it says, all are read, with a warning; a last one that is cut
+/// short is left out. Memory is bounded by the file's size.
 BvhMotion parse_bvh(std::string_view text, const std::string& name);
 
 /// Reads and parses a BVH file of at most 512 MiB; "-" is standard input.

@@ -52,10 +52,17 @@ struct AnimationChannel {
   std::vector<float> values;
 };
 
+/// Motion of the skin by morph targets, which is not played.
+struct MorphMotion {
+  std::string where;   ///< file and first channel that moves the skin so, for messages
+  double reach_m = 0;  ///< how far a vertex departs from its place at rest: an upper bound, for the rest pose
+};
+
 struct Animation {
   std::string name;  ///< may be empty: glTF does not require one
   double duration_s = 0;
   std::vector<AnimationChannel> channels;
+  std::optional<MorphMotion> morph = {};
 };
 
 /// A skinned, animated triangle mesh: exactly those parts of a glTF file that detection reads.

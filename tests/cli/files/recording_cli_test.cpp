@@ -13,6 +13,7 @@
 #include "tests/support/command_line.hpp"
 #include "tests/support/osc.hpp"
 #include "tests/support/udp.hpp"
+#include "tests/traces/gltf/gltf_builder.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/trace_file/trace_reader.hpp"
@@ -21,6 +22,7 @@ namespace vestige {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Recording : public test::CommandLineTest {
  protected:
@@ -77,6 +79,61 @@ class Recording : public test::CommandLineTest {
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
 };
+
+/// A triangle whose far corner rests two metres up by a morph target. Animation "turn" turns it, and "breathe" also
+/// moves the target by half.
+std::string breathing_avatar() {
+  test::GltfBuilder builder = test::one_triangle();
+  const std::size_t up = builder.add("VEC3", std::vector<float>{0, 0, 0, 0, 0, 0, 0, 2, 0});
+  const std::size_t weights = builder.add("SCALAR", std::vector<float>{1, 1.5F});
+  test::primitive(builder)["targets"] = {{{"POSITION", up}}};
+  builder.document["meshes"][0]["weights"] = {1};
+  for (const char* name : {"turn", "breathe"}) {
+    test::animate(builder, 0, "rotation", "LINEAR", {0, 1}, {0, 0, 0, 1, 0, 0, 1, 0});
+    builder.document["animations"].back()["name"] = name;
+  }
+  nlohmann::json& breathe = builder.document["animations"][1];
+  breathe["samplers"].push_back({{"input", breathe["samplers"][0]["input"]}, {"output", weights}});
+  breathe["channels"].push_back({{"sampler", 1}, {"target", {{"node", 0}, {"path", "weights"}}}});
+  const std::vector<std::byte> glb = builder.glb();
+  return {reinterpret_cast<const char*>(glb.data()), glb.size()};
+}
+
+TEST_F(Recording, RefusesAnAnimationOfMorphTargetsUnlessItIsToldToIgnoreThem) {
+  write("a.glb", breathing_avatar());
+  const std::string record = "vestige record --avatar a.glb --colliders still --count 5 --rate 10 --duration 1 ";
+  expect_failure(
+      record + "--animation breathe -o b.mcap", 1,
+      {"a.glb: animations[1].channels[1]: animation 'breathe' moves the skin by morph targets, by at most 1 m",
+       "add --ignore-morphs to leave this motion out, or choose another --animation"},
+      "b.mcap");
+  for (const char* other : {"--animation turn", "--animation none", ""}) {
+    const test::Outcome outcome = run(record + other + " --force -o a.mcap");
+    EXPECT_EQ(outcome.exit_code, 0) << other << outcome.standard_error;
+    EXPECT_THAT(outcome.standard_error, Not(HasSubstr("morph"))) << other;
+  }
+  const test::Outcome ignored = run(record + "--animation breathe --ignore-morphs -o b.mcap");
+  EXPECT_EQ(ignored.exit_code, 0);
+  EXPECT_THAT(ignored.standard_error, HasSubstr("by at most 1 m (all at their most, in the rest pose); this motion is "
+                                                "left out\n"));
+  EXPECT_EQ(hash_of("b.mcap"), hash_of("a.mcap")) << "both turn";
+}
+
+TEST_F(Recording, KeepsTheShapeThatMorphTargetsGiveTheAvatar) {
+  write("a.glb", breathing_avatar());
+  ASSERT_EQ(run("vestige record --avatar a.glb --colliders still --count 5 --rate 10 --duration 1 -o a.mcap").exit_code,
+            0);
+  ASSERT_EQ(run("vestige avatar a.glb -o written.glb").exit_code, 0);
+  ASSERT_EQ(run("vestige export a.mcap -o exported.glb && vestige export a.mcap -o folder").exit_code, 0);
+  EXPECT_GE(json_of("vestige avatar --json - exported.glb")["bounds"]["max"][1], 3) << "the avatar, and colliders";
+  for (const char* file : {"a.glb", "written.glb", "folder/avatar.glb"})
+    EXPECT_EQ(json_of(std::string("vestige avatar --json - ") + file)["bounds"]["max"],
+              nlohmann::json::parse("[1, 3, 0]"))
+        << file;
+  const auto animations = json_of("vestige avatar a.glb --json -")["animations"];
+  EXPECT_EQ(animations[0]["morph_m"], 0);
+  EXPECT_EQ(animations[1]["morph_m"], 1);
+}
 
 TEST_F(Recording, InPartsMergesToWhatOneFileWouldHaveBeen) {
   const std::string scene = "vestige record --colliders rain --count 40 --rate 200 --duration 2 ";

@@ -19,6 +19,7 @@ namespace {
 using nlohmann::json;
 using test::GltfBuilder;
 using test::primitive;
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -126,6 +127,60 @@ std::vector<Target> converted(const std::vector<Source>& numbers, double factor 
   result.reserve(numbers.size());
   for (const Source number : numbers) result.push_back(static_cast<Target>(factor * static_cast<double>(number)));
   return result;
+}
+
+TEST(AvatarVariants, AStrideThatInterleavesNothingIsSaidOnceAndChangesNothing) {
+  GltfBuilder builder = sheet();
+  for (const auto& [slot, stride] :
+       {std::pair(kIndices, 4), std::pair(kInverseBind, 64), std::pair(kTimes, 4), std::pair(kRotations, 16)})
+    builder.document["bufferViews"][slot]["byteStride"] = stride;
+  const Avatar avatar = parse_avatar_glb(builder.glb(), "test.glb");
+  EXPECT_THAT(avatar.warnings, ElementsAre(AllOf(HasSubstr("bufferViews[5].byteStride (and 3 more)"),
+                                                 HasSubstr("as it is the size of an element, it changes nothing"))));
+  EXPECT_TRUE(corners(avatar) == wanted());
+
+  // No multiple of 4, which tinygltf would refuse.
+  builder = sheet();
+  builder.add("SCALAR", converted<std::uint16_t>(Sheet().indices));
+  builder.document["bufferViews"].back()["byteStride"] = 2;
+  replace(builder, kIndices);
+  const Avatar small = parse_avatar_glb(builder.glb(), "test.glb");
+  EXPECT_THAT(small.warnings, ElementsAre(HasSubstr("byteStride: is meant for vertex attributes only")));
+  EXPECT_TRUE(corners(small) == wanted());
+}
+
+TEST(AvatarVariants, DataThatIsNotAlignedIsReadWithAWarning) {
+  const auto expect_warned = [](const std::vector<std::byte>& glb, const char* warning) {
+    const Avatar avatar = parse_avatar_glb(glb, "test.glb");
+    EXPECT_THAT(avatar.warnings, ElementsAre(HasSubstr(warning)));
+    EXPECT_TRUE(corners(avatar) == wanted());
+  };
+  GltfBuilder builder = sheet();
+  const auto start = builder.document["bufferViews"][kIndices]["byteOffset"].get<std::ptrdiff_t>();
+  builder.bin.insert(builder.bin.begin() + start, std::byte{0});
+  for (std::size_t view = kIndices; view <= kRotations; ++view) {
+    json& offset = builder.document["bufferViews"][view]["byteOffset"];
+    offset = offset.get<std::size_t>() + 1;
+  }
+  expect_warned(builder.glb(), "accessors[4] (and 3 more): does not start at a multiple of its component's size");
+
+  // Chunks whose length has no padding, as some exporters write it.
+  const GltfBuilder sound = sheet();
+  json document = sound.document;
+  document["buffers"] = {{{"byteLength", sound.bin.size()}}};
+  std::string text = document.dump();
+  text.resize((text.size() + 3) / 4 * 4 + 1, ' ');
+  std::vector<std::byte> glb = test::make_glb(text, sound.bin);
+  const std::size_t padded = (text.size() + 3) / 4 * 4;
+  glb.erase(glb.begin() + 20 + static_cast<std::ptrdiff_t>(text.size()),
+            glb.begin() + 20 + static_cast<std::ptrdiff_t>(padded));
+  const auto put = [&](std::size_t at, std::size_t value) {
+    const auto word = static_cast<std::uint32_t>(value);
+    std::memcpy(glb.data() + at, &word, sizeof word);
+  };
+  put(8, glb.size());
+  put(12, text.size());
+  expect_warned(glb, "byte 12: the chunk's length is not a multiple of 4");
 }
 
 TEST(AvatarVariants, SheetIsWhatItShouldBe) {

@@ -97,6 +97,8 @@ TEST(ParseAvatar, WarnsOfWhatTheFormatForbidsButCannotBeMistaken) {
               ElementsAre(HasSubstr("accessors[0].normalized: has no meaning for float")));
   EXPECT_THAT(warnings([](GltfBuilder& b) { attributes(b)["COLOUR"] = 0; }),
               ElementsAre(HasSubstr("attributes.COLOUR: is not an attribute")));
+  EXPECT_THAT(warnings([](GltfBuilder& b) { attributes(b)["NORMAL"] = b.add("VEC3", std::vector<float>(6)); }),
+              ElementsAre(HasSubstr("attributes.NORMAL: does not have one element for each vertex, and is not read")));
   EXPECT_THAT(warnings([](GltfBuilder& b) { b.document["nodes"][1]["skin"] = 0; }),
               ElementsAre(HasSubstr("nodes[1].skin: has no effect without a mesh")));
   EXPECT_THAT(warnings([](GltfBuilder& b) {

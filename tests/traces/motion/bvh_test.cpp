@@ -12,7 +12,9 @@
 namespace vestige {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 const std::string kOneJoint =
     "HIERARCHY\nROOT hips\n{\nOFFSET 1 2 3\nCHANNELS 2 Xposition Zrotation\n}\nMOTION\nFrames: 2\nFrame Time: 0.5\n"
@@ -61,12 +63,28 @@ TEST(Bvh, RotationsAreMultipliedInTheOrderOfTheChannels) {
 
 TEST(Bvh, WhatProgramsWriteDifferentlyIsRead) {
   for (const std::string& text :
-       {changed("ROOT hips\n{", "root hips {"), changed("Frames: 2", "Frames : 2"), changed("10 90", "+10 .9e2"),
+       {changed("ROOT hips\n{", "root hips {"), changed("Frames: 2", "Frames : 2"), changed("Frames: 2", "frames:2"),
+        changed("Frame Time: 0.5", "Frame Time:0.5"), changed("10 90", "+10 .9e2"),
         changed("ROOT hips", "ROOT left hip"), changed("Xposition", "xPosition"), "\xEF\xBB\xBF" + kOneJoint})
     EXPECT_EQ(parse_bvh(text, "walk.bvh").frame_count, 2U) << text;
   std::string windows;
   for (const char c : kOneJoint) windows += c == '\n' ? "\r\n" : std::string(1, c);
   EXPECT_EQ(parse_bvh(windows, "walk.bvh").values, parse_bvh(kOneJoint, "walk.bvh").values);
+}
+
+TEST(Bvh, FramesBeyondTheAnnouncedOnesAreReadAndSaid) {
+  const BvhMotion longer = parse_bvh(kOneJoint + "30 0\n40 0\n\n", "walk.bvh");
+  EXPECT_EQ(longer.frame_count, 4U);
+  EXPECT_EQ(longer.value(3, 0), 40);
+  EXPECT_THAT(longer.warnings, ElementsAre("walk.bvh: 2 frames were announced, but there are 4, and all of these are "
+                                           "read"));
+  const BvhMotion cut = parse_bvh(kOneJoint + "30 0\n40", "walk.bvh");
+  EXPECT_EQ(cut.frame_count, 3U);
+  EXPECT_EQ(cut.values.size(), 6U);
+  EXPECT_THAT(cut.warnings, ElementsAre(HasSubstr("there are 3, and all of these are read; a last one, which is cut "
+                                                  "short, is left out")));
+  EXPECT_THAT(parse_bvh(kOneJoint + " \n\n", "walk.bvh").warnings, IsEmpty());
+  EXPECT_THAT(refusal(changed("Time: 0.5", "Time: 4e8") + "30 0\n"), HasSubstr("longer than 1e9 s"));
 }
 
 TEST(Bvh, NumbersTooSmallForTheirTypeAreZeroHoweverTheyAreWritten) {
@@ -98,7 +116,9 @@ TEST(Bvh, MistakesAreNamedByTheirLine) {
       {changed("Xposition", "Zrotation"), "line 5", "twice"},
       {changed("OFFSET 1", "OFFSET nan"), "line 4", "nan"},
       {changed("Frames: 2", "Frames: 3"), "line 12", "3 frames were announced, but there are only 2"},
-      {changed("Frames: 2", "Frames: 1"), "line 11", "follows the last"},
+      {changed("20 -90\n", "20 -90\n5\n30 0\n"), "line 12", "frame 2 has 1 numbers"},
+      {changed("20 -90\n", "20 -90\nthe end\n"), "line 12", "'the', which is not a number"},
+      {changed("Frames: 2", "Frames 2"), "line 8", "expected a colon after Frames instead of '2'"},
       {changed("Frames: 2", "Frames: 99999999999999"), "line 8", "frames"},
       {changed("Frames: 2", "Frames: 0"), "line 8", "0 frames"},
       {changed("Frames: 2", "Frames: -1"), "line 8", "-1"},

@@ -103,7 +103,7 @@ constexpr std::array kBufferView = {
     Property{.name = "buffer", .type = Type::kIndex, .need = Need::kRequired, .into = "buffers"},
     Property{.name = "byteOffset", .type = Type::kUnsigned},
     Property{.name = "byteLength", .type = Type::kUnsigned, .need = Need::kRequired, .at_least = 1},
-    Property{.name = "byteStride", .type = Type::kUnsigned, .at_least = 4, .at_most = 252},
+    Property{.name = "byteStride", .type = Type::kUnsigned, .at_least = 1, .at_most = 252},
     Property{.name = "target"},
     Property{.name = "extensions"},
     Property{.name = "name", .type = Type::kLabel},
