@@ -42,9 +42,9 @@ std::unique_ptr<TraceExport> make_pose_csv(const std::filesystem::path& path, Ov
 /// Writes one row for each collider in each frame: `frame,time_s,id,x,y,z,teleported`. "-" is standard output.
 std::unique_ptr<TraceExport> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite);
 
-/// Writes binary glTF 2.0. It holds the trace's avatar (`avatar` is the parsed `glb`) with the trace's motion as the
-/// only animation, LINEAR. Each of `collider_ids` is a small sphere named "collider ID" with an animated translation.
-/// Its scale is 0 (STEP) while the collider is absent.
+/// Writes binary glTF 2.0. It holds the trace's avatar, as `clean_avatar_glb` writes it (`avatar` is the parsed `glb`),
+/// with the trace's motion as the only animation, LINEAR. Each of `collider_ids` is a small sphere named "collider ID"
+/// with an animated translation. Its scale is 0 (STEP) while the collider is absent.
 ///
 /// Poses keep their bits, except rotations whose length is not 1. Times and positions of colliders are rounded to fp32;
 /// positions count from the first frame's origin (`extras.origin_m` of the scene). glTF has no teleports. A part that

@@ -211,6 +211,20 @@ TEST(Layouts, GoByTriangleWhereATexelOrMoreOfTheTextureIsAllTheSkinHas) {
   }
 }
 
+TEST(Layouts, GoByTriangleAtOnceWhereManyTrianglesCoverAllOfTheTexture) {
+  Avatar avatar = test::builtin_avatar();
+  for (std::size_t i = 0; i < avatar.texture_coordinate.size(); ++i)
+    avatar.texture_coordinate[i] = glm::vec2(i % 3 == 1 ? 1 : 0, i % 3 == 2 ? 1 : 0);
+  std::vector<double> shares;
+  const MadeMap map = make_layout_map(avatar, "torso16", [&](double share) { shares.push_back(share); });
+  EXPECT_THAT(map.warnings, ElementsAre(HasSubstr("times over, so the map gives each triangle an actuator instead")));
+  EXPECT_EQ(map.triangle_count, avatar.triangles.size());
+  EXPECT_GT(right_share(avatar, parse_actuator_map(map.files, avatar, "torso16"), "torso16"), 0.8);
+  EXPECT_TRUE(std::ranges::is_sorted(shares));
+  EXPECT_GT(shares.size(), 10U);
+  EXPECT_LE(shares.back(), 1);
+}
+
 TEST(Layouts, LeaveNoActuatorOutThatIsSmallerThanATriangle) {
   const auto path = test::data("avatars/avatars/greenman.glb");
   VESTIGE_REQUIRE_DATA(path);

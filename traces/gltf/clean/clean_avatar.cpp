@@ -141,7 +141,7 @@ class Writer {
   static void set_transform(Json& node, const NodeLocal& local) {
     const NodeLocal none;
     if (local.translation != none.translation) node["translation"] = numbers(local.translation);
-    if (local.rotation != none.rotation) node["rotation"] = numbers(unit(local.rotation));
+    if (unit(local.rotation) != none.rotation) node["rotation"] = numbers(unit(local.rotation));
     if (local.scale != none.scale) node["scale"] = numbers(local.scale);
   }
 
