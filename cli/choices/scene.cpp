@@ -21,6 +21,10 @@ void warn_all(const std::vector<std::string>& warnings, Verbosity verbosity) {
   for (const std::string& warning : warnings) warn(warning, verbosity);
 }
 
+std::vector<std::byte> read_avatar(const std::string& avatar) {
+  return avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
+}
+
 Scene scene_of(std::vector<std::byte> avatar_glb, const std::string& name, Verbosity verbosity) {
   Scene scene;
   scene.avatar_glb = std::move(avatar_glb);
@@ -45,7 +49,7 @@ void give_map(Scene& scene, ActuatorMapFiles files, const SceneNames& names, Ver
 Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity) {
   const std::string default_map = avatar == "builtin" ? "builtin" : "none";
   const std::string& chosen_map = map.empty() ? default_map : map;
-  Scene scene = scene_of(avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar, verbosity);
+  Scene scene = scene_of(read_avatar(avatar), avatar, verbosity);
   give_map(scene, read_map_files(scene.avatar, chosen_map), {avatar, chosen_map}, verbosity);
   return scene;
 }
@@ -55,6 +59,18 @@ Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const 
   Scene scene = scene_of(std::move(avatar_glb), names.avatar, verbosity);
   give_map(scene, std::move(map), names, verbosity);
   return scene;
+}
+
+std::vector<std::byte> load_avatar(const std::string& avatar) {
+  std::vector<std::byte> glb = read_avatar(avatar);
+  static_cast<void>(parse_avatar_glb(glb, avatar));
+  return glb;
+}
+
+ActuatorMapFiles load_map(const std::string& map) {
+  ActuatorMapFiles files = read_actuator_map_files(map);
+  static_cast<void>(parse_actuator_map(files.png, files.json, map));
+  return files;
 }
 
 OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)

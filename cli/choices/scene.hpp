@@ -38,6 +38,13 @@ struct SceneNames {
 /// As above, from files that are already read.
 Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const SceneNames& names, Verbosity verbosity);
 
+/// Reads an avatar, "builtin" or a file, as a recording attaches it. Throws `Error` unless it can be parsed.
+std::vector<std::byte> load_avatar(const std::string& avatar);
+
+/// Reads the files of a map, "builtin" or a PNG file with its sidecar, as a recording attaches them. Throws `Error`
+/// unless they can be parsed.
+ActuatorMapFiles load_map(const std::string& map);
+
 /// A trace, with the avatar and map that it carries.
 struct OpenTrace {
   OpenTrace(const std::string& path, Verbosity verbosity);

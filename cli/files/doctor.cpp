@@ -48,10 +48,30 @@ nlohmann::ordered_json to_json(const TraceCheck& check, const std::string& file)
   if (check.is_trace) {
     json["frames"] = check.frames;
     json["dropped"] = check.dropped;
+    nlohmann::ordered_json attachments = nlohmann::ordered_json::array();
+    for (const TraceCheck::Attachment& attachment : check.attachments) {
+      attachments.push_back({{"name", attachment.name}, {"sha256", attachment.sha256}, {"recorded", nullptr}});
+      if (attachment.is_recorded) attachments.back()["recorded"] = *attachment.is_recorded;
+    }
+    json["attachment_checks"] = std::move(attachments);
   }
   json["problem_count"] = check.problems.count();
   json["problems"] = std::move(problems);
   return json;
+}
+
+/// Says which attachments have the recorded SHA-256. The problems say it of all others.
+std::string describe_attachments(const TraceCheck& check, const std::string& file) {
+  std::string recorded;
+  std::string unknown;
+  for (const TraceCheck::Attachment& attachment : check.attachments) {
+    std::string& list = attachment.is_recorded ? recorded : unknown;
+    if (attachment.is_recorded.value_or(true)) list += (list.empty() ? "" : ", ") + attachment.name;
+  }
+  std::string text;
+  if (!recorded.empty()) text += fmt::format("{}: SHA-256 as recorded: {}\n", file, recorded);
+  if (!unknown.empty()) text += fmt::format("{}: no SHA-256 recorded: {}\n", file, unknown);
+  return text;
 }
 
 std::string describe(const TraceCheck& check, const std::string& file) {
@@ -63,6 +83,7 @@ std::string describe(const TraceCheck& check, const std::string& file) {
   }
   const std::uint64_t shown = check.problems.kept().size();
   if (check.problems.count() > shown) text += fmt::format("{}: and {} more\n", file, check.problems.count() - shown);
+  text += describe_attachments(check, file);
   const std::string content = check.is_trace
                                   ? fmt::format("{} can be read", counted(check.frames, "frame"))
                                   : fmt::format("{}, {}; not a trace of Vestige, so only the framing was checked",

@@ -24,8 +24,11 @@ nlohmann::ordered_json to_json(const McapSummary& summary) {
                         {"messages", channel.messages},
                         {"rate_hz", channel.rate_hz}});
   nlohmann::ordered_json attachments = nlohmann::ordered_json::array();
-  for (const auto& attachment : summary.attachments)
-    attachments.push_back({{"name", attachment.name}, {"bytes", attachment.bytes}, {"sha256", attachment.sha256}});
+  for (const auto& attachment : summary.attachments) {
+    attachments.push_back(
+        {{"name", attachment.name}, {"bytes", attachment.bytes}, {"sha256", attachment.sha256}, {"recorded", nullptr}});
+    if (attachment.is_recorded) attachments.back()["recorded"] = *attachment.is_recorded;
+  }
   std::string compression;
   for (const std::string& name : summary.compression) compression += (compression.empty() ? "" : ",") + name;
   nlohmann::ordered_json json = {{"profile", summary.profile},
@@ -57,7 +60,8 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
     text += fmt::format("  {:<20} {:>9} messages {:>10.1f} Hz  {} ({})\n", channel.topic, channel.messages,
                         channel.rate_hz, channel.schema, channel.encoding);
   for (const auto& attachment : summary.attachments)
-    text += fmt::format("  {:<20} {:>9} bytes     sha256 {}\n", attachment.name, attachment.bytes, attachment.sha256);
+    text += fmt::format("  {:<20} {:>9} bytes     sha256 {}{}\n", attachment.name, attachment.bytes, attachment.sha256,
+                        attachment.is_recorded.value_or(true) ? "" : " (not the recorded one)");
   if (summary.dropped != 0) {
     text += fmt::format("lost {} while recording\n", counted(summary.dropped, "message"));
     for (const auto& [topic, count] : summary.dropped_by_topic)

@@ -2,10 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <span>
+#include <utility>
 
+#include "cli/choices/scene.hpp"
 #include "cli/verbs.hpp"
+#include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
@@ -15,7 +22,38 @@ struct RecoverOptions {
   CommonOptions common;
   std::string file;
   std::string output;
+  std::string avatar;
+  std::string map;
 };
+
+/// Returns the substitutes that the flags name. --force takes one that is not the recorded one, but not while it also
+/// overwrites a file: whoever means the one must not get the other.
+Substitutes read_substitutes(const RecoverOptions& options) {
+  Substitutes substitutes;
+  if (!options.avatar.empty())
+    substitutes.avatar = {.from = options.avatar,
+                          .files = {{std::string(trace_format::kAvatarName), load_avatar(options.avatar)}}};
+  if (!options.map.empty()) {
+    ActuatorMapFiles map = load_map(options.map);
+    substitutes.map = {.from = options.map, .files = {{std::string(trace_format::kMapImageName), std::move(map.png)}}};
+    const auto json = std::as_bytes(std::span(map.json));
+    if (!json.empty())
+      substitutes.map->files.emplace(trace_format::kMapTextName, std::vector<std::byte>(json.begin(), json.end()));
+  }
+  std::string overwritten;
+  for (const std::string& path : {options.output, options.common.json}) {
+    std::error_code ignored;
+    if (path != "-" && !path.empty() && std::filesystem::exists(path, ignored)) overwritten = path;
+  }
+  if (!options.common.force)
+    substitutes.refusal = "add --force, and the new file says so";
+  else if (!overwritten.empty())
+    substitutes.refusal = fmt::format(
+        "choose a new name for {}: where --force overwrites a file, it does not take another attachment", overwritten);
+  else
+    substitutes.refusal.reset();
+  return substitutes;
+}
 
 nlohmann::ordered_json to_json(const Recovery& recovery, const RecoverOptions& options) {
   nlohmann::ordered_json json = {{"file", options.file},
@@ -30,14 +68,27 @@ nlohmann::ordered_json to_json(const Recovery& recovery, const RecoverOptions& o
                                  {"chunks_lost", recovery.chunks_lost},
                                  {"attachments", recovery.attachments},
                                  {"damaged_attachments", recovery.damaged_attachments},
+                                 {"replaced", nlohmann::ordered_json::array()},
                                  {"metadata", recovery.metadata},
                                  {"bytes_lost", recovery.bytes_lost},
                                  {"another_file_at", nullptr},
                                  {"unexplained_change", recovery.unexplained_change},
                                  {"repaired", recovery.repaired}};
+  for (const Recovery::Replaced& replaced : recovery.replaced)
+    json["replaced"].push_back({{"name", replaced.name},
+                                {"from", replaced.from},
+                                {"recorded", replaced.is_recorded},
+                                {"left_out", replaced.is_left_out}});
   if (recovery.messages_lost) json["messages_lost"] = *recovery.messages_lost;
   if (recovery.another_file_at) json["another_file_at"] = *recovery.another_file_at;
   return json;
+}
+
+/// Returns which flag replaces a damaged attachment, unless something already takes its place.
+std::string remedy_for(const std::string& name, const Recovery& recovery) {
+  const bool is_ours = std::ranges::find(trace_format::kAttachmentNames, name) != trace_format::kAttachmentNames.end();
+  if (!is_ours || std::ranges::count(recovery.replaced, name, &Recovery::Replaced::name) > 0) return "";
+  return fmt::format("; {} puts an intact one in its place", name == trace_format::kAvatarName ? "--avatar" : "--map");
 }
 
 void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
@@ -56,22 +107,36 @@ void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
   if (recovery.messages_left_out > 0)
     say(fmt::format("left out {} that contradicted the rest", counted(recovery.messages_left_out, "message")));
   for (const std::string& name : recovery.damaged_attachments)
-    say(fmt::format("the attachment {0} is damaged; it is kept as {0}.damaged", name));
+    say(fmt::format("the attachment {0} is damaged; it is kept as {0}.damaged{1}", name, remedy_for(name, recovery)));
+  for (const Recovery::Replaced& replaced : recovery.replaced) {
+    if (replaced.is_recorded) continue;
+    say(replaced.is_left_out
+            ? fmt::format("the attachment {} is left out, because {} has no sidecar", replaced.name, replaced.from)
+            : fmt::format("{} takes the place of the attachment {}, and is not verified to be the recorded one",
+                          replaced.from, replaced.name));
+  }
+  for (const std::string& unused : recovery.unused)
+    say(fmt::format("{} is not used, because the trace has an intact one", unused));
   if (recovery.unexplained_change)
     say("a byte of its header, definitions, metadata or indexes has changed; it is not known which byte");
 }
 
 void run_recover(const RecoverOptions& options, Invocation& invocation) {
-  check_outputs({options.output, options.common.json}, {options.file}, options.common);
+  check_outputs({options.output, options.common.json},
+                {options.file, options.avatar, options.map, sidecar_path(options.map).string()}, options.common);
+  if (options.map == "none")
+    throw UsageError("--map", "'none' puts nothing in the place of a map", "name a map, or leave --map out");
   if (options.output == "-") refuse_terminal("-o -");
   const mcap::FileSource source(options.file);
   catch_interrupts();
+  const Substitutes substitutes = read_substitutes(options);
   OutputFile file(options.output, options.common.overwrite());
   Recovery recovery;
   {
     Progress progress("Recovering", options.common.verbosity());
     recovery = recover_mcap(
-        source, [&](mcap::Bytes bytes) { file.write(bytes); }, [&](double share) { return progress.update(share); });
+        source, [&](mcap::Bytes bytes) { file.write(bytes); }, [&](double share) { return progress.update(share); },
+        substitutes);
   }
   file.commit();
   warn_of_losses(recovery, options);
@@ -90,13 +155,19 @@ void add_recover(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<RecoverOptions>();
   CLI::App* verb = add_verb(program, "recover", "Write a complete file from the readable parts of a damaged one",
                             "  vestige recover man.mcap -o mended.mcap\n"
-                            "  vestige recover man.mcap -o mended.mcap --json recovery.json\n");
+                            "  vestige recover man.mcap --avatar builtin -o mended.mcap\n");
   verb->add_option("FILE", options->file,
                    "The damaged trace, or any MCAP file, or '-' for standard input. Exit code 3: something was lost")
       ->required();
   verb->add_option("-o,--output", options->output, "The file to write, or '-' for standard output")
       ->required()
       ->type_name("OUT.mcap|-");
+  verb->add_option("--avatar", options->avatar,
+                   "Put this avatar in the place of a damaged or missing one. It must be the recorded one (by its "
+                   "SHA-256); --force takes any other as well, if it overwrites no file, and the new file says so")
+      ->type_name("builtin|FILE");
+  verb->add_option("--map", options->map, "Likewise for the actuator map, with its sidecar FILE.json if that exists")
+      ->type_name("builtin|FILE.png");
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_recover(*options, invocation); });
 }

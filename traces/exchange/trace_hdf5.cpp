@@ -176,7 +176,7 @@ class TraceHdf5::Implementation {
     table.expect({0});
     if (table.dimensions()[0] > std::filesystem::file_size(path_)) table.fail("is larger than the file");
     table.read(0, table.dimensions()[0], bytes);
-    const std::string key = fmt::format("{}{}", trace_format::kSha256Prefix, name);
+    const std::string key = trace_format::sha256_key(name);
     const auto recorded = read_text(kSession, key);
     if (recorded && !bytes.empty() && *recorded != sha256_hex(bytes))
       throw Error(

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <array>
+#include <set>
 #include <tuple>
 #include <utility>
 
 #include "traces/base/error.hpp"
+#include "traces/base/sha256.hpp"
 #include "traces/mcap/check/chunk_salvage.hpp"
 #include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
@@ -80,14 +82,18 @@ Definitions without_contradictions(Definitions definitions, PoseNodes& pose_node
 
 class Recoverer {
  public:
-  Recoverer(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, Definitions definitions)
+  Recoverer(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, Definitions definitions,
+            ReplacementPlan plan = {})
       : source_(source),
+        plan_(std::move(plan)),
         walker_(source, mcap::MagicBytes::kMayBeBroken),
         output_(sink, profile_of(definitions), definitions.compression.value_or(mcap::Compression::kNone),
                 without_contradictions(definitions, pose_nodes_)),
         gate_(output_.streams(), [this](const mcap::Message& message) { write(message); }) {}
 
   Recovery run(const std::function<bool(double)>& progress);
+  /// After `run`.
+  AttachmentFacts facts() const;
 
  private:
   void take_damages();
@@ -97,6 +103,10 @@ class Recoverer {
   void take_chunk(Bytes content);
   void take_misnamed(Bytes content, std::uint64_t offset);
   void take_attachment(Bytes content);
+  void take_metadata(mcap::Metadata metadata);
+  void note_attachment(const mcap::Attachment& attachment, std::string_view name, bool is_whole);
+  void replace(const std::string& name, const Replacement& replacement);
+  void write_replaced();
   void take_data_end(const RecordPlace& place, Bytes content);
   void take_records(Bytes records);
   void take_remains(Bytes records);
@@ -109,6 +119,9 @@ class Recoverer {
   void finish();
 
   const mcap::ByteSource& source_;
+  ReplacementPlan plan_;
+  AttachmentFacts facts_;
+  std::set<std::string> replaced_;  ///< names in plan_ that are written
   mcap::RecordWalker walker_;
   PoseNodes pose_nodes_;
   McapOutput output_;
@@ -277,8 +290,7 @@ void Recoverer::take_record(Opcode opcode, Bytes content, std::uint64_t offset) 
       take_attachment(content);
       break;
     case Opcode::kMetadata:
-      output_.write(mcap::decode_metadata(content));
-      ++result_.metadata;
+      take_metadata(mcap::decode_metadata(content));
       break;
     case Opcode::kHeader:
       break;
@@ -287,9 +299,45 @@ void Recoverer::take_record(Opcode opcode, Bytes content, std::uint64_t offset) 
   }
 }
 
+void Recoverer::take_metadata(mcap::Metadata metadata) {
+  if (metadata.name == trace_format::kReplacedName) {
+    facts_.claims.replaced = std::move(metadata.metadata);  // written at the end, as it is then
+    return;
+  }
+  if (metadata.name == trace_format::kSessionName) facts_.claims.session = metadata.metadata;
+  output_.write(metadata);
+  ++result_.metadata;
+}
+
+AttachmentFacts Recoverer::facts() const {
+  AttachmentFacts facts = facts_;
+  facts.claims.pose = pose_metadata(output_.streams());
+  if (const mcap::Channel* pose = output_.streams().find(Stream::kPose))
+    if (const auto names = parse_node_names(*pose)) facts.pose_nodes = names->size();
+  return facts;
+}
+
+void Recoverer::note_attachment(const mcap::Attachment& attachment, std::string_view name, bool is_whole) {
+  if (std::ranges::find(trace_format::kAttachmentNames, name) == trace_format::kAttachmentNames.end()) return;
+  if (is_whole && attachment.name == name)
+    facts_.sha256[attachment.name] = sha256_hex(attachment.data);
+  else
+    facts_.damaged.emplace(name);
+}
+
 void Recoverer::take_attachment(Bytes content) {
   mcap::Attachment attachment = mcap::decode_attachment(content);
-  if (mcap::attachment_crc_holds(content, attachment)) {
+  const bool is_whole = mcap::attachment_crc_holds(content, attachment);
+  const bool was_damaged = attachment.name.ends_with(kDamagedSuffix);
+  const std::string name =
+      attachment.name.substr(0, attachment.name.size() - (was_damaged ? kDamagedSuffix.size() : 0));
+  note_attachment(attachment, name, is_whole);
+  if (const auto planned = plan_.attachments.find(name); planned != plan_.attachments.end()) {
+    replace(name, planned->second);
+    // A damaged original stays beside a substitute that is not the recorded one.
+    if (planned->second.is_recorded || (is_whole && !was_damaged)) return;
+  }
+  if (is_whole) {
     ++result_.attachments;
   } else {
     // Keep it, but under a name that nobody mistakes for the undamaged attachment.
@@ -297,6 +345,35 @@ void Recoverer::take_attachment(Bytes content) {
     attachment.name += kDamagedSuffix;
   }
   output_.write(attachment);
+}
+
+/// Writes what takes the place of an attachment, once.
+void Recoverer::replace(const std::string& name, const Replacement& replacement) {
+  if (!replaced_.insert(name).second) return;
+  result_.replaced.push_back({.name = name,
+                              .from = replacement.from,
+                              .is_recorded = replacement.is_recorded,
+                              .is_left_out = replacement.data == nullptr});
+  if (replacement.is_recorded)
+    repaired(fmt::format("{} takes the place of the attachment {}; its SHA-256 is the recorded one", replacement.from,
+                         name));
+  if (replacement.data == nullptr) return;
+  output_.write(trace_format::attachment_of(name, *replacement.data));
+  ++result_.attachments;
+}
+
+/// Writes the metadata record `replaced`, if something in the new file is not as recorded.
+void Recoverer::write_replaced() {
+  mcap::StringMap replaced = facts_.claims.replaced;
+  for (const auto& [name, replacement] : plan_.attachments) {
+    replaced.erase(name);
+    if (!replacement.is_recorded)
+      replaced[name] =
+          replacement.data == nullptr ? std::string(trace_format::kLeftOut) : sha256_hex(*replacement.data);
+  }
+  if (replaced.empty()) return;
+  output_.write(mcap::Metadata{.name = std::string(trace_format::kReplacedName), .metadata = std::move(replaced)});
+  ++result_.metadata;
 }
 
 void Recoverer::take_chunk(Bytes content) {
@@ -385,12 +462,15 @@ void Recoverer::count_messages() {
 
 void Recoverer::finish() {
   gate_.finish();
+  for (const auto& [name, replacement] : plan_.attachments) replace(name, replacement);
+  result_.unused = plan_.unused;
   count_messages();
   const bool found_something =
       result_.messages + result_.attachments + result_.damaged_attachments.size() + result_.metadata > 0;
   if (!found_something && (!output_.definitions().header || !walker_.footer_seen() || result_.lost_something()))
     throw Error(source_.name(), "nothing in it can be recovered", "check that it is the right file");
   output_.write_definitions();
+  write_replaced();
   if (result_.lost_something())
     output_.write(mcap::Metadata{
         .name = std::string(trace_format::kRecoveredName),
@@ -406,8 +486,16 @@ void Recoverer::finish() {
 }  // namespace
 
 Recovery recover_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink,
-                      const std::function<bool(double)>& progress) {
-  return Recoverer(source, sink, gather_definitions(source)).run(progress);
+                      const std::function<bool(double)>& progress, const Substitutes& substitutes) {
+  const Definitions definitions = gather_definitions(source);
+  if (substitutes.empty()) return Recoverer(source, sink, definitions).run(progress);
+  // Only after everything was read is it known what is missing, so the file is recovered twice.
+  Recoverer rehearsal(
+      source, [](Bytes) {}, definitions);
+  static_cast<void>(rehearsal.run([&](double share) { return progress(share / 2); }));
+  const AttachmentFacts facts = rehearsal.facts();
+  return Recoverer(source, sink, definitions, plan_replacements(source.name(), facts, substitutes))
+      .run([&](double share) { return progress(0.5 + share / 2); });
 }
 
 }  // namespace vestige

@@ -158,20 +158,22 @@ void FrameCheck::take_event(const CheckedRecord& record, const mcap::Message& me
 /// The trace's statements about itself: session, attachments, nodes.
 class Contents {
  public:
-  explicit Contents(TraceCheck& result) : result_(result) {}
+  Contents(TraceCheck& result, std::string file) : result_(result), file_(std::move(file)) {}
 
   void take(const mcap::Metadata& metadata, std::uint64_t offset) {
     if (metadata.name == trace_format::kRecoveredName)
       report(offset, "it " + describe_recovered(metadata.metadata), "the lost data is not in the file");
+    if (metadata.name == trace_format::kReplacedName) claims_.replaced = metadata.metadata;
     if (metadata.name != trace_format::kSessionName) return;
-    session_ = metadata.metadata;
+    has_session_ = true;
+    claims_.session = metadata.metadata;
     session_offset_ = offset;
   }
   void take(const mcap::Attachment& attachment) {
     if (attachment.name == trace_format::kAvatarName) avatar_nodes_ = glb_node_count(attachment.data);
     sha256_[attachment.name] = sha256_hex(attachment.data);
   }
-  void finish(std::optional<std::size_t> pose_nodes);
+  void finish(std::optional<std::size_t> pose_nodes, const StreamTable& streams);
 
  private:
   void report(std::uint64_t offset, std::string what, std::string consequence) {
@@ -179,31 +181,34 @@ class Contents {
   }
 
   TraceCheck& result_;
-  std::optional<Session> session_;
+  std::string file_;
+  bool has_session_ = false;
+  AttachmentClaims claims_;
   std::uint64_t session_offset_ = 0;
   std::map<std::string, std::string> sha256_;
   std::optional<std::size_t> avatar_nodes_;
 };
 
-void Contents::finish(std::optional<std::size_t> pose_nodes) {
+void Contents::finish(std::optional<std::size_t> pose_nodes, const StreamTable& streams) {
+  claims_.pose = pose_metadata(streams);
   const std::string avatar(trace_format::kAvatarName);
-  if (!sha256_.contains(avatar))
+  if (!sha256_.contains(avatar) && recorded_sha256(claims_, avatar).empty())
     report(0, fmt::format("there is no undamaged attachment {}", avatar),
-           "`vestige replay` has no body to move, and refuses the file");
+           fmt::format("`vestige replay` has no body to move, and refuses the file; {} puts one in",
+                       replacing_command(file_, claims_, avatar)));
   if (avatar_nodes_ && pose_nodes && *avatar_nodes_ != *pose_nodes)
     report(0, fmt::format("its poses have {} nodes, but its avatar has {}", *pose_nodes, *avatar_nodes_),
            "`vestige replay` refuses the file");
-  if (!session_) {
-    report(0, "there is no metadata record 'session'", "the file does not say how it was recorded");
-    return;
-  }
-  for (SessionProblem& problem : check_session(*session_, sha256_))
+  if (!has_session_) report(0, "there is no metadata record 'session'", "the file does not say how it was recorded");
+  for (const auto& [name, sha256] : sha256_)
+    result_.attachments.push_back({.name = name, .sha256 = sha256, .is_recorded = is_recorded(claims_, name, sha256)});
+  for (SessionProblem& problem : check_session(file_, claims_, sha256_))
     report(session_offset_, std::move(problem.what), std::move(problem.consequence));
 }
 
 class Checker {
  public:
-  explicit Checker(const mcap::ByteSource& source) : frames_(result_, {}), contents_(result_) {
+  explicit Checker(const mcap::ByteSource& source) : frames_(result_, {}), contents_(result_, source.name()) {
     // As in the reader, definitions that the summary repeats are known from the beginning.
     try {
       const mcap::SummaryResult summary = mcap::read_summary(source);
@@ -276,7 +281,7 @@ TraceCheck Checker::finish() {
   if (!node_count_)
     result_.problems.add({.what = "no channel /pose says which nodes the poses have",
                           .consequence = "`vestige replay` refuses the file"});
-  contents_.finish(node_count_);
+  contents_.finish(node_count_, streams_);
   if (result_.frames == 0 && result_.problems.count() == 0)
     result_.problems.add({.what = "it holds no frame", .consequence = "there is nothing to replay"});
   return std::move(result_);

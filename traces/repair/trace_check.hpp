@@ -2,6 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/check/container_check.hpp"
@@ -11,10 +14,16 @@ namespace vestige {
 
 /// The result of `vestige doctor` for a file.
 struct TraceCheck {
+  struct Attachment {
+    std::string name;
+    std::string sha256;               ///< 64 hexadecimal digits
+    std::optional<bool> is_recorded;  ///< whether this is the recorded SHA-256; nothing: none is recorded
+  };
   bool is_trace = false;  ///< judged by profile or channels; any other MCAP file is checked as a container only
   mcap::ContainerFacts container;
-  std::uint64_t frames = 0;   ///< frames that readers deliver, up to the first one that they refuse
-  std::uint64_t dropped = 0;  ///< number of messages that the recorder noted as lost
+  std::uint64_t frames = 0;             ///< frames that readers deliver, up to the first one that they refuse
+  std::uint64_t dropped = 0;            ///< number of messages that the recorder noted as lost
+  std::vector<Attachment> attachments;  ///< the undamaged ones, by name
   mcap::ProblemList problems;
 
   /// Whether anything is readable: a frame of a trace; a message, attachment or metadata record of another file.

@@ -47,6 +47,7 @@ class Gatherer {
   }
   void take(mcap::Metadata metadata, std::uint64_t offset) {
     if (metadata.name == trace_format::kRecoveredName) summary_.recovered = describe_recovered(metadata.metadata);
+    if (metadata.name == trace_format::kReplacedName) claims_.replaced = metadata.metadata;
     if (metadata.name != trace_format::kSessionName) return;
     summary_.session = std::move(metadata.metadata);
     session_offset_ = offset;
@@ -55,7 +56,8 @@ class Gatherer {
     summary_.attachments.push_back({.name = attachment.name,
                                     .media_type = attachment.media_type,
                                     .bytes = attachment.data.size(),
-                                    .sha256 = sha256_hex(attachment.data)});
+                                    .sha256 = sha256_hex(attachment.data),
+                                    .is_recorded = {}});
   }
   void take(const mcap::Message& message);
   void take_chunk(const std::string& compression, std::uint64_t compressed, std::uint64_t uncompressed) {
@@ -70,6 +72,8 @@ class Gatherer {
   McapSummary finish(bool has_footer);
 
  private:
+  void check_attachments();
+
   const mcap::ByteSource& source_;
   McapSummary summary_;
   StreamTable streams_;
@@ -78,6 +82,7 @@ class Gatherer {
   std::map<std::uint16_t, mcap::Channel> channels_;
   std::map<std::uint16_t, std::uint64_t> messages_;
   std::set<std::string> compressions_;
+  AttachmentClaims claims_;  ///< without the session
   std::uint64_t session_offset_ = 0;
   mcap::DamageList damages_;
   bool header_taken_ = false;
@@ -100,6 +105,18 @@ void Gatherer::take(const mcap::Message& message) {
   dropped[topic] += event.count;
 }
 
+void Gatherer::check_attachments() {
+  claims_.pose = pose_metadata(streams_);
+  if (summary_.session) claims_.session = *summary_.session;
+  std::map<std::string, std::string> sha256;
+  for (McapSummary::Attachment& attachment : summary_.attachments) {
+    sha256[attachment.name] = attachment.sha256;
+    attachment.is_recorded = is_recorded(claims_, attachment.name, attachment.sha256);
+  }
+  for (const SessionProblem& problem : check_session(source_.name(), claims_, sha256))
+    warn({session_offset_, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
+}
+
 McapSummary Gatherer::finish(bool has_footer) {
   summary_.file_bytes = source_.size();
   if (summary_.end_ns > summary_.start_ns)
@@ -116,12 +133,7 @@ McapSummary Gatherer::finish(bool has_footer) {
     summary_.channels.push_back(std::move(shown));
   }
   for (const auto& [id, count] : messages_) summary_.messages += count;
-  if (summary_.session) {
-    std::map<std::string, std::string> sha256;
-    for (const McapSummary::Attachment& attachment : summary_.attachments) sha256[attachment.name] = attachment.sha256;
-    for (const SessionProblem& problem : check_session(*summary_.session, sha256))
-      warn({session_offset_, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
-  }
+  check_attachments();
   summary_.compression.assign(compressions_.begin(), compressions_.end());
   summary_.complete = has_footer && damages_.empty();
   damages_.sort_by_offset();

@@ -24,7 +24,8 @@ struct McapSummary {
     std::string name;
     std::string media_type;
     std::uint64_t bytes = 0;
-    std::string sha256;  ///< 64 hexadecimal digits
+    std::string sha256;               ///< 64 hexadecimal digits
+    std::optional<bool> is_recorded;  ///< whether this is the recorded SHA-256; nothing: none is recorded
   };
 
   std::string profile;

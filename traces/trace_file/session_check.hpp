@@ -1,20 +1,48 @@
 #pragma once
 
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "traces/mcap/record.hpp"
 #include "traces/scene/trace.hpp"
+#include "traces/trace_file/message_stream.hpp"
 
 namespace vestige {
+
+/// What a file says about its attachments. A record that the file does not have is empty.
+struct AttachmentClaims {
+  Session session;
+  mcap::StringMap pose;      ///< metadata of the channel /pose, which repeats the SHA-256s of the session
+  mcap::StringMap replaced;  ///< metadata record `replaced`
+};
+
+/// Returns the metadata of the channel /pose; empty if the table has no such channel.
+mcap::StringMap pose_metadata(const StreamTable& streams);
+
+/// Returns what a file records as the SHA-256 of an attachment: nothing, one value, or two if either session or channel
+/// /pose is damaged.
+std::set<std::string> recorded_sha256(const AttachmentClaims& claims, std::string_view attachment);
+
+/// Returns whether `sha256` is recorded for an attachment; nothing if the file records none for it.
+std::optional<bool> is_recorded(const AttachmentClaims& claims, std::string_view attachment, const std::string& sha256);
 
 struct SessionProblem {
   std::string what;
   std::string consequence;
 };
 
-/// Returns the contradictions between a file and its session: an unknown format version, or attachments whose SHA-256
-/// differs from the recorded one. `sha256` holds the hashes of the attachments present, by name.
-std::vector<SessionProblem> check_session(const Session& session, const std::map<std::string, std::string>& sha256);
+/// Returns the contradictions between a file and what it says: an unknown format version, and attachments that are not
+/// the recorded ones or are missing. `sha256` holds the hashes of the undamaged attachments, by name. `file` is the
+/// file's name, for the commands that the problems name.
+std::vector<SessionProblem> check_session(std::string_view file, const AttachmentClaims& claims,
+                                          const std::map<std::string, std::string>& sha256);
+
+/// Returns the command that puts an intact attachment into a file: "`vestige recover a.mcap --avatar FILE.glb -o
+/// mended.mcap`". It says `builtin` in place of FILE if that is the recorded one.
+std::string replacing_command(std::string_view file, const AttachmentClaims& claims, std::string_view attachment);
 
 }  // namespace vestige

@@ -52,6 +52,17 @@ mcap::StringMap units_of(Stream stream) {
 
 }  // namespace
 
+std::string sha256_key(std::string_view attachment) {
+  return std::string(kSha256Prefix).append(attachment);
+}
+
+mcap::Attachment attachment_of(std::string_view name, mcap::Bytes data) {
+  const char* media_type = name == kAvatarName     ? "model/gltf-binary"
+                           : name == kMapImageName ? "image/png"
+                                                   : "application/json";
+  return {.name = std::string(name), .media_type = media_type, .data = data};
+}
+
 mcap::Schema schema_of(Stream stream) {
   const StreamFormat& format = format_of(stream);
   return {.id = format.id,

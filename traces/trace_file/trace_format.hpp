@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,7 +12,8 @@
 ///     Header      profile "vestige", library "vestige VERSION"
 ///     Metadata    "session": format_version, sha256 of each attachment ("sha256:NAME"), and what the recorder adds
 ///     Attachments avatar.glb, then actuator_map.png and actuator_map.json where there is a map
-///     Schemas, Channels   outside chunks, so that a damaged chunk does not lose them
+///     Schemas, Channels   outside chunks, so that a damaged chunk does not lose them; the metadata of /pose repeat the
+///                 SHA-256s, so that the summary has them too
 ///     Chunks      a frame's messages stand together in one chunk: [events], /pose, /colliders
 ///     Summary     with everything that MCAP offers
 ///
@@ -26,10 +28,13 @@ inline constexpr std::string_view kVersion = "1";
 inline constexpr std::string_view kVersionKey = "format_version";
 inline constexpr std::string_view kSessionName = "session";
 inline constexpr std::string_view kRecoveredName = "recovered";  // what `recover` could not save
+inline constexpr std::string_view kReplacedName = "replaced";    // attachments that `recover` put in, not as recorded
+inline constexpr std::string_view kLeftOut = "none";             // in `replaced`: nothing stands in its place
 inline constexpr std::string_view kSha256Prefix = "sha256:";
 inline constexpr std::string_view kAvatarName = "avatar.glb";
 inline constexpr std::string_view kMapImageName = "actuator_map.png";
 inline constexpr std::string_view kMapTextName = "actuator_map.json";
+inline constexpr std::array kAttachmentNames = {kAvatarName, kMapImageName, kMapTextName};
 inline constexpr std::string_view kEncoding = "flatbuffer";  ///< of schemas and of messages
 inline constexpr std::string_view kNodesKey = "nodes";       ///< of /pose's metadata: a JSON array of node names
 
@@ -54,6 +59,12 @@ inline constexpr std::array<StreamFormat, 3> kStreams = {{
     {Stream::kColliders, 2, "/colliders", "vestige.trace.ColliderFrame"},
     {Stream::kEvents, 3, "/events", "vestige.trace.Event"},
 }};
+
+/// Returns "sha256:NAME", the key of an attachment's SHA-256.
+std::string sha256_key(std::string_view attachment);
+
+/// Returns one of Vestige's own attachments, with its media type.
+mcap::Attachment attachment_of(std::string_view name, mcap::Bytes data);
 
 /// Returns the schema record of a stream, with its compiled FlatBuffers schema.
 mcap::Schema schema_of(Stream stream);

@@ -7,7 +7,6 @@
 #include "traces/base/sha256.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/summary.hpp"
-#include "traces/trace_file/session_check.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
@@ -27,6 +26,7 @@ void take_metadata(mcap::Metadata metadata, std::uint64_t offset, TraceIndex& in
     index.session_offset = offset;
   }
   if (metadata.name == trace_format::kRecoveredName) index.recovered = std::move(metadata.metadata);
+  if (metadata.name == trace_format::kReplacedName) index.replaced = std::move(metadata.metadata);
 }
 
 void take_attachment(mcap::Bytes content, TraceIndex& index) {
@@ -131,7 +131,7 @@ TraceIndex by_scanning(const mcap::ByteSource& source) {
   return index;
 }
 
-void check(TraceIndex& index) {
+void check(const mcap::ByteSource& source, TraceIndex& index) {
   std::map<std::string, std::string> sha256;
   const auto note = [&](std::string_view name, mcap::Bytes data) {
     if (!data.empty()) sha256.emplace(name, sha256_hex(data));
@@ -139,7 +139,7 @@ void check(TraceIndex& index) {
   note(trace_format::kAvatarName, index.avatar_glb);
   note(trace_format::kMapImageName, index.actuator_map_png);
   note(trace_format::kMapTextName, index.actuator_map_json);
-  for (const SessionProblem& problem : check_session(index.session, sha256))
+  for (const SessionProblem& problem : check_session(source.name(), index.claims(), sha256))
     index.damages.add({index.session_offset, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
 }
 
@@ -156,7 +156,7 @@ TraceIndex read_index(const mcap::ByteSource& source) {
 
 TraceIndex index_trace(const mcap::ByteSource& source) {
   TraceIndex index = read_index(source);
-  check(index);
+  check(source, index);
   return index;
 }
 

@@ -9,6 +9,7 @@
 #include "traces/mcap/record_walker.hpp"
 #include "traces/scene/trace.hpp"
 #include "traces/trace_file/message_stream.hpp"
+#include "traces/trace_file/session_check.hpp"
 
 namespace vestige {
 
@@ -18,6 +19,7 @@ struct TraceIndex {
   Session session;
   std::uint64_t session_offset = 0;
   std::optional<mcap::StringMap> recovered;  ///< the metadata record of that name
+  mcap::StringMap replaced;                  ///< likewise; empty: there is none
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> actuator_map_png;
   std::vector<std::byte> actuator_map_json;
@@ -25,6 +27,8 @@ struct TraceIndex {
   std::vector<MessagePlace> places;  ///< in file order
   bool has_footer = false;
   mcap::DamageList damages;
+
+  AttachmentClaims claims() const { return {.session = session, .pose = pose_metadata(streams), .replaced = replaced}; }
 };
 
 /// Reads the index from the summary if that is complete, otherwise by scanning the file. Throws `Error` if the file is

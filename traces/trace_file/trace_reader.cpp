@@ -130,8 +130,9 @@ void TraceReader::Implementation::require_trace() {
   if (!names) throw Error(file, "its channel /pose does not say which nodes the poses have", "record it again");
   node_names_ = std::move(*names);
   if (index_.avatar_glb.empty()) {
-    throw Error(file, warnings_.empty() ? "has no attachment avatar.glb" : "has no undamaged attachment avatar.glb",
-                "record it again, or take an undamaged copy of the file");
+    throw Error(file, "has no undamaged attachment avatar.glb",
+                fmt::format("put an intact one in its place: {}",
+                            replacing_command(file, index_.claims(), trace_format::kAvatarName)));
   }
   const auto nodes = glb_node_count(index_.avatar_glb);
   if (nodes && *nodes != node_names_.size()) {

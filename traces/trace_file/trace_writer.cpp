@@ -25,17 +25,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using trace_format::Stream;
 
-mcap::Attachment attachment(std::string_view name, std::string_view media_type, std::span<const std::byte> data) {
-  return {.name = std::string(name), .media_type = std::string(media_type), .data = data};
-}
-
 std::vector<mcap::Attachment> list_attachments(const TraceAttachments& from) {
-  std::vector<mcap::Attachment> all = {attachment(trace_format::kAvatarName, "model/gltf-binary", from.avatar_glb)};
-  if (!from.actuator_map_png.empty())
-    all.push_back(attachment(trace_format::kMapImageName, "image/png", from.actuator_map_png));
+  using trace_format::attachment_of;
+  std::vector<mcap::Attachment> all = {attachment_of(trace_format::kAvatarName, from.avatar_glb)};
+  if (!from.actuator_map_png.empty()) all.push_back(attachment_of(trace_format::kMapImageName, from.actuator_map_png));
   if (!from.actuator_map_json.empty())
-    all.push_back(
-        attachment(trace_format::kMapTextName, "application/json", std::as_bytes(std::span(from.actuator_map_json))));
+    all.push_back(attachment_of(trace_format::kMapTextName, std::as_bytes(std::span(from.actuator_map_json))));
   return all;
 }
 
@@ -117,11 +112,15 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
       node_count_(avatar.nodes.size()) {
   const std::vector<mcap::Attachment> all = list_attachments(attachments);
   session.insert_or_assign(std::string(trace_format::kVersionKey), std::string(trace_format::kVersion));
-  for (const mcap::Attachment& one : all)
-    session.insert_or_assign(fmt::format("{}{}", trace_format::kSha256Prefix, one.name), sha256_hex(one.data));
+  mcap::StringMap of_poses = {{std::string(trace_format::kNodesKey), node_names(avatar)}};
+  for (const mcap::Attachment& one : all) {
+    const std::string sha256 = sha256_hex(one.data);
+    session.insert_or_assign(trace_format::sha256_key(one.name), sha256);
+    of_poses.emplace(trace_format::sha256_key(one.name), sha256);
+  }
   writer_.write(mcap::Metadata{.name = std::string(trace_format::kSessionName), .metadata = std::move(session)});
   for (const mcap::Attachment& one : all) writer_.write(one);
-  define(Stream::kPose, {{std::string(trace_format::kNodesKey), node_names(avatar)}});
+  define(Stream::kPose, of_poses);
   define(Stream::kColliders, {});
   if (options.viz == Viz::kScene) {
     viz_.emplace(avatar);

@@ -16,6 +16,8 @@
 #include "traces/mcap/stream_reader.hpp"
 #include "traces/repair/trace_check.hpp"
 #include "traces/repair/trace_summary.hpp"
+#include "traces/trace_file/trace_format.hpp"
+#include "traces/trace_file/trace_messages.hpp"
 
 namespace vestige {
 namespace {
