@@ -18,7 +18,7 @@ namespace vestige {
 namespace {
 
 constexpr std::size_t kMostInEightBits = 240;
-constexpr double kMostPatches = 1 << 20;
+constexpr double kMostPatchesOfBody = 1 << 20;
 
 /// The skin of an actuator. Entry [0] is skin without an actuator.
 struct SkinOfActuator {
@@ -32,7 +32,7 @@ struct SkinOfActuator {
 class CutBody {
  public:
   explicit CutBody(const BodySurface& surface)
-      : surface_(surface), step_(affordable_step(surface, kMostPatches, [&](std::uint32_t triangle, double step) {
+      : surface_(surface), step_(affordable_step(surface, kMostPatchesOfBody, [&](std::uint32_t triangle, double step) {
           return patches_of_body(surface, triangle, step);
         })) {}
 

@@ -9,6 +9,7 @@
 #include "tests/cli/files/exchange_fixture.hpp"
 #include "tests/support/long.hpp"
 #include "tests/support/npm.hpp"
+#include "tests/traces/motion/made_motion.hpp"
 #include "traces/exchange/pose_csv.hpp"
 
 namespace vestige {
