@@ -39,7 +39,8 @@ struct DetectorFrame {
 class FrameBuilder {
  public:
   /// `collider_ids` is ascending; the rank of an id is the column of the collider. Colliders with other ids are
-  /// ignored. With a method that uses the previous frame, a pose that is not finite also empties the next frame.
+  /// ignored. A frame whose pose is not finite is empty. With a method that uses the previous frame, the next
+  /// frame is empty, too.
   FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method = Method::kStatic);
 
   /// Takes the next frame of the trace. If the indices leave a gap (a damaged trace), the frame tests nothing. The

@@ -201,9 +201,10 @@ void warn_of_gaps(BatchResults& results) {
   for (const RankedCandidate& ranked : results.ranking) least = std::min(least, ranked.metrics[results.headline].n);
   if (least < results.traces)
     results.warnings.push_back(fmt::format(
-        "some maps and laws have a {} on {} of {} traces{}: on the others, nothing was felt, or nothing that this "
-        "metric measures{}",
-        headline.name, least == 0 ? "none" : std::to_string(least), results.traces, least == 0 ? "" : " only",
+        "some maps and laws have a {} on {} of {} {}{}: on {}, nothing was felt, or nothing that this metric "
+        "measures{}",
+        headline.name, least == 0 ? "none" : std::to_string(least), results.traces,
+        results.traces == 1 ? "trace" : "traces", least == 0 ? "" : " only", least == 0 ? "them" : "the others",
         least == 0 ? "" : "; their means may come from easier or harder traces"));
   const auto coverage = std::ranges::find(metrics(), kCoverage, &Metric::name);
   if (coverage == metrics().end() || headline.name == kCoverage) return;

@@ -49,8 +49,8 @@ double TimingScore::mean_offset_s() const {
   return share(offset_sum_s_, offsets_);
 }
 
-double TimingScore::late_share(std::size_t threshold) const {
-  return share(static_cast<double>(late_[threshold]), onsets_);
+double TimingScore::late_share(std::size_t limit) const {
+  return share(static_cast<double>(late_[limit]), onsets_);
 }
 
 }  // namespace vestige

@@ -50,14 +50,14 @@ class TimingScore {
   /// An actuator begins or ends to vibrate. `begins` counts an onset only if a contact asked for the actuator.
   void begins(std::size_t actuator, double time_s);
   void ends(std::size_t actuator, double time_s);
-  /// What was asked for is over, and the actuator never began to vibrate.
+  /// The contact is over, and the actuator never began to vibrate.
   void gives_up(std::size_t actuator) { asked_[actuator].is_pending = false; }
   bool is_on(std::size_t actuator) const { return asked_[actuator].is_on; }
 
-  double f1() const;                               ///< NaN if nothing was asked for and nothing vibrated
-  double mean_onset_s() const;                     ///< NaN if there was no onset
-  double mean_offset_s() const;                    ///< NaN if no vibration ended
-  double late_share(std::size_t threshold) const;  ///< share of onsets later than 15, 45, 50 ms for `threshold` 0, 1, 2
+  double f1() const;                           ///< NaN if nothing was asked for and nothing vibrated
+  double mean_onset_s() const;                 ///< NaN if there was no onset
+  double mean_offset_s() const;                ///< NaN if no vibration ended
+  double late_share(std::size_t limit) const;  ///< share of onsets later than limit number 0, 1, 2: 15, 45, 50 ms
   std::uint64_t onsets() const { return onsets_; }
 
  private:

@@ -28,8 +28,10 @@ UsageError no_scenario(const std::string& name) {
 
 std::string describe_colliders() {
   std::string text = "Where the colliders come from:";
+  std::size_t longest = 0;
+  for (const Scenario& scenario : scenarios()) longest = std::max(longest, scenario.name.size());
   for (const Scenario& scenario : scenarios())
-    fmt::format_to(std::back_inserter(text), "\n  {:<6} {}", scenario.name, scenario.summary);
+    fmt::format_to(std::back_inserter(text), "\n  {:<{}} {}", scenario.name, longest, scenario.summary);
   return text + "\nor a file of rows time_s,id,x,y,z, or the animated nodes of a glTF file";
 }
 

@@ -107,7 +107,7 @@ std::vector<std::string> describe(const std::vector<StageArithmetic>& stages) {
   std::vector<std::string> lines;
   const auto add = [&](const std::string& name, const StageArithmetic& stage) {
     const bool keeps = stage.keeps_denormal_operands && stage.keeps_denormal_results;
-    lines.push_back(fmt::format("{} shaders: round {}{}, {} denormals, {}, divide to {:.2g} ulp", name,
+    lines.push_back(fmt::format("{} shaders: {}{}, {} denormals, {}, divide to {:.2g} ulp", name,
                                 stage.misrounded.empty() ? "to " : "", stage.rounding, keeps ? "keep" : "flush",
                                 stage.contracts ? "use fma" : "no fma", stage.division_error_ulp));
   };

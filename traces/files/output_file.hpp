@@ -43,8 +43,8 @@ class OutputFile {
   std::string buffer_;
 };
 
-/// Gives a finished, synced file its name, in the same folder. Throws `Error`, also if `path` exists by now and may not
-/// be overwritten; then the file keeps its temporary name.
+/// Gives a finished, synced file its name, in the same folder. Throws `Error` if it cannot, or if `path` exists by now
+/// and must not be overwritten. The file then keeps its temporary name.
 void give_name(const std::filesystem::path& temporary_path, const std::filesystem::path& path, Overwrite overwrite);
 
 /// Returns the target of a symbolic link, which need not exist. Returns any other path, and a link to a device,

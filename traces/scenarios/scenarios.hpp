@@ -16,10 +16,10 @@ struct ScenarioSettings {
 };
 
 /// A built-in scenario. The same avatar, animation, count and seed give the same positions at the same times, at any
-/// sampling rate.
+/// sampling rate. Another seed gives others. 100 colliders stay within 3 m of the avatar.
 struct Scenario {
   std::string_view name;
-  std::string_view summary;  ///< one line
+  std::string_view summary;  ///< at most 63 characters: one line of help, behind the name
   std::uint32_t default_count;
   /// `animation` may be null, for an avatar at rest.
   std::unique_ptr<ColliderSource> (*make)(const Avatar& avatar, const Animation* animation,

@@ -10,8 +10,8 @@ namespace vestige {
 struct Avatar;
 struct Animation;
 
-/// A node's transform relative to its parent: first scale, then rotation, then translation (glTF 2.0 §3.5.3). Single
-/// precision, because a trace stores single precision; a replay then has the same bits as the recording.
+/// A node's transform relative to its parent: first scale, then rotation, then translation (glTF 2.0 §3.5.3). Numbers
+/// are single precision as in a trace, so that a replay has the same bits as the recording.
 struct NodeLocal {
   glm::vec3 translation = glm::vec3(0);
   glm::quat rotation = glm::quat(1, 0, 0, 0);  ///< w, x, y, z; normalised in double when used

@@ -13,13 +13,13 @@
 
 namespace vestige {
 
-/// The content of a trace file that is read before its frames.
+/// The parts of a trace file that are read before its frames.
 struct TraceIndex {
   bool profile_is_ours = false;
   Session session;
   std::uint64_t session_offset = 0;
-  std::optional<mcap::StringMap> recovered;  ///< the metadata record of that name
-  mcap::StringMap replaced;                  ///< likewise; empty: there is none
+  std::optional<mcap::StringMap> recovered;  ///< the metadata record "recovered"
+  mcap::StringMap replaced;                  ///< the metadata record "replaced"; empty if there is none
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> actuator_map_png;
   std::vector<std::byte> actuator_map_json;

@@ -20,8 +20,8 @@ struct TraceEvent {
   std::string_view text;
 };
 
-/// Returns the topic that an event of kind `dropped` names, at most 200 bytes of it, because a foreign file may hold
-/// any text there.
+/// Returns the topic that an event of kind `dropped` names. A longer text than 200 bytes is cut, because a foreign file
+/// may hold any text there.
 std::string dropped_topic(const TraceEvent& event);
 
 /// Encodes the messages of a trace. The result of a call is valid until the next call.

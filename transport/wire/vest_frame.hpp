@@ -43,8 +43,8 @@ struct Greeting {
 
 using VestAnswer = std::variant<Acknowledgement, Greeting>;
 
-/// Finds the board's answers in bytes from the line, in pieces of any size. Ignores a frame whose CRC is wrong, that is
-/// unknown, or whose length is not exactly that of its kind.
+/// Finds the board's answers in bytes from the line, in pieces of any size. Ignores frames with a wrong CRC, of an
+/// unknown kind, or of another length than their kind has.
 class VestAnswerDecoder {
  public:
   /// Returns the answers that these bytes complete, in order.
