@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <exception>
 #include <utility>
 
 #include "traces/base/system_error.hpp"
@@ -282,16 +283,22 @@ void Sender::wait_for_last_answer(Clock::duration patience) {
 /// part of a state, such as actuators beyond it.
 Sender::OffFrames Sender::send_all_off() {
   OffFrames frames;
+  std::exception_ptr failure;
   if (has_state_) {
-    ActuatorFrame zeros = state_;
-    std::ranges::fill(zeros.duty, std::uint8_t{0});
-    frames.zeros = next_sequence(nullptr);
-    sink_.send(zeros, *frames.zeros);
-    note_sent();
+    try {
+      ActuatorFrame zeros = state_;
+      std::ranges::fill(zeros.duty, std::uint8_t{0});
+      frames.zeros = next_sequence(nullptr);
+      sink_.send(zeros, *frames.zeros);
+      note_sent();
+    } catch (...) {
+      failure = std::current_exception();  // the other frame may still get through
+    }
   }
   frames.off = next_sequence(nullptr);
   sink_.send_off(frames.off);
   note_sent();
+  if (failure) std::rethrow_exception(failure);
   return frames;
 }
 

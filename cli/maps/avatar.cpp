@@ -14,6 +14,7 @@
 #include "traces/base/error.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/gltf/clean/clean_avatar.hpp"
+#include "traces/motion/animation_choice.hpp"
 #include "traces/scene/box.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/reference_skinning.hpp"
@@ -128,6 +129,11 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
   for (const std::string& warning : avatar.warnings) warn(warning, options.common.verbosity());
   const UvCoverage coverage = uv_coverage(avatar, kTextureSide);
 
+  if (!options.output.empty() && !is_builtin)
+    for (const Animation& animation : avatar.animations)
+      if (animation.morph)
+        warn(fmt::format("{}: {}; this motion is not written", animation.morph->where, describe_morph(animation)),
+             options.common.verbosity());
   if (!options.output.empty())
     write_bytes(options.output, is_builtin ? glb : clean_avatar_glb(glb, options.avatar), options.common);
   if (!options.map_output.empty()) {

@@ -107,6 +107,12 @@ std::size_t MorphTargets::weight_count(int node) const {
 }
 
 std::optional<double> MorphTargets::reach_m(int node, const AnimationChannel& weights, const Avatar& avatar) {
+  const auto departs = [&](const MorphedPart& part) {
+    for (std::size_t t = 0; t < part.targets.size(); ++t)
+      if (departure(weights, t, double{part.targets[t].weight}) > 0) return true;
+    return false;
+  };
+  if (std::ranges::none_of(parts_.at(node), departs)) return {};
   std::vector<glm::dmat4> palette;
   palette_matrices(avatar, rest_pose(avatar), palette);
   std::optional<double> farthest_m;

@@ -236,7 +236,7 @@ std::optional<Index> Retargeter::bone_end(Index node) const {
   if (!role) return {};
   std::vector<BodyRole> candidates;
   if (role->part == BodyPart::kSpine) {
-    for (int segment = role->segment + 1; segment < static_cast<int>(target_.roles.size()); ++segment)
+    for (int segment = role->segment + 1; find_role(target_, {BodyPart::kSpine, BodySide::kNone, segment}); ++segment)
       candidates.push_back({BodyPart::kSpine, BodySide::kNone, segment});
     candidates.push_back({BodyPart::kNeck, BodySide::kNone, 0});
     candidates.push_back({BodyPart::kHead, BodySide::kNone, 0});
@@ -370,7 +370,7 @@ double Retargeter::reference_height() const {
   constexpr double kFits = 0.05;     // share of the height of the hips
   constexpr double kOverZero = 0.2;  // share of it: the lowest joint of a body on a floor at 0
   const Index hips = *followed(kHips);
-  const double floor = floor_level(body(), samples_, up_.up);
+  const double floor = floor_level(motion_, body(), samples_, up_.up);
   const auto is_zero = [&](double standing) { return floor > -kFits * standing && floor < kOverZero * standing; };
   if (rests_as_person_) {
     const glm::dvec3 up = glm::transpose(body_to_avatar_) * target_up_;

@@ -59,16 +59,17 @@ inline constexpr double kBodyTolerance_deg = 30;
 ///   pose. Arms and legs that point another way there (an A pose, a T pose) are first turned to the motion's.
 /// - It rests in any other shape: the frames tell. The hips' axes follow from hip joints and neck. Every other joint is
 ///   turned as its parent is on average over the motion, and then by the shortest way to the direction of its bone.
-/// The motion's up (find_up) becomes the avatar's up. The avatar faces as the motion's skeleton does at rest or, if
-/// that tells nothing, forward in the first frame, to the nearest axis of the file.
+/// The motion's up (find_up) becomes the avatar's up. What the motion's skeleton faces at rest becomes the avatar's
+/// forward. If its rest pose tells nothing, what the body faces in the first frame does, to the nearest axis of the
+/// file.
 ///
 /// The hips travel as the motion's hips do, scaled by `metres_per_unit`, so that feet do not slide. The travel counts
 /// horizontally from the avatar's own place, and vertically from the height of the hips at rest, or from the motion's
 /// floor if that makes no sense.
 ///
 /// The animation is then played and compared with the motion in every frame: bones' directions within
-/// kBoneTolerance_deg, the direction from hips to head within kBodyTolerance_deg, the direction of facing, left and
-/// right hand. The report names what differs by more.
+/// kBoneTolerance_deg, the directions from hips to head and from right hip to left hip within three times that, and the
+/// sides of the hands. The report names what differs by more.
 ///
 /// Joints are matched by their role in a body (body_roles.hpp), spines from both ends, then the rest by name. Throws
 /// `Error` with the motion's name if the hips, or both an arm and a leg, match nothing (nodes with a `fixed_matrix` do

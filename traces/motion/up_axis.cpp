@@ -123,12 +123,13 @@ UpAxis find_up(const BvhMotion& motion, const std::vector<std::size_t>& body, co
   return found;
 }
 
-double floor_level(const std::vector<std::size_t>& body, const MotionSamples& samples, const glm::dvec3& up) {
+double floor_level(const BvhMotion& motion, const std::vector<std::size_t>& body, const MotionSamples& samples,
+                   const glm::dvec3& up) {
   constexpr double kShare = 0.02;
   std::vector<double> lowest;
   for (const auto& places : samples.now) {
     double height = std::numeric_limits<double>::infinity();
-    for (const std::size_t joint : body) height = std::min(height, glm::dot(places[joint].position, up));
+    for (const glm::dvec3& point : points_of(motion, body, places)) height = std::min(height, glm::dot(point, up));
     lowest.push_back(height);
   }
   return quantile(lowest, kShare);

@@ -37,8 +37,9 @@ struct UpAxis {
 UpAxis find_up(const BvhMotion& motion, const std::vector<std::size_t>& body, const MotionSamples& samples,
                const std::optional<glm::dvec3>& of_rest);
 
-/// Returns the height of the lowest joint of `body`, in the motion's unit: the height under which it is in 2 % of the
-/// samples.
-double floor_level(const std::vector<std::size_t>& body, const MotionSamples& samples, const glm::dvec3& up);
+/// Returns the height of the lowest end of a bone of `body`, in the motion's unit: the height under which it is in 2 %
+/// of the samples.
+double floor_level(const BvhMotion& motion, const std::vector<std::size_t>& body, const MotionSamples& samples,
+                   const glm::dvec3& up);
 
 }  // namespace vestige

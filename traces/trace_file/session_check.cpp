@@ -44,7 +44,8 @@ class AttachmentCheck {
 
 void AttachmentCheck::missing(std::string_view name) {
   if (recorded_sha256(claims_, name).empty()) return;
-  if (claims_.replaced.contains(std::string(name))) {
+  const auto replaced = claims_.replaced.find(std::string(name));
+  if (replaced != claims_.replaced.end() && replaced->second == trace_format::kLeftOut) {
     problems_.push_back({fmt::format("the attachment {}, whose SHA-256 is recorded, is not there", name),
                          "`vestige recover --force` put another actuator map in without it"});
     return;

@@ -104,6 +104,10 @@ void add_normals(GltfBuilder& b, const std::vector<float>& normals) {
 /// Each is accepted, and wrong in a way that the Khronos validator calls an error.
 const std::vector<Variant>& variants() {
   static const std::vector<Variant> all = {
+      {"normals of another count",
+       [](GltfBuilder& b) {
+         add_normals(b, {0, 0, 1, 0, 0, 1});
+       }},
       {"weights",
        [](GltfBuilder& b) {
          set_weights(b, 0, {0.5F, 0.25F, 0, 0, 7, 5, 0, 0});

@@ -226,7 +226,7 @@ class Writer {
     std::vector<float> positions;
     for (const glm::vec3& p : vertices(avatar_.position_bind)) positions.insert(positions.end(), {p.x, p.y, p.z});
     result["POSITION"] = builder_.add_bounded_accessor(positions, "VEC3", 3, Target::kVertices);
-    look_.add_normals(result, part.mesh, part.primitive);
+    look_.add_normals(result, part.mesh, part.primitive, part.vertex_count);
     std::vector<float> places;
     for (const glm::vec2& uv : vertices(avatar_.texture_coordinate)) places.insert(places.end(), {uv.x, uv.y});
     result["TEXCOORD_0"] = builder_.add_accessor(places, "VEC2", 2, Target::kVertices);

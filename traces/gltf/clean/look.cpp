@@ -72,7 +72,7 @@ Tree Look::asset() const {
   return asset;
 }
 
-void Look::add_normals(Tree& attributes, std::size_t mesh, std::size_t primitive) {
+void Look::add_normals(Tree& attributes, std::size_t mesh, std::size_t primitive, std::size_t vertex_count) {
   const auto& known = document_.model.meshes[mesh].primitives[primitive].attributes;
   const auto found = known.find("NORMAL");
   if (found == known.end()) return;
@@ -80,6 +80,7 @@ void Look::add_normals(Tree& attributes, std::size_t mesh, std::size_t primitive
   try {
     const unsigned components = kFloat | (document_.quantized ? kNormalizedInt8 | kNormalizedInt16 : 0U);
     const AccessorReader reader(document_, found->second, {TINYGLTF_TYPE_VEC3, components}, "NORMAL", report_);
+    if (reader.count() != vertex_count) return;
     for (std::size_t i = 0; i < reader.count(); ++i) {
       const glm::dvec3 read(reader.number(i, 0), reader.number(i, 1), reader.number(i, 2));
       const double length = glm::length(read);

@@ -17,7 +17,7 @@ class Look {
   Look(std::span<const std::byte> glb, GlbBuilder& builder);
 
   GlbBuilder::Json asset() const;
-  void add_normals(GlbBuilder::Json& attributes, std::size_t mesh, std::size_t primitive);
+  void add_normals(GlbBuilder::Json& attributes, std::size_t mesh, std::size_t primitive, std::size_t vertex_count);
   void set_material(GlbBuilder::Json& primitive, std::size_t mesh, std::size_t index);
   /// Adds the roles of nodes.
   void finish();
