@@ -24,9 +24,11 @@ void take_metadata(mcap::Metadata metadata, std::uint64_t offset, TraceIndex& in
   if (metadata.name == trace_format::kSessionName) {
     index.session = std::move(metadata.metadata);
     index.session_offset = offset;
+  } else if (metadata.name == trace_format::kRecoveredName) {
+    index.recovered = std::move(metadata.metadata);
+  } else if (metadata.name == trace_format::kReplacedName) {
+    index.replaced = std::move(metadata.metadata);
   }
-  if (metadata.name == trace_format::kRecoveredName) index.recovered = std::move(metadata.metadata);
-  if (metadata.name == trace_format::kReplacedName) index.replaced = std::move(metadata.metadata);
 }
 
 void take_attachment(mcap::Bytes content, TraceIndex& index) {
