@@ -285,7 +285,7 @@ std::vector<std::optional<BodyRole>> body_roles(std::span<const NamedJoint> join
   return RoleFinder(joints).find();
 }
 
-std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar) {
+std::vector<NamedJoint> named_joints(const Avatar& avatar) {
   std::vector<NamedJoint> joints;
   std::vector<int> place(avatar.nodes.size(), -1);
   for (const int index : avatar.node_order) {
@@ -293,7 +293,11 @@ std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar) {
     place[static_cast<std::size_t>(index)] = static_cast<int>(joints.size());
     joints.push_back({node.name, node.parent < 0 ? -1 : place[static_cast<std::size_t>(node.parent)]});
   }
-  const Roles ordered = body_roles(joints);
+  return joints;
+}
+
+std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar) {
+  const Roles ordered = body_roles(named_joints(avatar));
   Roles roles(avatar.nodes.size());
   for (std::size_t i = 0; i < ordered.size(); ++i) roles[static_cast<std::size_t>(avatar.node_order[i])] = ordered[i];
   return roles;

@@ -55,6 +55,9 @@ struct NamedJoint {
 /// are only numbered.
 std::vector<std::optional<BodyRole>> body_roles(std::span<const NamedJoint> joints);
 
+/// Returns an avatar's nodes in the order of `avatar.node_order`.
+std::vector<NamedJoint> named_joints(const Avatar& avatar);
+
 /// Returns the roles of an avatar's nodes.
 std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar);
 

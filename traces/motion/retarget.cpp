@@ -184,10 +184,7 @@ glm::dquat Retargeter::flatter(Index foot, const glm::dquat& with_leg) const {
 void Retargeter::align() {
   at_rest_.resize(target_.joints.size());
   std::vector<glm::dquat> swing(target_.joints.size(), glm::dquat(1, 0, 0, 0));
-  const std::map<BodyPart, BodyPart> next = {{BodyPart::kUpperArm, BodyPart::kLowerArm},
-                                             {BodyPart::kLowerArm, BodyPart::kHand},
-                                             {BodyPart::kUpperLeg, BodyPart::kLowerLeg},
-                                             {BodyPart::kLowerLeg, BodyPart::kFoot}};
+  const std::set turned = {BodyPart::kUpperArm, BodyPart::kLowerArm, BodyPart::kUpperLeg, BodyPart::kLowerLeg};
   for (Index i = 0; i < target_.joints.size(); ++i) {
     const auto& role = target_.roles[i];
     const int parent = target_.joints[i].parent;
@@ -195,9 +192,8 @@ void Retargeter::align() {
         role && (role->side == BodySide::kNone || role->part == BodyPart::kShoulder || role->part == BodyPart::kEye);
     if (parent >= 0 && !is_trunk) swing[i] = swing[static_cast<Index>(parent)];
     if (role && follows_[i] && role->part == BodyPart::kFoot) swing[i] = flatter(i, swing[i]);
-    if (role && follows_[i] && next.contains(role->part)) {
-      const auto end = followed({next.at(role->part), role->side, 0});
-      if (end) {
+    if (role && follows_[i] && turned.contains(role->part)) {
+      if (const auto end = bone_end(i)) {
         swing[i] = turn(target_.position[*end] - target_.position[i],
                         body_to_avatar_ * (source_.position[*follows_[*end]] - source_.position[*follows_[i]]));
         aligned_.emplace_back(i, *end);

@@ -68,13 +68,10 @@ glm::dquat rotation_of(const glm::dmat4& matrix) {
 
 Skeleton skeleton_of(const Avatar& avatar, const std::vector<glm::dmat4>& rest) {
   Skeleton skeleton;
-  std::vector<int> place(avatar.nodes.size(), -1);
+  skeleton.joints = named_joints(avatar);
   for (const int index : avatar.node_order) {
-    const Node& node = avatar.nodes[static_cast<Index>(index)];
-    place[static_cast<Index>(index)] = static_cast<int>(skeleton.joints.size());
-    skeleton.joints.push_back({node.name, node.parent < 0 ? -1 : place[static_cast<Index>(node.parent)]});
     skeleton.position.emplace_back(rest[static_cast<Index>(index)][3]);
-    skeleton.usable.push_back(!node.fixed_matrix);
+    skeleton.usable.push_back(!avatar.nodes[static_cast<Index>(index)].fixed_matrix);
   }
   skeleton.roles = body_roles(skeleton.joints);
   return skeleton;

@@ -26,6 +26,14 @@ class StreamToOtherSinks : public test::CommandLineTest {
   void record(const std::string& flags) const {
     ASSERT_EQ(run("vestige record -q -o trace.mcap " + flags).exit_code, 0);
   }
+
+  /// Runs `command` beside a serial line called 'vest' that nobody answers.
+  test::Outcome run_beside_dead_line(const std::string& command) const {
+    return run(
+        "python3 -c \"import os,pty,time,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'vest')\n"
+        "time.sleep(60)\" & pty=$!\nfor i in $(seq 100); do [ -e vest ] && break; sleep 0.05; done\n" +
+        command + "; code=$?; kill $pty; exit $code");
+  }
 };
 
 TEST_F(StreamToOtherSinks, AMapThatIsEditedWhileItIsFeltIsReadAgainAndABadOneIsNot) {
@@ -129,10 +137,7 @@ TEST_F(StreamToOtherSinks, AnXbeeInApiModeGetsItsFrames) {
 
 TEST_F(StreamToOtherSinks, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame) {
   record("--count 20 --rate 60 --duration 0.5");
-  const test::Outcome outcome =
-      run("python3 -c \"import os,pty,time,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'vest')\n"
-          "time.sleep(60)\" & pty=$!\nfor i in $(seq 100); do [ -e vest ] && break; sleep 0.05; done\n"
-          "vestige stream trace.mcap --port vest --json stream.json; code=$?; kill $pty; exit $code");
+  const test::Outcome outcome = run_beside_dead_line("vestige stream trace.mcap --port vest --json stream.json");
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.standard_error, HasSubstr("no board answers"));
   EXPECT_THAT(outcome.standard_error, HasSubstr("were not acknowledged"));
@@ -262,10 +267,7 @@ TEST_F(StreamToOtherSinks, WhatCannotBeStreamedIsRefusedWithItsReason) {
 }
 
 TEST_F(StreamToOtherSinks, VestCheckOfADeadLineFails) {
-  const test::Outcome outcome =
-      run("python3 -c \"import os,pty,time,tty\nm,s=pty.openpty()\ntty.setraw(s)\nos.symlink(os.ttyname(s),'vest')\n"
-          "time.sleep(60)\" & pty=$!\nfor i in $(seq 100); do [ -e vest ] && break; sleep 0.05; done\n"
-          "vestige vest check --port vest --seconds 0.05; code=$?; kill $pty; exit $code");
+  const test::Outcome outcome = run_beside_dead_line("vestige vest check --port vest --seconds 0.05");
   EXPECT_EQ(outcome.exit_code, 4);
   EXPECT_THAT(outcome.standard_output, HasSubstr("DOES NOT HEAR"));
 }

@@ -27,14 +27,17 @@ Tree parse_all(std::span<const std::byte> glb, Report& report) {
 }
 
 /// Returns a member of an object, or null if there is none.
-Tree member(const Tree& object, const char* name) {
-  return object.is_object() ? object.value(name, Tree()) : Tree();
+const Tree& member(const Tree& object, const char* name) {
+  static const Tree none;
+  const auto found = object.find(name);
+  return found == object.end() ? none : *found;
 }
 
 /// Returns the element of the document's list that `index` refers to, or null.
-Tree element(const Tree& document, const char* list, const Tree& index) {
-  const Tree elements = member(document, list);
-  if (!index.is_number_unsigned() || !elements.is_array() || index.get<std::size_t>() >= elements.size()) return {};
+const Tree& element(const Tree& document, const char* list, const Tree& index) {
+  static const Tree none;
+  const Tree& elements = member(document, list);
+  if (!index.is_number_unsigned() || !elements.is_array() || index.get<std::size_t>() >= elements.size()) return none;
   return elements[index.get<std::size_t>()];
 }
 
@@ -95,8 +98,8 @@ void Look::add_normals(Tree& attributes, std::size_t mesh, std::size_t primitive
 }
 
 void Look::set_material(Tree& primitive, std::size_t mesh, std::size_t index) {
-  const Tree number = member(element(element(json_, "meshes", mesh), "primitives", index), "material");
-  const Tree source = element(json_, "materials", number);
+  const Tree& number = member(element(element(json_, "meshes", mesh), "primitives", index), "material");
+  const Tree& source = element(json_, "materials", number);
   if (!source.is_object()) return;
   const auto [known, is_new] = material_of_.try_emplace(number.get<std::size_t>());
   if (is_new) known->second = add_material(source);
