@@ -154,6 +154,7 @@ GreyImage read_grey_png(std::span<const std::byte> bytes, std::string_view name)
 struct Sidecar {
   std::size_t triangle_count = 0;
   std::string skin_digest;
+  std::optional<Facing> facing;
   std::vector<std::uint16_t> grey;
   std::vector<std::string> names;
   std::vector<std::optional<glm::dvec3>> position_m;
@@ -207,7 +208,7 @@ Sidecar parse_sidecar(std::string_view json, std::string_view name, std::vector<
   const nlohmann::json document = parse_strict_json(json, fmt::format("{}, sidecar", name), kRemedy);
   if (!document.is_object() || !document.contains("actuators") || !document["actuators"].is_array())
     throw Error(fmt::format("{}, sidecar", name), "has no list 'actuators'", kRemedy);
-  warn_of_fields(document, {"actuators", "triangles", "skin"}, fmt::format("{}, sidecar", name), warnings);
+  warn_of_fields(document, {"actuators", "triangles", "skin", "facing"}, fmt::format("{}, sidecar", name), warnings);
   Sidecar sidecar;
   if (document.contains("triangles")) {
     const auto& triangles = document["triangles"];
@@ -217,6 +218,13 @@ Sidecar parse_sidecar(std::string_view json, std::string_view name, std::vector<
                   "UV space");
     sidecar.triangle_count = triangles.get<std::size_t>();
     if (document.contains("skin") && document["skin"].is_string()) sidecar.skin_digest = document["skin"];
+  }
+  if (document.contains("facing")) {
+    const nlohmann::json& facing = document["facing"];
+    if (facing.is_string()) sidecar.facing = facing_named(facing.get<std::string>());
+    if (!sidecar.facing)
+      throw Error(fmt::format("{}, sidecar", name), fmt::format("'facing' is {}, which is no axis", facing.dump()),
+                  fmt::format("write one of {}, or leave it out", fmt::join(kFacingNames, ", ")));
   }
   for (const auto& entry : document["actuators"]) {
     const std::string where = fmt::format("{}, sidecar, actuators[{}]", name, sidecar.grey.size());
@@ -319,6 +327,7 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
   map.actuator_count = listed.grey.size();
   map.names = std::move(listed.names);
   map.position_m = std::move(listed.position_m);
+  map.facing = listed.facing;
   return map;
 }
 

@@ -89,7 +89,9 @@ nlohmann::ordered_json to_json(const GlInfo& gl) {
 nlohmann::ordered_json to_json(const Avatar& avatar) {
   return {{"vertices", avatar.position_bind.size()},
           {"triangles", avatar.triangles.size()},
-          {"joints", avatar.joint_count}};
+          {"joints", avatar.joint_count},
+          {"facing", to_string(avatar.facing.axis)},
+          {"facing_by", to_string(avatar.facing.by)}};
 }
 
 std::string commit() {

@@ -29,7 +29,7 @@ std::map<std::string, std::string> provenance_texts(std::span<const std::string>
 
 nlohmann::ordered_json to_json(const Machine& machine);
 nlohmann::ordered_json to_json(const GlInfo& gl);      ///< renderer, version, …; null for a detector without GL
-nlohmann::ordered_json to_json(const Avatar& avatar);  ///< vertices, triangles, joints
+nlohmann::ordered_json to_json(const Avatar& avatar);  ///< vertices, triangles, joints, facing, facing_by
 
 /// Returns the commit that this program was built from. A "+" at the end means that files had been changed since.
 std::string commit();

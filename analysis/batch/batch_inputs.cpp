@@ -23,18 +23,22 @@ namespace vestige {
 
 namespace {
 
-/// Returns the bytes of the traces' avatar. Sets `given` to where the avatar comes from.
-std::vector<std::byte> avatar_of(const std::vector<BatchTrace>& traces, std::string& given) {
+struct TracedAvatar {
+  std::string given;  ///< where it comes from
+  std::vector<std::byte> glb;
+  std::string facing;  ///< as recorded
+};
+
+/// Returns the avatar of the first trace that can be read.
+TracedAvatar avatar_of(const std::vector<BatchTrace>& traces) {
   std::exception_ptr first;
   for (const BatchTrace& trace : traces) {
-    if (trace.scenario != nullptr) {
-      given = "builtin";
-      return builtin_avatar_glb();
-    }
+    if (trace.scenario != nullptr) return {.given = "builtin", .glb = builtin_avatar_glb(), .facing = ""};
     try {
       const TraceReader reader(trace.given);
-      given = trace.given;
-      return {reader.avatar_glb().begin(), reader.avatar_glb().end()};
+      return {.given = trace.given,
+              .glb = {reader.avatar_glb().begin(), reader.avatar_glb().end()},
+              .facing = reader.facing()};
     } catch (const Error&) {
       // If another trace can be read, this error is reported later, with the other traces.
       if (!first) first = std::current_exception();
@@ -107,12 +111,15 @@ std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar
                                       const std::string& actuator, std::size_t jobs,
                                       const std::function<bool()>& go_on) {
   if (!actuator.empty()) plan.actuators = read_actuators(actuator);
-  plan.avatar_given = avatar;
+  TracedAvatar chosen = {.given = avatar, .glb = {}, .facing = ""};
   if (avatar.empty())
-    plan.avatar_glb = avatar_of(plan.traces, plan.avatar_given);
+    chosen = avatar_of(plan.traces);
   else
-    plan.avatar_glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
+    chosen.glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
+  plan.avatar_given = chosen.given;
+  plan.avatar_glb = std::move(chosen.glb);
   plan.avatar = parse_avatar_glb(plan.avatar_glb, plan.avatar_given);
+  take_recorded_facing(plan.avatar.facing, chosen.facing);
   plan.avatar_sha256 = sha256_hex(plan.avatar_glb);
   const bool builtin = plan.avatar_sha256 == sha256_hex(builtin_avatar_glb());
 

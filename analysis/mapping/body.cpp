@@ -134,8 +134,9 @@ SkinPart Body::part_by_proportions(const glm::dvec3& position_m) const {
   const Box& bounds = surface_.bounds();
   const double height_m = surface_.height_m();
   const double y = (position_m.y - bounds.low.y) / height_m;
-  const double beside = std::abs(position_m.x - (bounds.low.x + bounds.high.x) / 2) / height_m;
-  const bool arms_out = bounds.extent().x > kArmsHang * height_m * 1.3;
+  const glm::dvec3 from_middle = turned(position_m - (bounds.low + bounds.high) / 2.0);
+  const double beside = std::abs(from_middle.x) / height_m;
+  const bool arms_out = std::abs(turned(bounds.extent()).x) > kArmsHang * height_m * 1.3;
   if (arms_out && y > kCrotch * 0.8 && y < kChin && beside > kShoulder) {
     if (beside > kWrist) return SkinPart::kHand;
     return beside > kElbow ? SkinPart::kForearm : SkinPart::kUpperArm;
@@ -193,14 +194,15 @@ int Body::node_at(const SkinPoint& point) const {
 }
 
 void Body::find_middle() {
-  const Box& bounds = surface_.bounds();
   Reach torso;
   for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i) {
     const SkinPoint middle = {i, glm::dvec3(1.0 / 3)};
     if (part_at(middle) != SkinPart::kTorso) continue;
-    for (const glm::dvec3& corner : surface_.corners_m(i)) torso.add(corner.x);
+    for (const glm::dvec3& corner : surface_.corners_m(i)) torso.add(turned(corner).x);
   }
-  middle_x_m_ = torso.is_empty() ? (bounds.low.x + bounds.high.x) / 2 : (torso.low + torso.high) / 2;
+  const glm::dvec3 low = turned(surface_.bounds().low);
+  const glm::dvec3 high = turned(surface_.bounds().high);
+  middle_x_m_ = torso.is_empty() ? (low.x + high.x) / 2 : (torso.low + torso.high) / 2;
 }
 
 void Body::find_vest() {

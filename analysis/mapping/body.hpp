@@ -33,7 +33,11 @@ class Body {
   /// Returns the node that weighs most: a joint, or the node of a mesh without joints.
   int node_at(const SkinPoint& point) const;
 
-  /// The x of the plane between left (+x) and right.
+  /// Turns a place about +y as if the avatar faced +z: its left is then +x. `Avatar::facing` tells where it faces.
+  glm::dvec3 turned(const glm::dvec3& position_m) const { return turned_to_front(position_m, avatar().facing.axis); }
+  /// Returns how far to the left of the body's middle a place of the avatar is, in metres; negative: to the right.
+  double leftwards_m(const glm::dvec3& position_m) const { return turned(position_m).x - middle_x_m_; }
+  /// The x of the plane between left and right, of `turned` places.
   double middle_x_m() const { return middle_x_m_; }
   /// The heights between which a vest lies: 4.5 % and 95.5 % of the way from the hip joints up to the neck joint. On
   /// the built-in avatar these are 0.94 m and 1.45 m, as in the avatar's own map. Where a joint is not known, the end

@@ -14,8 +14,8 @@
 
 namespace vestige {
 
-/// An avatar's skin in its rest pose as one surface (glTF: metres, y up, facing +z, so that its left is +x). Vertices
-/// that only a texture seam splits count as one place.
+/// An avatar's skin in its rest pose as one surface, in the axes of its file (glTF: metres, y up). Vertices that only a
+/// texture seam splits count as one place.
 class BodySurface {
  public:
   /// `avatar` must have triangles and must outlive this object.

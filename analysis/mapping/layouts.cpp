@@ -156,6 +156,9 @@ MadeMap make_layout_map(const Avatar& avatar, std::string_view layout, const Wor
 ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout) {
   MadeMap made = make_layout_map(avatar, layout);
   made.files.warnings = std::move(made.warnings);
+  if (!avatar.facing.doubt.empty())
+    made.files.warnings.push_back(
+        fmt::format("the avatar's facing: {}; {} is taken", avatar.facing.doubt, to_string(avatar.facing.axis)));
   if (!made.left_out.empty())
     made.files.warnings.push_back(
         fmt::format("the avatar has no skin for {} of the layout's actuators, which are left out: {}",

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -22,6 +23,25 @@ constexpr double kSpeck = 0.01;
 constexpr double kSpeckTexels = 4;
 constexpr double kSpeckOfTriangles = 0.05;  ///< borders step by triangles there
 constexpr std::size_t kMostListed = 8;
+
+/// Share of the body's height. A region's middle counts as on one side if it is this far from the body's middle.
+constexpr double kBeside = 0.01;
+
+/// Returns 1 for a name with the word "left", -1 for one with "right", otherwise 0.
+int side_named(std::string_view name) {
+  std::string word;
+  int side = 0;
+  for (std::size_t i = 0; i <= name.size(); ++i) {
+    const auto letter = i < name.size() ? static_cast<unsigned char>(name[i]) : static_cast<unsigned char>(' ');
+    if (std::isalpha(letter) != 0) {
+      word += static_cast<char>(std::tolower(letter));
+      continue;
+    }
+    side += word == "left" ? 1 : word == "right" ? -1 : 0;
+    word.clear();
+  }
+  return std::clamp(side, -1, 1);
+}
 
 struct Piece {
   double area_m2 = 0;
@@ -50,6 +70,7 @@ class Checker {
     }
     find_split();
     find_misplaced();
+    find_wrong_sides();
     std::ranges::stable_sort(result_.findings, std::ranges::greater(), &MapFinding::severity);
     return std::move(result_);
   }
@@ -120,8 +141,9 @@ class Checker {
   }
 
   bool is_mirrored(const glm::vec3& a, const glm::vec3& b) const {
-    const glm::dvec3 image(2 * body_.middle_x_m() - double{a.x}, a.y, a.z);
-    return glm::distance(image, glm::dvec3(b)) < far_m_;
+    const glm::dvec3 here = body_.turned(a);
+    const glm::dvec3 image(2 * body_.middle_x_m() - here.x, here.y, here.z);
+    return glm::distance(image, body_.turned(b)) < far_m_;
   }
 
   /// The first patch of each texel represents it. Patches far from the first share the texel.
@@ -170,7 +192,7 @@ class Checker {
           checked.shared_m2 < kSpeck * checked.area_m2 || static_cast<double>(shared.texels) < kSpeckTexels;
       if (2 * shared.mirrored > shared.texels) {
         const auto& position_m = map_.position_m[actuator - 1U];
-        const bool is_central = position_m && std::abs(position_m->x - body_.middle_x_m()) < far_m_;
+        const bool is_central = position_m && std::abs(body_.leftwards_m(*position_m)) < far_m_;
         add(is_speck || is_central ? Severity::kNote : Severity::kProblem, "mirrored_texels", actuator,
             fmt::format("actuator {} fires left and right alike: {} of its {} texels lie on both halves of the body "
                         "({:.0f} cm² of skin)",
@@ -261,6 +283,27 @@ class Checker {
             fmt::format("actuator {}: its position_m is {:.2f} m away from the nearest skin that fires it",
                         quoted(actuator), nearest_m[actuator]),
             "use the map of this avatar; positions are metres in the avatar's rest pose");
+  }
+
+  /// The joints' names tell the sides, not the facing, which may be wrong.
+  void find_wrong_sides() {
+    const auto& left = body_.avatar().facing.left;
+    if (!left) return;
+    std::vector<glm::dvec3> sum(map_.actuator_count + 1, glm::dvec3(0));
+    for (const auto& [key, piece] : pieces_) sum[key.first] += piece.sum;
+    const glm::dvec3 middle_m = turned_from_front({body_.middle_x_m(), 0, 0}, body_.avatar().facing.axis);
+    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
+      const int side = side_named(map_.names[actuator - 1U]);
+      const double area_m2 = of(actuator).area_m2;
+      if (side == 0 || !(area_m2 > 0)) continue;
+      const double beside_m = glm::dot(sum[actuator] / area_m2 - middle_m, *left);
+      if (side * beside_m > -kBeside * body_.surface().height_m()) continue;
+      const char* where = beside_m > 0 ? "left" : "right";
+      add(Severity::kProblem, "wrong_side", actuator,
+          fmt::format("actuator {} lies {:.2f} m to the {} of the body's middle, on the side of the joints named {}",
+                      quoted(actuator), std::abs(beside_m), where, where),
+          "make the map anew with the --facing of the avatar, or rename its regions");
+    }
   }
 
   const Body& body_;

@@ -114,7 +114,7 @@ std::vector<SkinOfActuator> measure(const Body& body, const CutBody& cut, const 
                                     std::size_t actuator_count, const WorkProgress& progress) {
   const BodySurface& surface = body.surface();
   const double central_m = kCentral * surface.bounds().longest_side();
-  const auto is_central = [&](double x_m) { return std::abs(x_m - body.middle_x_m()) < central_m; };
+  const auto is_central = [&](const glm::dvec3& place_m) { return std::abs(body.leftwards_m(place_m)) < central_m; };
   std::vector<SkinOfActuator> skin(actuator_count + 1);
   struct Patch {
     std::uint16_t actuator;
@@ -133,7 +133,7 @@ std::vector<SkinOfActuator> measure(const Body& body, const CutBody& cut, const 
     const glm::dvec3 off = patch.position_m - middle_m;
     double distance_squared = glm::dot(off, off);
     // All skin around a head is equally far from its middle. Skin on the body's own middle takes precedence.
-    if (is_central(middle_m.x) && !is_central(patch.position_m.x))
+    if (is_central(middle_m) && !is_central(patch.position_m))
       distance_squared += surface.height_m() * surface.height_m();
     if (distance_squared >= of.distance_squared) continue;
     of.distance_squared = distance_squared;
@@ -147,11 +147,12 @@ double rounded(double metres) {
   return std::round(metres * 1e4) / 1e4 + 0.0;
 }
 
-/// `avatar` is the avatar whose triangles the texels are, or null if they are its texture.
-std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar* avatar) {
+/// `by_triangle` tells whether the texels are the avatar's triangles.
+std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar& avatar, bool by_triangle) {
   std::string text = "{\n";
-  if (avatar != nullptr)
-    text += fmt::format("  \"triangles\": {},\n  \"skin\": \"{}\",\n", avatar->triangles.size(), skin_digest(*avatar));
+  if (by_triangle)
+    text += fmt::format("  \"triangles\": {},\n  \"skin\": \"{}\",\n", avatar.triangles.size(), skin_digest(avatar));
+  text += fmt::format("  \"facing\": \"{}\",\n", to_string(avatar.facing.axis));
   text += "  \"actuators\": [\n";
   for (std::size_t i = 0; i < actuators.size(); ++i) {
     const glm::dvec3& p = actuators[i].position_m;
@@ -248,7 +249,7 @@ MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& se
         rasterise(body.surface(), numbered, settings.side, settings.padding, part_of(settings.progress, 1, parts));
     map.misplaced_share = misplaced_share(cut, map.raster, numbered, part_of(settings.progress, 2, parts));
   }
-  map.files = {png_of(map), sidecar_of(map.actuators, map.triangle_count == 0 ? nullptr : &body.avatar())};
+  map.files = {png_of(map), sidecar_of(map.actuators, body.avatar(), map.triangle_count != 0)};
   warn_of(map.raster, avatar_name, map);
   return map;
 }

@@ -215,7 +215,7 @@ void RegionPlan::choose_skin(const RegionSpec& spec, const std::string& where, R
 }
 
 RegionPlan::Asked RegionPlan::ask(const SkinPoint& point) const {
-  return {point, body_.surface().position_m(point), body_.part_at(point)};
+  return {point, body_.turned(body_.surface().position_m(point)), body_.part_at(point)};
 }
 
 bool RegionPlan::selects(const Region& region, const Asked& asked) const {
@@ -299,7 +299,7 @@ void RegionPlan::place_sites(const RegionSpec& spec, const std::string& where, R
       const RegionActuator& wanted = spec.actuators[i];
       double distance_squared = 0;
       if (wanted.position_m) {
-        const glm::dvec3 off = p - *wanted.position_m;
+        const glm::dvec3 off = p - body_.turned(*wanted.position_m);
         distance_squared = glm::dot(off, off);
       } else {
         const double up_m = (frame.height(p.y) - wanted.height) * (frame.high_m - frame.low_m);
@@ -343,7 +343,7 @@ std::uint16_t RegionPlan::actuator_within(const Region& region, const Asked& ask
     const Site& site = region.sites[i];
     const double detour_m = point.weight.x * site.detour_m[corner.x] + point.weight.y * site.detour_m[corner.y] +
                             point.weight.z * site.detour_m[corner.z];
-    const double distance_m = glm::distance(position_m, site.position_m) + detour_m;
+    const double distance_m = glm::distance(position_m, body_.turned(site.position_m)) + detour_m;
     if (distance_m < least_m) {
       least_m = distance_m;
       best = i;

@@ -37,6 +37,7 @@ class RegionPlan {
   };
 
   /// The frame that "height" and "angle" of a selection refer to. Its axis follows the middle between front and back.
+  /// Places are those of `Body::turned`.
   struct Frame {
     double low_m = 0;
     double high_m = 1;
@@ -71,7 +72,7 @@ class RegionPlan {
   /// A point of the skin, with the values that every region looks at.
   struct Asked {
     SkinPoint point;
-    glm::dvec3 position_m;
+    glm::dvec3 position_m;  ///< as if the avatar faced +z (`Body::turned`)
     SkinPart part;
   };
   Asked ask(const SkinPoint& point) const;

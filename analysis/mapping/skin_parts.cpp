@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "traces/motion/body_roles.hpp"
+#include "traces/body/body_roles.hpp"
 
 namespace vestige {
 

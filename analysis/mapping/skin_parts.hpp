@@ -17,7 +17,7 @@ std::string_view to_string(SkinPart part);
 std::optional<SkinPart> skin_part_named(std::string_view name);
 
 /// Returns the part that each node's skin belongs to. The node's role in the body decides
-/// (traces/motion/body_roles.hpp). A node without a role takes its parent's part. A node without a role above it has no
+/// (traces/body/body_roles.hpp). A node without a role takes its parent's part. A node without a role above it has no
 /// part.
 std::vector<std::optional<SkinPart>> parts_of_nodes(const Avatar& avatar);
 

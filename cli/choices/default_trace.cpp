@@ -13,7 +13,7 @@ namespace vestige::cli {
 
 void record_default_trace(const std::string& path, std::uint32_t colliders, const CommonOptions& options,
                           const Invocation& invocation) {
-  const Scene scene = load_scene("builtin", "builtin", Verbosity::kQuiet);
+  const Scene scene = load_scene("builtin", "builtin", {}, Verbosity::kQuiet);
   const Animation* animation = find_animation(scene.avatar, "");
   const auto swarm = find_scenario("swarm")->make(scene.avatar, animation, {colliders, options.seed});
   TraceWriterOptions writing;

@@ -7,7 +7,6 @@
 #include "traces/base/error.hpp"
 #include "traces/base/host_port.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/motion/humanoid.hpp"
 
 namespace vestige::cli {
 
@@ -68,9 +67,8 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
     thread.stop();
     warn_of(lines.problems(), "standard input", verbosity);
   } else {
-    const Humanoid humanoid = find_humanoid(scene.avatar, scene.avatar_glb);
-    warn_of(humanoid.problems, "--avatar", verbosity);
-    VmcState state(scene.avatar, humanoid, origin_m);
+    warn_of(scene.avatar.humanoid.problems, "--avatar", verbosity);
+    VmcState state(scene.avatar, origin_m);
     UdpReceiver datagrams(parse_host_port(choice.source, kScheme, "--live"), choice.source);
     RecordingThread thread(recorder);
     if (verbosity != Verbosity::kQuiet)
@@ -80,7 +78,7 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
     counts = record_state(datagrams, state, thread, settings);
     thread.stop();
     warn_of(state.problems(), choice.source, verbosity);
-    report_bones(state, humanoid, choice.source, verbosity);
+    report_bones(state, scene.avatar.humanoid, choice.source, verbosity);
   }
   const std::string source = choice.is_lines() ? "standard input" : choice.source;
   if (counts.frames == 0)

@@ -46,18 +46,58 @@ void give_map(Scene& scene, ActuatorMapFiles files, const SceneNames& names, Ver
 
 }  // namespace
 
-Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity) {
+void add_facing_option(CLI::App& verb, FacingChoice& choice) {
+  std::vector<std::string> axes(kFacingNames.begin(), kFacingNames.end());
+  axes.emplace_back("auto");
+  verb.add_option("--facing", choice.axis,
+                  "Which way the avatar faces at rest: auto finds it by its joints' names, its feet or VRM; it decides "
+                  "what is left and what is front")
+      ->capture_default_str()
+      ->check(CLI::IsMember(axes));
+}
+
+std::string_view in_words(AvatarFacing::By by) {
+  switch (by) {
+    case AvatarFacing::By::kSides:
+      return "by its joints' names";
+    case AvatarFacing::By::kFeet:
+      return "by its feet";
+    case AvatarFacing::By::kVrm:
+      return "by its version of VRM";
+    case AvatarFacing::By::kMap:
+      return "by its map";
+    case AvatarFacing::By::kTrace:
+      return "by the trace";
+    case AvatarFacing::By::kAsked:
+      return "as asked";
+    case AvatarFacing::By::kAssumed:
+      break;
+  }
+  return "since nothing tells";
+}
+
+void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string& name, Verbosity verbosity) {
+  if (const auto axis = facing_named(choice.axis)) set_facing(avatar.facing, *axis, AvatarFacing::By::kAsked);
+  if (avatar.facing.doubt.empty()) return;
+  warn(fmt::format("{}: {}; {} is taken; --facing sets it", name, avatar.facing.doubt, to_string(avatar.facing.axis)),
+       verbosity);
+  avatar.facing.doubt.clear();  // said once
+}
+
+Scene load_scene(const std::string& avatar, const std::string& map, const FacingChoice& facing, Verbosity verbosity) {
   const std::string default_map = avatar == "builtin" ? "builtin" : "none";
   const std::string& chosen_map = map.empty() ? default_map : map;
   Scene scene = scene_of(read_avatar(avatar), avatar, verbosity);
+  settle_facing(scene.avatar, facing, avatar, verbosity);
   give_map(scene, read_map_files(scene.avatar, chosen_map), {avatar, chosen_map}, verbosity);
   return scene;
 }
 
-Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const SceneNames& names,
-                 Verbosity verbosity) {
-  Scene scene = scene_of(std::move(avatar_glb), names.avatar, verbosity);
-  give_map(scene, std::move(map), names, verbosity);
+Scene make_scene(SceneFiles files, const SceneNames& names, const FacingChoice& facing, Verbosity verbosity) {
+  Scene scene = scene_of(std::move(files.avatar_glb), names.avatar, verbosity);
+  take_recorded_facing(scene.avatar.facing, files.facing);
+  settle_facing(scene.avatar, facing, names.avatar, verbosity);
+  give_map(scene, std::move(files.map), names, verbosity);
   return scene;
 }
 
@@ -75,6 +115,7 @@ ActuatorMapFiles load_map(const std::string& map) {
 
 OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
     : reader(path), avatar(parse_avatar_glb(reader.avatar_glb(), path + ", avatar.glb")) {
+  take_recorded_facing(avatar.facing, reader.facing());
   if (!reader.actuator_map_png().empty())
     map = parse_actuator_map(actuator_map_files(reader), avatar, path + ", actuator_map.png");
   if (!reader.recovered().empty()) warn(fmt::format("{}: {}", path, reader.recovered()), verbosity);

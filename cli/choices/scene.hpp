@@ -1,7 +1,9 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/terminal.hpp"
@@ -24,10 +26,23 @@ struct Scene {
   TraceAttachments attachments() const { return {avatar_glb, map_png, map_json}; }
 };
 
+/// The flag --facing.
+struct FacingChoice {
+  std::string axis = "auto";
+};
+void add_facing_option(CLI::App& verb, FacingChoice& choice);
+
+/// Returns what tells the facing: "by its joints' names", ….
+std::string_view in_words(AvatarFacing::By by);
+
+/// Gives the avatar the facing that is asked for. Otherwise warns of any doubt about the facing that was found. `name`
+/// is the avatar's name in the warning.
+void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string& name, Verbosity verbosity);
+
 /// `avatar` is "builtin" or a file. `map` is "builtin", "none", a layout's name, or a PNG file, whose sidecar is the
 /// .json of the same name, if it exists. If `map` is empty, it is "builtin" for the built-in avatar, otherwise "none".
 /// Warnings go to standard error.
-Scene load_scene(const std::string& avatar, const std::string& map, Verbosity verbosity);
+Scene load_scene(const std::string& avatar, const std::string& map, const FacingChoice& facing, Verbosity verbosity);
 
 /// The names for avatar and map in errors and warnings.
 struct SceneNames {
@@ -35,8 +50,15 @@ struct SceneNames {
   std::string map;
 };
 
+/// The files of avatar and map, and the facing that is recorded beside them.
+struct SceneFiles {
+  std::vector<std::byte> avatar_glb;
+  ActuatorMapFiles map;
+  std::string facing;  ///< as `take_recorded_facing` takes it
+};
+
 /// As above, from files that are already read.
-Scene make_scene(std::vector<std::byte> avatar_glb, ActuatorMapFiles map, const SceneNames& names, Verbosity verbosity);
+Scene make_scene(SceneFiles files, const SceneNames& names, const FacingChoice& facing, Verbosity verbosity);
 
 /// Reads an avatar, "builtin" or a file, as a recording attaches it. Throws `Error` unless it can be parsed.
 std::vector<std::byte> load_avatar(const std::string& avatar);

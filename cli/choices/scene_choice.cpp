@@ -65,6 +65,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
   verb.add_option("--avatar", choice.avatar, "The avatar: the built-in one, or a glTF file (.glb, .gltf, .vrm)")
       ->capture_default_str()
       ->type_name("builtin|FILE");
+  add_facing_option(verb, choice.facing);
   verb.add_option("--animation", choice.animation, std::string(kAnimationHelp) + " [default: the first]")
       ->type_name("NAME|INDEX|none|FILE.bvh");
   add_morph_option(verb, choice.morphs);

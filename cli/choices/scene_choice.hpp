@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cli/choices/motion.hpp"
+#include "cli/choices/scene.hpp"
 #include "cli/terminal.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/colliders.hpp"
@@ -20,6 +21,7 @@ struct SceneChoice {
   std::string animation;
   MorphChoice morphs;
   MotionChoice motion;
+  FacingChoice facing;
   std::string map;
   std::string colliders = "swarm";
   std::string nodes;                   ///< of a glTF of colliders: a pattern of names
@@ -43,7 +45,7 @@ inline constexpr const char* kNodesHelp =
 /// Returns the help of --count, for the number of colliders of a scenario.
 std::string describe_count();
 
-/// Adds --avatar, --animation, --ignore-morphs, --unit, --up, --map, --colliders, --nodes and --count.
+/// Adds --avatar, --facing, --animation, --ignore-morphs, --unit, --up, --map, --colliders, --nodes and --count.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
 /// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit and --up without motion

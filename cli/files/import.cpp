@@ -37,6 +37,7 @@ struct ImportOptions {
   std::string avatar;
   std::string map;
   MotionChoice motion_choice;
+  FacingChoice facing;
   std::optional<double> rate_hz;
   std::string compression = "zstd";
   std::string output;
@@ -185,11 +186,12 @@ void require_names(const std::string& file, const std::vector<std::string>& name
 }
 
 /// The scene of an .h5, whose frames follow.
-Scene read_hdf5(const std::string& path, Frames& frames, Verbosity verbosity) {
+Scene read_hdf5(const std::string& path, const FacingChoice& facing, Frames& frames, Verbosity verbosity) {
   const auto file = std::make_shared<TraceHdf5>(path);
-  Scene scene =
-      make_scene(file->avatar_glb(), {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
-                 {path + ", avatar.glb", path + ", actuator_map.png"}, verbosity);
+  Scene scene = make_scene({.avatar_glb = file->avatar_glb(),
+                            .map = {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
+                            .facing = file->facing()},
+                           {path + ", avatar.glb", path + ", actuator_map.png"}, facing, verbosity);
   require_names(path, file->node_names(), scene.avatar);
   frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
   frames.share = [file] { return file->share(); };
@@ -225,8 +227,8 @@ void run_import(ImportOptions options, Invocation& invocation) {
   if (options.output == "-") refuse_terminal("-o -");
 
   Frames frames;
-  Scene scene =
-      from_hdf5 ? read_hdf5(options.from, frames, verbosity) : load_scene(options.avatar, options.map, verbosity);
+  Scene scene = from_hdf5 ? read_hdf5(options.from, options.facing, frames, verbosity)
+                          : load_scene(options.avatar, options.map, options.facing, verbosity);
   std::optional<LoadedMotion> motion;
   Session session = provenance_texts(invocation.argv);
   session["colliders"] = options.colliders;
@@ -302,6 +304,7 @@ void add_import(CLI::App& program, Invocation& invocation) {
   verb->add_option("--avatar", options->avatar,
                    "The avatar that moves: the built-in one, or a glTF file (.glb, .gltf, .vrm) [default: builtin]")
       ->type_name("builtin|FILE");
+  add_facing_option(*verb, options->facing);
   verb->add_option(
           "--map", options->map,
           "The actuator map: a layout, or a greyscale PNG in UV space or by triangle; FILE.json, if it exists, "

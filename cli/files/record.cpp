@@ -120,7 +120,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   refuse_part_name(options, limits);
   if (options.output == "-") refuse_terminal("-o -");
 
-  Scene scene = load_scene(options.scene.avatar, options.scene.map, verbosity);
+  Scene scene = load_scene(options.scene.avatar, options.scene.map, options.scene.facing, verbosity);
   const Animation* animation = nullptr;
   std::unique_ptr<ColliderSource> colliders;
   if (!options.live.is_live()) {

@@ -9,6 +9,7 @@
 #include "analysis/base/png_image.hpp"
 #include "analysis/base/provenance.hpp"
 #include "analysis/mapping/uv_overlap.hpp"
+#include "cli/choices/scene.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
@@ -28,6 +29,7 @@ constexpr std::uint32_t kTextureSide = 1024;
 struct AvatarOptions {
   CommonOptions common;
   std::string avatar = "builtin";
+  FacingChoice facing;
   std::string output;
   std::string map_output;
   std::string uv_output;
@@ -84,6 +86,7 @@ std::string summary(const std::string& name, const nlohmann::ordered_json& json,
   text += fmt::format(
       "  bounding box   x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} (rest pose; glTF: metres)\n",
       number("min", 0), number("max", 0), number("min", 1), number("max", 1), number("min", 2), number("max", 2));
+  text += fmt::format("  faces          {}, {}\n", to_string(avatar.facing.axis), in_words(avatar.facing.by));
   text += fmt::format("  UV overlap     {}\n", overlap_text(coverage));
   if (avatar.animations.empty()) text += "  no animation\n";
   for (std::size_t i = 0; i < avatar.animations.size(); ++i)
@@ -125,8 +128,9 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
     if (path == "-") refuse_terminal(flag);
 
   const std::vector<std::byte> glb = is_builtin ? builtin_avatar_glb() : read_avatar_glb(options.avatar);
-  const Avatar avatar = parse_avatar_glb(glb, options.avatar);
+  Avatar avatar = parse_avatar_glb(glb, options.avatar);
   for (const std::string& warning : avatar.warnings) warn(warning, options.common.verbosity());
+  settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
   const UvCoverage coverage = uv_coverage(avatar, kTextureSide);
 
   if (!options.output.empty() && !is_builtin)
@@ -162,6 +166,7 @@ void add_avatar(CLI::App& program, Invocation& invocation) {
   verb->add_option("AVATAR", options->avatar, "The built-in avatar, or a glTF file (.glb, .gltf, .vrm)")
       ->capture_default_str()
       ->type_name("builtin|FILE");
+  add_facing_option(*verb, options->facing);
   verb->add_option("-o,--output", options->output, "Write the avatar as one binary glTF file")->type_name("OUT.glb|-");
   verb->add_option("--map-output", options->map_output,
                    "Write the built-in avatar's actuator map, and OUT.json, which names its actuators")

@@ -9,6 +9,7 @@
 #include "analysis/mapping/map_check.hpp"
 #include "analysis/mapping/map_maker.hpp"
 #include "analysis/mapping/skin_patches.hpp"
+#include "cli/choices/scene.hpp"
 #include "cli/help/suggest.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/output_bytes.hpp"
@@ -24,10 +25,11 @@ namespace {
 
 constexpr double kSquareCentimetres = 1e4;
 
-Avatar read_avatar(const std::string& avatar, const CommonOptions& options) {
+Avatar read_avatar(const std::string& avatar, const CommonOptions& options, const FacingChoice& facing = {}) {
   Avatar read = parse_avatar_glb(avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar);
   if (read.triangles.empty()) throw Error(avatar, "has no triangles", "name an avatar with a mesh");
   for (const std::string& warning : read.warnings) warn(warning, options.verbosity());
+  settle_facing(read, facing, avatar, options.verbosity());
   return read;
 }
 
@@ -61,6 +63,7 @@ auto with_suggestions(const Doing& doing) {
 struct MakeOptions {
   CommonOptions common;
   std::string avatar = "builtin";
+  FacingChoice facing;
   std::string layout;
   std::string regions;
   std::string output;
@@ -89,6 +92,8 @@ nlohmann::ordered_json made_json(const MakeOptions& options, const MadeMap& map,
   nlohmann::ordered_json json;
   json["avatar"] = options.avatar;
   json["parts_by"] = body.understanding() == Understanding::kJoints ? "joints" : "proportions";
+  json["facing"] = to_string(body.avatar().facing.axis);
+  json["facing_by"] = to_string(body.avatar().facing.by);
   json["per_triangle"] = map.triangle_count != 0;
   json["side"] = map.raster.side;
   json["actuators"] = nlohmann::ordered_json::array();
@@ -125,7 +130,7 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
   check_outputs({options.output, sidecar, options.regions_output, options.common.json},
                 {options.avatar, options.regions}, options.common);
 
-  const Avatar avatar = read_avatar(options.avatar, options.common);
+  const Avatar avatar = read_avatar(options.avatar, options.common, options.facing);
   if (options.layout.empty() && !options.settings.per_triangle) require_texture_coordinates(avatar, options.avatar);
   const std::string name = options.layout.empty() ? options.regions : options.layout;
   const std::string regions =
@@ -177,6 +182,7 @@ void add_make(CLI::App& map, Invocation& invocation) {
                             "  vestige map make --layout torso40 -o torso40.png\n"
                             "  vestige map make --layout paper6 --save-regions mine.json -o paper6.png\n");
   add_avatar_option(*verb, options->avatar);
+  add_facing_option(*verb, options->facing);
   auto* layout = verb->add_option("--layout", options->layout, "A layout:" + layout_list())
                      ->check(CLI::Validator(unknown_layout, ""))
                      ->type_name("LAYOUT");
@@ -272,11 +278,12 @@ nlohmann::ordered_json checked_json(const CheckOptions& options, const MapCheck&
 
 void run_check(const CheckOptions& options, Invocation& invocation) {
   check_outputs({options.common.json}, {options.avatar, options.map}, options.common);
-  const Avatar avatar = read_avatar(options.avatar, options.common);
+  Avatar avatar = read_avatar(options.avatar, options.common);
   const ActuatorMapFiles files = read_map_files(avatar, options.map);
   if (files.png.empty()) throw UsageError(options.map, "there is nothing to check", "name a layout or a PNG");
   const ActuatorMap map = parse_actuator_map(files, avatar, options.map);
   for (const std::string& warning : map.warnings) warn(warning, options.common.verbosity());
+  if (map.facing) set_facing(avatar.facing, *map.facing, AvatarFacing::By::kMap);
   const MapCheck check = check_map(Body(avatar), map, options.avatar);
   print_summary(checked_text(options, check), {options.common.json}, options.common);
   nlohmann::ordered_json json = provenance(invocation.argv);
@@ -320,7 +327,7 @@ void run_parts(const PartsOptions& options, Invocation& invocation) {
       const glm::dvec3 p = body.surface().position_m(point);
       const SkinPart part = body.part_at(point);
       std::string name(to_string(part));
-      if (part > SkinPart::kHead) name += p.x >= body.middle_x_m() ? " left" : " right";
+      if (part > SkinPart::kHead) name += body.leftwards_m(p) >= 0 ? " left" : " right";
       parts_m2[name] += area_m2;
       if (part == SkinPart::kTorso && p.y >= body.vest_low_m() && p.y < body.vest_high_m()) parts_m2["vest"] += area_m2;
       joints_m2[avatar.nodes[static_cast<std::size_t>(body.node_at(point))].name] += area_m2;

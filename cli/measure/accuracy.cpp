@@ -199,7 +199,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
                 options.common);
 
   catch_interrupts();
-  Scene scene = load_scene(options.scene.avatar, options.scene.map, options.common.verbosity());
+  Scene scene = load_scene(options.scene.avatar, options.scene.map, options.scene.facing, options.common.verbosity());
   load_motion(options.scene, scene.avatar, options.common.force, options.common.verbosity());
   const Animation* animation =
       choose_animation(scene.avatar, choices.front().animation, options.scene.morphs, options.common.verbosity());

@@ -4,7 +4,6 @@
 #include "tests/fuzz/require.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/live/vmc_state.hpp"
-#include "traces/motion/humanoid.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 // Whatever comes over the network, the state stays one that can be recorded: finite, each collider once. The input is
@@ -16,8 +15,7 @@ using vestige::fuzz::require;
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vestige;  // NOLINT(google-build-using-namespace)
   static const Avatar avatar = parse_avatar_glb(builtin_avatar_glb(), "builtin");
-  static const Humanoid humanoid = find_humanoid(avatar, builtin_avatar_glb());
-  VmcState state(avatar, humanoid, glm::dvec3(0));
+  VmcState state(avatar, glm::dvec3(0));
   std::span<const std::byte> input(reinterpret_cast<const std::byte*>(data), size);
   std::uint64_t datagrams = 0;
   while (input.size() >= 2) {

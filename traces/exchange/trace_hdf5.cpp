@@ -31,6 +31,7 @@ class TraceHdf5::Implementation {
   explicit Implementation(const std::filesystem::path& path) : path_(path), file_(open(path)) {
     require_format();
     node_names = read_node_names();
+    facing = read_text(kSession, std::string(trace_format::kFacingKey)).value_or("");
     avatar_glb = read_attachment("avatar.glb");
     if (avatar_glb.empty()) throw Error(path.string(), "holds no avatar.glb", kHdf5Remedy);
     actuator_map_png = read_attachment("actuator_map.png");
@@ -77,6 +78,7 @@ class TraceHdf5::Implementation {
   double share() const { return static_cast<double>(row_) / static_cast<double>(frames_); }
 
   std::vector<std::string> node_names;
+  std::string facing;
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> actuator_map_png;
   std::vector<std::byte> actuator_map_json;
@@ -312,6 +314,9 @@ const std::vector<std::byte>& TraceHdf5::actuator_map_json() const {
 }
 const std::vector<std::string>& TraceHdf5::node_names() const {
   return implementation_->node_names;
+}
+std::string TraceHdf5::facing() const {
+  return implementation_->facing;
 }
 bool TraceHdf5::next(TraceFrame& frame) {
   return implementation_->next(frame);

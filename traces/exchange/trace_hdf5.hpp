@@ -30,6 +30,9 @@ class TraceHdf5 {
   /// The names that the file gives to the avatar's nodes; empty if it gives none.
   const std::vector<std::string>& node_names() const;
 
+  /// Which way the avatar looks at rest, as recorded: `take_recorded_facing`. Empty: the file does not say it.
+  std::string facing() const;
+
   bool next(TraceFrame& frame);
   double share() const;
 

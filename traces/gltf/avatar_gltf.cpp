@@ -7,6 +7,9 @@
 #include <limits>
 #include <set>
 
+#include "traces/body/find_facing.hpp"
+#include "traces/body/humanoid.hpp"
+#include "traces/gltf/glb_container.hpp"
 #include "traces/gltf/gltf_animation.hpp"
 #include "traces/gltf/gltf_document.hpp"
 #include "traces/gltf/gltf_load.hpp"
@@ -118,6 +121,9 @@ gltf::LoadedAvatar gltf::load_avatar(std::span<const std::byte> glb, std::string
   std::set<int> joints;
   for (const Skin& skin : loaded.skins) joints.insert(skin.joints.begin(), skin.joints.end());
   avatar.joint_count = joints.size();
+  Report told(name);  // what splitting finds is in `report` already
+  avatar.humanoid = find_humanoid(avatar, split_glb(glb, told).json);
+  avatar.facing = find_facing(avatar, avatar.humanoid);
   avatar.warnings = report.warnings();
   return loaded;
 }

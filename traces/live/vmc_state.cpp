@@ -78,9 +78,9 @@ std::size_t outermost(const Avatar& avatar, std::size_t node) {
 
 }  // namespace
 
-VmcState::VmcState(const Avatar& avatar, const Humanoid& humanoid, const glm::dvec3& origin_m)
-    : pose_(rest_pose(avatar)), facing_(humanoid.facing) {
-  if (humanoid.node_of.empty())
+VmcState::VmcState(const Avatar& avatar, const glm::dvec3& origin_m)
+    : pose_(rest_pose(avatar)), facing_(avatar.facing.axis) {
+  if (avatar.humanoid.node_of.empty())
     throw Error("--avatar", "no joint is recognised as a bone of a human body, so no message can move the avatar",
                 "use a VRM file, or name the joints as in Unity, Mixamo, Unreal or Blender");
   for (const NodeLocal& node : pose_.nodes) rest_.push_back(glm::normalize(glm::dquat(node.rotation)));
@@ -89,7 +89,7 @@ VmcState::VmcState(const Avatar& avatar, const Humanoid& humanoid, const glm::dv
   Pose at_zero = rest_pose(avatar);
   world_matrices(avatar, at_zero, world);
   const std::vector<glm::dquat> rotation = rest_rotations(avatar);
-  for (const auto& [name, node] : humanoid.node_of) {
+  for (const auto& [name, node] : avatar.humanoid.node_of) {
     Bone bone{.node = node};
     if (const int parent = avatar.nodes[node].parent; parent >= 0) {
       bone.parent_rest = rotation[static_cast<std::size_t>(parent)];
@@ -138,10 +138,10 @@ VmcState::Placement VmcState::placement_of(const OscMessage& message) const {
   double values[7] = {};
   for (std::size_t i = 0; i < std::size(values); ++i) values[i] = number(message, i + 1);
   const auto [x, y, z, qx, qy, qz, qw] = values;
-  // Mirrored so that the avatar faces as in its file: across x for avatars that face +Z, otherwise across z.
-  const bool plus_z = facing_ == Humanoid::Facing::kPlusZ;
-  const Placement placement = {.position = plus_z ? glm::dvec3(-x, y, z) : glm::dvec3(x, y, -z),
-                               .rotation = plus_z ? glm::dquat(qw, qx, -qy, -qz) : glm::dquat(qw, -qx, -qy, qz)};
+  // Mirrored across x, which makes the axes those of an avatar that faces +Z; then turned to where the avatar faces.
+  const glm::dvec3 axis = turned_from_front({qx, -qy, -qz}, facing_);
+  const Placement placement = {.position = turned_from_front({-x, y, z}, facing_),
+                               .rotation = glm::dquat(qw, axis.x, axis.y, axis.z)};
   const double length = glm::length(placement.rotation);
   if (!(length > kShortestQuaternion))
     throw Malformed(fmt::format("{}: its rotation is a quaternion without length", message.address));

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "traces/live/osc_packet.hpp"
-#include "traces/motion/humanoid.hpp"
 #include "traces/recording/frame_ring.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
@@ -36,7 +35,7 @@ namespace vestige {
 class VmcState {
  public:
   /// Throws `Error` if the avatar has no bone of a human body.
-  VmcState(const Avatar& avatar, const Humanoid& humanoid, const glm::dvec3& origin_m);
+  VmcState(const Avatar& avatar, const glm::dvec3& origin_m);
 
   /// Takes one datagram. A malformed datagram changes nothing and is counted. Returns whether the datagram changed the
   /// state.
@@ -75,7 +74,7 @@ class VmcState {
   Pose pose_;
   std::vector<glm::dquat> rest_;  ///< each node's own rotation in the rest pose
   std::map<std::string, Bone, std::less<>> bone_of_;
-  Humanoid::Facing facing_;
+  Facing facing_;
   std::size_t top_ = 0;  ///< the outermost node above the hips, which the root moves
   NodeLocal top_local_;  ///< transform of `top_` without the root
   Placement root_;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "traces/motion/body_roles.hpp"
+#include "traces/body/body_roles.hpp"
 #include "traces/motion/bvh.hpp"
 #include "traces/scene/avatar.hpp"
 

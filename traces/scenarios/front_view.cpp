@@ -19,7 +19,11 @@ double area(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
 
 }  // namespace
 
-FrontView::FrontView(const Skin& skin) : box_m_(box_around(skin.rest_m())) {
+FrontView::FrontView(const Skin& skin) {
+  const Avatar& avatar = skin.avatar();
+  std::vector<glm::dvec3> rest_m = skin.rest_m();
+  for (glm::dvec3& place_m : rest_m) place_m = turned_to_front(place_m, avatar.facing.axis);
+  box_m_ = box_around(rest_m);
   const glm::dvec3 extent = box_m_.extent();
   const double longest = std::max(extent.x, extent.y);
   if (!(longest > 0) || !std::isfinite(longest)) return;
@@ -27,7 +31,7 @@ FrontView::FrontView(const Skin& skin) : box_m_(box_around(skin.rest_m())) {
   columns_ = static_cast<int>(std::ceil(extent.x / cell_m_)) + 1;
   rows_ = static_cast<int>(std::ceil(extent.y / cell_m_)) + 1;
   cells_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
-  for (std::uint32_t triangle = 0; triangle < skin.avatar().triangles.size(); ++triangle) draw(skin, triangle);
+  for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) draw(rest_m, avatar.triangles[i], i);
 }
 
 int FrontView::column_of(double x_m) const {
@@ -45,11 +49,10 @@ const FrontView::Cell* FrontView::at(int column, int row) const {
   return cell ? &*cell : nullptr;
 }
 
-void FrontView::draw(const Skin& skin, std::uint32_t triangle) {
-  const glm::uvec3& corners = skin.avatar().triangles[triangle];
-  const glm::dvec3& a = skin.rest_m()[corners.x];
-  const glm::dvec3& b = skin.rest_m()[corners.y];
-  const glm::dvec3& c = skin.rest_m()[corners.z];
+void FrontView::draw(const std::vector<glm::dvec3>& rest_m, const glm::uvec3& corners, std::uint32_t triangle) {
+  const glm::dvec3& a = rest_m[corners.x];
+  const glm::dvec3& b = rest_m[corners.y];
+  const glm::dvec3& c = rest_m[corners.z];
   const double whole = area(a, b, c);
   if (whole == 0 || !std::isfinite(whole)) return;  // seen edge-on
   const glm::dvec3 low = glm::min(a, glm::min(b, c));

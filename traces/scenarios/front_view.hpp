@@ -9,8 +9,8 @@
 
 namespace vestige {
 
-/// The skin seen from the front: a grid of the foremost points in the rest pose. The front is +z, up is +y (glTF 2.0
-/// §3.4). The longest side has 350 cells, which are 5 mm each on a human being.
+/// The skin seen from the front: a grid of the foremost points in the rest pose. Its places are turned about +y so that
+/// the avatar faces +z (`Avatar::facing`). The longest side has 350 cells, which are 5 mm each on a human being.
 class FrontView {
  public:
   explicit FrontView(const Skin& skin);
@@ -21,7 +21,7 @@ class FrontView {
   /// The cell that contains this place; it may lie outside the grid.
   int column_of(double x_m) const;
   int row_of(double y_m) const;
-  /// The bounding box of the avatar at rest.
+  /// The bounding box of the avatar at rest, turned to face +z.
   const Box& box_m() const { return box_m_; }
 
   struct Cell {
@@ -32,7 +32,7 @@ class FrontView {
   const Cell* at(int column, int row) const;
 
  private:
-  void draw(const Skin& skin, std::uint32_t triangle);
+  void draw(const std::vector<glm::dvec3>& rest_m, const glm::uvec3& corners, std::uint32_t triangle);
 
   Box box_m_;
   double cell_m_ = 0;

@@ -89,7 +89,9 @@ class Punch final : public ColliderSource {
     for (int row = view.row_of(glm::mix(view.box_m().low.y, view.box_m().high.y, kLowest)); row <= last_row; ++row) {
       for (int column = view.column_of(middle_m - half_m); column <= last_column; ++column) {
         const FrontView::Cell* cell = view.at(column, row);
-        if (cell != nullptr && skin_.place(cell->point, rest).normal.z > kFacing) targets_.push_back(cell->point);
+        if (cell == nullptr) continue;
+        const glm::dvec3 normal = skin_.place(cell->point, rest).normal;
+        if (turned_to_front(normal, skin_.avatar().facing.axis).z > kFacing) targets_.push_back(cell->point);
       }
     }
   }

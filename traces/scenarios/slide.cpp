@@ -66,7 +66,7 @@ class Slide final : public ColliderSource {
 
   std::vector<std::string> warnings() const override {
     if (has_chest_) return {};
-    return {"seen from its front (+z) the avatar has no chest, so the object stays on one spot of its skin"};
+    return {"seen from its front the avatar has no chest, so the object stays on one spot of its skin"};
   }
 
  private:

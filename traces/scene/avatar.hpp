@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "traces/scene/facing.hpp"
+#include "traces/scene/humanoid.hpp"
 #include "traces/scene/pose.hpp"
 
 namespace vestige {
@@ -82,6 +84,8 @@ struct Avatar {
   /// from the front, in the rest pose.
   std::vector<glm::uvec3> triangles;
   std::vector<Animation> animations;
+  Humanoid humanoid;                  ///< the bones of a human body
+  AvatarFacing facing;                ///< in the rest pose
   std::size_t joint_count = 0;        ///< distinct joints over all skins
   std::vector<std::string> warnings;  ///< oddities of the file that do no harm, one sentence each
 };

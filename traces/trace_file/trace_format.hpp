@@ -10,9 +10,9 @@
 /// The trace file's own layer above MCAP; format version 1, whose meaning never changes.
 ///
 ///     Header      profile "vestige", library "vestige VERSION"
-///     Metadata    "session": format_version, sha256 of each attachment ("sha256:NAME"), and what the recorder adds
-///     Attachments avatar.glb, then actuator_map.png and actuator_map.json where there is a map
-///     Schemas, Channels   outside chunks, so that a damaged chunk does not lose them; the metadata of /pose repeat the
+///     Metadata    "session": format_version, facing, sha256 of each attachment ("sha256:NAME"), and what the recorder
+///     adds Attachments avatar.glb, then actuator_map.png and actuator_map.json where there is a map Schemas, Channels
+///     outside chunks, so that a damaged chunk does not lose them; the metadata of /pose repeat the
 ///                 SHA-256s, so that the summary has them too
 ///     Chunks      a frame's messages stand together in one chunk: [events], /pose, /colliders
 ///     Summary     with everything that MCAP offers
@@ -30,6 +30,7 @@ inline constexpr std::string_view kSessionName = "session";
 inline constexpr std::string_view kRecoveredName = "recovered";  // what `recover` could not save
 inline constexpr std::string_view kReplacedName = "replaced";    // attachments that `recover` put in, not as recorded
 inline constexpr std::string_view kLeftOut = "none";             // in `replaced`: nothing stands in its place
+inline constexpr std::string_view kFacingKey = "facing";         ///< of the session: which way the avatar looks at rest
 inline constexpr std::string_view kSha256Prefix = "sha256:";
 inline constexpr std::string_view kAvatarName = "avatar.glb";
 inline constexpr std::string_view kMapImageName = "actuator_map.png";

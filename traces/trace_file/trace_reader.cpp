@@ -253,6 +253,11 @@ void TraceReader::Implementation::Frames::take_event(TraceFrame& frame) {
 TraceReader::TraceReader(const std::filesystem::path& path) : implementation_(std::make_unique<Implementation>(path)) {}
 TraceReader::~TraceReader() = default;
 
+std::string TraceReader::facing() const {
+  const auto found = session().find(std::string(trace_format::kFacingKey));
+  return found == session().end() ? "" : found->second;
+}
+
 const Session& TraceReader::session() const {
   return implementation_->index().session;
 }

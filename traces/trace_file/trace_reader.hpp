@@ -29,6 +29,8 @@ class TraceReader {
   TraceReader& operator=(const TraceReader&) = delete;
 
   const Session& session() const;
+  /// Which way the avatar looks at rest, as recorded: `take_recorded_facing`. Empty: the trace does not say it.
+  std::string facing() const;
   std::span<const std::byte> avatar_glb() const;
   std::span<const std::byte> actuator_map_png() const;   ///< empty: the trace has none
   std::span<const std::byte> actuator_map_json() const;  ///< empty: the trace has none

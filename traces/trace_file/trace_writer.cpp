@@ -112,6 +112,7 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
       node_count_(avatar.nodes.size()) {
   const std::vector<mcap::Attachment> all = list_attachments(attachments);
   session.insert_or_assign(std::string(trace_format::kVersionKey), std::string(trace_format::kVersion));
+  session.emplace(trace_format::kFacingKey, to_string(avatar.facing.axis));
   mcap::StringMap of_poses = {{std::string(trace_format::kNodesKey), node_names(avatar)}};
   for (const mcap::Attachment& one : all) {
     const std::string sha256 = sha256_hex(one.data);

@@ -55,8 +55,8 @@ struct TraceAttachments {
 /// Every function throws `Error` with the name of the file; after that, only the destructor may be called.
 class TraceWriter {
  public:
-  /// Stores `session`, and adds `format_version` and the SHA-256 of each attachment to it. The SHA-256s also go to the
-  /// channel /pose, so that the summary has them.
+  /// Stores `session`, and adds `format_version` and the SHA-256 of each attachment to it, and the avatar's `facing`
+  /// unless it has one. The SHA-256s also go to the channel /pose, so that the summary has them.
   TraceWriter(const std::filesystem::path& path, Session session, const Avatar& avatar,
               const TraceAttachments& attachments, const TraceWriterOptions& options);
   /// If `finish` was not called, writes pending data and leaves a trace without footer, which is still readable.

@@ -114,7 +114,7 @@ class AvatarFigure : public Figure {
       for (const Shown& shown : block.poses) {
         const glm::dvec3 size = shown.surface.high - shown.surface.low;
         for (const Side& side : kSides) {
-          const Camera camera = Camera::from(side.azimuth_degrees, kElevationDegrees);
+          const Camera camera = Camera::from(side.azimuth_degrees, kElevationDegrees, shown.surface.facing);
           width = std::max(width, std::abs(camera.right.x) * size.x + std::abs(camera.right.z) * size.z);
           // The feet rest on the ground, which is seen a little from above.
           height = std::max(height, (shown.surface.high.y - block.ground_y) * camera.up.y +
@@ -161,8 +161,8 @@ class AvatarFigure : public Figure {
   }
 
   Raster picture(const Surface& surface, double ground_y, const Side& side) const {
-    View view = view_of_cell(Camera::from(side.azimuth_degrees, kElevationDegrees), cell_width_pt_, cell_height_pt_,
-                             unit_per_pt_);
+    View view = view_of_cell(Camera::from(side.azimuth_degrees, kElevationDegrees, surface.facing), cell_width_pt_,
+                             cell_height_pt_, unit_per_pt_);
     // Every pose stands in the middle of its cell, whatever ground the animation covers.
     glm::dvec3 stand = (surface.low + surface.high) / 2.0;
     stand.y = ground_y;

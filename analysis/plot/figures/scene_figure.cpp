@@ -106,7 +106,7 @@ class SceneFigure : public Figure {
   }
 
   void lay_out(const std::vector<Surface>& surfaces) {
-    camera_ = Camera::from(kAzimuthDegrees, kElevationDegrees);
+    camera_ = Camera::from(kAzimuthDegrees, kElevationDegrees, surfaces.front().facing);
     glm::dvec3 low = surfaces.front().low;
     glm::dvec3 high = surfaces.front().high;
     glm::dvec3 largest(0);

@@ -6,17 +6,20 @@
 #include <glm/vec3.hpp>
 #include <numbers>
 
+#include "traces/scene/facing.hpp"
+
 namespace vestige::plot {
 
-/// A camera infinitely far away, so that equal lengths look equal. The world's y is up, and an avatar faces +z.
+/// A camera infinitely far away, so that equal lengths look equal. The world's y is up.
 struct Camera {
   glm::dvec3 right = {1, 0, 0};
   glm::dvec3 up = {0, 1, 0};
   glm::dvec3 toward = {0, 0, 1};  ///< towards the viewer
 
-  /// Azimuth 0 shows an avatar's front, 90 its left side, 180 its back. Elevation 90 looks down.
-  static Camera from(double azimuth_degrees, double elevation_degrees) {
-    const double azimuth = azimuth_degrees * std::numbers::pi / 180;
+  /// Azimuth 0 shows the front of an avatar that looks along `facing` at rest, 90 its left side, 180 its back.
+  /// Elevation 90 looks down.
+  static Camera from(double azimuth_degrees, double elevation_degrees, Facing facing) {
+    const double azimuth = (azimuth_degrees + 90 * static_cast<double>(facing)) * std::numbers::pi / 180;
     const double elevation = elevation_degrees * std::numbers::pi / 180;
     Camera camera;
     camera.right = {std::cos(azimuth), 0, -std::sin(azimuth)};

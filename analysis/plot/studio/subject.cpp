@@ -27,6 +27,7 @@ Subject read_subject(const std::string& avatar, const std::string& map) {
   subject.title = is_builtin ? "built-in avatar" : std::filesystem::path(avatar).filename().string();
   subject.avatar = parse_avatar_glb(is_builtin ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar);
   subject.map = read_map(!map.empty() ? map : is_builtin ? "builtin" : "none", subject.avatar);
+  if (subject.map.facing) set_facing(subject.avatar.facing, *subject.map.facing, AvatarFacing::By::kMap);
   return subject;
 }
 
@@ -34,6 +35,7 @@ Subject read_subject(const TraceReader& trace, const std::filesystem::path& path
   Subject subject;
   subject.title = path.filename().string();
   subject.avatar = parse_avatar_glb(trace.avatar_glb(), path.string() + ", avatar.glb");
+  take_recorded_facing(subject.avatar.facing, trace.facing());
   if (!map.empty())
     subject.map = read_map(map, subject.avatar);
   else if (!trace.actuator_map_png().empty())

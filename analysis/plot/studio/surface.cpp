@@ -57,6 +57,7 @@ Surface SurfacePoser::pose(const Pose& pose, const glm::dvec3& origin_m) const {
   skin_reference(avatar_, pose, origin_m, exact);
   surface.position.assign(exact.begin(), exact.end());
   surface.triangles = avatar_.triangles;
+  surface.facing = avatar_.facing.axis;
   surface.low = glm::dvec3(std::numeric_limits<double>::max());
   surface.high = -surface.low;
 

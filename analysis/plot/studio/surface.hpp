@@ -15,6 +15,7 @@ struct Surface {
   std::vector<glm::vec3> position;                       ///< of every vertex, metres from the origin of the pose
   std::vector<glm::uvec3> triangles;                     ///< the avatar's triangles in the avatar's order
   std::vector<std::array<glm::vec3, 3>> corner_normals;  ///< of every triangle: unit length, smooth across soft edges
+  Facing facing = Facing::kPlusZ;                        ///< of the avatar at rest
   glm::dvec3 low = glm::dvec3(0);                        ///< lower corner of the triangles' bounding box
   glm::dvec3 high = glm::dvec3(0);
 

@@ -11,12 +11,12 @@
 #include "tests/support/osc.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/base/error.hpp"
+#include "traces/body/humanoid.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/live/live_ndjson.hpp"
 #include "traces/live/osc_packet.hpp"
 #include "traces/live/vmc_state.hpp"
 #include "traces/mcap/decode.hpp"
-#include "traces/motion/humanoid.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
@@ -209,16 +209,6 @@ TEST(OscPacket, NestedWithoutEndIsRefused) {
 
 // The body.
 
-std::vector<std::byte> glb_of(std::string json) {
-  while (json.size() % 4 != 0) json += ' ';
-  const auto size = static_cast<std::uint32_t>(json.size());
-  const std::uint32_t head[] = {0x46546C67, 2, 20 + size, size, 0x4E4F534A};
-  std::vector<std::byte> glb(sizeof head + json.size());
-  std::memcpy(glb.data(), head, sizeof head);
-  std::memcpy(glb.data() + sizeof head, json.data(), json.size());
-  return glb;
-}
-
 TEST(Humanoid, HasUnitysNamesWhateverTheJointsAreCalled) {
   const std::vector<std::pair<const char*, const char*>> bones = {
       {"mixamorig:Hips", "Hips"},         {"mixamorig:Spine", "Spine"},
@@ -230,7 +220,7 @@ TEST(Humanoid, HasUnitysNamesWhateverTheJointsAreCalled) {
       {"shin.R", "RightLowerLeg"},        {"Sword", ""}};
   Avatar avatar = test::skeleton(bones.size());  // each joint hangs from the one before
   for (std::size_t i = 0; i < bones.size(); ++i) avatar.nodes[i].name = bones[i].first;
-  const Humanoid humanoid = find_humanoid(avatar, glb_of("{}"));
+  const Humanoid humanoid = find_humanoid(avatar, "{}");
   for (std::size_t i = 0; i < bones.size(); ++i) {
     const std::string bone = bones[i].second;
     if (bone.empty()) continue;
@@ -241,16 +231,15 @@ TEST(Humanoid, HasUnitysNamesWhateverTheJointsAreCalled) {
 }
 
 TEST(Humanoid, OfTheBuiltInAvatarIsWhole) {
-  const Humanoid humanoid = find_humanoid(test::builtin_avatar(), builtin_avatar_glb());
+  const Humanoid humanoid = test::builtin_avatar().humanoid;
   EXPECT_EQ(humanoid.node_of.size(), 21U);
   for (const char* name : {"Hips", "Spine", "Chest", "Neck", "Head", "LeftUpperArm", "RightLowerLeg", "LeftToes"})
     EXPECT_TRUE(humanoid.node_of.contains(name)) << name;
 }
 
 TEST(Humanoid, OfBonesInOnePlaceTheSecondIsLeftOutAndSaid) {
-  const Humanoid humanoid =
-      find_humanoid(test::skeleton(4), glb_of(R"({"extensions":{"VRMC_vrm":{"humanoid":{"humanBones":)"
-                                              R"({"head":{"node":2},"hips":{"node":2}}}}}})"));
+  const Humanoid humanoid = find_humanoid(test::skeleton(4), R"({"extensions":{"VRMC_vrm":{"humanoid":{"humanBones":)"
+                                                             R"({"head":{"node":2},"hips":{"node":2}}}}}})");
   EXPECT_EQ(humanoid.node_of, (decltype(humanoid.node_of){{"Head", 2}}));
   ASSERT_EQ(humanoid.problems.size(), 1U);
   EXPECT_THAT(humanoid.problems.front(), HasSubstr("humanBones.hips.node is 2, which is already the bone Head"));
@@ -259,19 +248,18 @@ TEST(Humanoid, OfBonesInOnePlaceTheSecondIsLeftOutAndSaid) {
 TEST(Humanoid, IsWhatVrmSays) {
   const Avatar avatar = test::skeleton(4);
   const Humanoid one =
-      find_humanoid(avatar, glb_of(R"({"extensions":{"VRMC_vrm":{"humanoid":{"humanBones":{"hips":{"node":2},)"
-                                   R"("leftThumbMetacarpal":{"node":3},"head":{"node":99},"jaw":5}}}}})"));
-  EXPECT_EQ(one.source, Humanoid::Source::kVrm);
-  EXPECT_EQ(one.facing, Humanoid::Facing::kPlusZ);
+      find_humanoid(avatar, R"({"extensions":{"VRMC_vrm":{"humanoid":{"humanBones":{"hips":{"node":2},)"
+                            R"("leftThumbMetacarpal":{"node":3},"head":{"node":99},"jaw":5}}}}})");
+  EXPECT_EQ(one.source, Humanoid::Source::kVrm1);
   EXPECT_EQ(one.node_of, (decltype(one.node_of){{"Hips", 2}, {"LeftThumbProximal", 3}}));
   const std::string field = "extensions.VRMC_vrm.humanoid.humanBones.";
   EXPECT_THAT(one.problems,
               UnorderedElementsAre(field + "head.node is not a node of the file: the bone Head is left out",
                                    field + "jaw.node is not a node of the file: the bone Jaw is left out"));
-  const Humanoid zero = find_humanoid(
-      avatar, glb_of(R"({"extensions":{"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1},{"bone":7},5,)"
-                     R"({"bone":"leftUpperArm","node":0}]}}}})"));
-  EXPECT_EQ(zero.facing, Humanoid::Facing::kMinusZ);
+  const Humanoid zero =
+      find_humanoid(avatar, R"({"extensions":{"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1},{"bone":7},5,)"
+                            R"({"bone":"leftUpperArm","node":0}]}}}})");
+  EXPECT_EQ(zero.source, Humanoid::Source::kVrm0);
   EXPECT_EQ(zero.node_of, (decltype(zero.node_of){{"Hips", 1}, {"LeftUpperArm", 0}}));
 }
 
@@ -289,10 +277,9 @@ class Vmc : public ::testing::Test {
     for (const glm::dmat4& matrix : world) positions.emplace_back(matrix[3]);
     return positions;
   }
-  std::size_t node(const char* name) const { return humanoid_.node_of.find(name)->second; }
+  std::size_t node(const char* name) const { return avatar_.humanoid.node_of.find(name)->second; }
 
   const Avatar avatar_ = test::builtin_avatar();
-  const Humanoid humanoid_ = find_humanoid(avatar_, builtin_avatar_glb());
 };
 
 glm::dquat about(const glm::dvec3& axis, double degrees) {
@@ -305,9 +292,9 @@ void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e
 }
 
 TEST_F(Vmc, ASenderInItsRestPoseLeavesTheAvatarInItsOwn) {
-  VmcState state(avatar_, humanoid_, glm::dvec3(5, 6, 7));
+  VmcState state(avatar_, glm::dvec3(5, 6, 7));
   std::vector<std::vector<std::byte>> all = {placement("/VMC/Ext/Root/Pos", "root", {}, {1, 0, 0, 0})};
-  for (const auto& [name, index] : humanoid_.node_of)
+  for (const auto& [name, index] : avatar_.humanoid.node_of)
     if (name != "Hips") all.push_back(bone(name.c_str(), {1, 0, 0, 0}, {9, 9, 9}));
   EXPECT_TRUE(state.take(bundle(all)));
   TraceFrame frame;
@@ -325,7 +312,7 @@ TEST_F(Vmc, ASenderInItsRestPoseLeavesTheAvatarInItsOwn) {
 /// In Unity a left arm points to -X. Turned by +90 degrees about +Z there, which in left-handed axes is clockwise seen
 /// from the front of the axis, it points to -Y: down.
 TEST_F(Vmc, ALeftArmThatGoesDownInUnityGoesDownHere) {
-  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  VmcState state(avatar_, glm::dvec3(0));
   const auto before = joints(state);
   state.take(bone("LeftUpperArm", about({0, 0, 1}, 90)));
   const auto after = joints(state);
@@ -338,7 +325,7 @@ TEST_F(Vmc, ALeftArmThatGoesDownInUnityGoesDownHere) {
 }
 
 TEST_F(Vmc, AHeadThatTurnsToItsLeftInUnityTurnsToItsLeftHere) {
-  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  VmcState state(avatar_, glm::dvec3(0));
   // Left is -X in Unity and +X here: looking along +Z, it turns by -90 degrees about Unity's +Y.
   state.take(bone("Head", about({0, 1, 0}, -90)));
   TraceFrame frame;
@@ -352,7 +339,7 @@ TEST_F(Vmc, AHeadThatTurnsToItsLeftInUnityTurnsToItsLeftHere) {
 }
 
 TEST_F(Vmc, RootAndHipsMoveTheWholeBody) {
-  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  VmcState state(avatar_, glm::dvec3(0));
   const auto before = joints(state);
   const glm::dvec3 hips = before[node("Hips")];
   // The hips stay where they are in the sender's model; the model stands 2 m to Unity's right and looks to its right.
@@ -366,15 +353,21 @@ TEST_F(Vmc, RootAndHipsMoveTheWholeBody) {
   }
 }
 
-TEST_F(Vmc, AvatarsOfVrm0LookTheOtherWay) {
-  Humanoid humanoid = humanoid_;
-  humanoid.facing = Humanoid::Facing::kMinusZ;
-  VmcState state(avatar_, humanoid, glm::dvec3(0));
-  state.take(placement("/VMC/Ext/Root/Pos", "root", {1, 2, 3}, {1, 0, 0, 0}));
-  const auto after = joints(state);
-  VmcState resting(avatar_, humanoid, glm::dvec3(0));
-  const auto before = joints(resting);
-  expect_near(after[node("Head")] - before[node("Head")], {1, 2, -3});
+/// 1 m to its right, 3 m forward, as the avatar faces; Unity's right is +X, and its forward +Z.
+TEST_F(Vmc, AnAvatarMovesTheWayItFaces) {
+  const std::map<Facing, glm::dvec3> moved = {{Facing::kPlusZ, {-1, 2, 3}},
+                                              {Facing::kPlusX, {3, 2, 1}},
+                                              {Facing::kMinusZ, {1, 2, -3}},
+                                              {Facing::kMinusX, {-3, 2, -1}}};
+  for (const auto& [facing, expected] : moved) {
+    Avatar avatar = avatar_;
+    avatar.facing.axis = facing;
+    VmcState state(avatar, glm::dvec3(0));
+    const auto before = joints(state);
+    state.take(placement("/VMC/Ext/Root/Pos", "root", {1, 2, 3}, {1, 0, 0, 0}));
+    const auto after = joints(state);
+    expect_near(after[node("Head")] - before[node("Head")], expected);
+  }
 }
 
 /// A node whose own rest frame is turned: what is sent is meant in a skeleton without such turns.
@@ -383,9 +376,8 @@ TEST_F(Vmc, RotationsAreTurnedIntoEachNodesOwnFrame) {
   avatar.nodes[0].rest.rotation = glm::quat(about({0, 0, 1}, 90));
   avatar.nodes[1].rest.translation = glm::vec3(0, -1, 0);  // to +X, in the avatar's frame
   avatar.nodes[1].rest.rotation = glm::quat(about({1, 0, 0}, 30));
-  Humanoid humanoid;
-  humanoid.node_of = {{"Hips", 0}, {"Spine", 1}};
-  VmcState state(avatar, humanoid, glm::dvec3(0));
+  avatar.humanoid.node_of = {{"Hips", 0}, {"Spine", 1}};
+  VmcState state(avatar, glm::dvec3(0));
   state.take(bone("Spine", about({0, 1, 0}, -90)));  // here +90 degrees about +Y
   TraceFrame frame;
   state.show(frame);
@@ -399,7 +391,7 @@ TEST_F(Vmc, RotationsAreTurnedIntoEachNodesOwnFrame) {
 }
 
 TEST_F(Vmc, CollidersComeGoAndJump) {
-  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  VmcState state(avatar_, glm::dvec3(0));
   state.take(bundle({collider(7, 1, 2, 3), collider(2, 4, 5, 6), with_id("/vestige/teleport", 7)}));
   TraceFrame frame;
   state.show(frame);
@@ -414,7 +406,7 @@ TEST_F(Vmc, CollidersComeGoAndJump) {
 }
 
 TEST_F(Vmc, CollidersStandWhereTheAvatarDoes) {
-  VmcState state(avatar_, humanoid_, glm::dvec3(5, 6, 7));
+  VmcState state(avatar_, glm::dvec3(5, 6, 7));
   state.take(collider(1, 1, 2, 3));
   TraceFrame frame;
   state.show(frame);
@@ -424,7 +416,7 @@ TEST_F(Vmc, CollidersStandWhereTheAvatarDoes) {
 }
 
 TEST_F(Vmc, AMalformedDatagramChangesNothingAndIsCounted) {
-  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  VmcState state(avatar_, glm::dvec3(0));
   const auto before = joints(state);
   OscBuilder text(lo_message_new());
   lo_message_add_string(text.get(), "LeftUpperArm");
@@ -450,7 +442,7 @@ TEST_F(Vmc, AMalformedDatagramChangesNothingAndIsCounted) {
 }
 
 TEST_F(Vmc, MarkersWithoutEndAreCountedAsInputThatWasLost) {
-  VmcState state(avatar_, humanoid_, glm::dvec3(0));
+  VmcState state(avatar_, glm::dvec3(0));
   OscBuilder text(lo_message_new());
   lo_message_add_string(text.get(), "here");
   const auto marker = bytes_of("/vestige/marker", text);
@@ -463,7 +455,7 @@ TEST_F(Vmc, MarkersWithoutEndAreCountedAsInputThatWasLost) {
 }
 
 TEST_F(Vmc, AnAvatarWithoutABodyIsRefused) {
-  EXPECT_THROW(VmcState(test::skeleton(3), Humanoid(), glm::dvec3(0)), Error);
+  EXPECT_THROW(VmcState(test::skeleton(3), glm::dvec3(0)), Error);
 }
 
 }  // namespace

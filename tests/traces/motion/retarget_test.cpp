@@ -13,8 +13,8 @@
 #include "tests/traces/motion/bvh_text.hpp"
 #include "tests/traces/motion/made_motion.hpp"
 #include "traces/base/error.hpp"
+#include "traces/body/body_roles.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
-#include "traces/motion/body_roles.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {

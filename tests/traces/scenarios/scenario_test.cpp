@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/support/builtin_avatar.hpp"
+#include "tests/support/made/edited_glb.hpp"
 #include "tests/support/scenario_names.hpp"
 #include "tests/support/skin_geometry.hpp"
 #include "traces/scenarios/scenarios.hpp"
@@ -212,6 +213,37 @@ TEST(Slide, GoesOverTheChestFromLeftToRightAndBack) {
       EXPECT_LT(p.x, -0.1);
     }
     before_x = p.x;
+  }
+}
+
+/// The mannequin turned to its left by quarters of a turn.
+Avatar turned_mannequin(int quarters) {
+  return parse_avatar_glb(test::turned_glb(builtin_avatar_glb(), quarters), "turned");
+}
+
+TEST(Punch, StrikesTheFrontWhicheverWayTheAvatarFaces) {
+  for (int quarters = 0; quarters < 4; ++quarters) {
+    const Avatar avatar = turned_mannequin(quarters);
+    const auto punch = make("punch", avatar, nullptr, 40);
+    for (int k = 0; k < 200; ++k)
+      for (const ColliderSample& sample : at(*punch, k / 100.0))
+        ASSERT_GT(turned_to_front(sample.position_m, avatar.facing.axis).z, -0.1)
+            << quarters << " quarters, frame " << k;
+  }
+}
+
+TEST(Slide, GoesTheSameWayWhicheverWayTheAvatarFaces) {
+  const auto slide = make("slide", builtin_avatar(), nullptr, 10);
+  for (int quarters = 1; quarters < 4; ++quarters) {
+    const Avatar avatar = turned_mannequin(quarters);
+    const auto turned = make("slide", avatar, nullptr, 10);
+    for (int k = 0; k < 100; ++k) {
+      const auto here = at(*slide, k / 40.0);
+      const auto there = at(*turned, k / 40.0);
+      for (std::size_t i = 0; i < here.size(); ++i)
+        ASSERT_LT(glm::distance(turned_to_front(there[i].position_m, avatar.facing.axis), here[i].position_m), 1e-4)
+            << quarters << " quarters, frame " << k;
+    }
   }
 }
 

@@ -1,4 +1,4 @@
-#include "traces/motion/body_roles.hpp"
+#include "traces/body/body_roles.hpp"
 
 #include <algorithm>
 #include <array>

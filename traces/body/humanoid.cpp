@@ -1,4 +1,4 @@
-#include "traces/motion/humanoid.hpp"
+#include "traces/body/humanoid.hpp"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "traces/base/error.hpp"
-#include "traces/gltf/glb_container.hpp"
-#include "traces/gltf/json/gltf_report.hpp"
-#include "traces/motion/body_roles.hpp"
+#include "traces/body/body_roles.hpp"
 
 namespace vestige {
 
@@ -81,9 +78,9 @@ void take_bone(Humanoid& humanoid, std::string name, const json& bone, const Ava
 
 Humanoid by_vrm(const json& root, const Avatar& avatar) {
   Humanoid humanoid;
-  humanoid.source = Humanoid::Source::kVrm;
   const json* extensions = member(&root, "extensions");
   if (const json* extension = member(extensions, "VRMC_vrm")) {
+    humanoid.source = Humanoid::Source::kVrm1;
     const std::string field = "extensions.VRMC_vrm.humanoid.humanBones";
     const json* bones = member(member(extension, "humanoid"), "humanBones");
     if (bones == nullptr || !bones->is_object()) {
@@ -102,7 +99,7 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
     note(humanoid, field + " is not an array: bones are recognised by their names");
     return humanoid;
   }
-  humanoid.facing = Humanoid::Facing::kMinusZ;
+  humanoid.source = Humanoid::Source::kVrm0;
   for (std::size_t i = 0; i < bones->size(); ++i) {
     const json& bone = (*bones)[i];
     const json* name = member(&bone, "bone");
@@ -119,13 +116,15 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
 
 }  // namespace
 
-Humanoid find_humanoid(const Avatar& avatar, std::span<const std::byte> glb) {
-  gltf::Report report("avatar.glb");
-  const json root = json::parse(gltf::split_glb(glb, report).json, nullptr, false);
-  Humanoid humanoid = by_vrm(root, avatar);
+Humanoid find_humanoid(const Avatar& avatar, std::string_view text) {
+  // Of the file's lists, which may be long, nothing is kept.
+  const auto keep = [](int depth, json::parse_event_t event, const json& parsed) {
+    return depth != 1 || event != json::parse_event_t::key || parsed == "extensions";
+  };
+  Humanoid humanoid;
+  if (text.find("\"VRM") != std::string_view::npos) humanoid = by_vrm(json::parse(text, keep, false), avatar);
   if (!humanoid.node_of.empty()) return humanoid;
   humanoid.source = Humanoid::Source::kNames;
-  humanoid.facing = Humanoid::Facing::kPlusZ;
   const auto roles = body_roles(avatar);
   for (std::size_t i = 0; i < roles.size(); ++i) {
     std::string bone = roles[i] ? bone_name(*roles[i]) : "";

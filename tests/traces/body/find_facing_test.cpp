@@ -1,0 +1,139 @@
+// Which way an avatar faces.
+
+#include "traces/body/find_facing.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/support/made/edited_glb.hpp"
+#include "tests/support/made/made_avatars.hpp"
+#include "tests/support/test_data.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+using By = AvatarFacing::By;
+
+AvatarFacing facing_of(const std::vector<std::byte>& glb) {
+  return parse_avatar_glb(glb, "avatar.glb").facing;
+}
+
+/// The mannequin after `edit`.
+template <typename Edit>
+AvatarFacing facing_after(const Edit& edit) {
+  return facing_of(test::edited_glb(builtin_avatar_glb(), edit));
+}
+
+/// Takes the sides out of the joints' names, but of those to keep.
+void forget_sides(nlohmann::json& json, const std::set<std::string>& keep = {}) {
+  for (const std::string& joint : test::side_joints())
+    for (const char* side : {"_left", "_right"})
+      if (!keep.contains(joint)) test::node_named(json, joint + side)["name"] = "something";
+}
+
+TEST(Facing, TurnsPlacesExactlyAndBack) {
+  const glm::dvec3 p(0.1, 2, -0.3);
+  for (const Facing facing : {Facing::kPlusZ, Facing::kPlusX, Facing::kMinusZ, Facing::kMinusX}) {
+    EXPECT_EQ(turned_from_front(turned_to_front(p, facing), facing), p);
+    EXPECT_EQ(turned_to_front(forward_of(facing), facing), glm::dvec3(0, 0, 1)) << to_string(facing);
+    EXPECT_EQ(nearest_facing(forward_of(facing)), facing);
+    EXPECT_EQ(facing_named(to_string(facing)), facing);
+  }
+  EXPECT_EQ(forward_of(Facing::kPlusX), glm::dvec3(1, 0, 0));
+  EXPECT_EQ(forward_of(Facing::kMinusX), glm::dvec3(-1, 0, 0));
+  EXPECT_EQ(facing_named("z"), std::nullopt);
+}
+
+TEST(Facing, OfEveryMadeAvatarIsFoundByItsNamesHoweverItIsTurned) {
+  for (const auto& [name, glb] : test::made_avatars())
+    for (int quarters = 0; quarters < 4; ++quarters) {
+      const AvatarFacing facing = facing_of(test::turned_glb(glb, quarters));
+      const int faces = (quarters + (name == "VRM 0.x" ? 2 : 0)) % 4;
+      EXPECT_EQ(facing.axis, static_cast<Facing>(faces)) << name << ", " << quarters << " quarters";
+      EXPECT_EQ(facing.by, By::kSides) << name;
+      const bool contradicts_vrm = name.starts_with("VRM") && quarters != 0;
+      EXPECT_EQ(facing.doubt.empty(), !contradicts_vrm) << name << ": " << facing.doubt;
+    }
+}
+
+TEST(Facing, OfRealAvatarsIsFound) {
+  VESTIGE_REQUIRE_DATA(test::data("avatars/avatars"));
+  for (const char* file : {"CesiumMan.glb", "Fox.glb", "KayKit_Knight.glb", "MakeHumanBase_cc0_8inf.glb",
+                           "RiggedFigure_3dsmax/RiggedFigure.gltf", "greenman.glb"}) {
+    const std::vector<std::byte> glb = read_avatar_glb(test::data("avatars/avatars") / file);
+    for (int quarters = 0; quarters < 4; ++quarters) {
+      const AvatarFacing facing = facing_of(test::turned_glb(glb, quarters));
+      EXPECT_EQ(facing.axis, static_cast<Facing>(quarters)) << file << ", " << to_string(facing.by);
+      EXPECT_EQ(facing.doubt, "") << file;
+    }
+  }
+}
+
+TEST(Facing, IsThatOfTheFeetIfNoNameTellsASide) {
+  const AvatarFacing facing = facing_after([](nlohmann::json& json) {
+    forget_sides(json, {"foot", "toes"});
+    test::hang_below(json, {{"rotation", {0, 1, 0, 0}}});
+  });
+  EXPECT_EQ(facing.axis, Facing::kMinusZ);
+  EXPECT_EQ(facing.by, By::kFeet);
+  EXPECT_EQ(facing.doubt, "");
+}
+
+TEST(Facing, IsThatOfVrmsVersionIfNothingElseTells) {
+  const auto of_version = [](const char* extension, nlohmann::json bones) {
+    return facing_after([&](nlohmann::json& json) {
+      forget_sides(json);
+      json["extensionsUsed"].push_back(extension);
+      json["extensions"][extension] = {{"humanoid", {{"humanBones", bones}}}};
+    });
+  };
+  const AvatarFacing old = of_version("VRM", {{{"bone", "hips"}, {"node", 1}}});
+  EXPECT_EQ(old.axis, Facing::kMinusZ);
+  EXPECT_EQ(old.by, By::kVrm);
+  const AvatarFacing now = of_version("VRMC_vrm", {{"hips", {{"node", 1}}}});
+  EXPECT_EQ(now.axis, Facing::kPlusZ);
+  EXPECT_EQ(now.by, By::kVrm);
+}
+
+TEST(Facing, IsAssumedAndDoubtedIfNothingTells) {
+  const AvatarFacing facing = facing_after([](nlohmann::json& json) { forget_sides(json); });
+  EXPECT_EQ(facing.axis, Facing::kPlusZ);
+  EXPECT_EQ(facing.by, By::kAssumed);
+  EXPECT_THAT(facing.doubt, HasSubstr("which way it faces"));
+}
+
+TEST(Facing, IsDoubtedWhereNamesContradictTheFeet) {
+  const AvatarFacing facing = facing_after([](nlohmann::json& json) {
+    for (const std::string& joint : test::side_joints()) {
+      nlohmann::json& left = test::node_named(json, joint + "_left");
+      test::node_named(json, joint + "_right")["name"] = joint + "_left";
+      left["name"] = joint + "_right";
+    }
+  });
+  EXPECT_EQ(facing.axis, Facing::kMinusZ) << "the names say what is left";
+  EXPECT_THAT(facing.doubt, HasSubstr("feet point to +z"));
+}
+
+TEST(Facing, IsDoubtedWhereTheNamesContradictEachOther) {
+  const AvatarFacing facing = facing_after([](nlohmann::json& json) {
+    test::node_named(json, "thigh_left")["name"] = "x";
+    test::node_named(json, "thigh_right")["name"] = "thigh_left";
+    test::node_named(json, "x")["name"] = "thigh_right";
+  });
+  EXPECT_EQ(facing.axis, Facing::kPlusZ);
+  EXPECT_THAT(facing.doubt, HasSubstr("LeftUpperLeg and RightUpperLeg lie the other way round"));
+}
+
+TEST(Facing, BetweenTwoAxesIsDoubted) {
+  const AvatarFacing facing = facing_after([](nlohmann::json& json) {
+    test::hang_below(json, {{"rotation", {0, 0.3826834, 0, 0.9238795}}});
+  });
+  EXPECT_THAT(facing.doubt, HasSubstr("between two axes"));
+}
+
+}  // namespace
+}  // namespace vestige

@@ -1,0 +1,38 @@
+#include "traces/scene/facing.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace vestige {
+
+std::optional<Facing> facing_named(std::string_view name) {
+  const auto* found = std::ranges::find(kFacingNames, name);
+  if (found == kFacingNames.end()) return std::nullopt;
+  return static_cast<Facing>(found - kFacingNames.begin());
+}
+
+glm::dvec3 forward_of(Facing facing) {
+  return turned_from_front({0, 0, 1}, facing);
+}
+
+Facing nearest_facing(const glm::dvec3& direction) {
+  if (std::abs(direction.x) > std::abs(direction.z)) return direction.x > 0 ? Facing::kPlusX : Facing::kMinusX;
+  return direction.z >= 0 ? Facing::kPlusZ : Facing::kMinusZ;
+}
+
+void take_recorded_facing(AvatarFacing& facing, std::string_view recorded) {
+  if (recorded.empty()) return;
+  if (const auto axis = facing_named(recorded))
+    set_facing(facing, *axis, AvatarFacing::By::kTrace);
+  else
+    facing.doubt = fmt::format("the trace records the facing '{}', which is no axis", recorded);
+}
+
+std::string_view to_string(AvatarFacing::By by) {
+  constexpr std::array<std::string_view, 7> kNames = {"sides", "feet", "vrm", "assumed", "map", "trace", "asked"};
+  return kNames[static_cast<std::size_t>(by)];
+}
+
+}  // namespace vestige
