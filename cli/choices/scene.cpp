@@ -59,7 +59,7 @@ void add_facing_option(CLI::App& verb, FacingChoice& choice) {
 std::string_view in_words(AvatarFacing::By by) {
   switch (by) {
     case AvatarFacing::By::kSides:
-      return "by its joints' names";
+      return "by its left and right joints";
     case AvatarFacing::By::kFeet:
       return "by its feet";
     case AvatarFacing::By::kVrm:

@@ -32,7 +32,7 @@ struct FacingChoice {
 };
 void add_facing_option(CLI::App& verb, FacingChoice& choice);
 
-/// Returns what tells the facing: "by its joints' names", ….
+/// Returns what tells the facing: "by its left and right joints", ….
 std::string_view in_words(AvatarFacing::By by);
 
 /// Gives the avatar the facing that is asked for. Otherwise warns of any doubt about the facing that was found. `name`

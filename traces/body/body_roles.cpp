@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "traces/body/bone_names.hpp"
+
 namespace vestige {
 
 namespace {
@@ -300,6 +302,13 @@ std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar) {
   const Roles ordered = body_roles(named_joints(avatar));
   Roles roles(avatar.nodes.size());
   for (std::size_t i = 0; i < ordered.size(); ++i) roles[static_cast<std::size_t>(avatar.node_order[i])] = ordered[i];
+  if (avatar.humanoid.source == Humanoid::Source::kNames) return roles;
+  for (const auto& [bone, node] : avatar.humanoid.node_of) {
+    const auto role = role_of_bone(bone);
+    if (!role) continue;
+    std::ranges::replace(roles, role, std::nullopt);
+    roles[node] = role;
+  }
   return roles;
 }
 

@@ -58,7 +58,7 @@ std::vector<std::optional<BodyRole>> body_roles(std::span<const NamedJoint> join
 /// Returns an avatar's nodes in the order of `avatar.node_order`.
 std::vector<NamedJoint> named_joints(const Avatar& avatar);
 
-/// Returns the roles of an avatar's nodes.
+/// Returns the roles of an avatar's nodes: those that the table of VRM gives, and otherwise those that the names tell.
 std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar);
 
 /// Returns a name without the prefix that some programs add ("mixamorig:"), in lower-case letters and digits only.

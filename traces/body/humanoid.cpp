@@ -3,37 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "traces/body/body_roles.hpp"
+#include "traces/body/bone_names.hpp"
 
 namespace vestige {
 
 namespace {
 
 using nlohmann::json;
-
-/// Returns Unity's name of a bone, or an empty text if Unity has no such bone.
-std::string bone_name(const BodyRole& role) {
-  static const std::map<BodyPart, const char*> names = {
-      {BodyPart::kHips, "Hips"},         {BodyPart::kNeck, "Neck"},         {BodyPart::kHead, "Head"},
-      {BodyPart::kJaw, "Jaw"},           {BodyPart::kEye, "Eye"},           {BodyPart::kShoulder, "Shoulder"},
-      {BodyPart::kUpperArm, "UpperArm"}, {BodyPart::kLowerArm, "LowerArm"}, {BodyPart::kHand, "Hand"},
-      {BodyPart::kUpperLeg, "UpperLeg"}, {BodyPart::kLowerLeg, "LowerLeg"}, {BodyPart::kFoot, "Foot"},
-      {BodyPart::kToes, "Toes"},         {BodyPart::kThumb, "Thumb"},       {BodyPart::kIndex, "Index"},
-      {BodyPart::kMiddle, "Middle"},     {BodyPart::kRing, "Ring"},         {BodyPart::kLittle, "Little"}};
-  static constexpr std::array kSpine = {"Spine", "Chest", "UpperChest"};
-  static constexpr std::array kPhalanges = {"Proximal", "Intermediate", "Distal"};
-  const auto segment = static_cast<std::size_t>(role.segment);
-  if (role.part == BodyPart::kSpine) return segment < kSpine.size() ? kSpine[segment] : "";
-  std::string name = role.side == BodySide::kLeft ? "Left" : role.side == BodySide::kRight ? "Right" : "";
-  name += names.at(role.part);
-  if (role.part < BodyPart::kThumb || role.part > BodyPart::kLittle) return name;
-  return segment >= 1 && segment <= kPhalanges.size() ? name + kPhalanges[segment - 1] : "";
-}
 
 /// Converts VRM's bone name ("leftUpperArm") to Unity's. VRM 1.0 alone names the thumb's bones differently.
 std::string unity_name(std::string name) {

@@ -69,11 +69,12 @@ glm::dquat rotation_of(const glm::dmat4& matrix) {
 Skeleton skeleton_of(const Avatar& avatar, const std::vector<glm::dmat4>& rest) {
   Skeleton skeleton;
   skeleton.joints = named_joints(avatar);
+  const auto roles = body_roles(avatar);
   for (const int index : avatar.node_order) {
+    skeleton.roles.push_back(roles[static_cast<Index>(index)]);
     skeleton.position.emplace_back(rest[static_cast<Index>(index)][3]);
     skeleton.usable.push_back(!avatar.nodes[static_cast<Index>(index)].fixed_matrix);
   }
-  skeleton.roles = body_roles(skeleton.joints);
   return skeleton;
 }
 

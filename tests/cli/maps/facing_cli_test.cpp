@@ -39,7 +39,7 @@ TEST_F(FacingFlag, IsNotNeededWhereTheJointsTell) {
   const auto avatar = json_of("vestige avatar turned.glb --json -");
   EXPECT_EQ(avatar["facing"], "-x");
   EXPECT_EQ(avatar["facing_by"], "sides");
-  EXPECT_THAT(run("vestige avatar turned.glb").standard_output, HasSubstr("faces          -x, by its joints' names"));
+  EXPECT_THAT(run("vestige avatar turned.glb").standard_output, HasSubstr("faces          -x, by its left and right joints"));
   EXPECT_EQ(json_of("vestige map make --avatar turned.glb --layout torso16 -o t.png --json -")["facing"], "-x");
   EXPECT_EQ(nlohmann::json::parse(read_text_file(folder_ / "t.json"))["facing"], "-x");
   EXPECT_EQ(json_of("vestige map check t.png --avatar turned.glb --json -")["good"], true);

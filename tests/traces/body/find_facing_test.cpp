@@ -10,6 +10,7 @@
 #include "tests/support/made/edited_glb.hpp"
 #include "tests/support/made/made_avatars.hpp"
 #include "tests/support/test_data.hpp"
+#include "traces/body/bone_names.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 
 namespace vestige {
@@ -133,6 +134,30 @@ TEST(Facing, BetweenTwoAxesIsDoubted) {
     test::hang_below(json, {{"rotation", {0, 0.3826834, 0, 0.9238795}}});
   });
   EXPECT_THAT(facing.doubt, HasSubstr("between two axes"));
+}
+
+TEST(BodyRoles, OfAVrmAreThoseOfItsTable) {
+  const auto made = test::made_avatars();
+  const Avatar named = parse_avatar_glb(builtin_avatar_glb(), "builtin");
+  for (const char* name : {"VRM 0.x", "VRM 1.0"}) {
+    const Avatar vrm = parse_avatar_glb(made.at(name), name);
+    const auto roles = body_roles(vrm);
+    const auto expected = body_roles(named);
+    for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(roles[i], expected[i]) << name << ", node " << i;
+  }
+}
+
+TEST(BodyRoles, HaveANameEachThatLeadsBack) {
+  const BodyRole roles[] = {{BodyPart::kHips, BodySide::kNone, 0},
+                            {BodyPart::kSpine, BodySide::kNone, 2},
+                            {BodyPart::kUpperArm, BodySide::kLeft, 0},
+                            {BodyPart::kLittle, BodySide::kRight, 3}};
+  const char* names[] = {"Hips", "UpperChest", "LeftUpperArm", "RightLittleDistal"};
+  for (std::size_t i = 0; i < std::size(roles); ++i) {
+    EXPECT_EQ(bone_name(roles[i]), names[i]);
+    EXPECT_EQ(role_of_bone(names[i]), roles[i]);
+  }
+  EXPECT_EQ(role_of_bone("Tail"), std::nullopt);
 }
 
 }  // namespace
