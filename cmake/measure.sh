@@ -218,7 +218,7 @@ gl_messages() {
     echo "not known: this driver passes no messages on"
   else
     cat "$out"/log/*.txt | sed -n 's/^OpenGL debug: //p' | grep -v '^marker' | sort | uniq -c | sort -rn >"$out/gl-messages.txt"
-    echo "$(grep -c '^ *[0-9]* error' "$out/gl-messages.txt") different errors, $(grep -vc '^ *[0-9]* error' "$out/gl-messages.txt") other messages: $out/gl-messages.txt"
+    echo "errors: $(grep -c '^ *[0-9]* error' "$out/gl-messages.txt"), others: $(grep -vc '^ *[0-9]* error' "$out/gl-messages.txt"), each text counted once: $out/gl-messages.txt"
     grep '^ *[0-9]* error' "$out/gl-messages.txt" | head -n 3 | cut -c1-150
   fi
 }
