@@ -1,11 +1,13 @@
-# Run with -P: fills BUNDLE with VESTIGE, every library that it needs but glibc's, their licences, and ./measure.
+# Run with -P: fills BUNDLE with VESTIGE, AGREEMENT and GEOMETRY_AGREEMENT, every library that they need but glibc's, their
+# licences, and ./measure.
 if(NOT PATCHELF)
   message(FATAL_ERROR "bundle: patchelf is missing\n  apt-get install patchelf, and configure again")
 endif()
 
+set(programs ${VESTIGE} ${AGREEMENT} ${GEOMETRY_AGREEMENT})
 # glibc is what the other machine brings.
 set(glibc "^(libc|libm|libdl|libpthread|librt|ld-linux-x86-64)\\.so")
-file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${VESTIGE} RESOLVED_DEPENDENCIES_VAR libraries
+file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${programs} RESOLVED_DEPENDENCIES_VAR libraries
   PRE_EXCLUDE_REGEXES ${glibc} POST_EXCLUDE_REGEXES "/ld-linux-x86-64\\.so")
 
 # One process can hold one library of a name only, and OpenGL drivers need these too, perhaps in a newer version than
@@ -16,7 +18,7 @@ set(system_folders /usr/lib/x86_64-linux-gnu:/lib/x86_64-linux-gnu:/usr/lib64:/l
 file(REMOVE_RECURSE ${BUNDLE})
 file(MAKE_DIRECTORY ${BUNDLE}/bin ${BUNDLE}/lib/fallback ${BUNDLE}/licences)
 
-# A copy under the name that it is asked for by, which looks for its own needs in `rpath`.
+# A copy without symbols under the name that it is asked for by, which looks for its own needs in `rpath`.
 function(bundle_file file destination rpath)
   get_filename_component(name ${file} NAME)
   file(REAL_PATH ${file} real)
@@ -25,6 +27,7 @@ function(bundle_file file destination rpath)
   if(NOT name STREQUAL real_name)
     file(RENAME ${destination}/${real_name} ${destination}/${name})
   endif()
+  execute_process(COMMAND ${STRIP} --strip-unneeded ${destination}/${name} COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND ${PATCHELF} --set-rpath ${rpath} ${destination}/${name} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
@@ -47,7 +50,9 @@ function(bundle_licence package)
   endforeach()
 endfunction()
 
-bundle_file(${VESTIGE} ${BUNDLE}/bin "$ORIGIN/../lib:${system_folders}:$ORIGIN/../lib/fallback")
+foreach(program IN LISTS programs)
+  bundle_file(${program} ${BUNDLE}/bin "$ORIGIN/../lib:${system_folders}:$ORIGIN/../lib/fallback")
+endforeach()
 foreach(library IN LISTS libraries)
   get_filename_component(name ${library} NAME)
   if(name MATCHES ${of_drivers})

@@ -43,15 +43,16 @@ endif()
 add_custom_target(reference COMMAND vestige man --markdown ${reference} --force ${plot_page}
   COMMENT "Writing docs/reference" VERBATIM)
 
-# The bundle: `vestige` with its libraries, for a machine where nothing is installed.
+# The bundle: `vestige` and the programs of agreement, with their libraries, for a machine where nothing is installed.
 set(vestige_bundle ${PROJECT_BINARY_DIR}/bundle/vestige-${PROJECT_VERSION}-x86_64)
 find_program(PATCHELF patchelf)
 add_custom_command(OUTPUT ${vestige_bundle}.stamp
-  COMMAND ${CMAKE_COMMAND} -DVESTIGE=$<TARGET_FILE:vestige> -DPATCHELF=${PATCHELF} -DBUNDLE=${vestige_bundle}
-    -DSHARE=${share}/vestige -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
+  COMMAND ${CMAKE_COMMAND} -DVESTIGE=$<TARGET_FILE:vestige> -DAGREEMENT=$<TARGET_FILE:agreement>
+    -DGEOMETRY_AGREEMENT=$<TARGET_FILE:geometry_agreement> -DPATCHELF=${PATCHELF} -DSTRIP=${CMAKE_STRIP}
+    -DBUNDLE=${vestige_bundle} -DSHARE=${share}/vestige -DSOURCE=${PROJECT_SOURCE_DIR} -DVERSION=${PROJECT_VERSION}
     -P ${PROJECT_SOURCE_DIR}/cmake/bundle.cmake
   COMMAND ${CMAKE_COMMAND} -E touch ${vestige_bundle}.stamp
-  DEPENDS vestige ${share}/vestige.stamp cmake/bundle.cmake cmake/measure.sh cmake/bundle_readme.txt
+  DEPENDS vestige agreement geometry_agreement ${share}/vestige.stamp cmake/bundle.cmake cmake/measure.sh cmake/bundle_readme.txt
   COMMENT "Bundling ${vestige_bundle}"
   VERBATIM)
 add_custom_target(bundle DEPENDS ${vestige_bundle}.stamp)

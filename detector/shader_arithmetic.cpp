@@ -148,6 +148,7 @@ StageArithmetic judge(std::string_view stage, std::span<const float> answers) {
 }
 
 std::string breaks_proofs(std::span<const StageArithmetic> stages) {
+  if (stages.empty()) return "the arithmetic of the driver's shaders is not measured, because it refuses the probe";
   for (const StageArithmetic& stage : stages)
     if (!stage.misrounded.empty())
       return fmt::format("the driver's {} shaders do not round to nearest ({}): {}", stage.stage, stage.rounding,

@@ -39,9 +39,9 @@ std::span<const ProbeQuestion> probe_questions();
 /// Returns what the answers say, one answer for each of `probe_questions`.
 StageArithmetic judge(std::string_view stage, std::span<const float> answers);
 
-/// Returns why the proofs of `geometry` (shaders/geometry.geom, candidates.vert) do not hold with such arithmetic.
+/// Returns why the proofs of `geometry` (shaders/geometry.geom, candidates.vert) may not hold with such arithmetic.
 /// Empty if nothing speaks against them. The proofs need + - * that are rounded to nearest. They cover contraction and
-/// flushed denormals, and they do not divide.
+/// flushed denormals, and they do not divide. Without a measured stage, nothing speaks for them.
 std::string breaks_proofs(std::span<const StageArithmetic> stages);
 
 }  // namespace vestige

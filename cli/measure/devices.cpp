@@ -70,13 +70,18 @@ std::string shortcomings(const Offer& offer) {
   return text;
 }
 
+/// Why `geometry` is refused there; empty if it is not.
+std::string refusal(const Offer& offer) {
+  return offer.unusable.empty() ? breaks_proofs(offer.info.arithmetic) : "";
+}
+
 nlohmann::ordered_json to_json(const Offer& offer) {
   nlohmann::ordered_json json = {{"context", offer.name}};
   if (offer.unusable.empty()) {
     json.update(vestige::to_json(offer.info));
     for (const GlLimit& limit : offer.limits) json["limits"][limit.name] = limit.value;
     const std::string lacks = shortcomings(offer);
-    const std::string broken = breaks_proofs(offer.info.arithmetic);
+    const std::string broken = refusal(offer);
     json["geometry_refused"] = broken.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(broken);
     json["paper_lacks"] = lacks.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(lacks);
   } else {
@@ -129,7 +134,7 @@ std::string describe(const Offer& offer, const std::string& automatic) {
   }
   if (offer.device) text += line("EGL device: " + describe(*offer.device));
   const std::string lacks = shortcomings(offer);
-  const std::string broken = breaks_proofs(offer.info.arithmetic);
+  const std::string broken = refusal(offer);
   if (!broken.empty()) text += line("'geometry' is refused there: " + broken);
   return text + line(lacks.empty() ? "" : "'paper' cannot run there: " + lacks);
 }

@@ -225,7 +225,8 @@ std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> cont
 void require_proofs(const GlInfo& gl) {
   const std::string cause = breaks_proofs(gl.arithmetic);
   if (!cause.empty())
-    throw Error("--detector geometry", fmt::format("is not exact on {} ({}): {}", gl.context, gl.renderer, cause),
+    throw Error("--detector geometry",
+                fmt::format("is not known to be exact on {} ({}): {}", gl.context, gl.renderer, cause),
                 "use --detector cpu, which finds the same contacts, or another --context or --device");
 }
 

@@ -28,7 +28,8 @@ std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context
 std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options);
 
-/// Throws `Error` with the measured cause if the proofs of `geometry` do not hold with the arithmetic of this driver.
+/// Throws `Error` with the cause if the proofs of `geometry` do not hold with the arithmetic of this driver, or if that
+/// was not measured.
 void require_proofs(const GlInfo& gl);
 
 }  // namespace vestige

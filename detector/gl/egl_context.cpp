@@ -4,6 +4,7 @@
 
 #include <array>
 
+#include "detector/gl/debug_messages.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/shared_library.hpp"
@@ -101,10 +102,9 @@ class EglContext final : public GlContext {
     // context may still use the same one.
     if (egl().Initialize(display_, nullptr, nullptr) != EGL_TRUE) throw egl_error(name, "eglInitialize");
     if (egl().BindAPI(EGL_OPENGL_API) != EGL_TRUE) throw egl_error(name, "eglBindAPI(EGL_OPENGL_API)");
-    constexpr std::array<EGLint, 7> kAttributes = {
-        EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-        EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-    context_ = egl().CreateContext(display_, EGLConfig(nullptr), EGL_NO_CONTEXT, kAttributes.data());
+    // A driver promises messages in a debug context only, and an old EGL makes none.
+    if (gl_messages_wanted()) create(EGL_CONTEXT_OPENGL_DEBUG);
+    if (context_ == EGL_NO_CONTEXT) create(EGL_NONE);
     if (context_ == EGL_NO_CONTEXT) throw egl_error(name, "eglCreateContext for OpenGL 4.5 core");
   }
   ~EglContext() override {
@@ -116,6 +116,19 @@ class EglContext final : public GlContext {
   }
 
  private:
+  /// `last` is one more attribute to set, or EGL_NONE.
+  void create(EGLint last) {
+    const std::array<EGLint, 9> attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                              4,
+                                              EGL_CONTEXT_MINOR_VERSION,
+                                              5,
+                                              EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                              EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                              last,
+                                              EGL_TRUE,
+                                              EGL_NONE};
+    context_ = egl().CreateContext(display_, EGLConfig(nullptr), EGL_NO_CONTEXT, attributes.data());
+  }
   void bind() override {
     // The bound API is kept per thread, and others may have changed it.
     egl().BindAPI(EGL_OPENGL_API);

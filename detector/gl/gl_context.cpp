@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "detector/gl/arithmetic_probe.hpp"
+#include "detector/gl/debug_messages.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {
@@ -73,10 +74,11 @@ std::unique_ptr<GlContext> GlContext::loaded(std::unique_ptr<GlContext> context,
   if (major * 10 + minor < 45)
     throw Error(context->info_.context, fmt::format("offers OpenGL {}.{} ({}); 4.5 is needed", major, minor, renderer),
                 "use a newer driver, or another --context");
+  if (gl_messages_wanted()) print_gl_messages(functions, context->info_.context);
   try {
     context->info_.arithmetic = probe_arithmetic(functions);
   } catch (const Error&) {
-    // A driver that refuses the probe will refuse the detectors' shaders too, and say why.
+    // What is not measured stays empty, and `geometry` refuses it.
   }
   return context;
 }

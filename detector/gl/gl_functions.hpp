@@ -26,6 +26,9 @@ namespace vestige {
   X(PFNGLCREATESHADERPROC, CreateShader)                                 \
   X(PFNGLCREATETEXTURESPROC, CreateTextures)                             \
   X(PFNGLCREATEVERTEXARRAYSPROC, CreateVertexArrays)                     \
+  X(PFNGLDEBUGMESSAGECALLBACKPROC, DebugMessageCallback)                 \
+  X(PFNGLDEBUGMESSAGECONTROLPROC, DebugMessageControl)                   \
+  X(PFNGLDEBUGMESSAGEINSERTPROC, DebugMessageInsert)                     \
   X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                               \
   X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                     \
   X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                               \

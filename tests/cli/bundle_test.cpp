@@ -10,13 +10,17 @@
 #include <sstream>
 
 #include "tests/support/command_line.hpp"
+#include "tests/support/gl/gl_context.hpp"
 
 namespace vestige {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::Not;
+using ::testing::StartsWith;
 
 const std::string kBundle = VESTIGE_BUNDLE_DIR;
 
@@ -25,7 +29,19 @@ constexpr const char* kGlibc =
     "/lib64/ld-linux-x86-64.so.2 /lib/x86_64-linux-gnu/libc.so.6 /lib/x86_64-linux-gnu/libm.so.6 "
     "/lib/x86_64-linux-gnu/libdl.so.2 /lib/x86_64-linux-gnu/libpthread.so.0";
 
-class Bundle : public test::CommandLineTest {};
+/// What stands in bin/.
+constexpr const char* kPrograms[] = {"vestige", "agreement", "geometry_agreement"};
+
+class Bundle : public test::CommandLineTest {
+ protected:
+  /// Runs `measure --quick` of a copy of the bundle whose vestige is a shell script. It knows the real one as $real.
+  test::Outcome measure_with(const std::string& script) const {
+    EXPECT_EQ(run("cp -r '" + kBundle + "' b && mv b/bin/vestige b/bin/real").exit_code, 0);
+    std::ofstream(folder_ / "b/bin/vestige") << "#!/bin/sh\nreal=$(dirname \"$0\")/real\n" << script;
+    EXPECT_EQ(run("chmod +x b/bin/vestige").exit_code, 0);
+    return run("b/measure --quick --pairs 2000 results");
+  }
+};
 
 class BundleAlone : public Bundle {
  protected:
@@ -46,7 +62,8 @@ class BundleAlone : public Bundle {
                                                         {"unshare -r " + plain, loader}};
     for (const auto& [enter, start] : ways) {
       enter_ = "env -i PATH=\"$PATH\" " + enter;
-      vestige_ = enter_ + start + "/vestige/bin/vestige ";
+      bin_ = enter_ + start + "/vestige/bin/";
+      vestige_ = bin_ + "vestige ";
       if (run(enter_ + loader + "--version").exit_code == 0) return;
     }
     if (std::getenv("CI") != nullptr) FAIL() << "neither chroot nor unshare works here";
@@ -54,14 +71,24 @@ class BundleAlone : public Bundle {
   }
 
   std::string enter_;
+  std::string bin_;
   std::string vestige_;
 };
 
 TEST_F(BundleAlone, FindsEveryLibraryInItself) {
-  const test::Outcome list = run(enter_ + "/lib64/ld-linux-x86-64.so.2 --list /vestige/bin/vestige");
-  EXPECT_EQ(list.exit_code, 0) << list.standard_error;
-  EXPECT_THAT(list.standard_output, Not(HasSubstr("not found")));
-  EXPECT_THAT(list.standard_output, HasSubstr("libstdc++.so.6 => /vestige/bin/../lib/fallback/"));
+  for (const std::string program : kPrograms) {
+    const test::Outcome list = run(enter_ + "/lib64/ld-linux-x86-64.so.2 --list /vestige/bin/" + program);
+    EXPECT_EQ(list.exit_code, 0) << list.standard_error;
+    EXPECT_THAT(list.standard_output, Not(HasSubstr("not found")));
+    EXPECT_THAT(list.standard_output, HasSubstr("libstdc++.so.6 => /vestige/bin/../lib/fallback/"));
+  }
+}
+
+TEST_F(BundleAlone, ComparesPairsOnTheCpuAndSaysThatThereIsNoOpenGl) {
+  EXPECT_EQ(json_of(bin_ + "agreement --method static --pairs 1000")["total"]["differences"], 0);
+  const test::Outcome geometry = run(bin_ + "geometry_agreement --pairs 1000");
+  EXPECT_EQ(geometry.exit_code, 1);
+  EXPECT_THAT(geometry.standard_error, HasSubstr("this machine offers no OpenGL 4.5 context"));
 }
 
 TEST_F(BundleAlone, RecordsReplaysOnTheCpuAndSaysThatThereIsNoOpenGl) {
@@ -88,8 +115,9 @@ TEST_F(Bundle, UsesItsOwnLibrariesAndTheMachinesOpenGl) {
   EXPECT_THAT(list, HasSubstr("libfmt.so.9 => " + kBundle + "/bin/../lib/libfmt.so.9"));
   EXPECT_THAT(list, Not(HasSubstr("/lib/fallback/"))) << "a driver may need the machine's newer one";
   ASSERT_EQ(run(vestige + "record --count 20 --rate 60 --duration 1 -o t.mcap").exit_code, 0);
-  for (const char* context : {"egl", "osmesa"}) {
-    const std::string flags = std::string("replay t.mcap --detector paper --json - --context ") + context;
+  // own context: OSMesa, beside the one of all tests
+  for (const std::string& context : {test::gl_flags("egl"), std::string(" --context osmesa")}) {
+    const std::string flags = "replay t.mcap --detector paper --json -" + context;
     const auto bundled = json_of(vestige + flags);
     EXPECT_EQ(bundled["texture_hash"], json_of("vestige " + flags)["texture_hash"]) << context;
     EXPECT_FALSE(bundled["gl"]["renderer"].get<std::string>().empty());
@@ -97,7 +125,7 @@ TEST_F(Bundle, UsesItsOwnLibrariesAndTheMachinesOpenGl) {
 }
 
 TEST_F(Bundle, NeedsNoGlibcNewerThan236) {
-  const test::Outcome needs = run("cd '" + kBundle + "' && objdump -T bin/vestige lib/*.so* lib/fallback/*.so*");
+  const test::Outcome needs = run("cd '" + kBundle + "' && objdump -T bin/* lib/*.so* lib/fallback/*.so*");
   ASSERT_EQ(needs.exit_code, 0) << needs.standard_error;
   const std::regex version("GLIBC_2\\.([0-9]+)");
   std::set<int> minors;
@@ -119,41 +147,96 @@ TEST_F(Bundle, IsSmallAndSaysWhatItsPartsAreLicensedUnder) {
     EXPECT_THAT(entry.path().filename().string(), Not(::testing::AnyOf(HasSubstr("libc.so"), HasSubstr("libGL"))));
   }
   EXPECT_LT(bytes, 40U << 20U);
+  for (const std::string program : kPrograms)
+    EXPECT_THAT(run("objdump -t '" + kBundle + "/bin/" + program + "'").standard_output, HasSubstr("no symbols"));
   EXPECT_GE(libraries, 10U);
   EXPECT_GE(licences, 10U);
 }
 
-TEST_F(Bundle, MeasureLeavesAFolderOfResults) {
-  const test::Outcome measured = run("'" + kBundle + "/measure' --quick results");
+TEST_F(Bundle, MeasureLeavesAFolderOfResultsAndOneVerdict) {
+  const test::Outcome measured = run("'" + kBundle + "/measure' --quick --pairs 2000 results");
   ASSERT_EQ(measured.exit_code, 0) << measured.standard_output << measured.standard_error;
-  for (const char* file : {"devices.json", "devices.txt", "swarm.mcap", "replay-swarm-cpu.json",
-                           "replay-swarm-paper.json", "sweep/sweep.json", "README.md", "log/machine.txt"})
+  for (const char* file : {"devices.json", "devices.txt", "swarm.mcap", "replay-swarm-cpu-static-off.json",
+                           "replay-swarm-geometry-ccd-on.json", "replay-swarm-paper.json", "agreement-cpu-ccd.json",
+                           "agreement-geometry-carried.json", "sweep/sweep.json", "README.md", "log/machine.txt"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / "results" / file)) << file;
-  EXPECT_THAT(run("tar -tzf results.tar.gz").standard_output, HasSubstr("results/sweep/sweep.json"));
+  EXPECT_THAT(run("tar -tzf results.tar.gz").standard_output,
+              AllOf(HasSubstr("results/sweep/sweep.json"), HasSubstr("results/verdict.txt")));
+  std::set<std::string> series;
   const auto sweep = json_in("results/sweep/sweep.json");
-  std::set<std::string> detectors;
-  for (const auto& series : sweep["series"]) detectors.insert(series["detector"]);
-  EXPECT_THAT(detectors, IsSupersetOf({"paper", "geometry", "cpu"}));
+  for (const auto& one : sweep["series"])
+    series.insert(one["detector"].get<std::string>() + " " + one["skip"].get<std::string>());
+  EXPECT_THAT(series, IsSupersetOf({"paper off", "geometry off", "geometry on", "cpu off", "cpu on"}));
+
+  const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
+  const auto device = json_in("results/devices.json")["auto"];
+  EXPECT_THAT(verdict, StartsWith("VERDICT: EXACT on " + device["renderer"].get<std::string>() + "\n"));
+  EXPECT_THAT(verdict, AllOf(HasSubstr(device["context"].get<std::string>()), HasSubstr("to nearest even")));
+  // Three methods by three contestants; two methods.
+  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 18000 answers"));
+  EXPECT_THAT(verdict, HasSubstr("0 differ, of 4000 answers"));
+  EXPECT_THAT(verdict, HasSubstr("the texture of cpu without skipping: 18 of 18"));
+  EXPECT_THAT(verdict, HasSubstr("errors: 0, others: "));
+  EXPECT_THAT(verdict, HasSubstr("With 100 colliders, against the fastest cpu"));
+  EXPECT_THAT(verdict, Not(HasSubstr("FAILED")));
+  EXPECT_THAT(measured.standard_output, EndsWith(verdict));
+  EXPECT_THAT(read_text_file(folder_ / "results/README.md"), HasSubstr(verdict));
   EXPECT_NE(run("'" + kBundle + "/measure' --quick results").exit_code, 0) << "overwrote results";
+  EXPECT_EQ(run("'" + kBundle + "/measure' --quick --pairs many other").exit_code, 2);
 }
 
 TEST_F(Bundle, MeasureGoesOnAfterAFailureAndSaysSo) {
   // This vestige crashes in the sweep, and for the rest of the work only pretends.
-  ASSERT_EQ(run("cp -r '" + kBundle + "' b && mv b/bin/vestige b/bin/real").exit_code, 0);
-  std::ofstream(folder_ / "b/bin/vestige") << R"(#!/bin/sh
+  const test::Outcome measured = measure_with(R"(
 case $1 in
   sweep) echo broken >&2; exit 139 ;;
   record) while [ "$1" != -o ]; do shift; done; : >"$2" ;;
-  replay | accuracy) ;;
-  *) exec "$(dirname "$0")/real" "$@" ;;
+  replay) echo "OpenGL debug: error, high: GL_INVALID_ENUM in glEnable" >&2 ;;
+  accuracy | stress) ;;
+  *) exec "$real" "$@" ;;
 esac
-)";
-  ASSERT_EQ(run("chmod +x b/bin/vestige").exit_code, 0);
-  const test::Outcome measured = run("b/measure --quick results");
+)");
   EXPECT_EQ(measured.exit_code, 1);
   EXPECT_THAT(measured.standard_error, HasSubstr("these steps failed: sweep(139)"));
-  EXPECT_THAT(read_text_file(folder_ / "results/README.md"), HasSubstr("FAILED: sweep(139)"));
   EXPECT_THAT(read_text_file(folder_ / "results/log/sweep.txt"), HasSubstr("broken"));
+  const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
+  EXPECT_THAT(verdict, StartsWith("VERDICT: INCOMPLETE on "));
+  EXPECT_THAT(verdict, HasSubstr("FAILED:\n    sweep(139): results/log/sweep.txt"));
+  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 18000 answers")) << "what ran is kept";
+  EXPECT_THAT(verdict, AllOf(HasSubstr("errors: 1, others: "), HasSubstr("GL_INVALID_ENUM in glEnable")));
+}
+
+TEST_F(Bundle, MeasureSaysWhereContactsDiffer) {
+  const test::Outcome measured = measure_with(R"(
+case "$1 $*" in
+  record*) while [ "$1" != -o ]; do shift; done; : >"$2" ;;
+  replay*paper*) exit 4 ;;
+  replay*hug*geometry*carried*--skip\ on*) exit 4 ;;
+  replay* | sweep* | accuracy* | stress*) ;;
+  *) exec "$real" "$@" ;;
+esac
+)");
+  EXPECT_EQ(measured.exit_code, 1);
+  const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
+  EXPECT_THAT(verdict, AllOf(StartsWith("VERDICT: NOT EXACT on "), HasSubstr(": contacts differ\n"),
+                             HasSubstr("the texture of cpu without skipping: 17 of 18"),
+                             HasSubstr("results/log/replay-hug-geometry-carried-on.txt"),
+                             HasSubstr("paper, which does not promise to be exact, differ in: replay-swarm-paper")));
+}
+
+TEST_F(Bundle, MeasureSaysThatGeometryIsRefusedAndWhy) {
+  const test::Outcome measured = measure_with(R"(
+case $1 in
+  record) while [ "$1" != -o ]; do shift; done; : >"$2" ;;
+  replay | sweep | accuracy | stress) ;;
+  devices) "$real" "$@" | sed "s/^\* .*/&\n                    'geometry' is refused there: it rounds up/" ;;
+  *) exec "$real" "$@" ;;
+esac
+)");
+  EXPECT_EQ(measured.exit_code, 1);
+  const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
+  EXPECT_THAT(verdict, AllOf(StartsWith("VERDICT: NOT EXACT on "), HasSubstr("geometry is refused, it rounds up\n"),
+                             HasSubstr("the texture of cpu without skipping: 6 of 6")));
 }
 
 }  // namespace

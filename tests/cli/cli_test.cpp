@@ -15,6 +15,7 @@
 #include <sstream>
 
 #include "tests/support/command_line.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
@@ -61,7 +62,7 @@ TEST_F(CommandLine, GivesTheSameBitsTenThousandKilometresAway) {
   record_small();
   ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 --origin 10000000,0,-3 -o far.mcap").exit_code, 0);
   for (const char* detector : {"cpu", "paper", "geometry"}) {
-    const std::string flags = std::string(" --json - --detector ") + detector;
+    const std::string flags = std::string(" --json - --detector ") + detector + test::gl_flags();
     EXPECT_EQ(json_of("vestige replay far.mcap" + flags)["texture_hash"],
               json_of("vestige replay small.mcap" + flags)["texture_hash"]);
   }
@@ -72,22 +73,25 @@ TEST_F(CommandLine, GeometryGivesTheCpusTextureHashWithEveryMethodAndSaysWhatItC
   for (const char* method : {"static", "carried", "ccd"}) {
     const std::string flags = std::string("vestige replay small.mcap --json - --method ") + method;
     const auto cpu = json_of(flags + " --detector cpu");
-    for (const char* context : {"egl", "osmesa"}) {
-      const auto geometry = json_of(flags + " --detector geometry --context " + context);
-      EXPECT_EQ(geometry["texture_hash"], cpu["texture_hash"]) << method << " on " << context;
+    // own context: OSMesa, beside the one of all tests
+    for (const std::string& context : {test::gl_flags("egl"), std::string(" --context osmesa")}) {
+      const auto geometry = json_of(flags + " --detector geometry" + context);
+      EXPECT_EQ(geometry["texture_hash"], cpu["texture_hash"]) << method << context;
       EXPECT_GT(geometry["contacts"], 0);
       EXPECT_GE(geometry["pairs_meeting"], geometry["contacts"]);
       EXPECT_GE(geometry["pairs_captured"], geometry["pairs_meeting"]);
     }
   }
-  const test::Outcome verified = run("vestige replay small.mcap --detector cpu --verify geometry");
+  const test::Outcome verified = run("vestige replay small.mcap --detector cpu --verify geometry" + test::gl_flags());
   EXPECT_EQ(verified.exit_code, 0);
   EXPECT_THAT(verified.standard_output, HasSubstr(" 0 contacts differ"));
-  EXPECT_THAT(run("vestige replay small.mcap --detector geometry").standard_output, HasSubstr("captured "));
+  EXPECT_THAT(run("vestige replay small.mcap --detector geometry" + test::gl_flags()).standard_output,
+              HasSubstr("captured "));
 }
 
 TEST_F(CommandLine, PaperGivesOneTextureHashOnEglAndOsMesa) {
   record_small();
+  // own context: EGL, OSMesa and a device are what this is about
   const auto egl = json_of("vestige replay small.mcap --detector paper --context egl --json -");
   const auto osmesa = json_of("vestige replay small.mcap --detector paper --context osmesa --json -");
   const auto device = json_of("vestige replay small.mcap --detector paper --device 0 --json -");
@@ -102,7 +106,8 @@ TEST_F(CommandLine, WritesContactsTexturesAndTimelineThatAgree) {
   record_small();
   const auto replay = json_of(
       "vestige replay small.mcap --detector paper --contacts c.csv --textures t.exr "
-      "--planes actuator,t,triangle,position,speed --timeline a.csv --hold 0 --json -");
+      "--planes actuator,t,triangle,position,speed --timeline a.csv --hold 0 --json -" +
+      test::gl_flags());
   std::ifstream contacts(folder_ / "c.csv");
   std::string line;
   std::getline(contacts, line);
@@ -214,7 +219,7 @@ TEST_F(CommandLine, VerifyTellsEqualFromDifferentRuns) {
   }
   ASSERT_EQ(run("{ cat c.csv; tail -1 c.csv; } > twice.csv").exit_code, 0);
   expect_failure("vestige replay small.mcap --verify twice.csv", 1, {"twice.csv", "two contacts in frame"});
-  const test::Outcome paper = run("vestige replay small.mcap --detector paper --verify cpu");
+  const test::Outcome paper = run("vestige replay small.mcap --detector paper --verify cpu" + test::gl_flags());
   EXPECT_EQ(paper.exit_code, 0);
   EXPECT_THAT(paper.standard_output, HasSubstr(" 0 contacts differ"));
   ASSERT_EQ(run("vestige record --seed 3 --count 20 --rate 60 --duration 1 -o other.mcap").exit_code, 0);

@@ -111,5 +111,9 @@ TEST(ShaderArithmetic, ThatFlushesContractsAndDividesBadlyIsReportedAndBreaksNoP
   EXPECT_EQ(breaks_proofs(std::vector{stage}), "");
 }
 
+TEST(ShaderArithmetic, ThatIsNotMeasuredBreaksTheProofs) {
+  EXPECT_THAT(breaks_proofs({}), HasSubstr("not measured"));
+}
+
 }  // namespace
 }  // namespace vestige

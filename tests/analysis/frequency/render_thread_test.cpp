@@ -8,6 +8,7 @@
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/scene_renderer.hpp"
 #include "tests/support/builtin_avatar.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "tests/support/scene_run.hpp"
 #include "traces/base/error.hpp"
 
@@ -35,8 +36,8 @@ struct Kind {
 class RenderedScene : public ::testing::TestWithParam<Kind> {};
 
 INSTANTIATE_TEST_SUITE_P(Each, RenderedScene,
-                         ::testing::Values(Kind{"egl", make_egl_surfaceless_context},
-                                           Kind{"osmesa", make_osmesa_context}),
+                         // own context: OSMesa, beside the one of all tests
+                         ::testing::Values(Kind{"gl", test::make_context}, Kind{"osmesa", make_osmesa_context}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 struct Colours {
@@ -94,7 +95,7 @@ TEST_P(RenderedScene, IsDrawnBesideADetectorAndPausesWhenTold) {
 
 TEST(RenderThread, EndsAtOnceWhetherRunningOrNot) {
   for (const bool running : {false, true}) {
-    RenderThread thread(make_osmesa_context, builtin_avatar(), shown());
+    RenderThread thread(test::make_context, builtin_avatar(), shown());
     if (running) thread.resume();
   }
 }

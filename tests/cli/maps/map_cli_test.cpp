@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/support/command_line.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige {
@@ -62,12 +63,13 @@ TEST_F(Map, MayBeMadeByTriangle) {
   ASSERT_EQ(run("vestige record --colliders hug --count 50 --rate 60 --duration 1 --map vest.png -o a.mcap").exit_code,
             0);
   // Every detector looks it up: the published one on the GPU.
-  const auto paper = json_of("vestige replay a.mcap --detector paper --json -");
+  const auto paper = json_of("vestige replay a.mcap --detector paper --json -" + test::gl_flags());
   const auto cpu = json_of("vestige replay a.mcap --detector cpu --json -");
   EXPECT_EQ(paper["actuators"], cpu["actuators"]);
   EXPECT_EQ(
       run("vestige replay a.mcap --detector cpu --verify geometry --surface mapped --law phantom --timeline a.csv "
-          "-q")
+          "-q" +
+          test::gl_flags())
           .exit_code,
       0);
   expect_failure("vestige map make --layout torso16 --per-triangle --size 64 -o b.png", 2, {"--size"}, "b.png");

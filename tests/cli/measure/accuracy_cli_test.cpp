@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tests/support/command_line.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige {
@@ -78,7 +79,8 @@ TEST_F(AccuracyCommandLine, ReadsCollidersFromAFileAndSaysWhatThePublishedMethod
   std::ofstream(folder_ / "hand.csv") << "time_s,id,x,y,z\n0,7,0,1.2,-1\n1,7,0,1.2,1\n";
   const test::Outcome outcome =
       run("vestige accuracy --detector paper,cpu --method static,ccd --rate 60 --truth-rate 2000 --colliders hand.csv "
-          "--no-figure -o hand");
+          "--no-figure -o hand" +
+          test::gl_flags());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_error, HasSubstr("'paper' with ccd is left out"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("paper, static"));

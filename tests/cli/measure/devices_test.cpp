@@ -8,6 +8,7 @@
 
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/command_line.hpp"
+#include "tests/support/gl/gl_context.hpp"
 
 namespace vestige {
 namespace {
@@ -60,15 +61,16 @@ TEST_F(Devices, SayWhichContextAutoTakesWhetherItIsSoftwareAndThatPaperCanRun) {
 TEST_F(Devices, AreComparedWithTheCpuOnlyWhereAShaderSkins) {
   ASSERT_EQ(run("vestige record --count 5 --rate 60 --duration 0.1 -o t.mcap").exit_code, 0);
   const auto identical = [&](const std::string& detector) {
-    return json_of("vestige replay t.mcap --json - --detector " + detector)["skinning"]["identical_to_cpu"];
+    return json_of("vestige replay t.mcap --json - --detector " + detector +
+                   test::gl_flags())["skinning"]["identical_to_cpu"];
   };
   EXPECT_TRUE(identical("cpu").is_null());
   EXPECT_TRUE(identical("geometry").is_null());
   EXPECT_GT(identical("geometry --skip off"), 0);
   EXPECT_GT(identical("paper"), 0);
-  EXPECT_THAT(run("vestige replay t.mcap --detector geometry").standard_output,
+  EXPECT_THAT(run("vestige replay t.mcap --detector geometry" + test::gl_flags()).standard_output,
               AllOf(HasSubstr("skinning by the CPU"), testing::Not(HasSubstr("same bits as on the CPU"))));
-  EXPECT_THAT(run("vestige replay t.mcap --detector paper").standard_output,
+  EXPECT_THAT(run("vestige replay t.mcap --detector paper" + test::gl_flags()).standard_output,
               AllOf(HasSubstr("skinning by a shader"), HasSubstr("same bits as on the CPU")));
 }
 

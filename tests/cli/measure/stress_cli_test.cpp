@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/support/command_line.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige {
@@ -40,7 +41,8 @@ TEST_F(StressCommand, WritesTheSameResultsForTheSameSeed) {
 }
 
 TEST_F(StressCommand, AnswersWithCountsForEveryDetectorFamilyAndMagnitude) {
-  const auto json = json_of("vestige stress --families edge --detector paper,cpu --n 30 --no-figure -o s --json - -q");
+  const auto json = json_of("vestige stress --families edge --detector paper,cpu --n 30 --no-figure -o s --json - -q" +
+                            test::gl_flags());
   ASSERT_EQ(json["families"].size(), 3 * (1 + 2));  // three magnitudes; paper knows one method, cpu two of these
   for (const auto& one : json["families"]) {
     EXPECT_EQ(one["name"], "edge");

@@ -9,9 +9,9 @@
 
 #include "detector/detectors/contact_description.hpp"
 #include "detector/detectors/make_detectors.hpp"
-#include "detector/gl/gl_context.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
 
@@ -184,13 +184,11 @@ INSTANTIATE_TEST_SUITE_P(
              }},
         Kind{"paper",
              [](const Avatar& avatar, const ActuatorMap& map) {
-               return make_paper_detector(make_gl_context(ContextKind::kAuto, -1), avatar, map,
-                                          {Surface::kMapped, kHashedPlanes});
+               return make_paper_detector(test::make_context(), avatar, map, {Surface::kMapped, kHashedPlanes});
              }},
         Kind{"geometry",
              [](const Avatar& avatar, const ActuatorMap& map) {
-               return make_geometry_detector(make_gl_context(ContextKind::kAuto, -1), avatar, map,
-                                             {Surface::kMapped, kHashedPlanes});
+               return make_geometry_detector(test::make_context(), avatar, map, {Surface::kMapped, kHashedPlanes});
              }}),
     [](const auto& test) { return std::string(test.param.name); });
 

@@ -12,6 +12,7 @@
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
@@ -40,22 +41,24 @@ struct Kind {
   std::unique_ptr<Detector> (*make)(const Avatar&, const ActuatorMap&, const DetectorOptions&);
 };
 
-std::unique_ptr<Detector> paper_on_egl(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
-  return make_paper_detector(make_egl_surfaceless_context(), avatar, map, options);
+std::unique_ptr<Detector> paper(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
+  return make_paper_detector(test::make_context(), avatar, map, options);
 }
+// own context: a device is made another way
 std::unique_ptr<Detector> paper_on_egl_device(const Avatar& avatar, const ActuatorMap& map,
                                               const DetectorOptions& options) {
   return make_paper_detector(make_egl_device_context(0), avatar, map, options);
 }
+// own context: OSMesa is another library, with its own way of being current
 std::unique_ptr<Detector> paper_on_osmesa(const Avatar& avatar, const ActuatorMap& map,
                                           const DetectorOptions& options) {
   return make_paper_detector(make_osmesa_context(), avatar, map, options);
 }
 
-std::unique_ptr<Detector> geometry_on_egl(const Avatar& avatar, const ActuatorMap& map,
-                                          const DetectorOptions& options) {
-  return make_geometry_detector(make_egl_surfaceless_context(), avatar, map, options);
+std::unique_ptr<Detector> geometry(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
+  return make_geometry_detector(test::make_context(), avatar, map, options);
 }
+// own context: as above
 std::unique_ptr<Detector> geometry_on_osmesa(const Avatar& avatar, const ActuatorMap& map,
                                              const DetectorOptions& options) {
   return make_geometry_detector(make_osmesa_context(), avatar, map, options);
@@ -67,9 +70,9 @@ class DetectorTest : public ::testing::TestWithParam<Kind> {
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, DetectorTest,
-                         ::testing::Values(Kind{"cpu", make_cpu_detector}, Kind{"paper_egl", paper_on_egl},
+                         ::testing::Values(Kind{"cpu", make_cpu_detector}, Kind{"paper", paper},
                                            Kind{"paper_egl_device", paper_on_egl_device},
-                                           Kind{"paper_osmesa", paper_on_osmesa}, Kind{"geometry_egl", geometry_on_egl},
+                                           Kind{"paper_osmesa", paper_on_osmesa}, Kind{"geometry", geometry},
                                            Kind{"geometry_osmesa", geometry_on_osmesa}),
                          [](const auto& test) { return test.param.name; });
 
@@ -274,18 +277,19 @@ TEST_P(DetectorTest, FindsTheContactsThatTheCpuFinds) {
 TEST(GlContext, ListsDevicesAndNamesWhatIsMissing) {
   const auto devices = list_egl_devices();
   EXPECT_FALSE(devices.empty());
+  // own context: one that is not there
   EXPECT_THROW(make_egl_device_context(static_cast<int>(devices.size())), std::exception);
 }
 
 TEST(GlContext, SurvivesTwoContextsTakingTurnsOnOneThread) {
   const Avatar avatar = test::rigid_avatar(kUnitTriangle, {{0, 1, 2}});
   const ActuatorMap map = half_map();
-  const auto egl = paper_on_egl(avatar, map, {});
+  const auto one = paper(avatar, map, {});
   const auto osmesa = paper_on_osmesa(avatar, map, {});
   const DetectorFrame frame = test::frame_of(avatar, {{0, {0.75F, 0.125F, 1}, {0.75F, 0.125F, -1}}});
   ContactRow row;
   for (int i = 0; i < 20; ++i) {
-    (i % 2 == 0 ? egl : osmesa)->detect(frame, row);
+    (i % 2 == 0 ? one : osmesa)->detect(frame, row);
     ASSERT_TRUE(row[0].hit()) << i;
   }
 }

@@ -1,11 +1,13 @@
-// Run by hand: geometry_agreement [--pairs N] [--seed K] [--context auto|egl|osmesa] [--skip]. Adversarial pairs
-// through `geometry` (with --skip: both `geometry` and `cpu`, skipping) and the `cpu` that skips nothing, every method,
-// N pairs each. Prints JSON: what meets, what was captured and what differs; exits 4 if anything does.
+// Run by hand, and by the bundle's `measure`: geometry_agreement [--method static|carried|ccd] [--pairs N] [--seed K]
+// [--context auto|egl|osmesa] [--device K] [--skip]. Adversarial pairs through `geometry` (with --skip: also through
+// `geometry` and `cpu` with skipping) and the `cpu` that skips nothing, every method or the one named, N pairs each.
+// Prints JSON: what meets, what was captured and what differs; exits 4 if anything does.
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <bit>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -18,6 +20,7 @@
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/pairs/adversarial_pairs.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 namespace {
@@ -33,7 +36,9 @@ bool same(const Contact& a, const Contact& b) {
 struct Settings {
   std::uint64_t pairs = 10'000'000;
   std::uint64_t seed = 2;
+  std::vector<Method> methods = {Method::kStatic, Method::kCarried, Method::kCcd};
   ContextKind context = ContextKind::kAuto;
+  int device = -1;
   bool skip = false;
 };
 
@@ -61,11 +66,17 @@ nlohmann::ordered_json compare(Method method, const Settings& settings) {
   const auto options = [&](Skip skip) { return DetectorOptions{Surface::kAll, PlaneSet::all(), method, skip}; };
   const auto cpu = make_cpu_detector(avatar, map, options(Skip::kOff));
   std::vector<Contestant> contestants;
-  const Skip skip = settings.skip ? Skip::kOn : Skip::kOff;
-  contestants.push_back(
-      {.detector = make_geometry_detector(make_gl_context(settings.context, -1), avatar, map, options(skip)),
-       .skips = settings.skip});
-  if (settings.skip) contestants.push_back({.detector = make_cpu_detector(avatar, map, options(skip)), .skips = true});
+  const auto add_geometry = [&](Skip skip) {
+    // own context: the one that the flags name
+    contestants.push_back({.detector = make_geometry_detector(make_gl_context(settings.context, settings.device),
+                                                              avatar, map, options(skip)),
+                           .skips = skip == Skip::kOn});
+  };
+  add_geometry(Skip::kOff);
+  if (settings.skip) {
+    add_geometry(Skip::kOn);
+    contestants.push_back({.detector = make_cpu_detector(avatar, map, options(Skip::kOn)), .skips = true});
+  }
   test::AdversarialSource source(settings.seed);
   ContactRow expected;
   std::uint64_t done = 0;
@@ -98,29 +109,47 @@ nlohmann::ordered_json compare(Method method, const Settings& settings) {
 }  // namespace
 }  // namespace vestige
 
-int main(int argc, char** argv) {
+namespace {
+
+int run(int argc, char** argv) {
   vestige::Settings settings;
   CLI::App app("Compares the geometry detector with cpu.");
+  std::string method;
   const std::map<std::string, vestige::ContextKind> contexts = {{"auto", vestige::ContextKind::kAuto},
                                                                 {"egl", vestige::ContextKind::kEgl},
                                                                 {"osmesa", vestige::ContextKind::kOsMesa}};
   app.add_option("--pairs", settings.pairs)->check(CLI::PositiveNumber);
   app.add_option("--seed", settings.seed);
   app.add_option("--context", settings.context)->transform(CLI::CheckedTransformer(contexts));
+  app.add_option("--method", method)->check(CLI::IsMember({"static", "carried", "ccd"}));
+  app.add_option("--device", settings.device)->check(CLI::Range(0, 1023));
   app.add_flag("--skip", settings.skip);
   CLI11_PARSE(app, argc, argv);
+  if (!method.empty())
+    std::erase_if(settings.methods, [&](vestige::Method one) { return vestige::name_of(one) != method; });
 
   std::vector<std::string> arguments(argv, argv + argc);
   arguments.front() = "geometry_agreement";  // not where it happens to lie
   nlohmann::ordered_json report = vestige::provenance(arguments);
   report["seed"] = settings.seed;
   bool same = true;
-  for (const vestige::Method method : {vestige::Method::kStatic, vestige::Method::kCarried, vestige::Method::kCcd}) {
-    for (nlohmann::ordered_json& row : compare(method, settings)) {
+  for (const vestige::Method each : settings.methods) {
+    for (nlohmann::ordered_json& row : vestige::compare(each, settings)) {
       same = same && row["missed"] == 0 && row["winners_differing"] == 0;
       report["methods"].push_back(std::move(row));
     }
   }
   fmt::print("{}\n", report.dump(2));
   return same ? 0 : 4;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const vestige::Error& error) {
+    fmt::print(stderr, "geometry_agreement: error: {}\n", error.what());
+    return 1;
+  }
 }

@@ -15,6 +15,7 @@
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "tests/support/pairs/adversarial_pairs.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
@@ -37,8 +38,10 @@ bool same(const Contact& a, const Contact& b) {
          a.texture_coordinate == b.texture_coordinate && a.position == b.position && a.speed_m_per_s == b.speed_m_per_s;
 }
 
+/// "gl" is the context of all tests.
 std::unique_ptr<GlContext> context_named(const std::string& name) {
-  return name == "egl" ? make_egl_surfaceless_context() : make_osmesa_context();
+  // own context: OSMesa, beside it
+  return name == "gl" ? test::make_context() : make_osmesa_context();
 }
 
 class GeometryDetector : public ::testing::TestWithParam<std::tuple<const char*, Method, Skip>> {
@@ -51,7 +54,7 @@ class GeometryDetector : public ::testing::TestWithParam<std::tuple<const char*,
 };
 
 INSTANTIATE_TEST_SUITE_P(Each, GeometryDetector,
-                         ::testing::Combine(::testing::Values("egl", "osmesa"),
+                         ::testing::Combine(::testing::Values("gl", "osmesa"),
                                             ::testing::Values(Method::kStatic, Method::kCarried, Method::kCcd),
                                             ::testing::Values(Skip::kOff, Skip::kOn)),
                          [](const auto& test) {
@@ -205,7 +208,7 @@ TEST(GeometryDetectorAtRecordingRate, CapturesHardlyMoreThanWhatMeets) {
   for (const Skip skip : {Skip::kOff, Skip::kOn}) {
     DetectorOptions each = options(Method::kStatic);
     each.skip = skip;
-    const auto geometry = make_geometry_detector(make_osmesa_context(), builtin_avatar(), builtin_map(), each);
+    const auto geometry = make_geometry_detector(test::make_context(), builtin_avatar(), builtin_map(), each);
     DetectorWork work;
     ContactRow row;
     FrameBuilder builder = test::frame_builder(builtin_avatar(), 100, Method::kStatic);
@@ -253,7 +256,7 @@ TEST(GeometryDetectorSkinning, LeavesMissesWithinItsBoundToTheCpuAndProvesThoseB
   for (Influences& influences : avatar.influences) influences = {{0, 1}, {0.5F, 0.5F}};
   const DetectorFrame still = test::frame_of(avatar, {});
   ASSERT_NEAR(skinning_radius(avatar, still)[0].z, std::ldexp(5.0, -23), std::ldexp(1.0, -30));
-  for (const char* context : {"egl", "osmesa"}) {
+  for (const char* context : {"gl", "osmesa"}) {
     const ActuatorMap map;
     const auto geometry = make_geometry_detector(context_named(context), avatar, map, options(Method::kStatic));
     const auto captured = [&](float end) {
@@ -274,7 +277,7 @@ TEST(GeometryDetectorSkinning, LeavesMissesWithinItsBoundToTheCpuAndProvesThoseB
 TEST(GeometryDetectorSkinning, LeavesMissesWithinItsOwnRoundingToTheCpu) {
   const Avatar avatar = test::rigid_avatar({{0, -1, 0}, {0, 1, 0}, {1, 0, 0}}, {{0, 1, 2}});
   const ActuatorMap map;
-  const auto geometry = make_geometry_detector(make_osmesa_context(), avatar, map, options(Method::kStatic));
+  const auto geometry = make_geometry_detector(test::make_context(), avatar, map, options(Method::kStatic));
   const auto captured = [&](float aside) {
     ContactRow row;
     const DetectorFrame frame = test::frame_of(avatar, {{0, {-1000 - aside, 0, -1000}, {1000 - aside, 0, 1000}}});
@@ -297,8 +300,7 @@ TEST(GeometryDetectorSkinning, LiesWithinItsBoundOfTheCpusAndTheBoundIsMicrometr
                            parse_avatar_glb(read_avatar_glb(entry.path()), entry.path().string()));
   for (const auto& named : avatars) {
     const Avatar& avatar = named.second;
-    const auto geometry =
-        make_geometry_detector(make_egl_surfaceless_context(), avatar, builtin_map(), options(Method::kStatic));
+    const auto geometry = make_geometry_detector(test::make_context(), avatar, builtin_map(), options(Method::kStatic));
     std::vector<glm::vec3> vertices;
     std::vector<glm::vec3> expected;
     double largest = 0;

@@ -9,7 +9,8 @@
 
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/captured_pairs.hpp"
-#include "tests/detector/detectors/limited_context.hpp"
+#include "tests/support/gl/gl_context.hpp"
+#include "tests/support/gl/limited_context.hpp"
 #include "tests/support/message_of.hpp"
 #include "tests/support/small_avatar.hpp"
 
@@ -75,7 +76,7 @@ TEST(SmallStorageBlocks, ThatCannotHoldThePairsOfOneTriangleAreNamed) {
 }
 
 TEST(CapturedPairs, AreDrawnInRangesWhoseCountCannotWrap) {
-  const auto context = make_egl_surfaceless_context();
+  const auto context = test::make_context();
   CapturedPairs captured(current_gl(*context));
   std::vector<std::size_t> firsts;
   captured.capture(
@@ -114,7 +115,8 @@ TEST(DriversThatLinkNoLargeBlocks, AreGivenSmallerOnesAndLoseNoContact) {
 }
 
 TEST(ShaderArithmeticOfThisDriver, IsMeasuredInBothStagesAndBreaksNoProof) {
-  for (const auto make_context : {make_egl_surfaceless_context, make_osmesa_context}) {
+  // own context: OSMesa, beside the one of all tests
+  for (const auto make_context : {test::make_context, make_osmesa_context}) {
     const auto context = make_context();
     const std::vector<StageArithmetic>& stages = context->info().arithmetic;
     ASSERT_EQ(stages.size(), 2U);
@@ -137,6 +139,23 @@ TEST(ShaderArithmeticThatBreaksAProof, RefusesGeometryByNameWithTheCauseAndTheRe
   EXPECT_THAT(test::message_of([&] { require_proofs(gl); }),
               ::testing::AllOf(HasSubstr("--detector geometry"), HasSubstr("Chopper"), HasSubstr("toward zero"),
                                HasSubstr("1 + 2 is 2, not 3"), HasSubstr("--detector cpu")));
+}
+
+TEST(ShaderArithmeticThatIsNotMeasured, RefusesGeometryByNameAndNoOtherDetector) {
+  const Avatar avatar = pile_of(1);
+  const ActuatorMap map;
+  const auto refusing = [] { return LimitedContext::make({}, 1 << 30, test::Probe::kRefused); };
+  for (const Skip skip : {Skip::kOff, Skip::kOn})
+    EXPECT_THAT(
+        test::message_of([&] {
+          make_geometry_detector(refusing(), avatar, map, {Surface::kAll, PlaneSet(), Method::kStatic, skip});
+        }),
+        ::testing::AllOf(HasSubstr("--detector geometry"), HasSubstr("not measured"), HasSubstr("--detector cpu")));
+  const auto paper = make_paper_detector(refusing(), avatar, map, {});
+  EXPECT_TRUE(paper->gl_info().arithmetic.empty());
+  ContactRow row;
+  paper->detect(frame_through(avatar, 1), row);
+  EXPECT_TRUE(row[0].hit());
 }
 
 }  // namespace

@@ -12,9 +12,9 @@
 
 #include "detector/detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
-#include "detector/gl/gl_context.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "tests/support/builtin_avatar.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
 
@@ -47,7 +47,7 @@ std::unique_ptr<Detector> make_skipping_cpu_detector(const Avatar& avatar, const
 }
 
 std::unique_ptr<Detector> make_geometry(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
-  return make_geometry_detector(make_egl_surfaceless_context(), avatar, map, options);
+  return make_geometry_detector(test::make_context(), avatar, map, options);
 }
 
 std::unique_ptr<Detector> make_skipping_geometry(const Avatar& avatar, const ActuatorMap& map,

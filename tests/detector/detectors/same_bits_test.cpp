@@ -10,6 +10,7 @@
 #include "detector/gl/gl_context.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
+#include "tests/support/gl/gl_context.hpp"
 #include "tests/support/scenario_names.hpp"
 #include "tests/support/scene_run.hpp"
 
@@ -47,7 +48,8 @@ TEST_P(SameBits, ComeFromTheGeometryShaderInEveryContextSkippingOrNot) {
   DetectorOptions options = {Surface::kAll, kHashedPlanes, method};
   const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options);
   const std::string expected = hash_of(test::run_scene(scene, builtin_avatar(), colliders, *cpu));
-  for (const auto make_context : {make_egl_surfaceless_context, make_osmesa_context}) {
+  // own context: OSMesa, beside the one of all tests
+  for (const auto make_context : {test::make_context, make_osmesa_context}) {
     for (const Skip skip : {Skip::kOff, Skip::kOn}) {
       options.skip = skip;
       const auto geometry = make_geometry_detector(make_context(), builtin_avatar(), builtin_map(), options);
@@ -73,7 +75,7 @@ TEST(MappedSurface, GivesTheSameBitsFromTheCpuAndFromTheSlowTruth) {
   EXPECT_GT(truth.contacts(), 10U);
   EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *cpu)), hash_of(truth));
   for (const Skip skip : {Skip::kOff, Skip::kOn}) {
-    const auto geometry = make_geometry_detector(make_egl_surfaceless_context(), builtin_avatar(), builtin_map(),
+    const auto geometry = make_geometry_detector(test::make_context(), builtin_avatar(), builtin_map(),
                                                  {Surface::kMapped, kHashedPlanes, Method::kCcd, skip});
     EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *geometry)), hash_of(truth));
   }

@@ -7,19 +7,24 @@
 #include <string_view>
 #include <utility>
 
-#include "detector/gl/gl_context.hpp"
+#include "tests/support/gl/gl_context.hpp"
 
 namespace vestige::test {
 
 /// Limits that a driver might have, by their GL_MAX_ names. A viewport has both of its sides from one number.
 using Limits = std::map<GLenum, GLint>;
 
-/// An EGL context whose driver says that some of its limits are lower. It clamps viewports, as drivers do. It says that
-/// a program does not link whose head defines a BLOCK_SEGMENTS above `largest_block`. Only one may live at a time.
+/// Whether a driver accepts the probe of its shaders' arithmetic.
+enum class Probe { kAccepted, kRefused };
+
+/// The context of all tests, but its driver says that some of its limits are lower. It clamps viewports, as drivers do.
+/// It says that a program does not link whose head defines a BLOCK_SEGMENTS above `largest_block`, or that is a probe
+/// which it refuses. Only one may live at a time.
 class LimitedContext final : public GlContext {
  public:
-  static std::unique_ptr<GlContext> make(Limits limits, int largest_block = 1 << 30) {
+  static std::unique_ptr<GlContext> make(Limits limits, int largest_block = 1 << 30, Probe probe = Probe::kAccepted) {
     largest_block_ = largest_block;
+    probe_ = probe;
     return loaded(std::unique_ptr<GlContext>(new LimitedContext(std::move(limits))), "limited");
   }
   ~LimitedContext() override { leave(); }
@@ -28,7 +33,7 @@ class LimitedContext final : public GlContext {
   static GLsizeiptr largest_buffer_bytes() { return largest_buffer_bytes_; }
 
  private:
-  explicit LimitedContext(Limits limits) : real_(make_egl_surfaceless_context()) {
+  explicit LimitedContext(Limits limits) : real_(make_context()) {
     limits_ = std::move(limits);
     real_functions_ = &real_->gl();
     largest_buffer_bytes_ = 0;
@@ -77,12 +82,14 @@ class LimitedContext final : public GlContext {
     constexpr std::string_view kDefine = "#define BLOCK_SEGMENTS ";
     const std::string head(texts[0], static_cast<std::size_t>(lengths[0]));
     const std::size_t place = head.find(kDefine);
+    latest_is_probe_ = head.find("#define QUESTIONS ") != std::string::npos;
     latest_block_ = place == std::string::npos ? 0 : std::stoi(head.substr(place + kDefine.size()));
     real_functions_->ShaderSource(shader, count, texts, lengths);
   }
   static void APIENTRY get_program(GLuint program, GLenum name, GLint* value) {
     real_functions_->GetProgramiv(program, name, value);
-    if (name == GL_LINK_STATUS && latest_block_ > largest_block_) *value = GL_FALSE;
+    const bool refused = latest_block_ > largest_block_ || (latest_is_probe_ && probe_ == Probe::kRefused);
+    if (name == GL_LINK_STATUS && refused) *value = GL_FALSE;
   }
 
   std::unique_ptr<GlContext> real_;
@@ -92,6 +99,8 @@ class LimitedContext final : public GlContext {
   static inline GLsizeiptr largest_buffer_bytes_ = 0;
   static inline int largest_block_ = 0;
   static inline int latest_block_ = 0;
+  static inline Probe probe_ = Probe::kAccepted;
+  static inline bool latest_is_probe_ = false;
 };
 
 }  // namespace vestige::test
