@@ -26,9 +26,8 @@ class GlContext {
  protected:
   GlContext() = default;
   /// Makes a new context current, loads all functions, reads the driver's names and measures the shaders' arithmetic.
-  /// Throws `Error` if a function is
-  /// missing or the version is below 4.5. Call it when the object is complete, so that its destructor releases the
-  /// context after a failure.
+  /// Throws `Error` if a function is missing or the version is below 4.5. Call it when the object is complete, so that
+  /// its destructor releases the context after a failure.
   static std::unique_ptr<GlContext> loaded(std::unique_ptr<GlContext> context, std::string name);
   /// For destructors: releases the context if it is current.
   void leave();
