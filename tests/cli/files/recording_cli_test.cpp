@@ -227,10 +227,19 @@ TEST_F(Recording, RefusesFlagsThatContradictEachOther) {
            {"--live - --rate 60", "--rate"},
            {"--live - --colliders rain", "--colliders"},
            {"--live - --count 5", "--count"},
+           {"--live - --ignore-morphs", "--ignore-morphs"},
            {"--live - --origin 1,0,0", "--origin"},
            {"--live vmc://127.0.0.1:39539 --animation walk", "--animation"}})
     expect_failure("vestige record -o a.mcap " + flags, 2, {named}, "a.mcap");
   expect_failure("vestige record --split 5 -o -", 2, {"--split"});
+}
+
+TEST_F(Recording, ShorterThanAFrameIsWarnedOf) {
+  const test::Outcome outcome = run("vestige record --rate 100 --duration 0.005 -o short.mcap");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("--duration is shorter than a frame lasts at this --rate"));
+  EXPECT_EQ(frames_of("short.mcap").size(), 1U);
+  EXPECT_EQ(run("vestige record --rate 100 --duration 0.01 -o one.mcap").standard_error, "");
 }
 
 TEST_F(Recording, OfVeryManyFramesIsWarnedOf) {
