@@ -342,25 +342,6 @@ TEST_F(Recording, OfTheVmcProtocolIsWhatWasSent) {
   EXPECT_EQ(json["dropped_by_topic"]["input"], 1);
 }
 
-TEST_F(Recording, OfARingGivesASnapshotWhenAsked) {
-  const std::uint16_t port = test::free_udp_port();
-  test::BackgroundProcess recorder({"vestige", "record", "--live", fmt::format("vmc://127.0.0.1:{}", port), "--rate",
-                                    "100", "--ring", "60", "-o", (folder_ / "last.mcap").string()},
-                                   folder_ / "error");
-  const test::UdpSender sender(port);
-  for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "last-0001.mcap"); ++i) {
-    sender.send(test::collider(5, 1, 2, 3));
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    // Before it listens, the signal would end it.
-    if (i % 50 == 49 && read_text_file(folder_ / "error").find("listening") != std::string::npos)
-      recorder.signal(SIGUSR1);
-  }
-  recorder.signal(SIGTERM);
-  static_cast<void>(recorder.wait());
-  EXPECT_GT(frames_of("last-0001.mcap").size(), 0U);
-  EXPECT_GE(frames_of("last.mcap").size(), frames_of("last-0001.mcap").size());
-}
-
 TEST_F(Recording, OfARingOutlivesASnapshotThatFails) {
   std::filesystem::create_directory(folder_ / "last-0001.mcap");
   const std::uint16_t port = test::free_udp_port();
