@@ -93,9 +93,10 @@ void warn_of_frame_count(double frames, std::string_view way_out, Verbosity verb
   constexpr double kMany = 1e7;
   if (frames > kMany) warn(fmt::format("{:.0f} frames will take long; {}", frames, way_out), verbosity);
   if (frames < 1)
-    warn("--duration is shorter than a frame lasts at this --rate, so there is one frame, in which nothing moves; raise "
-         "--duration or --rate",
-         verbosity);
+    warn(
+        "--duration is shorter than a frame lasts at this --rate, so there is one frame, in which nothing moves; raise "
+        "--duration or --rate",
+        verbosity);
 }
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
