@@ -97,7 +97,7 @@ int run(int argc, char** argv) {
     return shown;
   } catch (const CLI::ParseError& error) {
     print_message(
-        fmt::format("vestige: error: {}\n  {}\n", help::cause_of(program, error), help::help_remedy(program)));
+        fmt::format("vestige: error: {}\n  {}\n", help::cause_of(program, error), help::remedy_of(program, error)));
     return kWrongUsage;
   }
   if (std::fflush(stdout) != 0) throw system_error("standard output", "could not write", errno);

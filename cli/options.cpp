@@ -89,9 +89,14 @@ void refuse_too_many_frames(double frames, const char* flag, const char* remedy)
         remedy);
 }
 
-void warn_of_many_frames(double frames, std::string_view way_out, Verbosity verbosity) {
+void warn_of_frame_count(double frames, std::string_view way_out, Verbosity verbosity) {
   constexpr double kMany = 1e7;
   if (frames > kMany) warn(fmt::format("{:.0f} frames will take long; {}", frames, way_out), verbosity);
+  if (frames < 1)
+    warn(
+        "--duration is shorter than a frame lasts at this --rate, so there is one frame, in which nothing moves; raise "
+        "--duration or --rate",
+        verbosity);
 }
 
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
@@ -113,6 +118,17 @@ void check_outputs(const std::vector<std::string>& outputs, const std::vector<st
     if (!seen.insert(std::filesystem::absolute(where_it_leads(path)).lexically_normal()).second)
       throw UsageError(path, "two results cannot share one file", "give each a different name");
   }
+}
+
+std::optional<std::string> refusal_unless_forced(const std::vector<std::string>& outputs, const CommonOptions& options,
+                                                 std::string_view accepted) {
+  if (!options.force) return "add --force";
+  for (const std::string& path : outputs) {
+    std::error_code ignored;
+    if (!path.empty() && !is_standard_output(path) && std::filesystem::exists(path, ignored))
+      return fmt::format("choose a new name for {}: where --force overwrites a file, it does not {}", path, accepted);
+  }
+  return std::nullopt;
 }
 
 void check_inputs(const std::vector<std::string>& inputs) {

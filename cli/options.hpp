@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/vec3.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,14 +46,21 @@ void make_output_folder(const std::string& path);
 /// Throws `UsageError` if a trace cannot hold this many frames.
 void refuse_too_many_frames(double frames, const char* flag, const char* remedy);
 
-/// Warns of a number of frames that may come from a mistyped rate or duration. `way_out` says how to end early.
-void warn_of_many_frames(double frames, std::string_view way_out, Verbosity verbosity);
+/// Warns of a number of frames, rate times duration, that may come from a mistyped rate or duration: very many, or less
+/// than one. `way_out` says how to end early.
+void warn_of_frame_count(double frames, std::string_view way_out, Verbosity verbosity);
 
 /// Throws `Error`, before any work is done, for outputs that could not be written at the end, or that would destroy an
 /// input: existing files without --force, two results in one place, or a result in the place of an input. Empty paths
 /// are outputs that were not requested.
 void check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
                    const CommonOptions& options);
+
+/// Returns the remedy for something that is refused unless --force accepts it; nothing if --force accepts it. While it
+/// overwrites one of `outputs`, it does not: whoever means the one must not get the other. `accepted` says what it
+/// would do: "take another attachment".
+std::optional<std::string> refusal_unless_forced(const std::vector<std::string>& outputs, const CommonOptions& options,
+                                                 std::string_view accepted);
 
 /// Throws `UsageError` if "-" occurs twice in a list of inputs: standard input can be read once.
 void check_inputs(const std::vector<std::string>& inputs);

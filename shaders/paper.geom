@@ -1,8 +1,8 @@
 // Tests one triangle against a block of segments. Emits one point for each contact, to the collider's pixel of the
 // collision texture: HAVE 2010 §III.A. The test is Möller & Trumbore 1997, "Fast, Minimum Storage Ray/Triangle
 // Intersection", in fp32. `precise` forbids contraction and reordering, which may depend on the planes and the
-// number of segments that the program is compiled for. A division may still differ: GLSL lets it err by 2.5 ulp. Depth is t / 2, so the depth test keeps the earliest contact (the paper does not say which
-// contact is kept).
+// number of segments that the program is compiled for. A division may still differ: GLSL lets it err by 2.5 ulp. Depth
+// is t / 2, so the depth test keeps the earliest contact (the paper does not say which contact is kept).
 
 layout(triangles) in;
 layout(points, max_vertices = BLOCK_SEGMENTS) out;

@@ -165,6 +165,9 @@ void Sender::send_state() {
   }
   const std::uint8_t sequence = next_sequence(changed);
   outstanding_[sequence].number = state_number_;
+  if (statistics_.acknowledged != 0)
+    statistics_.most_unanswered =
+        std::max<std::uint64_t>(statistics_.most_unanswered, static_cast<std::uint8_t>(sequence - answered_));
   sink_.send(state_, sequence);
   note_sent();
   if (!sink_.acknowledges()) heard_ = state_number_;
@@ -205,9 +208,6 @@ void Sender::give_back() {
 
 std::uint8_t Sender::next_sequence(const Posted* changed) {
   outstanding_[++sequence_] = {true, changed != nullptr, changed != nullptr ? changed->since : Clock::time_point(), 0};
-  if (statistics_.acknowledged != 0)
-    statistics_.most_unanswered =
-        std::max<std::uint64_t>(statistics_.most_unanswered, static_cast<std::uint8_t>(sequence_ - answered_));
   return sequence_;
 }
 

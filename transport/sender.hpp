@@ -46,9 +46,10 @@ struct SenderStatistics {
   std::uint64_t receive_errors = 0;  ///< damaged frames, by the board's count
   std::uint64_t links_lost = 0;      ///< number of times that the link was lost
   std::uint64_t bytes = 0;           ///< passed to the system
-  std::uint64_t most_unanswered =
-      0;                     ///< most frames under way at once; never grows, as there is no queue; 0: no answers
-  LatencyHistogram written;  ///< of changes: from `since` until the last byte was written
+  /// Most frames under way at once while states are sent: it stays small, as there is no queue. 0: no answers. The two
+  /// frames that switch off go out together and do not count.
+  std::uint64_t most_unanswered = 0;
+  LatencyHistogram written;             ///< of changes: from `since` until the last byte was written
   LatencyHistogram acknowledged_after;  ///< of changes: from `since` until their answer
   bool off_sent = false;
   bool off_acknowledged = false;    ///< the board acknowledged the frame OFF; false if it never answers

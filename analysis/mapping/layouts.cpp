@@ -128,7 +128,6 @@ MadeMap make_layout_map(const Avatar& avatar, std::string_view layout, const Wor
   const double layers = texture_layers(body.surface());
   if (layers > kMostLayers) {
     settings.per_triangle = true;
-    settings.empty = EmptyRegions::kLeaveOut;
     MadeMap by_triangle = make_map(body, plan, settings, layout, "the avatar");
     by_triangle.warnings.push_back(
         fmt::format("the avatar's texture coordinates cannot tell its skin apart: they cover the texture {:.0f} times "

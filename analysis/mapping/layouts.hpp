@@ -25,10 +25,14 @@ bool is_layout(std::string_view map);
 
 /// Returns the layout on this avatar as the two files of a map, with names, positions and warnings. The same avatar
 /// gives the same bytes. The map has 1024 x 1024 texels in the avatar's UV space. It has one texel for each triangle
-/// instead if the avatar has no UV space, if the triangles cover the texture more than four times over, or if more than
-/// 5 % of the layout's skin would fire another actuator. In the last case, it keeps its UV space if one texel for each
-/// triangle would leave out more actuators. Throws `Error` if
-/// there is no such layout, if a region has no skin (see `layout_empty_regions`), or if all regions have no skin.
+/// instead in three cases:
+/// - The avatar has no UV space.
+/// - The triangles cover the texture more than four times over. A warning says so.
+/// - More than 5 % of the layout's skin would fire another actuator. A warning says so. If one texel for each triangle
+///   would leave out more actuators, the map keeps its UV space.
+///
+/// Throws `Error` if there is no such layout, if a region has no skin (see `layout_empty_regions`), or if all regions
+/// have no skin.
 ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout);
 
 /// As `make_layout`, but returns everything that is known about how the map was made. Calls `progress` with the

@@ -80,6 +80,10 @@ std::size_t piece(double value, const Extent& interval, std::size_t count) {
   return static_cast<std::size_t>(std::clamp(number, 0.0, static_cast<double>(count - 1)));
 }
 
+SkinPatches sampled(const BodySurface& surface, std::uint32_t triangle, double step) {
+  return patches_of_length(surface, triangle, step * kPlanStep * surface.bounds().longest_side());
+}
+
 }  // namespace
 
 double RegionPlan::Frame::middle_z_at(double y_m) const {
@@ -94,7 +98,10 @@ double RegionPlan::Frame::angle_degrees(const glm::dvec3& position_m) const {
   return std::atan2(position_m.x - middle_x_m, position_m.z - middle_z_at(position_m.y)) * 180 / std::numbers::pi;
 }
 
-RegionPlan::RegionPlan(const Body& body, const std::vector<RegionSpec>& regions, std::string_view name) : body_(body) {
+RegionPlan::RegionPlan(const Body& body, const std::vector<RegionSpec>& regions, std::string_view name)
+    : body_(body), step_(affordable_step(body.surface(), kMostSamples, [&](std::uint32_t triangle, double step) {
+        return sampled(body.surface(), triangle, step);
+      })) {
   for (const RegionSpec& spec : regions) {
     const std::string where = fmt::format("{}, region '{}'", name, spec.name);
     Region region;
@@ -162,13 +169,8 @@ std::uint16_t RegionPlan::number_of(const std::string& actuator_name) {
 
 template <typename Visit>
 void RegionPlan::for_each_sample(const Visit& visit) const {
-  const BodySurface& surface = body_.surface();
-  const auto patches_of = [&](std::uint32_t triangle, double step) {
-    return patches_of_length(surface, triangle, step * kPlanStep * surface.bounds().longest_side());
-  };
-  const double step = affordable_step(surface, kMostSamples, patches_of);
   for (std::uint32_t i = 0; i < body_.avatar().triangles.size(); ++i)
-    patches_of(i, step).for_each([&](const SkinPoint& point) { visit(ask(point)); });
+    sampled(body_.surface(), i, step_).for_each([&](const SkinPoint& point) { visit(ask(point)); });
 }
 
 RegionPlan::PartChoice RegionPlan::part_choice(const std::string& text, const std::string& where) const {

@@ -91,6 +91,7 @@ class RegionPlan {
   void for_each_sample(const Visit& visit) const;
 
   const Body& body_;
+  double step_;  ///< of the samples, see affordable_step
   std::vector<Region> regions_;
   std::vector<std::string> names_;
   std::vector<std::optional<glm::dvec3>> given_position_m_;

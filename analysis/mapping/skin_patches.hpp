@@ -37,8 +37,9 @@ struct SkinPatches {
   }
 };
 
-/// Returns the least step, of 1, √2, 2 …, with which all triangles together have at most `most` patches: a body of many
-/// large triangles would otherwise take minutes. `patches_of` returns the patches of a triangle with a step.
+/// Returns the least step of 1, √2, 2, … with which all triangles together have at most `most` patches; 1024 if there
+/// is none. A body of many large triangles would otherwise take minutes. `patches_of` returns the patches of a triangle
+/// with a step.
 template <typename PatchesOf>
 double affordable_step(const BodySurface& surface, double most, const PatchesOf& patches_of) {
   double step = 1;

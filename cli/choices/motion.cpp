@@ -101,13 +101,21 @@ const Animation* choose_animation(const Avatar& avatar, const std::string& name_
   return animation;
 }
 
-LoadedMotion add_motion(Avatar& avatar, const std::string& path, const MotionChoice& choice, bool force,
-                        Verbosity verbosity) {
+LoadedMotion add_motion(Avatar& avatar, const std::string& path, const MotionChoice& choice,
+                        const std::vector<std::string>& outputs, const CommonOptions& common) {
+  const Verbosity verbosity = common.verbosity();
   const BvhMotion motion = read_bvh(path);
   for (const std::string& warning : motion.warnings) warn(warning, verbosity);
   LoadedMotion loaded = {motion.frame_time_s, motion.frame_count, motion.joints.size(), {}};
-  const RetargetOptions options = {metres_of_unit(choice.unit), direction_of(choice.up), force};
-  Animation animation = retarget(motion, avatar, options, path, loaded.report);
+  const RetargetOptions options = {metres_of_unit(choice.unit), direction_of(choice.up),
+                                   refusal_unless_forced(outputs, common, "accept a body that leans")};
+  Animation animation;
+  try {
+    animation = retarget(motion, avatar, options, path, loaded.report);
+  } catch (const Error&) {
+    say_what_matched(loaded.report, path, verbosity);  // the cause may be there
+    throw;
+  }
   animation.name = path;
   avatar.animations.push_back(std::move(animation));
   say_what_matched(loaded.report, path, verbosity);

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cli/terminal.hpp"
+#include "cli/options.hpp"
 #include "traces/motion/retarget.hpp"
 #include "traces/scene/avatar.hpp"
 
@@ -21,6 +21,11 @@ inline bool is_motion_file(const std::string& animation) {
 /// Warns about joints or nodes of the file at `path`. Prints nothing if `names` is empty.
 void warn_of_names(const std::string& path, std::string_view what, const std::vector<std::string>& names,
                    Verbosity verbosity);
+
+/// What the help of a flag that names motion capture says of --force.
+inline constexpr const char* kLeanHelp =
+    "A body whose head ends up more than 30 degrees away from the motion's, as seen from the hips, is refused; --force "
+    "takes it, if it overwrites no file";
 
 /// The flags that say how a motion capture file is to be understood.
 struct MotionChoice {
@@ -58,9 +63,10 @@ struct LoadedMotion {
 };
 
 /// Reads a BVH file, retargets it to the avatar and adds it to the avatar's animations, under the path of the file.
-/// Reports which joints matched, and what differs from the motion. `force` is RetargetOptions::force.
-LoadedMotion add_motion(Avatar& avatar, const std::string& path, const MotionChoice& choice, bool force,
-                        Verbosity verbosity);
+/// Reports which joints matched, and what differs from the motion. A body that leans
+/// another way is refused unless --force accepts it, see refusal_unless_forced.
+LoadedMotion add_motion(Avatar& avatar, const std::string& path, const MotionChoice& choice,
+                        const std::vector<std::string>& outputs, const CommonOptions& common);
 
 /// Describes joints and units in one line.
 std::string describe(const LoadedMotion& motion);

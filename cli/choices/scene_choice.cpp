@@ -49,6 +49,13 @@ void check_span(const TimeSpan& span, const SceneChoice& choice, double duration
 
 }  // namespace
 
+std::string describe_animations(std::string_view otherwise) {
+  return fmt::format(
+      "The avatar's animation, which loops: a name, an index, none, or motion capture, whose joints are matched to the "
+      "avatar's by their names ('vestige import' reports more). {} [default: {}]",
+      kLeanHelp, otherwise);
+}
+
 std::string describe_count() {
   std::string text = fmt::format("Number of colliders of a scenario [default: {}", scenarios().front().default_count);
   for (const Scenario& scenario : scenarios())
@@ -66,7 +73,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->capture_default_str()
       ->type_name("builtin|FILE");
   add_facing_option(verb, choice.facing);
-  verb.add_option("--animation", choice.animation, std::string(kAnimationHelp) + " [default: the first]")
+  verb.add_option("--animation", choice.animation, describe_animations("the first"))
       ->type_name("NAME|INDEX|none|FILE.bvh");
   add_morph_option(verb, choice.morphs);
   add_motion_options(verb, choice.motion);
@@ -94,8 +101,9 @@ void check_scene_choice(const SceneChoice& choice) {
     throw UsageError("--count", "the file sets the number of colliders", "leave --count out");
 }
 
-void load_motion(const SceneChoice& choice, Avatar& avatar, bool force, Verbosity verbosity) {
-  if (is_motion_file(choice.animation)) add_motion(avatar, choice.animation, choice.motion, force, verbosity);
+void load_motion(const SceneChoice& choice, Avatar& avatar, const std::vector<std::string>& outputs,
+                 const CommonOptions& common) {
+  if (is_motion_file(choice.animation)) add_motion(avatar, choice.animation, choice.motion, outputs, common);
 }
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,

@@ -5,6 +5,8 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "cli/choices/motion.hpp"
 #include "cli/choices/scene.hpp"
@@ -33,10 +35,8 @@ struct SceneChoice {
   std::uint32_t collider_count() const;
 };
 
-/// The help of --animation, without its default.
-inline constexpr const char* kAnimationHelp =
-    "The avatar's animation, which loops: a name, an index, none, or motion capture, whose joints are matched to the "
-    "avatar's by their names ('vestige import' reports more)";
+/// Returns the help of --animation; `otherwise` is its default.
+std::string describe_animations(std::string_view otherwise);
 
 inline constexpr const char* kNodesHelp =
     "The nodes of a glTF file that are colliders, as a pattern of names: 'ball*' [default: nodes named "
@@ -52,9 +52,10 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice);
 /// capture, --count with colliders from a file, --nodes with colliders that come from no glTF.
 void check_scene_choice(const SceneChoice& choice);
 
-/// If --animation names a motion file, adds the motion to the avatar's animations under that name. `force` is
-/// RetargetOptions::force.
-void load_motion(const SceneChoice& choice, Avatar& avatar, bool force, Verbosity verbosity);
+/// If --animation names a motion file, adds the motion to the avatar's animations under that name, by
+/// add_motion.
+void load_motion(const SceneChoice& choice, Avatar& avatar, const std::vector<std::string>& outputs,
+                 const CommonOptions& common);
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
                                                const Animation* animation, std::uint64_t seed);

@@ -69,13 +69,13 @@ void refuse_parts(const ImportOptions& options) {
                                                 {"--avatar", !options.avatar.empty()},
                                                 {"--map", !options.map.empty()},
                                                 {"--nodes", !options.nodes.empty()},
-                                                {"--rate", options.rate_hz.has_value()},
-                                                {"--unit", options.motion_choice.unit != "auto"},
-                                                {"--up", options.motion_choice.up != "auto"}};
+                                                {"--rate", options.rate_hz.has_value()}};
+  std::optional<std::string> named = options.motion_choice.given();
   for (const auto& [flag, is_named] : parts)
-    if (is_named)
-      throw UsageError(flag, fmt::format("'{}' has poses, colliders, avatar and map", options.from),
-                       fmt::format("leave {} out, or name every part by its flag", flag));
+    if (is_named) named = flag;
+  if (named)
+    throw UsageError(*named, fmt::format("'{}' has poses, colliders, avatar and map", options.from),
+                     fmt::format("leave {} out, or name every part by its flag", *named));
 }
 
 /// The files in a folder that `export` wrote.
@@ -221,8 +221,8 @@ void run_import(ImportOptions options, Invocation& invocation) {
   if (!options.from.empty() && !from_hdf5) expand_folder(options);
   if (!from_hdf5) check_flags(options);
   if (options.avatar.empty() && !from_hdf5) options.avatar = "builtin";
-  check_outputs({options.output, options.common.json},
-                {options.from, options.motion, options.poses, options.colliders, options.avatar, options.map},
+  const std::vector<std::string> outputs = {options.output, options.common.json};
+  check_outputs(outputs, {options.from, options.motion, options.poses, options.colliders, options.avatar, options.map},
                 options.common);
   if (options.output == "-") refuse_terminal("-o -");
 
@@ -233,7 +233,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
   Session session = provenance_texts(invocation.argv);
   session["colliders"] = options.colliders;
   if (!options.motion.empty()) {
-    motion = add_motion(scene.avatar, options.motion, options.motion_choice, options.common.force, verbosity);
+    motion = add_motion(scene.avatar, options.motion, options.motion_choice, outputs, options.common);
     play_motion(scene.avatar, *motion, options.rate_hz, frames);
     session["animation"] = options.motion;
     session["rate_hz"] = fmt::format("{}", options.rate_hz.value_or(1 / motion->frame_time_s));
@@ -290,7 +290,9 @@ void add_import(CLI::App& program, Invocation& invocation) {
           "A folder of CSV files, or an .h5 file, that 'vestige export' wrote: poses, colliders, avatar and map")
       ->type_name("DIR|FILE.h5");
   verb->add_option("--motion", options->motion,
-                   "Motion capture (BVH), frame by frame. Its joints are matched to the avatar's by their names")
+                   std::string("Motion capture (BVH), frame by frame. Its joints are matched to the avatar's by their "
+                               "names. ") +
+                       kLeanHelp)
       ->type_name("FILE.bvh");
   verb->add_option("--poses", options->poses,
                    "Poses of the avatar's own nodes, in rows time_s, NODE.tx ... NODE.sz; '-' is standard input")

@@ -114,8 +114,9 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const RecordingSettings settings = settings_of(options);
   const RecordingLimits limits = limits_of(options.limits, options.output);
-  check_outputs({limits.splits() ? part_path(options.output, 1).string() : options.output, options.common.json},
-                {options.scene.avatar, options.scene.map, options.scene.colliders, options.scene.animation},
+  const std::vector<std::string> outputs = {limits.splits() ? part_path(options.output, 1).string() : options.output,
+                                            options.common.json};
+  check_outputs(outputs, {options.scene.avatar, options.scene.map, options.scene.colliders, options.scene.animation},
                 options.common);
   refuse_part_name(options, limits);
   if (options.output == "-") refuse_terminal("-o -");
@@ -124,7 +125,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   const Animation* animation = nullptr;
   std::unique_ptr<ColliderSource> colliders;
   if (!options.live.is_live()) {
-    load_motion(options.scene, scene.avatar, options.common.force, verbosity);
+    load_motion(options.scene, scene.avatar, outputs, options.common);
     animation = choose_animation(scene.avatar, options.scene.animation, options.scene.morphs, verbosity);
     colliders = make_colliders(options.scene, scene.avatar, animation, options.common.seed);
     check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
@@ -132,7 +133,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
 
   const double frames = settings.rate_hz * settings.duration_s;
   if (!options.live.is_live())
-    warn_of_many_frames(frames, "Ctrl-C ends the recording early, with a complete trace up to then", verbosity);
+    warn_of_frame_count(frames, "Ctrl-C ends the recording early, with a complete trace up to then", verbosity);
   catch_interrupts();
   catch_snapshots(limits.ring_s && options.output != "-" ? Snapshots::kWanted : Snapshots::kIgnored);
   const auto start = std::chrono::steady_clock::now();

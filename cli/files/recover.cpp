@@ -26,8 +26,7 @@ struct RecoverOptions {
   std::string map;
 };
 
-/// Returns the substitutes that the flags name. --force takes one that is not the recorded one, but not while it also
-/// overwrites a file: whoever means the one must not get the other.
+/// Returns the substitutes that the flags name.
 Substitutes read_substitutes(const RecoverOptions& options) {
   Substitutes substitutes;
   if (!options.avatar.empty())
@@ -40,18 +39,9 @@ Substitutes read_substitutes(const RecoverOptions& options) {
     if (!json.empty())
       substitutes.map->files.emplace(trace_format::kMapTextName, std::vector<std::byte>(json.begin(), json.end()));
   }
-  std::string overwritten;
-  for (const std::string& path : {options.output, options.common.json}) {
-    std::error_code ignored;
-    if (path != "-" && !path.empty() && std::filesystem::exists(path, ignored)) overwritten = path;
-  }
-  if (!options.common.force)
-    substitutes.refusal = "add --force, and the new file says so";
-  else if (!overwritten.empty())
-    substitutes.refusal = fmt::format(
-        "choose a new name for {}: where --force overwrites a file, it does not take another attachment", overwritten);
-  else
-    substitutes.refusal.reset();
+  substitutes.refusal =
+      refusal_unless_forced({options.output, options.common.json}, options.common, "take another attachment");
+  if (!options.common.force) *substitutes.refusal += ", and the new file says so";
   return substitutes;
 }
 

@@ -26,6 +26,28 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// Whether the error is an unknown word, or a missing flag beside one.
+bool is_about_unknown(const CLI::App& program, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) return true;
+  const bool is_missing = error.get_name() == "RequiredError" || error.get_name() == "RequiresError";
+  return is_missing && program.remaining_size(true) > 0;
+}
+
+/// Returns the first flag of the command line that the named verb does not have, without its =VALUE; empty if there is
+/// none.
+std::string unknown_flag(const CLI::App& program) {
+  for (const std::string& word : program.remaining(true))
+    if (word.starts_with('-') && word.size() > 1) return word.substr(0, word.find('='));
+  return {};
+}
+
+std::vector<std::string> flags_of(const CLI::App& verb) {
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : verb.get_options())
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+  return flags;
+}
+
 }  // namespace
 
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> names) {
@@ -59,19 +81,22 @@ std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
   constexpr std::string_view kOverride = " was given a disallowed flag override";  // CLI11's words
   if (const std::string cause = error.what(); cause.ends_with(kOverride))
     return fmt::format("--{} takes no value", cause.substr(0, cause.size() - kOverride.size()));
-  const bool is_missing = error.get_name() == "RequiredError" || error.get_name() == "RequiresError";
-  if (!is_missing || program.remaining_size(true) == 0) return error.what();
-  return CLI::ExtrasError(program.remaining(true)).what();
+  if (!is_about_unknown(program, error)) return error.what();
+  if (const std::string flag = unknown_flag(program); !flag.empty()) return fmt::format("there is no flag '{}'", flag);
+  return fmt::format("not expected: '{}'", fmt::join(program.remaining(true), "', '"));
 }
 
-std::string help_remedy(const CLI::App& program) {
+std::string remedy_of(const CLI::App& program, const CLI::ParseError& error) {
   std::string name = program.get_name();
   const CLI::App* verb = &program;
   while (!verb->get_subcommands().empty()) {
     verb = verb->get_subcommands().front();
     name += " " + verb->get_name();
   }
-  return fmt::format("'{} --help' {}", name, verb == &program ? "lists the verbs" : "explains the verb");
+  const std::string word = is_about_unknown(program, error) ? unknown_flag(program) : "";
+  const std::vector<std::string> flags = flags_of(*verb);
+  return fmt::format("{}'{} --help' {}", did_you_mean(word, std::vector<std::string_view>(flags.begin(), flags.end())),
+                     name, verb == &program ? "lists the verbs" : "explains the verb");
 }
 
 }  // namespace vestige::help

@@ -166,7 +166,7 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   const std::size_t headline = metric_to_rank_by(batch.rank_by);
   check_outputs({batch.common.json}, batch.traces, batch.common);
   if (plan.has_scenario())
-    warn_of_many_frames(plan.recording.rate_hz * plan.recording.duration_s,
+    warn_of_frame_count(plan.recording.rate_hz * plan.recording.duration_s,
                         "Ctrl-C stops the batch, and the same command then continues after the last finished trace",
                         verbosity);
   catch_interrupts();

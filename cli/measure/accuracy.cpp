@@ -195,12 +195,12 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   const std::string errors_path = options.output + "/accuracy.json";
   const std::string run_path = options.output + "/run.json";
   make_output_folder(options.output);
-  check_outputs({errors_path, run_path, options.common.json}, {options.scene.avatar, options.scene.map},
-                options.common);
+  const std::vector<std::string> outputs = {errors_path, run_path, options.common.json};
+  check_outputs(outputs, {options.scene.avatar, options.scene.map}, options.common);
 
   catch_interrupts();
   Scene scene = load_scene(options.scene.avatar, options.scene.map, options.scene.facing, options.common.verbosity());
-  load_motion(options.scene, scene.avatar, options.common.force, options.common.verbosity());
+  load_motion(options.scene, scene.avatar, outputs, options.common);
   const Animation* animation =
       choose_animation(scene.avatar, choices.front().animation, options.scene.morphs, options.common.verbosity());
   const Measurement measurement(options, scene, animation, rates_hz);
@@ -256,7 +256,7 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));
   add_scene_options(*verb, options->scene);
   verb->get_option("--animation")
-      ->description(std::string(kAnimationHelp) + " [default: walk for the built-in avatar, otherwise the first]");
+      ->description(describe_animations("walk for the built-in avatar, otherwise the first"));
   verb->remove_option(verb->get_option("--colliders"));  // here it is a list, too
   verb->add_option("--colliders", options->colliders,
                    "Where the colliders come from: scenarios and files, with commas between them, each measured "

@@ -270,9 +270,11 @@ std::string summary(const ReplayResult& result, const Run& run) {
                   counted(run.colliders, "collider"), counted(result.contacts, "contact"),
                   static_cast<double>(result.frames) / result.detection_s);
   if (run.picked) text += fmt::format("picked {} ({})\n", describe_picked(*run.picked), run.picked->why);
-  for (std::size_t i = 0; i < map.actuator_count; ++i)
-    text += fmt::format("  {:<24} {:>8} contacts\n", map.names[i], result.contacts_of_actuator[i + 1]);
-  text += fmt::format("  {:<24} {:>8} contacts\n", "(no actuator)", result.contacts_of_actuator[0]);
+  const auto add_row = [&](std::string_view actuator, std::uint64_t contacts) {
+    text += fmt::format("  {:<24} {:>8} {}\n", actuator, contacts, contacts == 1 ? "contact" : "contacts");
+  };
+  for (std::size_t i = 0; i < map.actuator_count; ++i) add_row(map.names[i], result.contacts_of_actuator[i + 1]);
+  add_row("(no actuator)", result.contacts_of_actuator[0]);
   if (detector.triangles_left_out() != 0)
     text += fmt::format("left out: {} of {} triangles, which no actuator covers\n", detector.triangles_left_out(),
                         run.trace.avatar.triangles.size());

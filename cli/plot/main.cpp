@@ -69,7 +69,7 @@ int run(int argc, char** argv) {
     return shown;
   } catch (const CLI::ParseError& error) {
     vestige::print_message(
-        fmt::format("vestige: error: {}\n  {}\n", help::cause_of(app, error), help::help_remedy(app)));
+        fmt::format("vestige: error: {}\n  {}\n", help::cause_of(app, error), help::remedy_of(app, error)));
     return vestige::cli::kWrongUsage;
   }
   if (options.output == "-")

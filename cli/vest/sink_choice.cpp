@@ -236,8 +236,7 @@ std::string OpenSink::describe_link(std::uint64_t bytes) const {
 std::string doubt_about_off(const SenderStatistics& statistics, const ActuatorSink& sink) {
   if (!statistics.off_sent)
     return "the frames that switch all actuators off at the end could not be sent; a board that has a time-out "
-           "switches "
-           "them off itself";
+           "switches them off itself";
   if (!sink.acknowledges() || statistics.off_acknowledged) return "";
   if (statistics.zeros_acknowledged)
     return "the last frame, OFF, was not acknowledged, but the state before it was, in which all levels are 0: the "

@@ -116,6 +116,12 @@ std::string describe(const LatencyHistogram& latency) {
                      latency.quantile_us(0.95) / 1e3, latency.quantile_us(0.99) / 1e3, latency.max_us() / 1e3);
 }
 
+/// Returns what is known of the frames that switch everything off at the end.
+const char* off_at_end(const SenderStatistics& sender, const ActuatorSink& sink) {
+  if (doubt_about_off(sender, sink).empty()) return sink.acknowledges() ? "acknowledged" : "sent";
+  return sender.zeros_acknowledged ? "all levels 0 acknowledged, OFF not" : "NOT CONFIRMED";
+}
+
 std::string summary(const Streamed& streamed, const OpenSink& sink) {
   const PlaybackResult& playback = streamed.playback;
   const SenderStatistics& sender = streamed.sender;
@@ -129,10 +135,7 @@ std::string summary(const Streamed& streamed, const OpenSink& sink) {
   if (sender.written.count() != 0) text += fmt::format("contact to last byte written: {}\n", describe(sender.written));
   if (sender.acknowledged_after.count() != 0)
     text += fmt::format("contact to acknowledgement:   {}\n", describe(sender.acknowledged_after));
-  const bool is_doubtful = !doubt_about_off(sender, sink.sink()).empty();
-  text += fmt::format("all actuators off at the end: {}\n", is_doubtful                  ? "NOT CONFIRMED"
-                                                            : sink.sink().acknowledges() ? "acknowledged"
-                                                                                         : "sent");
+  text += fmt::format("all actuators off at the end: {}\n", off_at_end(sender, sink.sink()));
   return text + sink.describe_link(sender.bytes);
 }
 

@@ -325,6 +325,13 @@ TEST_F(CommandLine, ReportsAFullDiskOnStandardOutput) {
   expect_failure("vestige --help >/dev/full", 1, {"standard output"});
 }
 
+TEST_F(CommandLine, CountsOneContactInTheSingular) {
+  ASSERT_EQ(run("vestige record --colliders hug --rate 100 --duration 0.1 -o hug.mcap").exit_code, 0);
+  const std::string text = run("vestige replay hug.mcap").standard_output;
+  EXPECT_THAT(text, ::testing::ContainsRegex("torso, right +1 contact\n"));
+  EXPECT_THAT(text, ::testing::ContainsRegex("torso, left +[0-9]+ contacts\n"));
+}
+
 TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   record_small();
   expect_failure("vestige", 2, {});
@@ -335,8 +342,13 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige record -o x.mcap --seed -1", 2, {"--seed"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --origin 1e300,0,0", 2, {"--origin"}, "x.mcap");
   expect_failure("vestige record", 2, {"--output"});
-  expect_failure("vestige record --ouput x.mcap", 2, {"--ouput"}, "x.mcap");
-  expect_failure("vestige replay small.mcap --planes t --texture t.exr", 2, {"not expected", "--texture"}, "t.exr");
+  expect_failure("vestige record --ouput x.mcap", 2, {"no flag '--ouput'", "did you mean '--output'?"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --cuont=5", 2, {"no flag '--cuont'", "did you mean '--count'?"}, "x.mcap");
+  expect_failure("vestige map make --layuot paper6 -o a.png", 2, {"did you mean '--layout'?"}, "a.png");
+  expect_failure("vestige inspect small.mcap one two", 2, {"not expected: 'one', 'two'"});
+  expect_failure("vestige replay small.mcap --planes t --texture t.exr", 2,
+                 {"there is no flag '--texture'", "did you mean '--textures'?"}, "t.exr");
+  expect_failure("vestige replay small.mcap --texture t.exr", 2, {"there is no flag '--texture'"}, "t.exr");
   expect_failure("ln -s both one && ln -s both two && vestige replay small.mcap --contacts one --timeline two", 2,
                  {"two results cannot share one file"}, "both");
   expect_failure("vestige map check --bogus", 2, {"--bogus", "'vestige map check --help' explains the verb"});

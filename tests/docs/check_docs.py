@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks the documentation: README.md, CONTRIBUTING.md, CHANGELOG.md and docs/. Prints every break as FILE:LINE: WHAT.
+"""Checks the documentation: every *.md file under git. Prints every break as FILE:LINE: WHAT.
 
 1. Every relative link and image leads to something, its #anchor included.
 2. README.md has at most 150 lines, and names every verb of the program. docs/README.md leads to every page of docs/.
@@ -43,8 +43,8 @@ Command = collections.namedtuple("Command", "line text output")
 
 
 def pages_of(root):
-    named = [root / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")]
-    return named + sorted((root / "docs").rglob("*.md"))
+    tracked = subprocess.run(["git", "ls-files", "*.md"], cwd=root, check=True, capture_output=True, text=True).stdout
+    return [root / name for name in tracked.splitlines() if (root / name).exists()]
 
 
 def parse(text):

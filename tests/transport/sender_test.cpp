@@ -144,6 +144,7 @@ TEST_F(SenderTest, AStateIsSentAndRefreshedUntilTheEndSwitchesItOff) {
   EXPECT_EQ(statistics.superseded, 0U);
   EXPECT_TRUE(statistics.off_acknowledged);
   EXPECT_TRUE(statistics.zeros_acknowledged);
+  EXPECT_EQ(statistics.most_unanswered, 1U) << "each state was answered before the next";
 }
 
 TEST_F(SenderTest, ABoardThatDoesNotKnowOffEndsOffAllTheSame) {

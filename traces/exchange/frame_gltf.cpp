@@ -78,6 +78,11 @@ Builder continued(std::span<const std::byte> glb) {
   return builder;
 }
 
+/// Returns the only scene of such a file.
+Json& scene_of(Builder& builder) {
+  return builder.json["scenes"][0];
+}
+
 int add_sphere(Builder& builder) {
   const Sphere sphere = make_sphere();
   const int position = builder.add_bounded_accessor(sphere.positions, "VEC3", 3, gltf::Target::kVertices);
@@ -142,7 +147,6 @@ class FrameGltf final : public TraceExport {
   Columns add_animation(Builder& builder, std::optional<int> origin, const std::vector<int>& colliders) const;
   int begin_animation(Builder& builder) const;
   void add_channel(Builder& builder, Columns& columns, int input, const Channel& channel) const;
-  Json& scene_of(Builder& builder) const;
   void write_glb(Builder& builder, const Columns& columns);
 
   OutputFile file_;
@@ -251,18 +255,6 @@ void FrameGltf::place_nodes(Builder& builder) const {
     node["rotation"] = {numbers[3], numbers[4], numbers[5], numbers[6]};
     node["scale"] = {numbers[7], numbers[8], numbers[9]};
   }
-}
-
-Json& FrameGltf::scene_of(Builder& builder) const {
-  Json& json = builder.json;
-  if (!json.contains("scenes") || json["scenes"].empty()) {
-    Json roots = Json::array();
-    for (std::size_t i = 0; i < avatar_.nodes.size(); ++i)
-      if (avatar_.nodes[i].parent < 0) roots.push_back(i);
-    json["scenes"] = Json::array({{{"nodes", roots}}});
-  }
-  if (!json.contains("scene")) json["scene"] = 0;
-  return json["scenes"][json["scene"].get<std::size_t>()];
 }
 
 /// Adds a node above the avatar if the avatar's origin moves in the world. A skinned mesh follows its joints and stays

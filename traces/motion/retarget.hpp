@@ -23,7 +23,8 @@ struct JointMatch {
 struct RetargetOptions {
   std::optional<double> metres_per_unit = {};  ///< scale of the body's travel; otherwise the ratio of both bodies' legs
   std::optional<glm::dvec3> up = {};           ///< the direction that is up in the motion's file; otherwise find_up's
-  bool force = false;                          ///< accept a body that leans another way than the motion's
+  /// The remedy of the error that refuses a body that leans another way than the motion's. Nothing: it is accepted.
+  std::optional<std::string> refusal = "";
 };
 
 /// A direction of the body that differs between motion and avatar.
@@ -73,8 +74,9 @@ inline constexpr double kBodyTolerance_deg = 30;
 ///
 /// Joints are matched by their role in a body (body_roles.hpp), spines from both ends, then the rest by name. Throws
 /// `Error` with the motion's name if the hips, or both an arm and a leg, match nothing (nodes with a `fixed_matrix` do
-/// not count). Throws it, without `force`, if the direction from hips to head differs by more than kBodyTolerance_deg.
-/// Also throws if the animation would hold more than 2^26 numbers, or many more than the motion has.
+/// not count). With a `refusal`, throws it also if the direction from hips to head differs by more than
+/// kBodyTolerance_deg. Also throws if the animation would hold more than 2^26 numbers, or many more than the motion
+/// has.
 Animation retarget(const BvhMotion& motion, const Avatar& avatar, const RetargetOptions& options,
                    const std::string& name, RetargetReport& report);
 

@@ -4,20 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
-#include <tuple>
 #include <utility>
 
 #include "traces/base/error.hpp"
-#include "traces/base/sha256.hpp"
-#include "traces/mcap/check/chunk_salvage.hpp"
-#include "traces/mcap/crc32.hpp"
 #include "traces/mcap/decode.hpp"
-#include "traces/mcap/record_walker.hpp"
-#include "traces/repair/frame_gate.hpp"
-#include "traces/trace_file/definitions.hpp"
-#include "traces/trace_file/mcap_output.hpp"
-#include "traces/trace_file/trace_nodes.hpp"
+#include "traces/repair/recoverer.hpp"
 
 namespace vestige {
 
@@ -30,7 +21,6 @@ using mcap::RecordPlace;
 using mcap::Trust;
 using trace_format::Stream;
 
-constexpr std::string_view kDamagedSuffix = ".damaged";
 constexpr std::size_t kMostRepairsTold = 100;
 
 /// Whether records of this kind describe other records. The new file gets its own instead.
@@ -58,84 +48,21 @@ std::string profile_of(const Definitions& definitions) {
   return streams.find(Stream::kPose) == nullptr ? std::string() : std::string(trace_format::kProfile);
 }
 
-/// The node names in the metadata of a file's channels /pose: those of the first such channel. A channel with other
-/// names belongs to none of the file's frames.
-class PoseNodes {
- public:
-  bool agrees(const mcap::Channel& channel) {
-    if (channel.topic != trace_format::channel_of(Stream::kPose).topic) return true;
-    auto names = parse_node_names(channel);
-    if (std::exchange(known_, true)) return names == names_;
-    names_ = std::move(names);
-    return true;
-  }
-
- private:
-  bool known_ = false;
-  std::optional<std::vector<std::string>> names_;
-};
-
 Definitions without_contradictions(Definitions definitions, PoseNodes& pose_nodes) {
   std::erase_if(definitions.channels, [&](const auto& entry) { return !pose_nodes.agrees(entry.second); });
   return definitions;
 }
 
-class Recoverer {
- public:
-  Recoverer(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, Definitions definitions,
-            ReplacementPlan plan = {})
-      : source_(source),
-        plan_(std::move(plan)),
-        walker_(source, mcap::MagicBytes::kMayBeBroken),
-        output_(sink, profile_of(definitions), definitions.compression.value_or(mcap::Compression::kNone),
-                without_contradictions(definitions, pose_nodes_)),
-        gate_(output_.streams(), [this](const mcap::Message& message) { write(message); }) {}
+}  // namespace
 
-  Recovery run(const std::function<bool(double)>& progress);
-  /// After `run`.
-  AttachmentFacts facts() const;
-
- private:
-  void take_damages();
-  void take_damage(const mcap::Damage& damage);
-  void take(const RecordPlace& place);
-  void take_record(Opcode opcode, Bytes content, std::uint64_t offset);
-  void take_chunk(Bytes content);
-  void take_misnamed(Bytes content, std::uint64_t offset);
-  void take_attachment(Bytes content);
-  void take_metadata(mcap::Metadata metadata);
-  void note_attachment(const mcap::Attachment& attachment, std::string_view name, bool is_whole);
-  void replace(const std::string& name, const Replacement& replacement);
-  void write_replaced();
-  void take_data_end(const RecordPlace& place, Bytes content);
-  void take_records(Bytes records);
-  void take_remains(Bytes records);
-  void take_inner(Opcode opcode, Bytes content, Trust trust);
-  void write(const mcap::Message& message);
-  void learn_node_count();
-  std::uint64_t bytes_of_rebuilt(const mcap::Damage& damage);
-  void repaired(std::string what);
-  void count_messages();
-  void finish();
-
-  const mcap::ByteSource& source_;
-  ReplacementPlan plan_;
-  AttachmentFacts facts_;
-  std::set<std::string> replaced_;  ///< names in plan_ that are written
-  mcap::RecordWalker walker_;
-  PoseNodes pose_nodes_;
-  McapOutput output_;
-  FrameGate gate_;
-  Recovery result_;
-  mcap::RawBuffer content_;
-  mcap::RawBuffer expanded_;
-  std::uint64_t messages_found_ = 0;
-  std::uint64_t unknown_messages_ = 0;
-  std::uint32_t crc_ = mcap::crc32(std::as_bytes(std::span(mcap::kMagic)));
-  std::uint64_t crc_end_ = mcap::kMagicBytes;  ///< the end of the bytes that crc_ covers
-  bool data_ended_ = false;
-  bool nodes_known_ = false;
-};
+Recoverer::Recoverer(const mcap::ByteSource& source, const mcap::Writer::Sink& sink, Definitions definitions,
+                     ReplacementPlan plan)
+    : source_(source),
+      plan_(std::move(plan)),
+      walker_(source, mcap::MagicBytes::kMayBeBroken),
+      output_(sink, profile_of(definitions), definitions.compression.value_or(mcap::Compression::kNone),
+              without_contradictions(definitions, pose_nodes_)),
+      gate_(output_.streams(), [this](const mcap::Message& message) { write(message); }) {}
 
 void Recoverer::repaired(std::string what) {
   if (result_.repaired.size() < kMostRepairsTold) result_.repaired.push_back(std::move(what));
@@ -299,83 +226,6 @@ void Recoverer::take_record(Opcode opcode, Bytes content, std::uint64_t offset) 
   }
 }
 
-void Recoverer::take_metadata(mcap::Metadata metadata) {
-  if (metadata.name == trace_format::kReplacedName) {
-    facts_.claims.replaced = std::move(metadata.metadata);  // written at the end, as it is then
-    return;
-  }
-  if (metadata.name == trace_format::kSessionName) facts_.claims.session = metadata.metadata;
-  output_.write(metadata);
-  ++result_.metadata;
-}
-
-AttachmentFacts Recoverer::facts() const {
-  AttachmentFacts facts = facts_;
-  facts.claims.pose = pose_metadata(output_.streams());
-  if (const mcap::Channel* pose = output_.streams().find(Stream::kPose))
-    if (const auto names = parse_node_names(*pose)) facts.pose_nodes = names->size();
-  return facts;
-}
-
-void Recoverer::note_attachment(const mcap::Attachment& attachment, std::string_view name, bool is_whole) {
-  if (std::ranges::find(trace_format::kAttachmentNames, name) == trace_format::kAttachmentNames.end()) return;
-  if (is_whole && attachment.name == name)
-    facts_.sha256[attachment.name] = sha256_hex(attachment.data);
-  else
-    facts_.damaged.emplace(name);
-}
-
-void Recoverer::take_attachment(Bytes content) {
-  mcap::Attachment attachment = mcap::decode_attachment(content);
-  const bool is_whole = mcap::attachment_crc_holds(content, attachment);
-  const bool was_damaged = attachment.name.ends_with(kDamagedSuffix);
-  const std::string name =
-      attachment.name.substr(0, attachment.name.size() - (was_damaged ? kDamagedSuffix.size() : 0));
-  note_attachment(attachment, name, is_whole);
-  if (const auto planned = plan_.attachments.find(name); planned != plan_.attachments.end()) {
-    replace(name, planned->second);
-    // A damaged original stays beside a substitute that is not the recorded one.
-    if (planned->second.is_recorded || (is_whole && !was_damaged)) return;
-  }
-  if (is_whole) {
-    ++result_.attachments;
-  } else {
-    // Keep it, but under a name that nobody mistakes for the undamaged attachment.
-    result_.damaged_attachments.push_back(attachment.name);
-    attachment.name += kDamagedSuffix;
-  }
-  output_.write(attachment);
-}
-
-/// Writes what takes the place of an attachment, once.
-void Recoverer::replace(const std::string& name, const Replacement& replacement) {
-  if (!replaced_.insert(name).second) return;
-  result_.replaced.push_back({.name = name,
-                              .from = replacement.from,
-                              .is_recorded = replacement.is_recorded,
-                              .is_left_out = replacement.data == nullptr});
-  if (replacement.is_recorded)
-    repaired(fmt::format("{} takes the place of the attachment {}; its SHA-256 is the recorded one", replacement.from,
-                         name));
-  if (replacement.data == nullptr) return;
-  output_.write(trace_format::attachment_of(name, *replacement.data));
-  ++result_.attachments;
-}
-
-/// Writes the metadata record `replaced`, if something in the new file is not as recorded.
-void Recoverer::write_replaced() {
-  mcap::StringMap replaced = facts_.claims.replaced;
-  for (const auto& [name, replacement] : plan_.attachments) {
-    replaced.erase(name);
-    if (!replacement.is_recorded)
-      replaced[name] =
-          replacement.data == nullptr ? std::string(trace_format::kLeftOut) : sha256_hex(*replacement.data);
-  }
-  if (replaced.empty()) return;
-  output_.write(mcap::Metadata{.name = std::string(trace_format::kReplacedName), .metadata = std::move(replaced)});
-  ++result_.metadata;
-}
-
 void Recoverer::take_chunk(Bytes content) {
   const mcap::ChunkRemains remains = mcap::salvage_chunk(content, expanded_);
   const std::uint64_t before = messages_found_;
@@ -482,8 +332,6 @@ void Recoverer::finish() {
                      {"messages_unverified", fmt::format("{}", result_.messages_unverified)}}});
   output_.finish();
 }
-
-}  // namespace
 
 Recovery recover_mcap(const mcap::ByteSource& source, const mcap::Writer::Sink& sink,
                       const std::function<bool(double)>& progress, const Substitutes& substitutes) {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -223,6 +225,20 @@ TEST(Layouts, GoByTriangleAtOnceWhereManyTrianglesCoverAllOfTheTexture) {
   EXPECT_TRUE(std::ranges::is_sorted(shares));
   EXPECT_GT(shares.size(), 10U);
   EXPECT_LE(shares.back(), 1);
+}
+
+TEST(Layouts, ThatLackSkinAreRefusedHoweverTheTextureIsCovered) {
+  Avatar hollow = test::builtin_avatar();  // open at the left of the front
+  std::erase_if(hollow.triangles, [&](const glm::uvec3& triangle) {
+    return std::ranges::any_of(std::array{triangle.x, triangle.y, triangle.z}, [&](std::uint32_t corner) {
+      return hollow.position_bind[corner].x > 0 && hollow.position_bind[corner].z > 0;
+    });
+  });
+  const auto refusal = [&] { return message_of([&] { make_layout(hollow, "torso16"); }); };
+  EXPECT_THAT(refusal(), HasSubstr("no skin belongs to it"));
+  for (std::size_t i = 0; i < hollow.texture_coordinate.size(); ++i)
+    hollow.texture_coordinate[i] = glm::vec2(i % 3 == 1 ? 1 : 0, i % 3 == 2 ? 1 : 0);
+  EXPECT_THAT(refusal(), HasSubstr("no skin belongs to it")) << "other actuators would get its number";
 }
 
 TEST(Layouts, LeaveNoActuatorOutThatIsSmallerThanATriangle) {

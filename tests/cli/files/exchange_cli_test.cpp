@@ -302,6 +302,27 @@ TEST_F(Exchange, WhoLiesInMotionCaptureLiesInTheTrace) {
   expect_failure("vestige import --motion lying.bvh --up x -o b.mcap", 2, {"--up"}, "b.mcap");
 }
 
+TEST_F(Exchange, ABodyThatLeansAnotherWayIsTakenByForceUnlessThatOverwritesAFile) {
+  std::string bow = kWalk;
+  bow.replace(bow.find("mixamorig:Spine"), 15, "pole");  // so that the avatar's back stays straight
+  bow.replace(bow.find("0 100 20 0 0 0 0 0"), 18, "0 100 20 0 0 0 0 80");
+  write("bow.bvh", bow);
+  for (const std::string command :
+       {"vestige import --motion bow.bvh", "vestige record --animation bow.bvh --duration 0.1"}) {
+    expect_failure(
+        command + " -o b.mcap", 1,
+        {"follows these joints: pole", "bow.bvh: frame 1: from hips to head, the avatar points", "add --force"},
+        "b.mcap");
+    write("mine.mcap", "mine");
+    expect_failure(command + " --force -o mine.mcap", 1, {"bow.bvh: frame 1", "choose a new name for mine.mcap"});
+    EXPECT_TRUE(read_text_file(folder_ / "mine.mcap") == "mine");
+    const test::Outcome taken = run(command + " --force -o b.mcap");
+    EXPECT_EQ(taken.exit_code, 0) << taken.standard_error;
+    EXPECT_THAT(taken.standard_error, HasSubstr("hips to head: the avatar's direction differs by up to"));
+    std::filesystem::remove(folder_ / "b.mcap");
+  }
+}
+
 TEST_F(Exchange, JointsOfAnyNameAreNamedBriefly) {
   std::string walk = kWalk;
   walk.replace(walk.find("mixamorig:Spine"), 15, "\x1b[31mtail" + std::string(100'000, 'x'));

@@ -12,14 +12,6 @@ using ::testing::HasSubstr;
 
 using BatchCommandLine = test::BatchCommandLine;
 
-TEST_F(BatchCommandLine, IsTheSameBytesWhateverTheJobs) {
-  record({"a.mcap", "b.mcap", "c.mcap"});
-  const std::string command = "vestige batch --maps builtin paper6 --traces a.mcap b.mcap c.mcap ";
-  ASSERT_EQ(run(command + "--jobs 1 -o one").exit_code, 0);
-  ASSERT_EQ(run(command + "--jobs 2 -o two").exit_code, 0);
-  expect_same_results("one", "two");
-}
-
 TEST_F(BatchCommandLine, ShardsMergeIntoTheBytesOfAWholeBatch) {
   record({"a.mcap", "b.mcap", "c.mcap", "d.mcap", "e.mcap"});
   const std::string command =

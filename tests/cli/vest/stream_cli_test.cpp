@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/command_line.hpp"
+#include "tests/cli/vest/board_command_line.hpp"
 #include "tests/support/duty_rows.hpp"
 
 namespace vestige {
@@ -39,20 +39,7 @@ Levels steps_of(std::size_t motor, const std::vector<Row>& rows) {
   return steps;
 }
 
-class StreamCommand : public test::CommandLineTest {
- protected:
-  void record(const std::string& flags) const {
-    ASSERT_EQ(run("vestige record -q -o trace.mcap " + flags).exit_code, 0);
-  }
-
-  /// Runs `command` beside a board whose pty is called 'vest' and whose pins end up in pins.csv.
-  test::Outcome run_with_board(const std::string& command, const std::string& firmware = "vest-atmega1280") const {
-    return run("simulated_board '" VESTIGE_FIRMWARE_DIR "/" + firmware +
-               ".elf' --link vest --duties pins.csv >board.txt 2>&1 & board=$!\n"
-               "for i in $(seq 200); do [ -e vest ] && break; sleep 0.05; done\n" +
-               command + "\ncode=$?; kill -INT $board; wait $board; exit $code");
-  }
-};
+using StreamCommand = test::BoardCommandLine;
 
 TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
   record("--count 60 --rate 500 --duration 3");

@@ -145,6 +145,7 @@ TEST_F(StreamToOtherSinks, ABoardThatDoesNotAnswerIsSaidAndStreamedToAllTheSame)
   EXPECT_FALSE(json_in("stream.json")["off_acknowledged"]);
   EXPECT_FALSE(json_in("stream.json")["zeros_acknowledged"]);
   EXPECT_THAT(outcome.standard_error, HasSubstr("nothing confirms that all actuators are off"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("all actuators off at the end: NOT CONFIRMED"));
 }
 
 /// A board that knows hello and states, and takes all other frames for noise. It writes its levels to 'levels' whenever
@@ -208,7 +209,7 @@ TEST_F(StreamToOtherSinks, ABoardThatDoesNotKnowOffEndsOffAndWhatItDidNotConfirm
   const test::Outcome outcome = with_board("vestige stream trace.mcap --port vest --hold 1e6 --json stream.json");
   EXPECT_EQ(outcome.exit_code, 3) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_error, HasSubstr("the board may not know OFF"));
-  EXPECT_THAT(outcome.standard_output, HasSubstr("all actuators off at the end: NOT CONFIRMED"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("all actuators off at the end: all levels 0 acknowledged, OFF not"));
   EXPECT_TRUE(json_in("stream.json")["off_sent"]);
   EXPECT_FALSE(json_in("stream.json")["off_acknowledged"]);
   EXPECT_TRUE(json_in("stream.json")["zeros_acknowledged"]);

@@ -223,7 +223,7 @@ TEST(Retarget, PeopleDoWhatTheMotionDoesInEveryConvention) {
   }
 }
 
-TEST(Retarget, ABodyThatCannotBendAsTheMotionDoesIsRefusedUnlessForced) {
+TEST(Retarget, ABodyThatCannotBendAsTheMotionDoesIsRefusedUnlessItIsAccepted) {
   Avatar stiff = mannequin();
   for (Node& node : stiff.nodes)
     if (node.name.ends_with("_spine") || node.name == "neck") node.name = "stick";
@@ -238,13 +238,13 @@ TEST(Retarget, ABodyThatCannotBendAsTheMotionDoesIsRefusedUnlessForced) {
   EXPECT_EQ(body->frame, 1U);
   const BvhMotion bow = person(test::bvh_frame("0 95 0") + test::bvh_frame("0 95 0", test::kSpineX, 80), 2);
   try {
-    retarget(bow, stiff, {}, "bow.bvh", report);
+    retarget(bow, stiff, {.refusal = "bend it"}, "bow.bvh", report);
     ADD_FAILURE() << "retargeted";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("bow.bvh: frame 1: from hips to head, the avatar points"));
-    EXPECT_THAT(error.what(), testing::HasSubstr("--force"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("to accept this lean, bend it"));
   }
-  retarget(bow, stiff, {.force = true}, "bow.bvh", report);
+  retarget(bow, stiff, {.refusal = std::nullopt}, "bow.bvh", report);
   EXPECT_FALSE(report.deviations.empty());
 }
 

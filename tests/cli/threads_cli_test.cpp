@@ -1,0 +1,118 @@
+// Verbs whose threads share data. ThreadSanitizer watches the program in these tests (.ci/thorough): a race makes its
+// exit code 66.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/cli/maps/batch_command_line.hpp"
+#include "tests/support/background_process.hpp"
+#include "tests/support/osc.hpp"
+#include "tests/support/udp.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+
+#ifdef VESTIGE_SANITIZED
+constexpr const char* kSeconds = "0.3";  // an exact detector takes long there
+constexpr int kMostThreads = 16;         // and threads by the hundred
+#else
+constexpr const char* kSeconds = "2";
+constexpr int kMostThreads = 256;
+#endif
+
+using BatchCommandLine = test::BatchCommandLine;
+class ThreadsFlag : public test::CommandLineTest {};
+class LiveRing : public test::CommandLineTest {};
+
+TEST_F(ThreadsFlag, ThreadsChangeNoBitOfAnyResult) {
+  ASSERT_EQ(run(fmt::format("vestige record -q --count 30 --rate 120 --duration {} -o trace.mcap", kSeconds)).exit_code,
+            0);
+  for (const std::string detector : {"cpu", "exact", "geometry"}) {
+    for (const std::string threads : {"1", "3"})
+      ASSERT_EQ(run("vestige replay -q trace.mcap --force --detector " + detector + " --threads " + threads +
+                    " --contacts contacts" + threads + ".csv --timeline timeline" + threads + ".csv --json run" +
+                    threads + ".json")
+                    .exit_code,
+                0);
+    EXPECT_EQ(run("cmp contacts1.csv contacts3.csv && cmp timeline1.csv timeline3.csv").exit_code, 0) << detector;
+    const nlohmann::json one = json_of("cat run1.json");
+    const nlohmann::json three = json_of("cat run3.json");
+    for (const char* field :
+         {"texture_hash", "frames", "frames_skipped", "contacts", "unsure", "pairs_tested", "actuators"})
+      EXPECT_EQ(one[field], three[field]) << detector << " " << field;
+    EXPECT_EQ(three["threads"], 3);
+    EXPECT_GT(three["contacts"], 0);
+  }
+}
+
+TEST_F(ThreadsFlag, AComparisonRunsOnThemToo) {
+  ASSERT_EQ(run(fmt::format("vestige record -q --count 30 --rate 120 --duration {} -o trace.mcap", kSeconds)).exit_code,
+            0);
+  const test::Outcome same = run("vestige replay trace.mcap --threads 2 --verify exact");
+  EXPECT_EQ(same.exit_code, 0) << same.standard_error;
+  EXPECT_THAT(same.standard_output, HasSubstr("verify against exact: 0 contacts differ"));
+}
+
+TEST_F(ThreadsFlag, ATraceThatContradictsItselfMidwayEndsWithItsErrorAndNotWithAHang) {
+  ASSERT_EQ(run("vestige record -q --compression none --count 5 --rate 100 --duration 2 -o trace.mcap").exit_code, 0);
+  // The second half of the file once more behind the first: its frames run back in time.
+  ASSERT_EQ(
+      run("python3 -c \"d=open('trace.mcap','rb').read(); h=len(d)//2; open('twice.mcap','wb').write(d[:h]+d[h//2:])\"")
+          .exit_code,
+      0);
+  const test::Outcome one = run("timeout 60 vestige replay twice.mcap");
+  const test::Outcome four = run("timeout 60 vestige replay twice.mcap --threads 4");
+  EXPECT_EQ(four.exit_code, one.exit_code);
+  EXPECT_NE(four.exit_code, 0);
+  EXPECT_NE(four.exit_code, 124);
+  EXPECT_EQ(four.standard_error, one.standard_error);
+}
+
+TEST_F(ThreadsFlag, AsManyAsAMachineCouldHaveAreTakenAndNoOthers) {
+  ASSERT_EQ(run("vestige record -q --count 2 --rate 60 --duration 0.2 -o trace.mcap").exit_code, 0);
+  EXPECT_EQ(run(fmt::format("vestige replay trace.mcap --threads {}", kMostThreads)).exit_code, 0);
+  EXPECT_EQ(run("vestige replay trace.mcap --threads 0").exit_code, 2);
+  EXPECT_EQ(run("vestige replay trace.mcap --threads 257").exit_code, 2);
+}
+
+TEST_F(BatchCommandLine, IsTheSameBytesWhateverTheJobs) {
+  record({"a.mcap", "b.mcap", "c.mcap"});
+  const std::string command = "vestige batch --maps builtin paper6 --traces a.mcap b.mcap c.mcap ";
+  ASSERT_EQ(run(command + "--jobs 1 -o one").exit_code, 0);
+  ASSERT_EQ(run(command + "--jobs 2 -o two").exit_code, 0);
+  expect_same_results("one", "two");
+}
+
+TEST_F(LiveRing, GivesASnapshotWhenAskedWhileDatagramsArrive) {
+  const std::uint16_t port = test::free_udp_port();
+  test::BackgroundProcess recorder({"vestige", "record", "--live", fmt::format("vmc://127.0.0.1:{}", port), "--rate",
+                                    "100", "--ring", "60", "-o", (folder_ / "last.mcap").string()},
+                                   folder_ / "error");
+  const test::UdpSender sender(port);
+  for (int i = 0; i < 3000 && !std::filesystem::exists(folder_ / "last-0001.mcap"); ++i) {
+    sender.send(test::collider(5, 1, 2, 3));
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    // Before it listens, the signal would end it.
+    if (i % 50 == 49 && read_text_file(folder_ / "error").find("listening") != std::string::npos)
+      recorder.signal(SIGUSR1);
+  }
+  recorder.signal(SIGTERM);
+  EXPECT_THAT(recorder.wait(), AnyOf(0, 3)) << read_text_file(folder_ / "error");  // 3: frames came too late
+  const auto frames = [&](const char* trace) {
+    return json_of(fmt::format("vestige replay {} --json -", (folder_ / trace).string()))["frames"].get<int>();
+  };
+  EXPECT_GT(frames("last-0001.mcap"), 0);
+  EXPECT_GE(frames("last.mcap"), frames("last-0001.mcap"));
+}
+
+}  // namespace
+}  // namespace vestige

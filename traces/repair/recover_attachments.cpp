@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "traces/base/sha256.hpp"
+#include "traces/mcap/decode.hpp"
+#include "traces/repair/recoverer.hpp"
+
+namespace vestige {
+
+namespace {
+
+using mcap::Bytes;
+using trace_format::Stream;
+
+constexpr std::string_view kDamagedSuffix = ".damaged";
+
+}  // namespace
+
+void Recoverer::take_metadata(mcap::Metadata metadata) {
+  if (metadata.name == trace_format::kReplacedName) {
+    facts_.claims.replaced = std::move(metadata.metadata);  // written at the end, as it is then
+    return;
+  }
+  if (metadata.name == trace_format::kSessionName) facts_.claims.session = metadata.metadata;
+  output_.write(metadata);
+  ++result_.metadata;
+}
+
+AttachmentFacts Recoverer::facts() const {
+  AttachmentFacts facts = facts_;
+  facts.claims.pose = pose_metadata(output_.streams());
+  if (const mcap::Channel* pose = output_.streams().find(Stream::kPose))
+    if (const auto names = parse_node_names(*pose)) facts.pose_nodes = names->size();
+  return facts;
+}
+
+void Recoverer::note_attachment(const mcap::Attachment& attachment, std::string_view name, bool is_whole) {
+  if (std::ranges::find(trace_format::kAttachmentNames, name) == trace_format::kAttachmentNames.end()) return;
+  if (is_whole && attachment.name == name)
+    facts_.sha256[attachment.name] = sha256_hex(attachment.data);
+  else
+    facts_.damaged.emplace(name);
+}
+
+void Recoverer::take_attachment(Bytes content) {
+  mcap::Attachment attachment = mcap::decode_attachment(content);
+  const bool is_whole = mcap::attachment_crc_holds(content, attachment);
+  const bool was_damaged = attachment.name.ends_with(kDamagedSuffix);
+  const std::string name =
+      attachment.name.substr(0, attachment.name.size() - (was_damaged ? kDamagedSuffix.size() : 0));
+  note_attachment(attachment, name, is_whole);
+  if (const auto planned = plan_.attachments.find(name); planned != plan_.attachments.end()) {
+    replace(name, planned->second);
+    // A damaged original stays beside a substitute that is not the recorded one.
+    if (planned->second.is_recorded || (is_whole && !was_damaged)) return;
+  }
+  if (is_whole) {
+    ++result_.attachments;
+  } else {
+    // Keep it, but under a name that nobody mistakes for the undamaged attachment.
+    result_.damaged_attachments.push_back(attachment.name);
+    attachment.name += kDamagedSuffix;
+  }
+  output_.write(attachment);
+}
+
+/// Writes what takes the place of an attachment, once.
+void Recoverer::replace(const std::string& name, const Replacement& replacement) {
+  if (!replaced_.insert(name).second) return;
+  result_.replaced.push_back({.name = name,
+                              .from = replacement.from,
+                              .is_recorded = replacement.is_recorded,
+                              .is_left_out = replacement.data == nullptr});
+  if (replacement.is_recorded)
+    repaired(fmt::format("{} takes the place of the attachment {}; its SHA-256 is the recorded one", replacement.from,
+                         name));
+  if (replacement.data == nullptr) return;
+  output_.write(trace_format::attachment_of(name, *replacement.data));
+  ++result_.attachments;
+}
+
+/// Writes the metadata record `replaced`, if something in the new file is not as recorded.
+void Recoverer::write_replaced() {
+  mcap::StringMap replaced = facts_.claims.replaced;
+  for (const auto& [name, replacement] : plan_.attachments) {
+    replaced.erase(name);
+    if (!replacement.is_recorded)
+      replaced[name] =
+          replacement.data == nullptr ? std::string(trace_format::kLeftOut) : sha256_hex(*replacement.data);
+  }
+  if (replaced.empty()) return;
+  output_.write(mcap::Metadata{.name = std::string(trace_format::kReplacedName), .metadata = std::move(replaced)});
+  ++result_.metadata;
+}
+
+}  // namespace vestige
