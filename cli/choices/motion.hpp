@@ -63,8 +63,8 @@ struct LoadedMotion {
 };
 
 /// Reads a BVH file, retargets it to the avatar and adds it to the avatar's animations, under the path of the file.
-/// Reports which joints matched, and what differs from the motion. A body that leans
-/// another way is refused unless --force accepts it, see refusal_unless_forced.
+/// Reports which joints matched, and what differs from the motion. A body that leans another way is refused unless
+/// --force accepts it, see `refusal_unless_forced`.
 LoadedMotion add_motion(Avatar& avatar, const std::string& path, const MotionChoice& choice,
                         const std::vector<std::string>& outputs, const CommonOptions& common);
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "traces/motion/body_roles.hpp"
+#include "traces/body/body_roles.hpp"
 #include "traces/motion/retarget.hpp"
 #include "traces/motion/skeleton.hpp"
 
