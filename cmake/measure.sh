@@ -9,7 +9,7 @@ export PATH
 
 usage="usage: measure [--quick] [--pairs N] [FOLDER]
   FOLDER     where the results go (default: results-DATE-RENDERER in the current folder)
-  --quick    less than a minute's worth, to see whether everything works
+  --quick    less than a minute instead of about an hour, to see whether everything works
   --pairs N  adversarial pairs that each method decides (default: 10000000; 5000 with --quick)
 Exit codes: 0 exact, and all steps ran; 1 not exact, or a step failed; 2 wrong usage"
 wrong_usage() {
