@@ -7,6 +7,7 @@
 
 #include <limits>
 
+#include "detector/detectors/make_detectors.hpp"
 #include "tests/support/query_text.hpp"
 #include "tests/support/test_data.hpp"
 #include "traces/base/error.hpp"
