@@ -178,7 +178,7 @@ if [ -n "$sweep_on" ]; then
   step sweep vestige sweep "$sweep_on" --detector paper,geometry,cpu,embree --skip off,on --counts "$counts" $sweep_flags \
     --no-figure -o "$out/sweep"
 else
-  failed="$failed sweep(no trace)"
+  failed="$failed sweep(no-trace)"
 fi
 
 # shellcheck disable=SC2086
@@ -226,7 +226,8 @@ gl_messages() {
 # Each step that is named, with its log.
 logs_of() {
   for one in $1; do
-    echo "    $one: $out/log/${one%(*}.txt"
+    one_log=$out/log/${one%(*}.txt
+    [ -e "$one_log" ] && echo "    $one: $one_log" || echo "    $one"
   done
 }
 
@@ -235,7 +236,7 @@ verdict() {
   if [ "$differs" ]; then
     echo "VERDICT: NOT EXACT on $where: contacts differ"
   elif [ "$refused" ]; then
-    echo "VERDICT: NOT EXACT on $where: geometry is refused, $refused"
+    echo "VERDICT: NOT KNOWN TO BE EXACT on $where: geometry is refused, $refused"
   elif [ "$failed" ]; then
     echo "VERDICT: INCOMPLETE on $where: steps failed"
   else

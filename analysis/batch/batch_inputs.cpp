@@ -23,10 +23,11 @@ namespace vestige {
 
 namespace {
 
+/// An avatar, and its facing as a trace records it.
 struct TracedAvatar {
   std::string given;  ///< where it comes from
   std::vector<std::byte> glb;
-  std::string facing;  ///< as recorded
+  std::string facing;
 };
 
 /// Returns the avatar of the first trace that can be read.
@@ -45,6 +46,21 @@ TracedAvatar avatar_of(const std::vector<BatchTrace>& traces) {
     }
   }
   std::rethrow_exception(first);  // there is at least one trace
+}
+
+/// Returns an avatar that is named, with the facing that the first trace of it records.
+TracedAvatar named_avatar(const std::string& avatar, const std::vector<BatchTrace>& traces) {
+  TracedAvatar named = {
+      .given = avatar, .glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar), .facing = ""};
+  const bool all_made = std::ranges::all_of(traces, [](const BatchTrace& trace) { return trace.scenario != nullptr; });
+  if (all_made) return named;
+  try {
+    const TracedAvatar traced = avatar_of(traces);
+    if (sha256_hex(traced.glb) == sha256_hex(named.glb)) named.facing = traced.facing;
+  } catch (const Error&) {
+    // Traces that cannot be read are reported later.
+  }
+  return named;
 }
 
 BatchActuators read_actuators(const std::string& file) {
@@ -111,11 +127,7 @@ std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar
                                       const std::string& actuator, std::size_t jobs,
                                       const std::function<bool()>& go_on) {
   if (!actuator.empty()) plan.actuators = read_actuators(actuator);
-  TracedAvatar chosen = {.given = avatar, .glb = {}, .facing = ""};
-  if (avatar.empty())
-    chosen = avatar_of(plan.traces);
-  else
-    chosen.glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
+  TracedAvatar chosen = avatar.empty() ? avatar_of(plan.traces) : named_avatar(avatar, plan.traces);
   plan.avatar_given = chosen.given;
   plan.avatar_glb = std::move(chosen.glb);
   plan.avatar = parse_avatar_glb(plan.avatar_glb, plan.avatar_given);

@@ -78,7 +78,8 @@ std::vector<std::string> unique_names(std::span<const std::string> given) {
 nlohmann::ordered_json to_json(const BatchPlan& plan) {
   nlohmann::ordered_json json;
   json["program"] = program_version();
-  json["avatar"] = {{"given", plan.avatar_given}, {"sha256", plan.avatar_sha256}};
+  json["avatar"] = {
+      {"given", plan.avatar_given}, {"sha256", plan.avatar_sha256}, {"facing", to_string(plan.avatar.facing.axis)}};
   json["maps"] = nlohmann::ordered_json::array();
   for (const BatchMap& map : plan.maps) {
     nlohmann::ordered_json one = {{"name", map.name}, {"given", map.given}, {"sha256", nullptr}};

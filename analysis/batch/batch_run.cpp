@@ -237,6 +237,12 @@ class BatchRun {
       throw Error(path,
                   fmt::format("was recorded with another avatar than that of the batch, '{}'", plan_.avatar_given),
                   "run one batch for each avatar, or name the avatar of the traces with --avatar");
+    const Facing facing = plan_.avatar.facing.axis;
+    if (const std::string recorded = reader.facing(); !recorded.empty() && recorded != to_string(facing))
+      throw Error(
+          path,
+          fmt::format("records that its avatar faces {}, and that of the batch faces {}", recorded, to_string(facing)),
+          "run one batch for each facing");
     const std::vector<std::uint32_t>& ids = reader.collider_ids();
     const auto frame_count = static_cast<double>(reader.frame_count());
     RecordedTrace recorded;

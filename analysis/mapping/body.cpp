@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <set>
 
@@ -46,7 +47,7 @@ Body::Body(const Avatar& avatar) : surface_(avatar), parts_of_nodes_(vestige::pa
     understanding_ = Understanding::kProportions;
     part_weights_.clear();
   }
-  find_middle();
+  middle_x_m_ = middle_m(turned_from_front({1, 0, 0}, avatar.facing.axis));
   find_vest();
 }
 
@@ -193,16 +194,15 @@ int Body::node_at(const SkinPoint& point) const {
   return std::max_element(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(count), better)->node;
 }
 
-void Body::find_middle() {
+double Body::middle_m(const glm::dvec3& direction) const {
   Reach torso;
   for (std::uint32_t i = 0; i < avatar().triangles.size(); ++i) {
     const SkinPoint middle = {i, glm::dvec3(1.0 / 3)};
     if (part_at(middle) != SkinPart::kTorso) continue;
-    for (const glm::dvec3& corner : surface_.corners_m(i)) torso.add(turned(corner).x);
+    for (const glm::dvec3& corner : surface_.corners_m(i)) torso.add(glm::dot(corner, direction));
   }
-  const glm::dvec3 low = turned(surface_.bounds().low);
-  const glm::dvec3 high = turned(surface_.bounds().high);
-  middle_x_m_ = torso.is_empty() ? (low.x + high.x) / 2 : (torso.low + torso.high) / 2;
+  if (torso.is_empty()) return glm::dot((surface_.bounds().low + surface_.bounds().high) / 2.0, direction);
+  return (torso.low + torso.high) / 2;
 }
 
 void Body::find_vest() {

@@ -37,6 +37,8 @@ class Body {
   glm::dvec3 turned(const glm::dvec3& position_m) const { return turned_to_front(position_m, avatar().facing.axis); }
   /// Returns how far to the left of the body's middle a place of the avatar is, in metres; negative: to the right.
   double leftwards_m(const glm::dvec3& position_m) const { return turned(position_m).x - middle_x_m_; }
+  /// Returns the middle of the torso's skin along a horizontal direction of length 1, in metres.
+  double middle_m(const glm::dvec3& direction) const;
   /// The x of the plane between left and right, of `turned` places.
   double middle_x_m() const { return middle_x_m_; }
   /// The heights between which a vest lies: 4.5 % and 95.5 % of the way from the hip joints up to the neck joint. On
@@ -50,7 +52,6 @@ class Body {
   void settle_islands();
   bool is_understood() const;
   SkinPart part_by_proportions(const glm::dvec3& position_m) const;
-  void find_middle();
   void find_vest();
 
   BodySurface surface_;

@@ -157,7 +157,8 @@ ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout) {
   made.files.warnings = std::move(made.warnings);
   if (!avatar.facing.doubt.empty())
     made.files.warnings.push_back(
-        fmt::format("the avatar's facing: {}; {} is taken", avatar.facing.doubt, to_string(avatar.facing.axis)));
+        fmt::format("the avatar's facing: {}; {} is taken; 'vestige record --facing' records another",
+                    avatar.facing.doubt, to_string(avatar.facing.axis)));
   if (!made.left_out.empty())
     made.files.warnings.push_back(
         fmt::format("the avatar has no skin for {} of the layout's actuators, which are left out: {}",

@@ -291,12 +291,12 @@ class Checker {
     if (!left) return;
     std::vector<glm::dvec3> sum(map_.actuator_count + 1, glm::dvec3(0));
     for (const auto& [key, piece] : pieces_) sum[key.first] += piece.sum;
-    const glm::dvec3 middle_m = turned_from_front({body_.middle_x_m(), 0, 0}, body_.avatar().facing.axis);
+    const double middle_m = body_.middle_m(*left);
     for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
       const int side = side_named(map_.names[actuator - 1U]);
       const double area_m2 = of(actuator).area_m2;
       if (side == 0 || !(area_m2 > 0)) continue;
-      const double beside_m = glm::dot(sum[actuator] / area_m2 - middle_m, *left);
+      const double beside_m = glm::dot(sum[actuator] / area_m2, *left) - middle_m;
       if (side * beside_m > -kBeside * body_.surface().height_m()) continue;
       const char* where = beside_m > 0 ? "left" : "right";
       add(Severity::kProblem, "wrong_side", actuator,

@@ -26,7 +26,7 @@ FeltOffset felt_offset(const ActuatorLayout& layout, const LocatedContact& conta
 
 /// Returns the spatial acuity of the torso for vibration, in metres: 10 mm within 25 mm of the body's midline,
 /// otherwise 25 mm, the middle of the measured values (van Erp 2005, "Vibrotactile spatial acuity on the torso").
-/// `middle_x_m` is the midline of the body at rest.
+/// `middle_x_m` is the midline of the body at rest. Both are those of a body that is turned to face +z.
 double acuity_m(const glm::dvec3& position_m, double middle_x_m);
 
 }  // namespace vestige

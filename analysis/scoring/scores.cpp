@@ -73,16 +73,17 @@ double usual_step_s(const ContactRecording& recording) {
   return *middle;
 }
 
-double middle_x_m(const SurfaceDistance& surface) {
-  if (surface.position_m().empty()) return 0;
-  const Box box = box_around(surface.position_m());
-  return 0.5 * (box.low.x + box.high.x);
+/// Returns the middle of the body from right to left, if it is turned to face +z.
+double middle_x_m(const ActuatorLayout& layout) {
+  if (layout.surface().position_m().empty()) return 0;
+  const Box box = box_around(layout.surface().position_m());
+  return turned_to_front(0.5 * (box.low + box.high), layout.facing()).x;
 }
 
 /// Goes through the recording once. Calls `told(law, contact, error in metres)` for every contact under every law.
 template <typename Told>
 void judge(const ContactRecording& recording, const ActuatorLayout& layout, std::deque<LawScore>& laws, Told&& told) {
-  const double midline_x_m = middle_x_m(layout.surface());
+  const double midline_x_m = middle_x_m(layout);
   JudgedContact contact;
   SlideFinder slides;
   for (std::size_t k = 0; k < recording.frames(); ++k) {
@@ -99,7 +100,7 @@ void judge(const ContactRecording& recording, const ActuatorLayout& layout, std:
       contact.region = contact.located.actuator != 0
                            ? contact.located.actuator - 1U
                            : static_cast<std::size_t>(std::ranges::min_element(distance_m) - distance_m.begin());
-      contact.acuity_m = acuity_m(contact.located.position_m, midline_x_m);
+      contact.acuity_m = acuity_m(turned_to_front(contact.located.position_m, layout.facing()), midline_x_m);
       if (slides.breaks(contact.column, contact.instant_s, contact.located.position_m))
         for (LawScore& law : laws) law.end_chain(contact.column, slides);
       const SlideFinder::Step step = slides.add(contact.column, contact.instant_s, contact.located.position_m);

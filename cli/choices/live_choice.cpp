@@ -67,7 +67,6 @@ LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& r
     thread.stop();
     warn_of(lines.problems(), "standard input", verbosity);
   } else {
-    warn_of(scene.avatar.humanoid.problems, "--avatar", verbosity);
     VmcState state(scene.avatar, origin_m);
     UdpReceiver datagrams(parse_host_port(choice.source, kScheme, "--live"), choice.source);
     RecordingThread thread(recorder);

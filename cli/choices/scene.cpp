@@ -84,20 +84,38 @@ void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string
   avatar.facing.doubt.clear();  // said once
 }
 
+namespace {
+
+/// Settles the facing with what the map of the scene records.
+void settle_facing(Scene& scene, const FacingChoice& choice, const SceneNames& names, Verbosity verbosity) {
+  const auto& of_map = scene.map.facing;
+  if (of_map && scene.avatar.facing.by == AvatarFacing::By::kAssumed)
+    set_facing(scene.avatar.facing, *of_map, AvatarFacing::By::kMap);
+  settle_facing(scene.avatar, choice, names.avatar, verbosity);
+  const Facing axis = scene.avatar.facing.axis;
+  if (of_map && *of_map != axis)
+    warn(fmt::format("{}: was made for an avatar that faces {}, and {} faces {}, {}; make it anew, or set --facing",
+                     names.map, to_string(*of_map), names.avatar, to_string(axis), in_words(scene.avatar.facing.by)),
+         verbosity);
+}
+
+}  // namespace
+
 Scene load_scene(const std::string& avatar, const std::string& map, const FacingChoice& facing, Verbosity verbosity) {
   const std::string default_map = avatar == "builtin" ? "builtin" : "none";
   const std::string& chosen_map = map.empty() ? default_map : map;
   Scene scene = scene_of(read_avatar(avatar), avatar, verbosity);
-  settle_facing(scene.avatar, facing, avatar, verbosity);
+  if (is_layout(chosen_map)) settle_facing(scene.avatar, facing, avatar, verbosity);
   give_map(scene, read_map_files(scene.avatar, chosen_map), {avatar, chosen_map}, verbosity);
+  settle_facing(scene, facing, {avatar, chosen_map}, verbosity);
   return scene;
 }
 
 Scene make_scene(SceneFiles files, const SceneNames& names, const FacingChoice& facing, Verbosity verbosity) {
   Scene scene = scene_of(std::move(files.avatar_glb), names.avatar, verbosity);
   take_recorded_facing(scene.avatar.facing, files.facing);
-  settle_facing(scene.avatar, facing, names.avatar, verbosity);
   give_map(scene, std::move(files.map), names, verbosity);
+  settle_facing(scene, facing, names, verbosity);
   return scene;
 }
 
@@ -116,6 +134,8 @@ ActuatorMapFiles load_map(const std::string& map) {
 OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
     : reader(path), avatar(parse_avatar_glb(reader.avatar_glb(), path + ", avatar.glb")) {
   take_recorded_facing(avatar.facing, reader.facing());
+  if (!reader.facing().empty() && !avatar.facing.doubt.empty())
+    warn(fmt::format("{}: {}; {} is taken", path, avatar.facing.doubt, to_string(avatar.facing.axis)), verbosity);
   if (!reader.actuator_map_png().empty())
     map = parse_actuator_map(actuator_map_files(reader), avatar, path + ", actuator_map.png");
   if (!reader.recovered().empty()) warn(fmt::format("{}: {}", path, reader.recovered()), verbosity);

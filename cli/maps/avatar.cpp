@@ -171,7 +171,7 @@ void add_avatar(CLI::App& program, Invocation& invocation) {
                    "Write the avatar as one binary glTF file without faults. Colours, base colour textures in the "
                    "file, normals, animations of nodes and VRM's roles are kept. Morph targets (the rest keeps their "
                    "shape), other textures and texture coordinates, vertex colours, cameras, lights and extensions are "
-                   "left out")
+                   "left out; glTF has no place for --facing")
       ->type_name("OUT.glb|-");
   verb->add_option("--map-output", options->map_output,
                    "Write the built-in avatar's actuator map, and OUT.json, which names its actuators")

@@ -25,11 +25,10 @@ namespace {
 
 constexpr double kSquareCentimetres = 1e4;
 
-Avatar read_avatar(const std::string& avatar, const CommonOptions& options, const FacingChoice& facing = {}) {
+Avatar read_avatar(const std::string& avatar, const CommonOptions& options) {
   Avatar read = parse_avatar_glb(avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar);
   if (read.triangles.empty()) throw Error(avatar, "has no triangles", "name an avatar with a mesh");
   for (const std::string& warning : read.warnings) warn(warning, options.verbosity());
-  settle_facing(read, facing, avatar, options.verbosity());
   return read;
 }
 
@@ -130,7 +129,8 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
   check_outputs({options.output, sidecar, options.regions_output, options.common.json},
                 {options.avatar, options.regions}, options.common);
 
-  const Avatar avatar = read_avatar(options.avatar, options.common, options.facing);
+  Avatar avatar = read_avatar(options.avatar, options.common);
+  settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
   if (options.layout.empty() && !options.settings.per_triangle) require_texture_coordinates(avatar, options.avatar);
   const std::string name = options.layout.empty() ? options.regions : options.layout;
   const std::string regions =
@@ -227,6 +227,7 @@ void add_make(CLI::App& map, Invocation& invocation) {
 
 struct CheckOptions {
   CommonOptions common;
+  FacingChoice facing;
   std::string map;
   std::string avatar = "builtin";
 };
@@ -279,11 +280,13 @@ nlohmann::ordered_json checked_json(const CheckOptions& options, const MapCheck&
 void run_check(const CheckOptions& options, Invocation& invocation) {
   check_outputs({options.common.json}, {options.avatar, options.map}, options.common);
   Avatar avatar = read_avatar(options.avatar, options.common);
+  if (is_layout(options.map)) settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
   const ActuatorMapFiles files = read_map_files(avatar, options.map);
   if (files.png.empty()) throw UsageError(options.map, "there is nothing to check", "name a layout or a PNG");
   const ActuatorMap map = parse_actuator_map(files, avatar, options.map);
   for (const std::string& warning : map.warnings) warn(warning, options.common.verbosity());
   if (map.facing) set_facing(avatar.facing, *map.facing, AvatarFacing::By::kMap);
+  settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
   const MapCheck check = check_map(Body(avatar), map, options.avatar);
   print_summary(checked_text(options, check), {options.common.json}, options.common);
   nlohmann::ordered_json json = provenance(invocation.argv);
@@ -302,6 +305,7 @@ void add_check(CLI::App& map, Invocation& invocation) {
       ->required()
       ->type_name("FILE.png|builtin|LAYOUT");
   add_avatar_option(*verb, options->avatar);
+  add_facing_option(*verb, options->facing);
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_check(*options, invocation); });
 }
@@ -310,12 +314,14 @@ void add_check(CLI::App& map, Invocation& invocation) {
 
 struct PartsOptions {
   CommonOptions common;
+  FacingChoice facing;
   std::string avatar = "builtin";
 };
 
 void run_parts(const PartsOptions& options, Invocation& invocation) {
   check_outputs({options.common.json}, {options.avatar}, options.common);
-  const Avatar avatar = read_avatar(options.avatar, options.common);
+  Avatar avatar = read_avatar(options.avatar, options.common);
+  settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
   const Body body(avatar);
   std::map<std::string, double> parts_m2;
   std::map<std::string, double> joints_m2;
@@ -356,6 +362,7 @@ void add_parts(CLI::App& map, Invocation& invocation) {
                             "  vestige map parts\n"
                             "  vestige map parts --avatar man.glb\n");
   add_avatar_option(*verb, options->avatar);
+  add_facing_option(*verb, options->facing);
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_parts(*options, invocation); });
 }

@@ -198,7 +198,9 @@ class SharedTexels {
 }  // namespace
 
 ActuatorLayout::ActuatorLayout(const Avatar& avatar, ActuatorMap map)
-    : map_(std::move(map)), surface_(at_rest(avatar), avatar.triangles, SurfaceDistance::Gaps::kBridged) {
+    : map_(std::move(map)),
+      facing_(avatar.facing.axis),
+      surface_(at_rest(avatar), avatar.triangles, SurfaceDistance::Gaps::kBridged) {
   for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) skin_area_m2_ += area_of(surface_, i);
   place_actuators(avatar);
   measure_distances();

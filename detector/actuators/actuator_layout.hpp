@@ -47,6 +47,8 @@ class ActuatorLayout {
 
   const ActuatorMap& map() const { return map_; }
   const SurfaceDistance& surface() const { return surface_; }
+  /// Which way the body faces at rest.
+  Facing facing() const { return facing_; }
   std::size_t actuator_count() const { return map_.actuator_count; }
 
   /// Returns the place of an actuator: the skin's nearest point to the map's `position_m`. If the map gives no
@@ -97,6 +99,7 @@ class ActuatorLayout {
   void find_neighbours();
 
   ActuatorMap map_;
+  Facing facing_;
   SurfaceDistance surface_;
   std::vector<std::optional<SkinPoint>> place_;
   std::vector<glm::dvec3> position_m_;

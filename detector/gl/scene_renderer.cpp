@@ -107,7 +107,7 @@ std::vector<std::uint8_t> SceneRenderer::pixels() {
   return pixels;
 }
 
-/// Looks from the front (glTF avatars face +z), far enough away to see the rest pose and a moving limb beside it.
+/// Looks from the front, far enough away to see the rest pose and a moving limb beside it.
 void SceneRenderer::aim_camera() {
   world_matrices(avatar_, rest_pose(avatar_), world_);
   const glm::dvec3 root(world_[static_cast<std::size_t>(avatar_.root_node)][3]);
@@ -122,7 +122,8 @@ void SceneRenderer::aim_camera() {
   }
   const glm::vec3 centre = 0.5F * (low + high);
   const float size_m = std::max(glm::length(high - low), 1e-3F);
-  const glm::mat4 view = glm::lookAt(centre + glm::vec3(0, 0.1F, 1.4F) * size_m, centre, glm::vec3(0, 1, 0));
+  const glm::vec3 towards(turned_from_front({0, 0.1, 1.4}, avatar_.facing.axis));
+  const glm::mat4 view = glm::lookAt(centre + towards * size_m, centre, glm::vec3(0, 1, 0));
   constexpr float kAspect = static_cast<float>(kWidth) / static_cast<float>(kHeight);
   world_to_clip_ = glm::perspective(glm::radians(45.0F), kAspect, 0.1F * size_m, 10 * size_m) * view;
 }

@@ -64,7 +64,7 @@ TEST_F(ThreadsFlag, AComparisonRunsOnThemToo) {
 
 TEST_F(ThreadsFlag, ATraceThatContradictsItselfMidwayEndsWithItsErrorAndNotWithAHang) {
   ASSERT_EQ(run("vestige record -q --compression none --count 5 --rate 100 --duration 2 -o trace.mcap").exit_code, 0);
-  // The second half of the file once more behind the first: its frames run back in time.
+  // Behind the first half of the file, all of it from the first quarter on: its frames run back in time.
   ASSERT_EQ(
       run("python3 -c \"d=open('trace.mcap','rb').read(); h=len(d)//2; open('twice.mcap','wb').write(d[:h]+d[h//2:])\"")
           .exit_code,

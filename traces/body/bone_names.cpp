@@ -15,6 +15,8 @@ std::string bone_name(const BodyRole& role) {
       {BodyPart::kMiddle, "Middle"},     {BodyPart::kRing, "Ring"},         {BodyPart::kLittle, "Little"}};
   static constexpr std::array kSpine = {"Spine", "Chest", "UpperChest"};
   static constexpr std::array kPhalanges = {"Proximal", "Intermediate", "Distal"};
+  const bool is_central = role.part <= BodyPart::kJaw;
+  if (is_central != (role.side == BodySide::kNone)) return "";
   const auto segment = static_cast<std::size_t>(role.segment);
   if (role.part == BodyPart::kSpine) return segment < kSpine.size() ? kSpine[segment] : "";
   std::string name = role.side == BodySide::kLeft ? "Left" : role.side == BodySide::kRight ? "Right" : "";

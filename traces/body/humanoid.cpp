@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "traces/body/body_roles.hpp"
@@ -42,6 +43,10 @@ void note(Humanoid& humanoid, std::string problem) {
 
 /// Adds a bone. `field` is the bone's JSON path in the extension.
 void take_bone(Humanoid& humanoid, std::string name, const json& bone, const Avatar& avatar, const std::string& field) {
+  if (!role_of_bone(name)) {
+    note(humanoid, fmt::format("{}: there is no bone {}: it is left out", field, name));
+    return;
+  }
   const json* node = member(&bone, "node");
   if (node == nullptr || !node->is_number_unsigned() || node->get<std::size_t>() >= avatar.nodes.size()) {
     note(humanoid, fmt::format("{}.node is not a node of the file: the bone {} is left out", field, name));
@@ -74,13 +79,13 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
   }
   const json* extension = member(extensions, "VRM");
   if (extension == nullptr) return humanoid;
+  humanoid.source = Humanoid::Source::kVrm0;
   const std::string field = "extensions.VRM.humanoid.humanBones";
   const json* bones = member(member(extension, "humanoid"), "humanBones");
   if (bones == nullptr || !bones->is_array()) {
     note(humanoid, field + " is not an array: bones are recognised by their names");
     return humanoid;
   }
-  humanoid.source = Humanoid::Source::kVrm0;
   for (std::size_t i = 0; i < bones->size(); ++i) {
     const json& bone = (*bones)[i];
     const json* name = member(&bone, "bone");
@@ -104,12 +109,12 @@ Humanoid find_humanoid(const Avatar& avatar, std::string_view text) {
   };
   Humanoid humanoid;
   if (text.find("\"VRM") != std::string_view::npos) humanoid = by_vrm(json::parse(text, keep, false), avatar);
-  if (!humanoid.node_of.empty()) return humanoid;
-  humanoid.source = Humanoid::Source::kNames;
+  std::set<std::size_t> taken;
+  for (const auto& [bone, node] : humanoid.node_of) taken.insert(node);
   const auto roles = body_roles(avatar);
   for (std::size_t i = 0; i < roles.size(); ++i) {
     std::string bone = roles[i] ? bone_name(*roles[i]) : "";
-    if (!bone.empty()) humanoid.node_of.emplace(std::move(bone), i);
+    if (!bone.empty() && !taken.contains(i)) humanoid.node_of.emplace(std::move(bone), i);
   }
   return humanoid;
 }

@@ -125,6 +125,8 @@ gltf::LoadedAvatar gltf::load_avatar(std::span<const std::byte> glb, std::string
   avatar.humanoid = find_humanoid(avatar, split_glb(glb, told).json);
   avatar.facing = find_facing(avatar, avatar.humanoid);
   avatar.warnings = report.warnings();
+  for (const std::string& problem : avatar.humanoid.problems)
+    avatar.warnings.push_back(fmt::format("{}: {}", name, problem));
   return loaded;
 }
 

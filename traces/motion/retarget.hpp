@@ -24,7 +24,7 @@ struct RetargetOptions {
   std::optional<double> metres_per_unit = {};  ///< scale of the body's travel; otherwise the ratio of both bodies' legs
   std::optional<glm::dvec3> up = {};           ///< the direction that is up in the motion's file; otherwise find_up's
   /// The remedy of the error that refuses a body that leans another way than the motion's. Nothing: it is accepted.
-  std::optional<std::string> refusal = "";
+  std::optional<std::string> refusal = "retarget without a refusal";
 };
 
 /// A direction of the body that differs between motion and avatar.

@@ -23,7 +23,13 @@ void Recoverer::take_metadata(mcap::Metadata metadata) {
     facts_.claims.replaced = std::move(metadata.metadata);  // written at the end, as it is then
     return;
   }
-  if (metadata.name == trace_format::kSessionName) facts_.claims.session = metadata.metadata;
+  if (metadata.name == trace_format::kSessionName) {
+    facts_.claims.session = metadata.metadata;
+    // Another avatar faces where its own file tells.
+    const auto avatar = plan_.attachments.find(std::string(trace_format::kAvatarName));
+    if (avatar != plan_.attachments.end() && !avatar->second.is_recorded)
+      metadata.metadata.erase(std::string(trace_format::kFacingKey));
+  }
   output_.write(metadata);
   ++result_.metadata;
 }

@@ -10,9 +10,9 @@
 /// The trace file's own layer above MCAP; format version 1, whose meaning never changes.
 ///
 ///     Header      profile "vestige", library "vestige VERSION"
-///     Metadata    "session": format_version, facing, sha256 of each attachment ("sha256:NAME"), and what the recorder
-///     adds Attachments avatar.glb, then actuator_map.png and actuator_map.json where there is a map Schemas, Channels
-///     outside chunks, so that a damaged chunk does not lose them; the metadata of /pose repeat the
+///     Metadata    "session": format_version, facing, sha256 of each attachment, and what the recorder adds
+///     Attachments avatar.glb, then actuator_map.png and actuator_map.json where there is a map
+///     Schemas, Channels   outside chunks, so that a damaged chunk does not lose them; the metadata of /pose repeat the
 ///                 SHA-256s, so that the summary has them too
 ///     Chunks      a frame's messages stand together in one chunk: [events], /pose, /colliders
 ///     Summary     with everything that MCAP offers

@@ -172,6 +172,7 @@ void read_run(const std::filesystem::path& file, ReportData& data) {
   const JsonField laws = batch.at("laws");
   for (std::size_t i = 0; i < laws.count(); ++i) data.laws.push_back(file_name(laws.at(i)));
   if (batch.has("options")) read_law_options(batch.at("options"), data);
+  if (batch.at("avatar").has("facing")) data.avatar_facing = batch.at("avatar").at("facing").text();
   if (batch.at("avatar").has("sha256")) data.avatar_sha256 = batch.at("avatar").at("sha256").text();
   if (batch.has("maps"))
     for (std::size_t i = 0; i < length(batch.at("maps")); ++i)

@@ -76,6 +76,7 @@ struct ReportData {
   std::vector<ReportTrace> traces;
   std::vector<ReportFailure> failures;
   std::map<std::string, std::vector<std::string>> map_warnings;  ///< by map, as the batch was given them
+  std::string avatar_facing;                                     ///< as `take_recorded_facing` takes it
   std::string avatar_sha256;                                     ///< of avatar.glb; empty: unknown
   std::map<std::string, std::string> map_sha256;                 ///< of the judged maps: PNG, then sidecar
   std::vector<std::string> laws;                                 ///< in the order of the batch

@@ -89,7 +89,9 @@ Avatar read_batch_avatar(const std::filesystem::path& folder, const ReportData& 
   const std::string file = (folder / "avatar.glb").string();
   const std::vector<std::byte> glb = read_file(file);  // a torn one is told before it is parsed
   require_judged(file, sha256_hex(glb), data.avatar_sha256);
-  return parse_avatar_glb(glb, file);
+  Avatar avatar = parse_avatar_glb(glb, file);
+  take_recorded_facing(avatar.facing, data.avatar_facing);
+  return avatar;
 }
 
 ActuatorMap read_batch_map(const std::filesystem::path& folder, const ReportData& data, const std::string& map,

@@ -71,6 +71,21 @@ TEST(Scores, OfASlideBetweenTwoActuatorsAreTheAnalyticOnes) {
   }
 }
 
+TEST(Scores, AreTheSameWhicheverWayTheBodyFaces) {
+  const ContactRecording recording = slide(100);
+  const double acuities = metric(score_of(recording, two(), "binary"), "localisation_error_acuities");
+  for (const Facing facing : {Facing::kPlusX, Facing::kMinusZ, Facing::kMinusX}) {
+    Avatar avatar = test::flat_body(kCells);
+    for (glm::vec3& position : avatar.position_bind) position = turned_from_front(position, facing);
+    set_facing(avatar.facing, facing, AvatarFacing::By::kAsked);
+    ActuatorMap map = test::nearest_map({{0.25, 0.5}, {0.75, 0.5}}, 256);
+    for (auto& position_m : map.position_m) position_m = turned_from_front(*position_m, facing);
+    const ActuatorLayout layout(avatar, map);
+    EXPECT_NEAR(metric(score_of(recording, layout, "binary"), "localisation_error_acuities"), acuities, 1e-9)
+        << to_string(facing);
+  }
+}
+
 TEST(Scores, OfAPerfectMappingOfEvenRegionsAreLog2OfTheirNumber) {
   std::vector<glm::dvec2> places;
   for (int i = 0; i < 8; ++i) places.emplace_back(0.125 + 0.25 * (i % 4), 0.25 + 0.5 * (i / 4));

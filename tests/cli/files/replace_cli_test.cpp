@@ -121,6 +121,8 @@ TEST_F(Replace, AnotherAvatarWithForceIsSaidInTheFile) {
   EXPECT_EQ(recover.exit_code, 3);
   EXPECT_THAT(recover.standard_error, HasSubstr("other.glb takes the place of the attachment avatar.glb, and is not"));
   EXPECT_EQ(json_in("r.json")["replaced"][0]["recorded"], false);
+  EXPECT_FALSE(json_of("vestige inspect c.mcap -q --json - ; true")["session"].contains("facing"))
+      << "another avatar faces where its own file tells";
   const auto said = HasSubstr("`vestige recover --force` put another one in its place");
   const test::Outcome inspect = run("vestige inspect c.mcap --json inspect.json");
   EXPECT_EQ(inspect.exit_code, 3);

@@ -100,6 +100,28 @@ TEST(Facing, IsThatOfVrmsVersionIfNothingElseTells) {
   EXPECT_EQ(now.by, By::kVrm);
 }
 
+/// A table that has one bone, or one that nobody knows, does not hide what the names tell.
+TEST(Facing, IsThatOfTheNamesWhereATableIsNotWhole) {
+  for (const char* bone : {"hips", "nonsense", "leftHips"}) {
+    const Avatar avatar = parse_avatar_glb(
+        test::edited_glb(builtin_avatar_glb(),
+                         [&](nlohmann::json& json) {
+                           json["extensionsUsed"].push_back("VRM");
+                           json["extensions"]["VRM"]["humanoid"]["humanBones"] = {{{"bone", bone}, {"node", 1}}};
+                         }),
+        "partial.vrm");
+    EXPECT_EQ(avatar.facing.axis, Facing::kPlusZ) << bone;
+    EXPECT_EQ(avatar.facing.by, By::kSides) << bone;
+    EXPECT_THAT(avatar.facing.doubt, HasSubstr("VRM 0.x faces -z")) << bone;
+    EXPECT_GE(avatar.humanoid.node_of.size(), 20U) << bone;
+    if (bone == std::string("hips")) continue;
+    EXPECT_THAT(avatar.warnings,
+                ::testing::Contains(HasSubstr("partial.vrm: extensions.VRM.humanoid.humanBones[0]: there "
+                                              "is no bone")))
+        << bone;
+  }
+}
+
 TEST(Facing, IsAssumedAndDoubtedIfNothingTells) {
   const AvatarFacing facing = facing_after([](nlohmann::json& json) { forget_sides(json); });
   EXPECT_EQ(facing.axis, Facing::kPlusZ);

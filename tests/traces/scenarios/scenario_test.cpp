@@ -225,6 +225,7 @@ TEST(Punch, StrikesTheFrontWhicheverWayTheAvatarFaces) {
   for (int quarters = 0; quarters < 4; ++quarters) {
     const Avatar avatar = turned_mannequin(quarters);
     const auto punch = make("punch", avatar, nullptr, 40);
+    ASSERT_EQ(at(*punch, 0).size(), 40U);
     for (int k = 0; k < 200; ++k)
       for (const ColliderSample& sample : at(*punch, k / 100.0))
         ASSERT_GT(turned_to_front(sample.position_m, avatar.facing.axis).z, -0.1)
