@@ -69,7 +69,8 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
     humanoid.source = Humanoid::Source::kVrm1;
     const std::string field = "extensions.VRMC_vrm.humanoid.humanBones";
     const json* bones = member(member(extension, "humanoid"), "humanBones");
-    if (bones == nullptr || !bones->is_object()) {
+    if (bones == nullptr) return humanoid;
+    if (!bones->is_object()) {
       note(humanoid, field + " is not an object: bones are recognised by their names");
       return humanoid;
     }
@@ -82,7 +83,8 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
   humanoid.source = Humanoid::Source::kVrm0;
   const std::string field = "extensions.VRM.humanoid.humanBones";
   const json* bones = member(member(extension, "humanoid"), "humanBones");
-  if (bones == nullptr || !bones->is_array()) {
+  if (bones == nullptr) return humanoid;
+  if (!bones->is_array()) {
     note(humanoid, field + " is not an array: bones are recognised by their names");
     return humanoid;
   }
