@@ -238,11 +238,11 @@ class BatchRun {
                   fmt::format("was recorded with another avatar than that of the batch, '{}'", plan_.avatar_given),
                   "run one batch for each avatar, or name the avatar of the traces with --avatar");
     const Facing facing = plan_.avatar.facing.axis;
-    if (const std::string recorded = reader.facing(); !recorded.empty() && recorded != to_string(facing))
-      throw Error(
-          path,
-          fmt::format("records that its avatar faces {}, and that of the batch faces {}", recorded, to_string(facing)),
-          "run one batch for each facing");
+    if (const auto recorded = facing_named(reader.facing()); recorded && *recorded != facing)
+      throw Error(path,
+                  fmt::format("records that its avatar faces {}, and that of the batch faces {}", to_string(*recorded),
+                              to_string(facing)),
+                  "run one batch for each facing");
     const std::vector<std::uint32_t>& ids = reader.collider_ids();
     const auto frame_count = static_cast<double>(reader.frame_count());
     RecordedTrace recorded;

@@ -70,6 +70,7 @@ class Checker {
     }
     find_split();
     find_misplaced();
+    find_other_facing();
     find_wrong_sides();
     std::ranges::stable_sort(result_.findings, std::ranges::greater(), &MapFinding::severity);
     return std::move(result_);
@@ -285,6 +286,15 @@ class Checker {
             "use the map of this avatar; positions are metres in the avatar's rest pose");
   }
 
+  void find_other_facing() {
+    const Facing faces = body_.avatar().facing.axis;
+    if (!map_.facing || *map_.facing == faces) return;
+    add(Severity::kProblem, "facing", 0,
+        fmt::format("the map was made for an avatar that faces {}, and this one faces {}", to_string(*map_.facing),
+                    to_string(faces)),
+        "make the map anew for this avatar, or set --facing");
+  }
+
   /// The joints' names tell the sides, not the facing, which may be wrong.
   void find_wrong_sides() {
     const auto& left = body_.avatar().facing.left;
@@ -302,7 +312,8 @@ class Checker {
       add(Severity::kProblem, "wrong_side", actuator,
           fmt::format("actuator {} lies {:.2f} m to the {} of the body's middle, on the side of the joints named {}",
                       quoted(actuator), std::abs(beside_m), where, where),
-          "make the map anew with the --facing of the avatar, or rename its regions");
+          fmt::format("make the map anew with --facing {}, or rename its regions",
+                      to_string(nearest_facing(glm::cross(*left, glm::dvec3(0, 1, 0))))));
     }
   }
 

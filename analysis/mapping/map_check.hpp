@@ -17,7 +17,7 @@ enum class Severity { kNote, kProblem };
 struct MapFinding {
   Severity severity = Severity::kNote;
   std::string kind;  ///< "never_fires", "shared_texels", "mirrored_texels", "split", "soft_edges", "position",
-                     ///< "texture_coordinates", "wrong_side"
+                     ///< "texture_coordinates", "wrong_side", "facing"
   std::uint16_t actuator = 0;  ///< from 1; 0: the finding is about the whole map
   std::string cause;
   std::string remedy;
@@ -48,6 +48,7 @@ struct MapCheck {
 /// - regions in several pieces. Specks of less than 1 % of the region do not count as pieces;
 /// - greys that come from soft edges: nowhere more than two texels wide;
 /// - a `position_m` away from the actuator's skin;
+/// - a map that was made for another facing than the body's;
 /// - regions named left whose middle lies on the side of the joints named right, and the other way round;
 /// - texture coordinates that are not finite, or cover the texture more than once over.
 /// Throws `Error` if the avatar has no texture coordinates and the map is not per triangle.

@@ -77,7 +77,13 @@ std::string_view in_words(AvatarFacing::By by) {
 }
 
 void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string& name, Verbosity verbosity) {
-  if (const auto axis = facing_named(choice.axis)) set_facing(avatar.facing, *axis, AvatarFacing::By::kAsked);
+  if (const auto axis = facing_named(choice.axis)) {
+    if (avatar.facing.by == AvatarFacing::By::kSides && avatar.facing.axis != *axis)
+      warn(fmt::format("{}: its left and right joints say that it faces {}; {} is taken, as asked", name,
+                       to_string(avatar.facing.axis), choice.axis),
+           verbosity);
+    set_facing(avatar.facing, *axis, AvatarFacing::By::kAsked);
+  }
   if (avatar.facing.doubt.empty()) return;
   warn(fmt::format("{}: {}; {} is taken; --facing sets it", name, avatar.facing.doubt, to_string(avatar.facing.axis)),
        verbosity);

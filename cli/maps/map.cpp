@@ -285,7 +285,8 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   if (files.png.empty()) throw UsageError(options.map, "there is nothing to check", "name a layout or a PNG");
   const ActuatorMap map = parse_actuator_map(files, avatar, options.map);
   for (const std::string& warning : map.warnings) warn(warning, options.common.verbosity());
-  if (map.facing) set_facing(avatar.facing, *map.facing, AvatarFacing::By::kMap);
+  if (map.facing && avatar.facing.by == AvatarFacing::By::kAssumed)
+    set_facing(avatar.facing, *map.facing, AvatarFacing::By::kMap);
   settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
   const MapCheck check = check_map(Body(avatar), map, options.avatar);
   print_summary(checked_text(options, check), {options.common.json}, options.common);

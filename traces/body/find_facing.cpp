@@ -58,7 +58,8 @@ AvatarFacing find_facing(const Avatar& avatar, const Humanoid& humanoid) {
   const Bones bones(avatar, humanoid);
   constexpr std::array kPaired = {"UpperLeg", "Shoulder", "UpperArm", "Hand"};
   glm::dvec3 leftwards(0);
-  for (const std::string pair : kPaired) leftwards += bones.way("Right" + pair, "Left" + pair);
+  for (const std::string pair : kPaired)  // a vote each, however far apart they are
+    leftwards += direction_of(bones.way("Right" + pair, "Left" + pair)).value_or(glm::dvec3(0));
   const auto feet = direction_of(bones.way("LeftFoot", "LeftToes") + bones.way("RightFoot", "RightToes"));
 
   AvatarFacing facing;

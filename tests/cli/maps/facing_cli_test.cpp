@@ -56,7 +56,11 @@ TEST_F(FacingFlag, SaysWhatNothingElseTells) {
   EXPECT_EQ(run("vestige map check b.png --avatar turned.glb").exit_code, 0);
   const test::Outcome wrong = run("vestige map check a.png --avatar turned.glb");
   EXPECT_EQ(wrong.exit_code, 4);
+  EXPECT_THAT(wrong.standard_output, HasSubstr("the map was made for an avatar that faces +z, and this one faces -x"));
   EXPECT_THAT(wrong.standard_output, HasSubstr("'chest right' lies"));
+  EXPECT_THAT(wrong.standard_output, HasSubstr("make the map anew with --facing -x, or rename its regions"));
+  EXPECT_THAT(message("vestige avatar turned.glb --facing +z"),
+              HasSubstr("turned.glb: its left and right joints say that it faces -x; +z is taken, as asked"));
   EXPECT_THAT(wrong.standard_output, HasSubstr("on the side of the joints named left"));
 }
 
