@@ -36,9 +36,9 @@ inline void hang_below(nlohmann::json& json, nlohmann::json node) {
 inline std::vector<std::byte> turned_glb(std::span<const std::byte> glb, int quarters) {
   constexpr double kHalf = 0.70710678118654752;
   const std::array<std::array<double, 2>, 4> turn = {{{0, 1}, {kHalf, kHalf}, {1, 0}, {kHalf, -kHalf}}};
-  const auto [y, w] = turn[static_cast<std::size_t>(quarters)];
+  const std::array<double, 2>& yw = turn[static_cast<std::size_t>(quarters)];
   return edited_glb(glb, [&](nlohmann::json& json) {
-    hang_below(json, {{"name", "turn"}, {"rotation", {0, y, 0, w}}});
+    hang_below(json, {{"name", "turn"}, {"rotation", {0, yw[0], 0, yw[1]}}});
   });
 }
 

@@ -120,7 +120,7 @@ inline std::map<std::string, std::vector<std::byte>> made_avatars() {
   const std::vector<std::byte> mannequin = builtin_avatar_glb();
   std::map<std::string, std::vector<std::byte>> made;
   for (const auto& [program, its] : names)
-    made[program] = edited_glb(mannequin, [&](json& file) { rename_joints(file, its); });
+    made[program] = edited_glb(mannequin, [&its = its](json& file) { rename_joints(file, its); });
   made["VRM 1.0"] = edited_glb(mannequin, [](json& file) { make_vrm(file, false); });
   made["VRM 0.x"] = edited_glb(turned_glb(mannequin, 2), [](json& file) { make_vrm(file, true); });
   made["a child"] = edited_glb(mannequin, [](json& file) { hang_below(file, {{"scale", {0.6, 0.6, 0.6}}}); });
