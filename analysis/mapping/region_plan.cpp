@@ -339,13 +339,14 @@ std::uint16_t RegionPlan::actuator_within(const Region& region, const Asked& ask
     return region.actuators[row * region.column_count + piece(degrees, region.columns, region.column_count)];
   }
   const glm::uvec3& corner = body_.avatar().triangles[point.triangle];
+  const glm::dvec3 place_m = turned_from_front(position_m, body_.avatar().facing.axis);
   std::size_t best = 0;
   double least_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < region.sites.size(); ++i) {
     const Site& site = region.sites[i];
     const double detour_m = point.weight.x * site.detour_m[corner.x] + point.weight.y * site.detour_m[corner.y] +
                             point.weight.z * site.detour_m[corner.z];
-    const double distance_m = glm::distance(position_m, body_.turned(site.position_m)) + detour_m;
+    const double distance_m = glm::distance(place_m, site.position_m) + detour_m;
     if (distance_m < least_m) {
       least_m = distance_m;
       best = i;

@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +28,13 @@ class CommandLineTest : public ::testing::Test {
     EXPECT_EQ(outcome.exit_code, 0) << command << "\n" << outcome.standard_error;
     return nlohmann::json::parse(outcome.standard_output, nullptr, false);
   }
+
+  /// Writes a file.
+  void write(const std::string& name, std::span<const std::byte> bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  }
+  void write(const std::string& name, const std::string& text) const { write(name, std::as_bytes(std::span(text))); }
 
   /// Returns the content of a JSON file.
   nlohmann::json json_in(const std::string& file) const {

@@ -24,7 +24,6 @@ class ExchangeTest : public CommandLineTest {
   std::string hash_of(const std::string& trace) const {
     return json_of("vestige replay " + trace + " --detector cpu --json -")["texture_hash"];
   }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
   void expect_no_hidden_file() const {
     EXPECT_EQ(run("ls -A | grep -c '^[.]'").standard_output, "0\n") << run("ls -A").standard_output;

@@ -76,8 +76,6 @@ class Recording : public test::CommandLineTest {
     }
     return lines;
   }
-
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
 };
 
 /// A triangle whose far corner rests two metres up by a morph target. Animation "turn" turns it, and "breathe" also

@@ -43,11 +43,6 @@ class Replace : public test::CommandLineTest {
     return json_of("vestige replay " + trace + " --json -")["texture_hash"];
   }
 
-  void write(const std::string& name, std::span<const std::byte> bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  }
-
   /// Flips one bit of an attachment of `from`, and writes the result as `to`.
   void damage(std::span<const std::byte> attachment, const std::string& from, const std::string& to) const {
     std::vector<std::byte> bytes = read_file(folder_ / from);

@@ -70,10 +70,6 @@ TEST_F(Help, OfEveryCommandFitsATerminalAndShowsItsDefaults) {
 TEST_F(Help, ExamplesRunAsTheyStand) {
   const auto avatar = builtin_avatar_glb();
   const auto map = builtin_actuator_map_png();
-  const auto write = [&](const char* name, const std::vector<std::byte>& bytes) {
-    std::ofstream(folder_ / name, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  };
   ASSERT_EQ(
       run("vestige record --rate 100 --duration 1.6 -o man.mcap && "
           "vestige trim man.mcap --to 1 -o beginning.mcap && vestige trim man.mcap --from 1 -o end.mcap && "

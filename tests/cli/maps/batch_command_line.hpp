@@ -31,8 +31,6 @@ class BatchCommandLine : public CommandLineTest {
       EXPECT_TRUE(std::filesystem::exists(folder_ / a / name)) << name;
   }
 
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-
   void write_map(const std::string& name) const {
     const auto png = builtin_actuator_map_png();
     std::ofstream(folder_ / name, std::ios::binary)

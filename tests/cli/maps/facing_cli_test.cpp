@@ -25,10 +25,6 @@ class FacingFlag : public test::CommandLineTest {
             for (nlohmann::json& node : json["nodes"]) node["name"] = "joint";
           }));
   }
-  void write(const char* name, const std::vector<std::byte>& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary)
-        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-  }
   std::string message(const std::string& command) const { return run(command).standard_error; }
 
   static constexpr const char* kDoubt =

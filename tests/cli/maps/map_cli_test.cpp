@@ -15,10 +15,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-class Map : public test::CommandLineTest {
- protected:
-  void write(const char* name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-};
+class Map : public test::CommandLineTest {};
 
 TEST_F(Map, IsMadeCheckedAndRecordedByItsFileOrItsName) {
   const auto made = json_of("vestige map make --layout torso16 -o vest.png --json -");

@@ -33,8 +33,6 @@ class Laws : public test::CommandLineTest {
     return test::read_timeline_csv(read_text_file(folder_ / "t.csv"));
   }
 
-  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
-
   /// The built-in map under another name, its actuators numbered the other way round.
   void write_turned_map(const std::string& name) const {
     const std::vector<std::byte> png = builtin_actuator_map_png();
