@@ -158,6 +158,45 @@ TEST(Facing, BetweenTwoAxesIsDoubted) {
   EXPECT_THAT(facing.doubt, HasSubstr("between two axes"));
 }
 
+/// Adds a copy of everything that the file shows, which faces the other way 2 m to the left, with its own skin.
+void add_second_body(nlohmann::json& json) {
+  const std::size_t count = json["nodes"].size();
+  nlohmann::json nodes = json["nodes"];
+  for (nlohmann::json& node : nodes) {
+    if (node.contains("children"))
+      for (nlohmann::json& child : node["children"]) child = child.get<std::size_t>() + count;
+    if (node.contains("skin")) node["skin"] = 1;
+    json["nodes"].push_back(node);
+  }
+  nlohmann::json skin = json["skins"][0];
+  skin.erase("skeleton");
+  for (nlohmann::json& joint : skin["joints"]) joint = joint.get<std::size_t>() + count;
+  json["skins"].push_back(skin);
+  nlohmann::json other = {{"name", "other"}, {"rotation", {0, 1, 0, 0}}, {"translation", {2, 0, 0}}};
+  for (const nlohmann::json& root : json["scenes"][0]["nodes"])
+    other["children"].push_back(root.get<std::size_t>() + count);
+  json["scenes"][0]["nodes"].push_back(json["nodes"].size());
+  json["nodes"].push_back(other);
+}
+
+/// Bones that only the second body has are not mixed with those of the first.
+TEST(BodyRoles, OfTwoBodiesAreThoseOfTheFirstWhichIsSaid) {
+  const Avatar two = parse_avatar_glb(test::edited_glb(builtin_avatar_glb(),
+                                                       [](nlohmann::json& json) {
+                                                         add_second_body(json);
+                                                         test::node_named(json, "toes_left")["name"] = "x";
+                                                       }),
+                                      "two.glb");
+  const std::size_t one = parse_avatar_glb(builtin_avatar_glb(), "builtin").nodes.size();
+  EXPECT_FALSE(two.humanoid.node_of.contains("LeftToes"));
+  EXPECT_EQ(two.humanoid.node_of.size(), 20U);
+  for (const auto& [bone, node] : two.humanoid.node_of) EXPECT_LT(node, one) << bone;
+  EXPECT_EQ(two.facing.axis, Facing::kPlusZ);
+  EXPECT_THAT(two.warnings, ::testing::Contains(::testing::AllOf(HasSubstr("two.glb: has 2 skeletons of bodies"),
+                                                                 HasSubstr("'pelvis'"))));
+  EXPECT_THAT(parse_avatar_glb(builtin_avatar_glb(), "builtin").warnings, ::testing::IsEmpty());
+}
+
 TEST(BodyRoles, OfAVrmAreThoseOfItsTable) {
   const auto made = test::made_avatars();
   const Avatar named = parse_avatar_glb(builtin_avatar_glb(), "builtin");
