@@ -16,7 +16,6 @@
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/gltf/clean/clean_avatar.hpp"
 #include "traces/motion/animation_choice.hpp"
-#include "traces/scene/box.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
@@ -35,13 +34,6 @@ struct AvatarOptions {
   std::string uv_output;
 };
 
-/// Of the rest pose, in the file's own units.
-Box rest_bounds(const Avatar& avatar) {
-  std::vector<glm::dvec3> positions;
-  skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), positions);
-  return box_around(positions);
-}
-
 /// Vertices that differ in place: those that only texture seams split count once.
 std::size_t welded_vertices(const Avatar& avatar) {
   std::set<std::tuple<float, float, float>> places;
@@ -58,7 +50,7 @@ nlohmann::ordered_json describe(const Avatar& avatar, const UvCoverage& coverage
                                   {"duration_s", animation.duration_s},
                                   {"morph_m", animation.morph ? animation.morph->reach_m : 0}});
   json["influences"] = avatar.influence_count;
-  const Box bounds = rest_bounds(avatar);
+  const Box bounds = rest_box(avatar);
   json["bounds"] = {{"min", {bounds.low.x, bounds.low.y, bounds.low.z}},
                     {"max", {bounds.high.x, bounds.high.y, bounds.high.z}}};
   json["uv_overlap_texels"] = coverage.overlap_texels;
