@@ -101,6 +101,8 @@ void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string
            verbosity);
     set_facing(avatar.facing, *axis, AvatarFacing::By::kAsked);
   }
+  if (avatar.facing.lies_deg)
+    warn(fmt::format("{}: {}; its left and its front are not known", name, describe_lying(avatar.facing)), verbosity);
   if (avatar.facing.doubt.empty()) return;
   warn(fmt::format("{}: {}; {} is taken; --facing sets it", name, avatar.facing.doubt, to_string(avatar.facing.axis)),
        verbosity);

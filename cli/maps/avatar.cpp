@@ -56,6 +56,7 @@ nlohmann::ordered_json describe(const Avatar& avatar, const UvCoverage& coverage
   json["uv_overlap_texels"] = coverage.overlap_texels;
   json["uv_covered_texels"] = coverage.covered_texels;
   json["uv_texture_side"] = coverage.side;
+  json["lies_deg"] = avatar.facing.lies_deg ? nlohmann::ordered_json(*avatar.facing.lies_deg) : nullptr;
   json["warnings"] = avatar.warnings;
   return json;
 }
@@ -78,7 +79,8 @@ std::string summary(const std::string& name, const nlohmann::ordered_json& json,
   text += fmt::format(
       "  bounding box   x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} (rest pose; glTF: metres)\n",
       number("min", 0), number("max", 0), number("min", 1), number("max", 1), number("min", 2), number("max", 2));
-  text += fmt::format("  faces          {}, {}\n", to_string(avatar.facing.axis), in_words(avatar.facing.by));
+  text += fmt::format("  faces          {}, {}\n", to_string(avatar.facing.axis),
+                      avatar.facing.lies_deg ? "though it does not stand" : in_words(avatar.facing.by));
   text += fmt::format("  UV overlap     {}\n", overlap_text(coverage));
   if (avatar.animations.empty()) text += "  no animation\n";
   for (std::size_t i = 0; i < avatar.animations.size(); ++i)
