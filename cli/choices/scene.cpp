@@ -26,26 +26,11 @@ std::vector<std::byte> read_avatar(const std::string& avatar) {
   return avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
 }
 
-/// Refuses an avatar that is one point at rest, unless an animation scales it up. Whatever touches the point touches
-/// all triangles.
-void refuse_a_point(const Avatar& avatar, const std::string& name) {
-  constexpr double kPoint_m = 1e-6;
-  const auto scales = [](const Animation& animation) {
-    return std::ranges::find(animation.channels, AnimatedProperty::kScale, &AnimationChannel::property) !=
-           animation.channels.end();
-  };
-  if (rest_box(avatar).longest_side() > kPoint_m || std::ranges::any_of(avatar.animations, scales)) return;
-  throw Error(
-      name, "its whole skin lies in one point at rest, so it has no surface to touch",
-      "set the scale of its root node to 1 in the modelling program; an avatar that is hidden at times needs an "
-      "animation of that scale");
-}
-
 Scene scene_of(std::vector<std::byte> avatar_glb, const std::string& name, Verbosity verbosity) {
   Scene scene;
   scene.avatar_glb = std::move(avatar_glb);
   scene.avatar = parse_avatar_glb(scene.avatar_glb, name);
-  refuse_a_point(scene.avatar, name);
+  require_surface(scene.avatar, name);
   warn_all(scene.avatar.warnings, verbosity);
   return scene;
 }
@@ -62,6 +47,19 @@ void give_map(Scene& scene, ActuatorMapFiles files, const SceneNames& names, Ver
 }
 
 }  // namespace
+
+void require_surface(const Avatar& avatar, const std::string& name) {
+  constexpr double kPoint_m = 1e-6;
+  const auto scales = [](const Animation& animation) {
+    return std::ranges::find(animation.channels, AnimatedProperty::kScale, &AnimationChannel::property) !=
+           animation.channels.end();
+  };
+  if (rest_box(avatar).longest_side() > kPoint_m || std::ranges::any_of(avatar.animations, scales)) return;
+  throw Error(
+      name, "its whole skin lies in one point at rest, so it has no surface to touch",
+      "set the scale of its root node to 1 in the modelling program; an avatar that is hidden at times needs an "
+      "animation of that scale");
+}
 
 void add_facing_option(CLI::App& verb, FacingChoice& choice) {
   std::vector<std::string> axes(kFacingNames.begin(), kFacingNames.end());
@@ -158,7 +156,6 @@ ActuatorMapFiles load_map(const std::string& map) {
 
 OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
     : reader(path), avatar(parse_avatar_glb(reader.avatar_glb(), path + ", avatar.glb")) {
-  refuse_a_point(avatar, path + ", avatar.glb");
   take_recorded_facing(avatar.facing, reader.facing());
   if (!reader.facing().empty() && !avatar.facing.doubt.empty())
     warn(fmt::format("{}: {}; {} is taken", path, avatar.facing.doubt, to_string(avatar.facing.axis)), verbosity);

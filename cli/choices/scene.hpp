@@ -26,6 +26,10 @@ struct Scene {
   TraceAttachments attachments() const { return {avatar_glb, map_png, map_json}; }
 };
 
+/// Throws `Error` if the avatar is one point at rest, unless an animation scales it. What touches the point touches all
+/// triangles, which takes minutes to decide. `name` is the avatar's name in the error.
+void require_surface(const Avatar& avatar, const std::string& name);
+
 /// The flag --facing.
 struct FacingChoice {
   std::string axis = "auto";
