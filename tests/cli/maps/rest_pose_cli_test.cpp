@@ -8,7 +8,9 @@
 #include "tests/support/command_line.hpp"
 #include "tests/support/made/edited_glb.hpp"
 #include "tests/traces/motion/made_motion.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
+#include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige {
 namespace {
@@ -89,6 +91,18 @@ TEST_F(RestPose, ThatIsAPointHasNoSurface) {
               AllOf(HasSubstr("point.glb: its whole skin lies in one point at rest, so it has no surface to touch"),
                     HasSubstr("set the scale of its root node to 1")));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "a.mcap"));
+
+  const std::vector<std::byte> glb = read_avatar_glb(folder_ / "point.glb");
+  const Avatar avatar = parse_avatar_glb(glb, "point.glb");
+  TraceWriter trace(folder_ / "older.mcap", {}, avatar, {glb, {}, {}}, {});
+  TraceFrame frame;
+  frame.pose = rest_pose(avatar);
+  trace.write(frame);
+  trace.finish();
+  const test::Outcome replayed = run("vestige replay older.mcap");
+  EXPECT_EQ(replayed.exit_code, 1);
+  EXPECT_THAT(replayed.standard_error, HasSubstr("older.mcap, avatar.glb: its whole skin lies in one point"));
+  EXPECT_EQ(run("vestige export older.mcap -o older").exit_code, 0);
 }
 
 /// An animation may hide the avatar at rest and show it later.
