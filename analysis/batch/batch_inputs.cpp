@@ -96,6 +96,9 @@ void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
   if (plan.actuators.model) static_cast<void>(plan.actuators.model->motors(parsed));  // throws if they lack something
   map.warnings = parsed.warnings;
   if (map.given != "builtin" && !is_layout(map.given)) add_problems(map, parsed, plan);
+  if (plan.avatar.facing.lies_deg)
+    map.warnings.push_back(fmt::format("the avatar {}; scores take {} for its front",
+                                       describe_lying(plan.avatar.facing), to_string(plan.avatar.facing.axis)));
   map.layout = std::make_shared<const ActuatorLayout>(plan.avatar, std::move(parsed));
   map.sha256 = sha256_of(map.files);
 }

@@ -31,8 +31,8 @@ bool is_layout(std::string_view map);
 /// - More than 5 % of the layout's skin would fire another actuator. A warning says so. If one texel for each triangle
 ///   would leave out more actuators, the map keeps its UV space.
 ///
-/// Throws `Error` if there is no such layout, if a region has no skin (see `layout_empty_regions`), or if all regions
-/// have no skin.
+/// Throws `Error` if there is no such layout, if the avatar does not stand (`AvatarFacing::lies_deg`), if a region has
+/// no skin (see `layout_empty_regions`), or if all regions have no skin.
 ActuatorMapFiles make_layout(const Avatar& avatar, std::string_view layout);
 
 /// As `make_layout`, but returns everything that is known about how the map was made. Calls `progress` with the

@@ -313,7 +313,7 @@ class Checker {
           fmt::format("actuator {} lies {:.2f} m to the {} of the body's middle, on the side of the joints named {}",
                       quoted(actuator), std::abs(beside_m), where, where),
           fmt::format("make the map anew with --facing {}, or rename its regions",
-                      to_string(nearest_facing(glm::cross(*left, glm::dvec3(0, 1, 0))))));
+                      to_string(nearest_facing(forward_from_left(*left)))));
     }
   }
 

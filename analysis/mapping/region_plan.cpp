@@ -80,6 +80,17 @@ std::size_t piece(double value, const Extent& interval, std::size_t count) {
   return static_cast<std::size_t>(std::clamp(number, 0.0, static_cast<double>(count - 1)));
 }
 
+/// Returns whether up, left or front decide about the region's skin.
+bool needs_standing(const RegionSpec& spec, Understanding understanding) {
+  const auto has_side = [&](const std::string& part) {
+    return understanding == Understanding::kProportions || part.starts_with("vest") || part.ends_with(" left") ||
+           part.ends_with(" right");
+  };
+  return spec.height || spec.height_m || spec.angle_degrees || !spec.sides.empty() || spec.grid ||
+         std::ranges::any_of(spec.parts, has_side) ||
+         !std::ranges::all_of(spec.actuators, [](const RegionActuator& one) { return one.position_m.has_value(); });
+}
+
 SkinPatches sampled(const BodySurface& surface, std::uint32_t triangle, double step) {
   return patches_of_length(surface, triangle, step * kPlanStep * surface.bounds().longest_side());
 }
@@ -104,6 +115,7 @@ RegionPlan::RegionPlan(const Body& body, const std::vector<RegionSpec>& regions,
       })) {
   for (const RegionSpec& spec : regions) {
     const std::string where = fmt::format("{}, region '{}'", name, spec.name);
+    if (needs_standing(spec, body.understanding())) require_standing(body.avatar().facing, where);
     Region region;
     choose_skin(spec, where, region);
     region.columns = column_angles(spec, where);

@@ -18,7 +18,8 @@ class RegionPlan {
   /// `body` must outlive this object. `name` appears in errors. Throws `UnknownName` if the avatar does not have a part
   /// or joint. Throws `Error` if a region asks for two opposite sides, if its list has two actuators of one name, if
   /// its criteria leave no skin for the list, or if there are more than 65534 actuators. A region that selects no skin
-  /// is not an error: its actuators have no skin.
+  /// is not an error: its actuators have no skin. Throws `Error` if the avatar does not stand
+  /// (`AvatarFacing::lies_deg`) and a region has a grid, a height, an angle, a side, the vest, or a left or right part.
   RegionPlan(const Body& body, const std::vector<RegionSpec>& regions, std::string_view name);
 
   /// Returns the actuator's number, 1 … actuator_count, or 0 if the point belongs to no actuator.

@@ -12,6 +12,7 @@
 #include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
+#include "traces/scene/reference_skinning.hpp"
 
 namespace vestige::cli {
 
@@ -29,6 +30,7 @@ Scene scene_of(std::vector<std::byte> avatar_glb, const std::string& name, Verbo
   Scene scene;
   scene.avatar_glb = std::move(avatar_glb);
   scene.avatar = parse_avatar_glb(scene.avatar_glb, name);
+  require_surface(scene.avatar, name);
   warn_all(scene.avatar.warnings, verbosity);
   return scene;
 }
@@ -45,6 +47,19 @@ void give_map(Scene& scene, ActuatorMapFiles files, const SceneNames& names, Ver
 }
 
 }  // namespace
+
+void require_surface(const Avatar& avatar, const std::string& name) {
+  constexpr double kPoint_m = 1e-6;
+  const auto scales = [](const Animation& animation) {
+    return std::ranges::find(animation.channels, AnimatedProperty::kScale, &AnimationChannel::property) !=
+           animation.channels.end();
+  };
+  if (rest_box(avatar).longest_side() > kPoint_m || std::ranges::any_of(avatar.animations, scales)) return;
+  throw Error(
+      name, "its whole skin lies in one point at rest, so it has no surface to touch",
+      "set the scale of its root node to 1 in the modelling program; an avatar that is hidden at times needs an "
+      "animation of that scale");
+}
 
 void add_facing_option(CLI::App& verb, FacingChoice& choice) {
   std::vector<std::string> axes(kFacingNames.begin(), kFacingNames.end());
@@ -84,6 +99,8 @@ void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string
            verbosity);
     set_facing(avatar.facing, *axis, AvatarFacing::By::kAsked);
   }
+  if (avatar.facing.lies_deg)
+    warn(fmt::format("{}: {}; its left and its front are not known", name, describe_lying(avatar.facing)), verbosity);
   if (avatar.facing.doubt.empty()) return;
   warn(fmt::format("{}: {}; {} is taken; --facing sets it", name, avatar.facing.doubt, to_string(avatar.facing.axis)),
        verbosity);

@@ -26,6 +26,10 @@ struct Scene {
   TraceAttachments attachments() const { return {avatar_glb, map_png, map_json}; }
 };
 
+/// Throws `Error` if the avatar is one point at rest, unless an animation scales it. What touches the point touches all
+/// triangles, which takes minutes to decide. `name` is the avatar's name in the error.
+void require_surface(const Avatar& avatar, const std::string& name);
+
 /// The flag --facing.
 struct FacingChoice {
   std::string axis = "auto";
@@ -35,8 +39,8 @@ void add_facing_option(CLI::App& verb, FacingChoice& choice);
 /// Returns what tells the facing: "by its left and right joints", ….
 std::string_view in_words(AvatarFacing::By by);
 
-/// Gives the avatar the facing that is asked for. Otherwise warns of any doubt about the facing that was found. `name`
-/// is the avatar's name in the warning.
+/// Gives the avatar the facing that is asked for. Otherwise warns of any doubt about the facing that was found. Warns
+/// if the avatar does not stand. `name` is the avatar's name in the warning.
 void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string& name, Verbosity verbosity);
 
 /// `avatar` is "builtin" or a file. `map` is "builtin", "none", a layout's name, or a PNG file, whose sidecar is the

@@ -16,7 +16,6 @@
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/gltf/clean/clean_avatar.hpp"
 #include "traces/motion/animation_choice.hpp"
-#include "traces/scene/box.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
@@ -35,13 +34,6 @@ struct AvatarOptions {
   std::string uv_output;
 };
 
-/// Of the rest pose, in the file's own units.
-Box rest_bounds(const Avatar& avatar) {
-  std::vector<glm::dvec3> positions;
-  skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), positions);
-  return box_around(positions);
-}
-
 /// Vertices that differ in place: those that only texture seams split count once.
 std::size_t welded_vertices(const Avatar& avatar) {
   std::set<std::tuple<float, float, float>> places;
@@ -58,12 +50,13 @@ nlohmann::ordered_json describe(const Avatar& avatar, const UvCoverage& coverage
                                   {"duration_s", animation.duration_s},
                                   {"morph_m", animation.morph ? animation.morph->reach_m : 0}});
   json["influences"] = avatar.influence_count;
-  const Box bounds = rest_bounds(avatar);
+  const Box bounds = rest_box(avatar);
   json["bounds"] = {{"min", {bounds.low.x, bounds.low.y, bounds.low.z}},
                     {"max", {bounds.high.x, bounds.high.y, bounds.high.z}}};
   json["uv_overlap_texels"] = coverage.overlap_texels;
   json["uv_covered_texels"] = coverage.covered_texels;
   json["uv_texture_side"] = coverage.side;
+  json["lies_deg"] = avatar.facing.lies_deg ? nlohmann::ordered_json(*avatar.facing.lies_deg) : nullptr;
   json["warnings"] = avatar.warnings;
   return json;
 }
@@ -86,7 +79,8 @@ std::string summary(const std::string& name, const nlohmann::ordered_json& json,
   text += fmt::format(
       "  bounding box   x {:.4g} to {:.4g}, y {:.4g} to {:.4g}, z {:.4g} to {:.4g} (rest pose; glTF: metres)\n",
       number("min", 0), number("max", 0), number("min", 1), number("max", 1), number("min", 2), number("max", 2));
-  text += fmt::format("  faces          {}, {}\n", to_string(avatar.facing.axis), in_words(avatar.facing.by));
+  text += fmt::format("  faces          {}, {}\n", to_string(avatar.facing.axis),
+                      avatar.facing.lies_deg ? "though it does not stand" : in_words(avatar.facing.by));
   text += fmt::format("  UV overlap     {}\n", overlap_text(coverage));
   if (avatar.animations.empty()) text += "  no animation\n";
   for (std::size_t i = 0; i < avatar.animations.size(); ++i)

@@ -326,6 +326,7 @@ void run_parts(const PartsOptions& options, Invocation& invocation) {
   const Body body(avatar);
   std::map<std::string, double> parts_m2;
   std::map<std::string, double> joints_m2;
+  const bool stands = !avatar.facing.lies_deg;  // otherwise, nothing tells left, right and the vest
   const double step_m = 0.01 * body.surface().bounds().longest_side();
   for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) {
     const SkinPatches patches = patches_of_length(body.surface(), i, step_m);
@@ -334,9 +335,10 @@ void run_parts(const PartsOptions& options, Invocation& invocation) {
       const glm::dvec3 p = body.surface().position_m(point);
       const SkinPart part = body.part_at(point);
       std::string name(to_string(part));
-      if (part > SkinPart::kHead) name += body.leftwards_m(p) >= 0 ? " left" : " right";
+      if (part > SkinPart::kHead && stands) name += body.leftwards_m(p) >= 0 ? " left" : " right";
       parts_m2[name] += area_m2;
-      if (part == SkinPart::kTorso && p.y >= body.vest_low_m() && p.y < body.vest_high_m()) parts_m2["vest"] += area_m2;
+      if (part == SkinPart::kTorso && stands && p.y >= body.vest_low_m() && p.y < body.vest_high_m())
+        parts_m2["vest"] += area_m2;
       joints_m2[avatar.nodes[static_cast<std::size_t>(body.node_at(point))].name] += area_m2;
     });
   }

@@ -333,6 +333,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const PlaneSet texture_planes = parse_planes(options.planes);
 
   OpenTrace trace(options.trace, verbosity);
+  require_surface(trace.avatar, options.trace + ", avatar.glb");
   const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
   PlaneSet planes = kHashedPlanes;
   if (!options.textures.empty()) planes = planes | texture_planes;

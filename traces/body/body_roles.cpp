@@ -281,6 +281,39 @@ class RoleFinder {
   Roles roles_;
 };
 
+/// Returns for each node the outermost joint at or above it, or -1.
+std::vector<int> skeletons_of(const Avatar& avatar) {
+  std::vector<bool> is_joint(avatar.nodes.size());
+  for (const PaletteEntry& entry : avatar.palette) is_joint[static_cast<std::size_t>(entry.node)] = true;
+  std::vector<int> skeletons(avatar.nodes.size(), -1);
+  for (const int index : avatar.node_order) {
+    const auto node = static_cast<std::size_t>(index);
+    const int parent = avatar.nodes[node].parent;
+    if (parent >= 0) skeletons[node] = skeletons[static_cast<std::size_t>(parent)];
+    if (skeletons[node] < 0 && is_joint[node]) skeletons[node] = index;
+  }
+  return skeletons;
+}
+
+/// Returns the nodes of each skeleton, by its outermost joint.
+std::vector<std::pair<std::size_t, std::vector<NamedJoint>>> joints_by_skeleton(const Avatar& avatar) {
+  const std::vector<int> skeletons = skeletons_of(avatar);
+  std::vector<std::pair<std::size_t, std::vector<NamedJoint>>> found;
+  std::map<int, std::size_t> place_of;                 // in `found`, by outermost joint
+  std::vector<int> place_in(avatar.nodes.size(), -1);  // in its skeleton, by node
+  for (const int index : avatar.node_order) {
+    const auto node = static_cast<std::size_t>(index);
+    if (skeletons[node] < 0) continue;
+    const auto [place, is_new] = place_of.emplace(skeletons[node], found.size());
+    if (is_new) found.emplace_back(static_cast<std::size_t>(skeletons[node]), std::vector<NamedJoint>());
+    std::vector<NamedJoint>& joints = found[place->second].second;
+    place_in[node] = static_cast<int>(joints.size());
+    const int parent = is_new ? -1 : place_in[static_cast<std::size_t>(avatar.nodes[node].parent)];
+    joints.push_back({avatar.nodes[node].name, parent});
+  }
+  return found;
+}
+
 }  // namespace
 
 std::vector<std::optional<BodyRole>> body_roles(std::span<const NamedJoint> joints) {
@@ -298,8 +331,27 @@ std::vector<NamedJoint> named_joints(const Avatar& avatar) {
   return joints;
 }
 
+std::vector<std::size_t> bodies_of(const Avatar& avatar) {
+  std::vector<std::size_t> bodies;
+  for (const auto& [outermost, joints] : joints_by_skeleton(avatar)) {
+    const Roles roles = body_roles(joints);
+    const auto has = [&](BodyPart part) {
+      return std::ranges::any_of(roles, [&](const auto& role) { return role && role->part == part; });
+    };
+    if (has(Part::kHips) && (has(Part::kUpperArm) || has(Part::kUpperLeg))) bodies.push_back(outermost);
+  }
+  return bodies;
+}
+
 std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar) {
-  const Roles ordered = body_roles(named_joints(avatar));
+  std::vector<NamedJoint> joints = named_joints(avatar);
+  if (const auto bodies = bodies_of(avatar); bodies.size() > 1) {
+    const std::vector<int> skeletons = skeletons_of(avatar);
+    for (std::size_t i = 0; i < joints.size(); ++i)
+      if (skeletons[static_cast<std::size_t>(avatar.node_order[i])] != static_cast<int>(bodies.front()))
+        joints[i].name.clear();
+  }
+  const Roles ordered = body_roles(joints);
   Roles roles(avatar.nodes.size());
   for (std::size_t i = 0; i < ordered.size(); ++i) roles[static_cast<std::size_t>(avatar.node_order[i])] = ordered[i];
   if (avatar.humanoid.source == Humanoid::Source::kNames) return roles;

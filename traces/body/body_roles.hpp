@@ -58,7 +58,12 @@ std::vector<std::optional<BodyRole>> body_roles(std::span<const NamedJoint> join
 /// Returns an avatar's nodes in the order of `avatar.node_order`.
 std::vector<NamedJoint> named_joints(const Avatar& avatar);
 
+/// Returns the outermost joints of those skeletons of an avatar that are bodies by their names, with hips and an arm or
+/// a leg, in the order of `avatar.node_order`. Several meshes with the same joints have one skeleton.
+std::vector<std::size_t> bodies_of(const Avatar& avatar);
+
 /// Returns the roles of an avatar's nodes: those that the table of VRM gives, and otherwise those that the names tell.
+/// Of several bodies (`bodies_of`), the names of the first count.
 std::vector<std::optional<BodyRole>> body_roles(const Avatar& avatar);
 
 /// Returns a name without the prefix that some programs add ("mixamorig:"), in lower-case letters and digits only.

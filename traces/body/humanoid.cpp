@@ -111,6 +111,11 @@ Humanoid find_humanoid(const Avatar& avatar, std::string_view text) {
   };
   Humanoid humanoid;
   if (text.find("\"VRM") != std::string_view::npos) humanoid = by_vrm(json::parse(text, keep, false), avatar);
+  if (const auto bodies = bodies_of(avatar); humanoid.node_of.empty() && bodies.size() > 1)
+    note(humanoid,
+         fmt::format("has {} skeletons of bodies, the first below nodes[{}] '{}' and another below nodes[{}] "
+                     "'{}': the first one's bones tell its parts, its facing, and what follows a motion",
+                     bodies.size(), bodies[0], avatar.nodes[bodies[0]].name, bodies[1], avatar.nodes[bodies[1]].name));
   std::set<std::size_t> taken;
   for (const auto& [bone, node] : humanoid.node_of) taken.insert(node);
   const auto roles = body_roles(avatar);

@@ -83,6 +83,7 @@ VmcState::VmcState(const Avatar& avatar, const glm::dvec3& origin_m)
   if (avatar.humanoid.node_of.empty())
     throw Error("--avatar", "no joint is recognised as a bone of a human body, so no message can move the avatar",
                 "use a VRM file, or name the joints as in Unity, Mixamo, Unreal or Blender");
+  require_standing(avatar.facing, "--avatar");
   for (const NodeLocal& node : pose_.nodes) rest_.push_back(glm::normalize(glm::dquat(node.rotation)));
   pose_.origin_m = origin_m;
   std::vector<glm::dmat4> world;

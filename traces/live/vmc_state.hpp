@@ -34,7 +34,7 @@ namespace vestige {
 /// addresses are ignored.
 class VmcState {
  public:
-  /// Throws `Error` if the avatar has no bone of a human body.
+  /// Throws `Error` if the avatar has no bone of a human body, or does not stand (`AvatarFacing::lies_deg`).
   VmcState(const Avatar& avatar, const glm::dvec3& origin_m);
 
   /// Takes one datagram. A malformed datagram changes nothing and is counted. Returns whether the datagram changed the

@@ -82,7 +82,7 @@ double Retargeter::height() const {
     }
     return sum;
   }
-  const glm::dvec3 up = glm::transpose(body_to_avatar_) * target_up_;
+  const glm::dvec3 up = glm::transpose(body_to_avatar_) * kUp;
   double lowest = std::numeric_limits<double>::infinity();
   double highest = -lowest;
   for (Index i = 0; i < source_.position.size(); ++i)
@@ -103,7 +103,7 @@ double Retargeter::reference_height() const {
   const double floor = floor_level(motion_, body(), samples_, up_.up);
   const auto is_zero = [&](double standing) { return floor > -kFits * standing && floor < kOverZero * standing; };
   if (rests_as_person_) {
-    const glm::dvec3 up = glm::transpose(body_to_avatar_) * target_up_;
+    const glm::dvec3 up = glm::transpose(body_to_avatar_) * kUp;
     const double at_rest = glm::dot(source_.position[*follows_[hips]], up);
     double lowest = at_rest;
     for (const Index joint : body())
@@ -118,10 +118,10 @@ double Retargeter::reference_height() const {
   }
   double lowest = std::numeric_limits<double>::infinity();
   for (Index node = 0; node < follows_.size(); ++node)
-    if (follows_[node] && target_.roles[node]) lowest = std::min(lowest, glm::dot(target_.position[node], target_up_));
+    if (follows_[node] && target_.roles[node]) lowest = std::min(lowest, glm::dot(target_.position[node], kUp));
   const bool have_legs = leg_length(source_) > 0 && leg_length(target_) > 0;
   const double legs = have_legs ? leg_length(source_) / leg_length(target_) : 1 / metres_per_unit_;
-  const double hips_height = glm::dot(target_.position[hips], target_up_);
+  const double hips_height = glm::dot(target_.position[hips], kUp);
   const double standing = (hips_height - lowest) * legs;
   return is_zero(standing) && lowest >= 0 ? hips_height * legs : floor + standing;
 }

@@ -60,9 +60,9 @@ inline constexpr double kBodyTolerance_deg = 30;
 ///   pose. Arms and legs that point another way there (an A pose, a T pose) are first turned to the motion's.
 /// - It rests in any other shape: the frames tell. The hips' axes follow from hip joints and neck. Every other joint is
 ///   turned as its parent is on average over the motion, and then by the shortest way to the direction of its bone.
-/// The motion's up (find_up) becomes the avatar's up. What the motion's skeleton faces at rest becomes the avatar's
-/// forward. If its rest pose tells nothing, what the body faces in the first frame does, to the nearest axis of the
-/// file.
+/// The motion's up (find_up) becomes +Y. What the motion's skeleton faces at rest becomes what the avatar faces
+/// (`Avatar::facing`). If its rest pose tells nothing, what the body faces in the first frame does, to the nearest axis
+/// of the file.
 ///
 /// The hips travel as the motion's hips do, scaled by `metres_per_unit`, so that feet do not slide. The travel counts
 /// horizontally from the avatar's own place, and vertically from the height of the hips at rest, or from the motion's
@@ -73,10 +73,10 @@ inline constexpr double kBodyTolerance_deg = 30;
 /// sides of the hands. The report names what differs by more.
 ///
 /// Joints are matched by their role in a body (body_roles.hpp), spines from both ends, then the rest by name. Throws
-/// `Error` with the motion's name if the hips, or both an arm and a leg, match nothing (nodes with a `fixed_matrix` do
-/// not count). With a `refusal`, throws it also if the direction from hips to head differs by more than
-/// kBodyTolerance_deg. Also throws if the animation would hold more than 2^26 numbers, or many more than the motion
-/// has.
+/// `Error` with the motion's name if the avatar does not stand (`AvatarFacing::lies_deg`), or if the hips, or both an
+/// arm and a leg, match nothing (nodes with a `fixed_matrix` do not count). With a `refusal`, throws it also if the
+/// direction from hips to head differs by more than kBodyTolerance_deg. Also throws if the animation would hold more
+/// than 2^26 numbers, or many more than the motion has.
 Animation retarget(const BvhMotion& motion, const Avatar& avatar, const RetargetOptions& options,
                    const std::string& name, RetargetReport& report);
 

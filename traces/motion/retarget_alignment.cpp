@@ -24,6 +24,7 @@ Retargeter::Retargeter(const BvhMotion& motion, const Avatar& avatar, const Reta
       name_(name),
       samples_(sample_motion(motion)),
       source_(skeleton_of(motion, samples_.now)) {
+  require_standing(avatar.facing, name);
   world_matrices(avatar, rest_pose(avatar), rest_);
   target_ = skeleton_of(avatar, rest_);
   follows_ = match_joints(source_, target_);
@@ -56,8 +57,8 @@ void Retargeter::refuse_other_bodies() const {
 /// Finds the axes of the world and of both bodies.
 void Retargeter::find_axes(const std::optional<glm::dvec3>& up) {
   const glm::dmat3 source_axes = axes_of(source_);
-  const glm::dmat3 target_axes = axes_of(target_);
-  target_up_ = target_axes[1];
+  const Facing faces = avatar_.facing.axis;
+  const glm::dmat3 target_axes(turned_from_front({1, 0, 0}, faces), kUp, forward_of(faces));
   rests_as_person_ = is_person(source_, source_axes);
   if (rests_as_person_) body_to_avatar_ = target_axes * glm::transpose(source_axes);
   up_ = up ? UpAxis{*up, UpAxis::By::kAsked}
@@ -99,7 +100,7 @@ glm::dquat Retargeter::flatter(Index foot, const glm::dquat& with_leg) const {
   for (std::size_t frame = 0; frame < motion_.frame_count; frame += step) {
     bvh_places(motion_, frame, places);
     const glm::dquat turned = turn_to_avatar * places[*follows_[foot]].rotation * turn_back;
-    lead += glm::dot(turned * with_leg * target_up_ - turned * target_up_, target_up_);
+    lead += glm::dot(turned * with_leg * kUp - turned * kUp, kUp);
   }
   return lead > 0 ? with_leg : glm::dquat(1, 0, 0, 0);
 }
@@ -228,9 +229,8 @@ void Retargeter::align_by_frames() {
 
 double Retargeter::ratio_of_legs() const {
   const bool by_height = rests_as_person_;
-  const double of_motion =
-      by_height ? hip_height(source_, glm::transpose(body_to_avatar_) * target_up_) : leg_length(source_);
-  const double of_avatar = by_height ? hip_height(target_, target_up_) : leg_length(target_);
+  const double of_motion = by_height ? hip_height(source_, glm::transpose(body_to_avatar_) * kUp) : leg_length(source_);
+  const double of_avatar = by_height ? hip_height(target_, kUp) : leg_length(target_);
   if (of_motion > 0 && of_avatar > 0) return of_avatar / of_motion;
   throw Error(name_, "its hips and feet, or those of the avatar, do not show how tall the body is",
               "give the unit of the motion: --unit cm (or m, mm, inch)");

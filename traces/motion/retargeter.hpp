@@ -15,6 +15,9 @@
 
 namespace vestige {
 
+/// The avatar's up, as in glTF.
+inline constexpr glm::dvec3 kUp(0, 1, 0);
+
 /// Aligns a motion's skeleton with the avatar's (retarget_alignment.cpp), then moves the avatar frame by frame
 /// (retarget.cpp). Keeps references to what it is given.
 class Retargeter {
@@ -63,7 +66,6 @@ class Retargeter {
   UpAxis up_;
   glm::dmat3 to_avatar_ = glm::dmat3(1);       ///< from the axes of the motion's world to the avatar's
   glm::dmat3 body_to_avatar_ = glm::dmat3(1);  ///< the same of the skeletons at rest, if the motion's rests as a person
-  glm::dvec3 target_up_ = glm::dvec3(0, 1, 0);
   double metres_per_unit_ = 0;
   std::vector<glm::dquat> at_rest_;               ///< for each of `target_`: its rotation while its joint's is zero
   std::vector<std::pair<Index, Index>> aligned_;  ///< bones of `target_` that point where the motion's do

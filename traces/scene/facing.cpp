@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "traces/base/error.hpp"
+
 namespace vestige {
 
 std::optional<Facing> facing_named(std::string_view name) {
@@ -28,6 +30,19 @@ void take_recorded_facing(AvatarFacing& facing, std::string_view recorded) {
     set_facing(facing, *axis, AvatarFacing::By::kTrace);
   else
     facing.doubt = fmt::format("the trace records the facing '{}', which is no axis", recorded);
+}
+
+std::string describe_lying(const AvatarFacing& facing) {
+  return fmt::format("does not stand: at rest, its head lies {:.0f} degrees away from +Y as seen from its hips",
+                     *facing.lies_deg);
+}
+
+void require_standing(const AvatarFacing& facing, std::string_view where) {
+  if (!facing.lies_deg) return;
+  throw Error(where, fmt::format("the avatar {}", describe_lying(facing)),
+              fmt::format("turn the avatar's root node by {:.0f} degrees in the modelling program, so that its head is "
+                          "above its hips, or export it with +Y up",
+                          *facing.lies_deg));
 }
 
 std::string_view to_string(AvatarFacing::By by) {

@@ -25,6 +25,11 @@ std::optional<Facing> facing_named(std::string_view name);
 /// Returns the axis as a unit vector.
 glm::dvec3 forward_of(Facing facing);
 
+/// Returns the direction in front of a body whose left is this horizontal direction.
+inline glm::dvec3 forward_from_left(const glm::dvec3& left) {
+  return {-left.z, 0, left.x};
+}
+
 /// Returns the axis nearest to a direction, whose height does not count.
 Facing nearest_facing(const glm::dvec3& direction);
 
@@ -76,9 +81,12 @@ struct AvatarFacing {
   std::optional<glm::dvec3> left;
   /// A clause if the names contradict each other, the feet or VRM, or if nothing tells. Empty otherwise.
   std::string doubt;
+  /// The angle from +Y to the direction from hips to head in degrees, if the avatar does not stand (find_facing.hpp).
+  /// It then has no left and no front, whatever `axis` says. Empty if it stands, or if its bones do not tell.
+  std::optional<double> lies_deg;
 };
 
-/// Takes an axis that is recorded or asked for, in place of the one that was found.
+/// Takes an axis that is recorded or asked for, in place of the one that was found. A body that lies still lies.
 inline void set_facing(AvatarFacing& facing, Facing axis, AvatarFacing::By by) {
   facing.axis = axis;
   facing.by = by;
@@ -87,6 +95,12 @@ inline void set_facing(AvatarFacing& facing, Facing axis, AvatarFacing::By by) {
 
 /// Takes the text that a trace records as its facing. An empty one changes nothing. One that names no axis is a doubt.
 void take_recorded_facing(AvatarFacing& facing, std::string_view recorded);
+
+/// Returns a clause that says that the avatar does not stand, and how far it leans. Precondition: `facing.lies_deg`.
+std::string describe_lying(const AvatarFacing& facing);
+
+/// Throws `Error` if the avatar does not stand. `where` begins the message.
+void require_standing(const AvatarFacing& facing, std::string_view where);
 
 /// "sides", "feet", "vrm", "assumed", "map", "trace", "asked".
 std::string_view to_string(AvatarFacing::By by);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "traces/scene/avatar.hpp"
+#include "traces/scene/box.hpp"
 
 namespace vestige {
 
@@ -20,5 +21,8 @@ glm::dvec3 skin_vertex(const Avatar& avatar, const std::vector<glm::dmat4>& pale
 /// Returns in `out` all vertices under linear blend skinning, in metres from `origin_m` (world), one for each of
 /// Avatar::position_bind. Computed entirely in double, as the reference for single-precision skinning.
 void skin_reference(const Avatar& avatar, const Pose& pose, const glm::dvec3& origin_m, std::vector<glm::dvec3>& out);
+
+/// Returns the box around the skin at rest, in metres. Precondition: the avatar has vertices.
+Box rest_box(const Avatar& avatar);
 
 }  // namespace vestige

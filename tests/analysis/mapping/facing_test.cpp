@@ -132,6 +132,36 @@ TEST(FacingOfMaps, FiveRealAvatarsInFourFacingsFeelTheirOwnSides) {
                        fmt::format("{}, {} quarters", file, quarters));
 }
 
+/// No layout knows the left or the top of a body that lies. What needs neither is drawn.
+TEST(FacingOfMaps, ABodyThatDoesNotStandHasNoLayout) {
+  for (const double degrees : {-90.0, 180.0}) {
+    const Avatar laid = parse_avatar_glb(test::laid_glb(builtin_avatar_glb(), degrees, {1, 0, 0}), "laid.glb");
+    const Body body(laid);
+    const auto drawn = [&](const std::string& region) -> std::string {
+      try {
+        const RegionPlan plan(body, parse_region_file("{\"regions\": [{\"name\": \"r\", " + region + "}]}", "r.json"),
+                              "r.json");
+        return std::to_string(plan.actuator_count());
+      } catch (const Error& error) {
+        return error.what();
+      }
+    };
+    const std::string refusal =
+        fmt::format("r.json, region 'r': the avatar does not stand: at rest, its head lies {:.0f} degrees away from +Y",
+                    std::abs(degrees));
+    for (const char* region :
+         {R"("part": "vest")", R"("part": ["head", "hand left"])", R"("part": "foot right")",
+          R"("joints": ["head"], "side": "front")", R"("part": "torso", "height": [0, 0.5])", R"("height_m": [0, 0.5])",
+          R"("part": "torso", "angle": [0, 90])", R"("grid": {"rows": 2, "columns": 2})",
+          R"("part": "torso", "actuators": [{"name": "a", "height": 0.5, "angle": 0}])"})
+      EXPECT_THAT(drawn(region), HasSubstr(refusal)) << region;
+    for (const char* region : {R"("part": "head")", R"("joints": ["hand_left"])", R"("below": ["upper_arm_right"])",
+                               R"("part": "torso", "actuators": [{"name": "a", "position_m": [0, 0, 0]}])"})
+      EXPECT_EQ(drawn(region), "1") << region;
+    for (const std::string& layout : layout_names()) EXPECT_THROW(make_layout(laid, layout), Error) << layout;
+  }
+}
+
 /// The skin of a turned avatar is where it was, so that a map in its texture is the same, but for borders that rounding
 /// moves.
 TEST(FacingOfMaps, ATurnedAvatarHasTheSameMap) {

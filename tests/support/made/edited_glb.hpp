@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <glm/gtc/quaternion.hpp>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -39,6 +40,14 @@ inline std::vector<std::byte> turned_glb(std::span<const std::byte> glb, int qua
   const std::array<double, 2>& yw = turn[static_cast<std::size_t>(quarters)];
   return edited_glb(glb, [&](nlohmann::json& json) {
     hang_below(json, {{"name", "turn"}, {"rotation", {0, yw[0], 0, yw[1]}}});
+  });
+}
+
+/// Returns the avatar turned as a whole about an axis of length 1.
+inline std::vector<std::byte> laid_glb(std::span<const std::byte> glb, double degrees, const glm::dvec3& axis) {
+  const glm::dquat q = glm::angleAxis(glm::radians(degrees), axis);
+  return edited_glb(glb, [&](nlohmann::json& json) {
+    hang_below(json, {{"name", "laid"}, {"rotation", {q.x, q.y, q.z, q.w}}});
   });
 }
 

@@ -42,6 +42,7 @@ TEST(Facing, TurnsPlacesExactlyAndBack) {
     EXPECT_EQ(turned_from_front(turned_to_front(p, facing), facing), p);
     EXPECT_EQ(turned_to_front(forward_of(facing), facing), glm::dvec3(0, 0, 1)) << to_string(facing);
     EXPECT_EQ(nearest_facing(forward_of(facing)), facing);
+    EXPECT_EQ(forward_from_left(turned_from_front({1, 0, 0}, facing)), forward_of(facing));
     EXPECT_EQ(facing_named(to_string(facing)), facing);
   }
   EXPECT_EQ(forward_of(Facing::kPlusX), glm::dvec3(1, 0, 0));
@@ -70,6 +71,7 @@ TEST(Facing, OfRealAvatarsIsFound) {
       const AvatarFacing facing = facing_of(test::turned_glb(glb, quarters));
       EXPECT_EQ(facing.axis, static_cast<Facing>(quarters)) << file << ", " << to_string(facing.by);
       EXPECT_EQ(facing.doubt, "") << file;
+      EXPECT_EQ(facing.lies_deg, std::nullopt) << file;
     }
   }
 }
@@ -156,6 +158,101 @@ TEST(Facing, BetweenTwoAxesIsDoubted) {
     test::hang_below(json, {{"rotation", {0, 0.3826834, 0, 0.9238795}}});
   });
   EXPECT_THAT(facing.doubt, HasSubstr("between two axes"));
+}
+
+/// A body that lies or hangs has neither a left nor a front, whatever its names and its feet seem to tell.
+TEST(Facing, OfABodyThatDoesNotStandIsNotFound) {
+  struct Case {
+    double degrees;
+    glm::dvec3 axis;
+    double lies_deg;
+  };
+  const glm::dvec3 x(1, 0, 0);
+  const glm::dvec3 z(0, 0, 1);
+  auto avatars = test::made_avatars();
+  avatars["built-in"] = builtin_avatar_glb();
+  for (const auto& [name, glb] : avatars)
+    for (const Case& one : {Case{-90, x, 90}, {90, x, 90}, {90, z, 90}, {-90, z, 90}, {180, z, 180}, {50, x, 50}}) {
+      if (name == "sits" && one.degrees > 0 && one.axis == x) continue;  // which is a body on all fours
+      const AvatarFacing facing = facing_of(test::laid_glb(glb, one.degrees, one.axis));
+      ASSERT_TRUE(facing.lies_deg) << name << ", " << one.degrees;
+      EXPECT_NEAR(*facing.lies_deg, one.lies_deg, 6) << name;
+      EXPECT_EQ(facing.by, By::kAssumed) << name;
+      EXPECT_EQ(facing.left, std::nullopt) << name;
+      EXPECT_EQ(facing.doubt, "") << name;
+    }
+}
+
+TEST(Facing, OfABodyThatLeansIsFound) {
+  for (const double degrees : {-40.0, 0.0, 40.0}) {
+    const AvatarFacing facing = facing_of(test::laid_glb(builtin_avatar_glb(), degrees, {1, 0, 0}));
+    EXPECT_EQ(facing.lies_deg, std::nullopt) << degrees;
+    EXPECT_EQ(facing.by, By::kSides) << degrees;
+    EXPECT_EQ(facing.axis, Facing::kPlusZ) << degrees;
+  }
+}
+
+/// Its trunk lies, and yet its left is left and its head is in front.
+TEST(Facing, OfABodyOnAllFoursIsFound) {
+  const auto bent = test::edited_glb(builtin_avatar_glb(), [](nlohmann::json& json) {
+    for (const char* side : {"_left", "_right"}) test::turn_joint(json, std::string("thigh") + side, -80, {1, 0, 0});
+  });
+  const AvatarFacing facing = facing_of(test::laid_glb(bent, 80, {1, 0, 0}));
+  EXPECT_EQ(facing.lies_deg, std::nullopt);
+  EXPECT_EQ(facing.by, By::kSides);
+  EXPECT_EQ(facing.axis, Facing::kPlusZ);
+}
+
+TEST(Facing, OfABodyWithoutAKnownHeadIsFoundAsEver) {
+  const auto headless = test::edited_glb(builtin_avatar_glb(),
+                                         [](nlohmann::json& json) { test::node_named(json, "head")["name"] = "x"; });
+  EXPECT_EQ(facing_of(test::laid_glb(headless, 90, {1, 0, 0})).lies_deg, std::nullopt);
+}
+
+TEST(Facing, ThatIsAskedForDoesNotMakeABodyStand) {
+  AvatarFacing facing = facing_of(test::laid_glb(builtin_avatar_glb(), 90, {1, 0, 0}));
+  set_facing(facing, Facing::kMinusX, By::kAsked);
+  EXPECT_EQ(facing.axis, Facing::kMinusX);
+  EXPECT_TRUE(facing.lies_deg);
+}
+
+/// Adds a copy of everything that the file shows, which faces the other way 2 m to the left, with its own skin.
+void add_second_body(nlohmann::json& json) {
+  const std::size_t count = json["nodes"].size();
+  nlohmann::json nodes = json["nodes"];
+  for (nlohmann::json& node : nodes) {
+    if (node.contains("children"))
+      for (nlohmann::json& child : node["children"]) child = child.get<std::size_t>() + count;
+    if (node.contains("skin")) node["skin"] = 1;
+    json["nodes"].push_back(node);
+  }
+  nlohmann::json skin = json["skins"][0];
+  skin.erase("skeleton");
+  for (nlohmann::json& joint : skin["joints"]) joint = joint.get<std::size_t>() + count;
+  json["skins"].push_back(skin);
+  nlohmann::json other = {{"name", "other"}, {"rotation", {0, 1, 0, 0}}, {"translation", {2, 0, 0}}};
+  for (const nlohmann::json& root : json["scenes"][0]["nodes"])
+    other["children"].push_back(root.get<std::size_t>() + count);
+  json["scenes"][0]["nodes"].push_back(json["nodes"].size());
+  json["nodes"].push_back(other);
+}
+
+/// Bones that only the second body has are not mixed with those of the first.
+TEST(BodyRoles, OfTwoBodiesAreThoseOfTheFirstWhichIsSaid) {
+  const Avatar two = parse_avatar_glb(test::edited_glb(builtin_avatar_glb(),
+                                                       [](nlohmann::json& json) {
+                                                         add_second_body(json);
+                                                         test::node_named(json, "toes_left")["name"] = "x";
+                                                       }),
+                                      "two.glb");
+  const std::size_t one = parse_avatar_glb(builtin_avatar_glb(), "builtin").nodes.size();
+  EXPECT_FALSE(two.humanoid.node_of.contains("LeftToes"));
+  EXPECT_EQ(two.humanoid.node_of.size(), 20U);
+  for (const auto& [bone, node] : two.humanoid.node_of) EXPECT_LT(node, one) << bone;
+  EXPECT_EQ(two.facing.axis, Facing::kPlusZ);
+  EXPECT_THAT(two.warnings, ::testing::Contains(::testing::AllOf(HasSubstr("two.glb: has 2 skeletons of bodies"),
+                                                                 HasSubstr("'pelvis'"))));
+  EXPECT_THAT(parse_avatar_glb(builtin_avatar_glb(), "builtin").warnings, ::testing::IsEmpty());
 }
 
 TEST(BodyRoles, OfAVrmAreThoseOfItsTable) {

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tests/support/builtin_avatar.hpp"
+#include "tests/support/made/edited_glb.hpp"
 #include "tests/support/osc.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/base/error.hpp"
@@ -371,6 +372,16 @@ TEST_F(Vmc, AnAvatarMovesTheWayItFaces) {
 }
 
 /// A node whose own rest frame is turned: what is sent is meant in a skeleton without such turns.
+TEST(VmcState, RefusesAnAvatarThatDoesNotStand) {
+  const Avatar laid = parse_avatar_glb(test::laid_glb(builtin_avatar_glb(), 90, {1, 0, 0}), "laid.glb");
+  try {
+    const VmcState state(laid, {});
+    ADD_FAILURE() << "taken";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("--avatar: the avatar does not stand"));
+  }
+}
+
 TEST_F(Vmc, RotationsAreTurnedIntoEachNodesOwnFrame) {
   Avatar avatar = test::skeleton(2);
   avatar.nodes[0].rest.rotation = glm::quat(about({0, 0, 1}, 90));

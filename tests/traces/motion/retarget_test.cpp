@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 
+#include "tests/support/made/edited_glb.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/motion/bvh_text.hpp"
 #include "tests/traces/motion/made_motion.hpp"
@@ -246,6 +247,45 @@ TEST(Retarget, ABodyThatCannotBendAsTheMotionDoesIsRefusedUnlessItIsAccepted) {
   }
   retarget(bow, stiff, {.refusal = std::nullopt}, "bow.bvh", report);
   EXPECT_FALSE(report.deviations.empty());
+}
+
+/// +Y is up. Otherwise, the body's own up would be, and who walks would be laid down.
+TEST(Retarget, AnAvatarThatDoesNotStandIsRefused) {
+  const BvhMotion motion = parse_bvh(test::made_bvh(test::made_motion("walk"), "y", "T"), "walk.bvh");
+  RetargetReport report;
+  for (const double degrees : {-90.0, 90.0, 180.0}) {
+    const Avatar laid = parse_avatar_glb(test::laid_glb(builtin_avatar_glb(), degrees, {1, 0, 0}), "laid.glb");
+    for (const bool is_forced : {false, true}) try {
+        RetargetOptions options;
+        if (is_forced) options.refusal.reset();
+        retarget(motion, laid, options, "walk.bvh", report);
+        ADD_FAILURE() << degrees << " degrees: retargeted";
+      } catch (const Error& error) {
+        EXPECT_THAT(error.what(), testing::HasSubstr(fmt::format("walk.bvh: the avatar does not stand: at rest, its "
+                                                                 "head lies {:.0f} degrees away from +Y",
+                                                                 std::abs(degrees))));
+        EXPECT_THAT(error.what(), testing::HasSubstr(
+                                      fmt::format("turn the avatar's root node by {:.0f} degrees", std::abs(degrees))));
+      }
+  }
+}
+
+TEST(Retarget, TheBodyWalksTheWayThatTheAvatarFaces) {
+  const BvhMotion motion = parse_bvh(test::made_bvh(test::made_motion("walk"), "z", "A"), "walk.bvh");
+  RetargetReport report;
+  const auto travel = [&](const Avatar& avatar) {
+    const Animation animation = retarget(motion, avatar, {}, "walk.bvh", report);
+    return Stage(avatar, animation, animation.duration_s)["pelvis"] - Stage(avatar, animation, 0)["pelvis"];
+  };
+  for (int quarters = 0; quarters < 4; ++quarters) {
+    const auto facing = static_cast<Facing>(quarters);
+    const Avatar turned = parse_avatar_glb(test::turned_glb(builtin_avatar_glb(), quarters), "turned.glb");
+    EXPECT_GT(glm::dot(travel(turned), forward_of(facing)), 0.8) << "as found: " << to_string(facing);
+    EXPECT_TRUE(report.deviations.empty()) << report.deviations.front().what;
+    Avatar asked = mannequin();
+    set_facing(asked.facing, facing, AvatarFacing::By::kAsked);
+    EXPECT_GT(glm::dot(travel(asked), forward_of(facing)), 0.8) << "as asked: " << to_string(facing);
+  }
 }
 
 TEST(Retarget, TheAxisThatIsAskedForIsUp) {
