@@ -104,8 +104,8 @@ Avatar parse_avatar_glb(std::span<const std::byte> glb, std::string_view name) {
 
 gltf::LoadedAvatar gltf::load_avatar(std::span<const std::byte> glb, std::string_view name, DrawnMeshes* details) {
   Report report(name);
-  const Document document = load_document(glb, report);
-  LoadedAvatar loaded;
+  LoadedAvatar loaded = {.document = load_document(glb, report), .avatar = {}, .skins = {}};
+  const Document& document = loaded.document;
   Avatar& avatar = loaded.avatar;
   read_nodes(document, avatar, report);
   loaded.skins = read_skins(document, avatar, report);
