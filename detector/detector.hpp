@@ -62,6 +62,8 @@ struct GlInfo {
   bool software = false;  ///< true if the renderer runs on the CPU
   /// What was measured of the shaders' arithmetic, by stage. Empty if the driver refused the probe.
   std::vector<StageArithmetic> arithmetic = {};
+  /// What the driver said against the probe, one line of at most 300 bytes. Empty unless it refused the probe.
+  std::string probe_refusal = {};
 };
 
 /// Finds, for every collider, where its segment first meets the avatar's skin.

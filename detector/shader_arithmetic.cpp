@@ -147,8 +147,10 @@ StageArithmetic judge(std::string_view stage, std::span<const float> answers) {
           .division_error_ulp = division_error_ulp(answers)};
 }
 
-std::string breaks_proofs(std::span<const StageArithmetic> stages) {
-  if (stages.empty()) return "the arithmetic of the driver's shaders is not measured, because it refuses the probe";
+std::string breaks_proofs(std::span<const StageArithmetic> stages, std::string_view refusal) {
+  if (stages.empty())
+    return fmt::format("the arithmetic of the driver's shaders is not measured, because it refuses the probe: {}",
+                       refusal);
   for (const StageArithmetic& stage : stages)
     if (!stage.misrounded.empty())
       return fmt::format("the driver's {} shaders do not round to nearest ({}): {}", stage.stage, stage.rounding,

@@ -41,7 +41,8 @@ StageArithmetic judge(std::string_view stage, std::span<const float> answers);
 
 /// Returns why the proofs of `geometry` (shaders/geometry.geom, candidates.vert) may not hold with such arithmetic.
 /// Empty if nothing speaks against them. The proofs need + - * that are rounded to nearest. They cover contraction and
-/// flushed denormals, and they do not divide. Without a measured stage, nothing speaks for them.
-std::string breaks_proofs(std::span<const StageArithmetic> stages);
+/// flushed denormals, and they do not divide. Without a measured stage, nothing speaks for them; `refusal` is then what
+/// the driver said.
+std::string breaks_proofs(std::span<const StageArithmetic> stages, std::string_view refusal);
 
 }  // namespace vestige

@@ -72,7 +72,7 @@ std::string shortcomings(const Offer& offer) {
 
 /// Why `geometry` is refused there; empty if it is not.
 std::string refusal(const Offer& offer) {
-  return offer.unusable.empty() ? breaks_proofs(offer.info.arithmetic) : "";
+  return offer.unusable.empty() ? breaks_proofs(offer.info.arithmetic, offer.info.probe_refusal) : "";
 }
 
 nlohmann::ordered_json to_json(const Offer& offer) {

@@ -223,7 +223,7 @@ std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> cont
 }
 
 void require_proofs(const GlInfo& gl) {
-  const std::string cause = breaks_proofs(gl.arithmetic);
+  const std::string cause = breaks_proofs(gl.arithmetic, gl.probe_refusal);
   if (!cause.empty())
     throw Error("--detector geometry",
                 fmt::format("is not known to be exact on {} ({}): {}", gl.context, gl.renderer, cause),

@@ -26,6 +26,22 @@ std::string text_of(const GLubyte* text) {
   return text == nullptr ? "" : reinterpret_cast<const char*>(text);
 }
 
+/// Returns the start of a driver's message on one line.
+std::string one_line(std::string_view message) {
+  constexpr std::size_t kMostBytes = 300;
+  std::string line;
+  for (const char c : message) {
+    const bool is_blank = static_cast<unsigned char>(c) <= ' ';
+    if (!is_blank)
+      line += c;
+    else if (!line.empty() && line.back() != ' ')
+      line += ' ';
+  }
+  if (line.ends_with(' ')) line.pop_back();
+  if (line.size() > kMostBytes) line.replace(kMostBytes - 3, std::string::npos, "...");
+  return line;
+}
+
 /// Mesa may serve a GPU's device with its software renderer. That renderer must not win over another device's GPU.
 std::unique_ptr<GlContext> make_hardware_context(int device) {
   if (list_egl_devices()[static_cast<std::size_t>(device)].software)
@@ -66,6 +82,7 @@ std::unique_ptr<GlContext> GlContext::loaded(std::unique_ptr<GlContext> context,
                     text_of(functions.GetString(GL_VERSION)),
                     text_of(functions.GetString(GL_VENDOR)),
                     is_software_renderer(renderer),
+                    {},
                     {}};
   GLint major = 0;
   GLint minor = 0;
@@ -77,8 +94,9 @@ std::unique_ptr<GlContext> GlContext::loaded(std::unique_ptr<GlContext> context,
   if (gl_messages_wanted()) print_gl_messages(functions, context->info_.context);
   try {
     context->info_.arithmetic = probe_arithmetic(functions);
-  } catch (const Error&) {
+  } catch (const Error& error) {
     // What is not measured stays empty, and `geometry` refuses it.
+    context->info_.probe_refusal = one_line(error.fault());
   }
   return context;
 }

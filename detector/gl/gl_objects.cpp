@@ -22,7 +22,7 @@ std::string info_log(GLuint name, GetIv get_iv, GetLog get_log) {
   get_iv(name, GL_INFO_LOG_LENGTH, &length);
   std::string log(static_cast<std::size_t>(length), '\0');
   get_log(name, length, nullptr, log.data());
-  return log;
+  return log.substr(0, log.find('\0'));
 }
 
 }  // namespace

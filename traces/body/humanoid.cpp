@@ -38,6 +38,7 @@ const json* member(const json* object, const char* name) {
 
 void note(Humanoid& humanoid, std::string problem) {
   constexpr std::size_t kMostTold = 10;
+  ++humanoid.problem_count;
   if (humanoid.problems.size() < kMostTold) humanoid.problems.push_back(std::move(problem));
 }
 
@@ -62,32 +63,22 @@ void take_bone(Humanoid& humanoid, std::string name, const json& bone, const Ava
   humanoid.node_of.emplace(std::move(name), index);
 }
 
-Humanoid by_vrm(const json& root, const Avatar& avatar) {
-  Humanoid humanoid;
-  const json* extensions = member(&root, "extensions");
-  if (const json* extension = member(extensions, "VRMC_vrm")) {
-    humanoid.source = Humanoid::Source::kVrm1;
-    const std::string field = "extensions.VRMC_vrm.humanoid.humanBones";
-    const json* bones = member(member(extension, "humanoid"), "humanBones");
-    if (bones == nullptr) return humanoid;
-    if (!bones->is_object()) {
-      note(humanoid, field + " is not an object: bones are recognised by their names");
-      return humanoid;
-    }
-    for (const auto& [name, bone] : bones->items())
-      take_bone(humanoid, unity_name(name), bone, avatar, fmt::format("{}.{}", field, name));
-    return humanoid;
-  }
-  const json* extension = member(extensions, "VRM");
-  if (extension == nullptr) return humanoid;
-  humanoid.source = Humanoid::Source::kVrm0;
+/// Adds the bones of VRM 1.0's table.
+void take_vrm1(Humanoid& humanoid, const json& extension, const Avatar& avatar) {
+  const std::string field = "extensions.VRMC_vrm.humanoid.humanBones";
+  const json* bones = member(member(&extension, "humanoid"), "humanBones");
+  if (bones == nullptr) return;
+  if (!bones->is_object()) return note(humanoid, field + " is not an object: it names no bones");
+  for (const auto& [name, bone] : bones->items())
+    take_bone(humanoid, unity_name(name), bone, avatar, fmt::format("{}.{}", field, name));
+}
+
+/// Adds the bones of VRM 0.x's table.
+void take_vrm0(Humanoid& humanoid, const json& extension, const Avatar& avatar) {
   const std::string field = "extensions.VRM.humanoid.humanBones";
-  const json* bones = member(member(extension, "humanoid"), "humanBones");
-  if (bones == nullptr) return humanoid;
-  if (!bones->is_array()) {
-    note(humanoid, field + " is not an array: bones are recognised by their names");
-    return humanoid;
-  }
+  const json* bones = member(member(&extension, "humanoid"), "humanBones");
+  if (bones == nullptr) return;
+  if (!bones->is_array()) return note(humanoid, field + " is not an array: it names no bones");
   for (std::size_t i = 0; i < bones->size(); ++i) {
     const json& bone = (*bones)[i];
     const json* name = member(&bone, "bone");
@@ -99,18 +90,30 @@ Humanoid by_vrm(const json& root, const Avatar& avatar) {
     if (!unity.empty()) unity[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(unity[0])));
     take_bone(humanoid, std::move(unity), bone, avatar, fmt::format("{}[{}]", field, i));
   }
+}
+
+Humanoid by_vrm(const json& extensions, const Avatar& avatar) {
+  Humanoid humanoid;
+  if (const json* vrm1 = member(&extensions, "VRMC_vrm")) {
+    humanoid.source = Humanoid::Source::kVrm1;
+    take_vrm1(humanoid, *vrm1, avatar);
+  }
+  const json* vrm0 = member(&extensions, "VRM");
+  if (vrm0 == nullptr || !humanoid.node_of.empty()) return humanoid;
+  take_vrm0(humanoid, *vrm0, avatar);
+  // If neither table gives a bone, the newer one stands.
+  if (!humanoid.node_of.empty() || humanoid.source == Humanoid::Source::kNames)
+    humanoid.source = Humanoid::Source::kVrm0;
   return humanoid;
 }
 
 }  // namespace
 
-Humanoid find_humanoid(const Avatar& avatar, std::string_view text) {
-  // Of the file's lists, which may be long, nothing is kept.
-  const auto keep = [](int depth, json::parse_event_t event, const json& parsed) {
-    return depth != 1 || event != json::parse_event_t::key || parsed == "extensions";
-  };
+Humanoid find_humanoid(const Avatar& avatar, std::string_view extensions) {
   Humanoid humanoid;
-  if (text.find("\"VRM") != std::string_view::npos) humanoid = by_vrm(json::parse(text, keep, false), avatar);
+  // Other extensions may be long, and a tree of them even longer.
+  if (extensions.find("\"VRM") != std::string_view::npos)
+    humanoid = by_vrm(json::parse(extensions, nullptr, false), avatar);
   if (const auto bodies = bodies_of(avatar); humanoid.node_of.empty() && bodies.size() > 1)
     note(humanoid,
          fmt::format("has {} skeletons of bodies, the first below nodes[{}] '{}' and another below nodes[{}] "

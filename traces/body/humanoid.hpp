@@ -7,9 +7,9 @@
 
 namespace vestige {
 
-/// Finds the bones by the table of the extension VRM or VRMC_vrm in `json`, the JSON of the avatar's file, and those
-/// that it does not have by the nodes' names (body_roles.hpp). May find none. Never fails: JSON that cannot be parsed
-/// has no extension.
-Humanoid find_humanoid(const Avatar& avatar, std::string_view json);
+/// Finds the bones by the table of VRMC_vrm, or if that gives none, of VRM. Finds those that the table does not have by
+/// the nodes' names (body_roles.hpp). May find none. `extensions` is the JSON of the file's extensions. Never fails:
+/// JSON that cannot be parsed has no extension.
+Humanoid find_humanoid(const Avatar& avatar, std::string_view extensions);
 
 }  // namespace vestige

@@ -9,7 +9,6 @@
 
 #include "traces/body/find_facing.hpp"
 #include "traces/body/humanoid.hpp"
-#include "traces/gltf/glb_container.hpp"
 #include "traces/gltf/gltf_animation.hpp"
 #include "traces/gltf/gltf_document.hpp"
 #include "traces/gltf/gltf_load.hpp"
@@ -105,8 +104,8 @@ Avatar parse_avatar_glb(std::span<const std::byte> glb, std::string_view name) {
 
 gltf::LoadedAvatar gltf::load_avatar(std::span<const std::byte> glb, std::string_view name, DrawnMeshes* details) {
   Report report(name);
-  const Document document = load_document(glb, report);
-  LoadedAvatar loaded;
+  LoadedAvatar loaded = {.document = load_document(glb, report), .avatar = {}, .skins = {}};
+  const Document& document = loaded.document;
   Avatar& avatar = loaded.avatar;
   read_nodes(document, avatar, report);
   loaded.skins = read_skins(document, avatar, report);
@@ -121,12 +120,13 @@ gltf::LoadedAvatar gltf::load_avatar(std::span<const std::byte> glb, std::string
   std::set<int> joints;
   for (const Skin& skin : loaded.skins) joints.insert(skin.joints.begin(), skin.joints.end());
   avatar.joint_count = joints.size();
-  Report told(name);  // what splitting finds is in `report` already
-  avatar.humanoid = find_humanoid(avatar, split_glb(glb, told).json);
+  avatar.humanoid = find_humanoid(avatar, document.json.extensions());
   avatar.facing = find_facing(avatar, avatar.humanoid);
   avatar.warnings = report.warnings();
   for (const std::string& problem : avatar.humanoid.problems)
     avatar.warnings.push_back(fmt::format("{}: {}", name, problem));
+  if (const std::size_t more = avatar.humanoid.problem_count - avatar.humanoid.problems.size(); more > 0)
+    avatar.warnings.push_back(fmt::format("{}: and {} more faults in its table of bones", name, more));
   return loaded;
 }
 

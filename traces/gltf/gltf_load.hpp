@@ -5,11 +5,13 @@
 #include <string_view>
 #include <vector>
 
+#include "traces/gltf/gltf_document.hpp"
 #include "traces/gltf/gltf_mesh.hpp"
 
 namespace vestige::gltf {
 
 struct LoadedAvatar {
+  Document document;  ///< keeps references to the file's bytes
   Avatar avatar;
   std::vector<Skin> skins;  ///< all skins of the file, drawn or not
 };

@@ -16,8 +16,10 @@ struct Humanoid {
 
   std::map<std::string, std::size_t, std::less<>> node_of;
   Source source = Source::kNames;
-  /// Invalid parts of the extension, which are left out, each with its field, and a body beside this one; the first 10.
+  /// Invalid parts of the extension, which are left out, each with its field, and a body beside this one; the first 10
+  /// of `problem_count`.
   std::vector<std::string> problems;
+  std::size_t problem_count = 0;
 };
 
 }  // namespace vestige

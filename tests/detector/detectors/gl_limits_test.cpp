@@ -150,9 +150,12 @@ TEST(ShaderArithmeticThatIsNotMeasured, RefusesGeometryByNameAndNoOtherDetector)
         test::message_of([&] {
           make_geometry_detector(refusing(), avatar, map, {Surface::kAll, PlaneSet(), Method::kStatic, skip});
         }),
-        ::testing::AllOf(HasSubstr("--detector geometry"), HasSubstr("not measured"), HasSubstr("--detector cpu")));
+        ::testing::AllOf(HasSubstr("--detector geometry"), HasSubstr("not measured"),
+                         HasSubstr("0:7(2): error: this driver does not like it 0:8(1)"), HasSubstr("--detector cpu")));
   const auto paper = make_paper_detector(refusing(), avatar, map, {});
   EXPECT_TRUE(paper->gl_info().arithmetic.empty());
+  EXPECT_THAT(paper->gl_info().probe_refusal, ::testing::EndsWith("..."));
+  EXPECT_EQ(paper->gl_info().probe_refusal.size(), 300U);
   ContactRow row;
   paper->detect(frame_through(avatar, 1), row);
   EXPECT_TRUE(row[0].hit());

@@ -19,7 +19,7 @@ enum class Probe { kAccepted, kRefused };
 
 /// The context of all tests, but its driver says that some of its limits are lower. It clamps viewports, as drivers do.
 /// It says that a program does not link whose head defines a BLOCK_SEGMENTS above `largest_block`, or that is a probe
-/// which it refuses. Only one may live at a time.
+/// which it refuses, and why, on many lines. Only one may live at a time.
 class LimitedContext final : public GlContext {
  public:
   static std::unique_ptr<GlContext> make(Limits limits, int largest_block = 1 << 30, Probe probe = Probe::kAccepted) {
@@ -49,6 +49,7 @@ class LimitedContext final : public GlContext {
     if (name == "glNamedBufferData") return reinterpret_cast<void*>(named_buffer_data);
     if (name == "glShaderSource") return reinterpret_cast<void*>(shader_source);
     if (name == "glGetProgramiv") return reinterpret_cast<void*>(get_program);
+    if (name == "glGetProgramInfoLog") return reinterpret_cast<void*>(get_program_log);
 #define VESTIGE_TEST_FIND(type, member) \
   if (name == "gl" #member) return reinterpret_cast<void*>(real_->gl().member);
     VESTIGE_GL_FUNCTIONS(VESTIGE_TEST_FIND)
@@ -86,10 +87,23 @@ class LimitedContext final : public GlContext {
     latest_block_ = place == std::string::npos ? 0 : std::stoi(head.substr(place + kDefine.size()));
     real_functions_->ShaderSource(shader, count, texts, lengths);
   }
+  static bool is_refused() {
+    return latest_block_ > largest_block_ || (latest_is_probe_ && probe_ == Probe::kRefused);
+  }
+  static std::string refusal() {
+    std::string log = "0:7(2): error: this driver\n\ndoes not like it\n";
+    for (int i = 0; i < 100; ++i) log += "0:8(1): error: nor the rest\n";
+    return log;
+  }
   static void APIENTRY get_program(GLuint program, GLenum name, GLint* value) {
     real_functions_->GetProgramiv(program, name, value);
-    const bool refused = latest_block_ > largest_block_ || (latest_is_probe_ && probe_ == Probe::kRefused);
-    if (name == GL_LINK_STATUS && refused) *value = GL_FALSE;
+    if (!is_refused()) return;
+    if (name == GL_LINK_STATUS) *value = GL_FALSE;
+    if (name == GL_INFO_LOG_LENGTH) *value = static_cast<GLint>(refusal().size()) + 1;
+  }
+  static void APIENTRY get_program_log(GLuint program, GLsizei size, GLsizei* length, GLchar* log) {
+    if (!is_refused()) return real_functions_->GetProgramInfoLog(program, size, length, log);
+    log[refusal().copy(log, static_cast<std::size_t>(size) - 1)] = '\0';
   }
 
   std::unique_ptr<GlContext> real_;

@@ -124,6 +124,27 @@ TEST(Facing, IsThatOfTheNamesWhereATableIsNotWhole) {
   }
 }
 
+TEST(VrmTable, WithManyFaultsHasTheFirstTenToldAndTheOthersCounted) {
+  const auto warnings = [](int faults) {
+    return parse_avatar_glb(test::edited_glb(builtin_avatar_glb(),
+                                             [&](nlohmann::json& json) {
+                                               json["extensionsUsed"].push_back("VRM");
+                                               nlohmann::json& bones =
+                                                   json["extensions"]["VRM"]["humanoid"]["humanBones"];
+                                               for (int i = 0; i < faults; ++i)
+                                                 bones.push_back({{"bone", "wing"}, {"node", i}});
+                                             }),
+                            "winged.vrm")
+        .warnings;
+  };
+  const std::vector<std::string> ten = warnings(10);
+  ASSERT_EQ(ten.size(), 10U);
+  EXPECT_THAT(ten.back(), HasSubstr("humanBones[9]"));
+  const std::vector<std::string> many = warnings(10'007);
+  ASSERT_EQ(many.size(), 11U);
+  EXPECT_EQ(many.back(), "winged.vrm: and 9997 more faults in its table of bones");
+}
+
 TEST(Facing, IsAssumedAndDoubtedIfNothingTells) {
   const AvatarFacing facing = facing_after([](nlohmann::json& json) { forget_sides(json); });
   EXPECT_EQ(facing.axis, Facing::kPlusZ);

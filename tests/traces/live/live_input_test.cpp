@@ -239,8 +239,8 @@ TEST(Humanoid, OfTheBuiltInAvatarIsWhole) {
 }
 
 TEST(Humanoid, OfBonesInOnePlaceTheSecondIsLeftOutAndSaid) {
-  const Humanoid humanoid = find_humanoid(test::skeleton(4), R"({"extensions":{"VRMC_vrm":{"humanoid":{"humanBones":)"
-                                                             R"({"head":{"node":2},"hips":{"node":2}}}}}})");
+  const Humanoid humanoid = find_humanoid(test::skeleton(4), R"({"VRMC_vrm":{"humanoid":{"humanBones":)"
+                                                             R"({"head":{"node":2},"hips":{"node":2}}}}})");
   EXPECT_EQ(humanoid.node_of, (decltype(humanoid.node_of){{"Head", 2}}));
   ASSERT_EQ(humanoid.problems.size(), 1U);
   EXPECT_THAT(humanoid.problems.front(), HasSubstr("humanBones.hips.node is 2, which is already the bone Head"));
@@ -248,9 +248,8 @@ TEST(Humanoid, OfBonesInOnePlaceTheSecondIsLeftOutAndSaid) {
 
 TEST(Humanoid, IsWhatVrmSays) {
   const Avatar avatar = test::skeleton(4);
-  const Humanoid one =
-      find_humanoid(avatar, R"({"extensions":{"VRMC_vrm":{"humanoid":{"humanBones":{"hips":{"node":2},)"
-                            R"("leftThumbMetacarpal":{"node":3},"head":{"node":99},"jaw":5}}}}})");
+  const Humanoid one = find_humanoid(avatar, R"({"VRMC_vrm":{"humanoid":{"humanBones":{"hips":{"node":2},)"
+                                             R"("leftThumbMetacarpal":{"node":3},"head":{"node":99},"jaw":5}}}})");
   EXPECT_EQ(one.source, Humanoid::Source::kVrm1);
   EXPECT_EQ(one.node_of, (decltype(one.node_of){{"Hips", 2}, {"LeftThumbProximal", 3}}));
   const std::string field = "extensions.VRMC_vrm.humanoid.humanBones.";
@@ -258,10 +257,26 @@ TEST(Humanoid, IsWhatVrmSays) {
               UnorderedElementsAre(field + "head.node is not a node of the file: the bone Head is left out",
                                    field + "jaw.node is not a node of the file: the bone Jaw is left out"));
   const Humanoid zero =
-      find_humanoid(avatar, R"({"extensions":{"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1},{"bone":7},5,)"
-                            R"({"bone":"leftUpperArm","node":0}]}}}})");
+      find_humanoid(avatar, R"({"VRM":{"humanoid":{"humanBones":[{"bone":"hips","node":1},{"bone":7},5,)"
+                            R"({"bone":"leftUpperArm","node":0}]}}})");
   EXPECT_EQ(zero.source, Humanoid::Source::kVrm0);
   EXPECT_EQ(zero.node_of, (decltype(zero.node_of){{"Hips", 1}, {"LeftUpperArm", 0}}));
+}
+
+TEST(Humanoid, OfTwoTablesOfVrmIsTheOneThatNamesBones) {
+  const auto found = [](const std::string& vrm1, const std::string& vrm0) {
+    return find_humanoid(test::skeleton(4), R"({"VRMC_vrm":{"humanoid":{"humanBones":)" + vrm1 +
+                                                R"(}},"VRM":{"humanoid":{"humanBones":)" + vrm0 + "}}}");
+  };
+  for (const char* empty : {"{}", "[]", "null", R"({"wing":{"node":1}})", R"({"hips":{"node":4}})"}) {
+    const Humanoid old = found(empty, R"([{"bone":"hips","node":1}])");
+    EXPECT_EQ(old.source, Humanoid::Source::kVrm0) << empty;
+    EXPECT_EQ(old.node_of, (decltype(old.node_of){{"Hips", 1}})) << empty;
+  }
+  const Humanoid now = found(R"({"hips":{"node":2}})", R"([{"bone":"hips","node":1},{"bone":"head","node":3}])");
+  EXPECT_EQ(now.source, Humanoid::Source::kVrm1);
+  EXPECT_EQ(now.node_of, (decltype(now.node_of){{"Hips", 2}}));
+  EXPECT_EQ(found("{}", "[]").source, Humanoid::Source::kVrm1);
 }
 
 // VMC.

@@ -118,7 +118,10 @@ Json numbers(const glm::quat& q) {
 class Writer {
  public:
   Writer(std::span<const std::byte> glb, std::string_view name)
-      : report_(name), loaded_(gltf::load_avatar(glb, name, &meshes_)), avatar_(loaded_.avatar), look_(glb, builder_) {}
+      : report_(name),
+        loaded_(gltf::load_avatar(glb, name, &meshes_)),
+        avatar_(loaded_.avatar),
+        look_(glb, loaded_.document, builder_) {}
 
   std::vector<std::byte> write() {
     builder_.json["asset"] = look_.asset();

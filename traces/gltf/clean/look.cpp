@@ -65,8 +65,8 @@ bool is_png(std::string_view bytes) {
 
 }  // namespace
 
-Look::Look(std::span<const std::byte> glb, GlbBuilder& builder)
-    : report_(""), document_(load_document(glb, report_)), json_(parse_all(glb, report_)), builder_(builder) {}
+Look::Look(std::span<const std::byte> glb, const Document& document, GlbBuilder& builder)
+    : report_(""), document_(document), json_(parse_all(glb, report_)), builder_(builder) {}
 
 Tree Look::asset() const {
   Tree asset = {{"version", "2.0"}};

@@ -13,8 +13,8 @@ namespace vestige::gltf {
 /// in PNG or JPEG that lie in the file, the copyright, and the roles that VRM gives to nodes. Leaves out what is wrong.
 class Look {
  public:
-  /// Keeps references to both. `glb` is a file that can be loaded.
-  Look(std::span<const std::byte> glb, GlbBuilder& builder);
+  /// Keeps references to `document`, which was loaded from `glb`, and to `builder`.
+  Look(std::span<const std::byte> glb, const Document& document, GlbBuilder& builder);
 
   GlbBuilder::Json asset() const;
   void add_normals(GlbBuilder::Json& attributes, std::size_t mesh, std::size_t primitive, std::size_t vertex_count);
@@ -29,7 +29,7 @@ class Look {
   int add_texture(const Tree& material);
 
   Report report_;
-  Document document_;
+  const Document& document_;
   Tree json_;  ///< all of the file's; null if it cannot be parsed
   GlbBuilder& builder_;
   std::map<std::size_t, int> material_of_;

@@ -21,6 +21,9 @@ class Json {
   /// The top level without the lists.
   const nlohmann::json& head() const { return head_; }
 
+  /// The document's extensions as text, unchecked but for the grammar; empty if it has none.
+  std::string_view extensions() const { return outline_.extensions; }
+
   bool has(std::string_view list) const { return outline_.lists.contains(list); }
 
   /// Returns the number of elements of a list such as "nodes", 0 if the list does not exist.

@@ -48,8 +48,12 @@ class Scanner {
     skip_space();
     if (peek() != '{') fail("is not an object");
     each_member(1, [&](const std::string& key, std::string_view) {
-      if (!is_read(key, 1, {})) return skip_value(2);
       const std::size_t start = at_;
+      if (!is_read(key, 1, {})) {
+        skip_value(2);
+        if (key == "extensions") result.extensions = text_.substr(start, at_ - start);
+        return;
+      }
       bool is_new = false;
       if (peek() == '[' && !key.starts_with("extensions")) {
         std::vector<std::string_view> elements;

@@ -15,11 +15,12 @@ namespace vestige::gltf {
 struct Outline {
   std::map<std::string, std::string_view, std::less<>> properties;  ///< properties of the document that are not lists
   std::map<std::string, std::vector<std::string_view>, std::less<>> lists;  ///< elements of the document's lists
+  std::string_view extensions;  ///< the document's, whole; empty if it has none
 };
 
 /// Checks the grammar of JSON (RFC 8259) from end to end, and cuts the text. Leaves out lists that are never read
-/// (materials, textures, images, texture samplers, cameras) and the document's extras and extensions. Fails with the
-/// byte offset, also on nesting deeper than any glTF's.
+/// (materials, textures, images, texture samplers, cameras) and the document's extras; of the document's extensions,
+/// only the grammar is checked. Fails with the byte offset, also on nesting deeper than any glTF's.
 Outline outline_json(std::string_view text, const Report& report);
 
 /// Returns an element of the document's list `list`, or a property of that name that is not a list, as text. Leaves out
