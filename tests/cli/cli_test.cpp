@@ -266,6 +266,12 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige frobnicate", 2, {"frobnicate"});
   expect_failure("vestige recrod", 2, {"did you mean 'record'?"});
   expect_failure("vestige replay small.mcap --verify ''", 2, {"is empty"});
+  expect_failure("vestige record --facing= -o x.mcap", 2,
+                 {"--facing=: has no value behind the equals sign\n  a variable may be unset"}, "x.mcap");
+  expect_failure("vestige record -o=", 2, {"-o=: has no value"}, "=");
+  expect_failure("vestige record --count 1 --count 2 -o x.mcap", 2, {"--count: is given 2 times\n  name it once"},
+                 "x.mcap");
+  expect_failure("vestige record --rate", 2, {"--rate: its value is missing\n  write --rate HZ"});
   expect_failure("vestige replay small.mcap --planes t", 2, {"--textures"});
   expect_failure("vestige record -o x.mcap --seed -1", 2, {"--seed"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --origin 1e300,0,0", 2, {"--origin"}, "x.mcap");
