@@ -113,7 +113,8 @@ void check_map_at(const ReplayOptions& options) {
 }
 
 std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace,
-                                 const DriveMaker* drives, Verbosity verbosity) {
+                                 const DriveMaker* drives, const ReplayOptions& options) {
+  const Verbosity verbosity = options.common.verbosity();
   std::vector<MapChange> changes;
   for (const TimedMap& timed : timed_maps) {
     const ActuatorMapFiles files = read_map_files(trace.avatar, timed.file);
@@ -125,6 +126,8 @@ std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const 
                               trace.map.actuator_count),
                   "use maps with the same number of actuators");
     for (const std::string& warning : change.map.warnings) warn(warning, verbosity);
+    const std::string other = other_facing(trace.avatar.facing, change.map.facing, {options.trace, timed.file});
+    if (!other.empty()) warn(other, verbosity);
     if (drives != nullptr) change.layout = drives->layout_of(change.map);
     changes.push_back(std::move(change));
   }
@@ -339,7 +342,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   std::optional<DriveMaker> drives;
   if (!options.timeline.empty()) drives.emplace(options.law, trace.avatar, trace.map);
   if (drives) planes = planes | drives->planes();
-  const std::vector<MapChange> changes = read_maps(timed_maps, trace, drives ? &*drives : nullptr, verbosity);
+  const std::vector<MapChange> changes = read_maps(timed_maps, trace, drives ? &*drives : nullptr, options);
   const PlaneSet verified = changes.empty() ? kHashedPlanes : kHashedPlanes | Plane::kTextureCoordinate;
   planes = planes | verified;
   std::optional<PickedPath> picked;
