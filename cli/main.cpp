@@ -2,15 +2,13 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <utility>
 
+#include "cli/command_line.hpp"
 #include "cli/help/help_text.hpp"
 #include "cli/help/manual.hpp"
-#include "cli/help/suggest.hpp"
 #include "cli/verbs.hpp"
-#include "traces/base/error.hpp"
 #include "traces/base/system_error.hpp"
 #include "version.hpp"
 
@@ -80,26 +78,7 @@ int run(int argc, char** argv) {
   // After the verbs, which would take it over.
   program.footer(footer());
   if (argc > 1 && std::string_view(argv[1]) == "complete") return complete(program, {argv + 2, argv + argc});
-  for (int i = 1; i < argc; ++i)
-    if (*argv[i] == '\0')
-      throw UsageError(fmt::format("argument {}", i), "is empty",
-                       "a variable may be unset: leave the flag out, or give the flag a value");
-  if (argc == 1) throw UsageError("vestige", "no verb was named", "'vestige --help' lists the verbs");
-  if (argc > 1 && *argv[1] != '-')
-    if (const auto remedy = help::unknown_verb_remedy(program, argv[1]))
-      throw UsageError(argv[1], "there is no such verb", *remedy);
-  try {
-    program.parse(argc, argv);
-  } catch (const CLI::Success& help) {
-    const int shown = program.exit(help);
-    std::cout.flush();
-    if (!std::cout) throw system_error("standard output", "could not write", errno);
-    return shown;
-  } catch (const CLI::ParseError& error) {
-    print_message(
-        fmt::format("vestige: error: {}\n  {}\n", help::cause_of(program, error), help::remedy_of(program, error)));
-    return kWrongUsage;
-  }
+  if (const auto exit_code = parse_command_line(program, "verb", argc, argv)) return *exit_code;
   if (std::fflush(stdout) != 0) throw system_error("standard output", "could not write", errno);
   return invocation.exit_code;
 }

@@ -361,9 +361,14 @@ std::filesystem::path sidecar_path(std::filesystem::path map) {
   return map.replace_extension(".json");
 }
 
+std::string map_or_default(const std::string& map, const std::string& avatar) {
+  if (!map.empty()) return map;
+  return avatar == kBuiltin ? std::string(kBuiltin) : "none";
+}
+
 ActuatorMapFiles read_actuator_map_files(const std::string& map) {
   if (map == "none") return {};
-  if (map == "builtin") return {builtin_actuator_map_png(), builtin_actuator_map_json()};
+  if (map == kBuiltin) return {builtin_actuator_map_png(), builtin_actuator_map_json()};
   const auto sidecar = sidecar_path(map);
   constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;  // twice that of all texels
   constexpr std::uint64_t kMostSidecarBytes = std::uint64_t{1} << 26;

@@ -85,6 +85,9 @@ ActuatorMapFiles actuator_map_files(const TraceReader& trace);
 /// Returns the path of the sidecar for a map in a PNG file: the same name with .json.
 std::filesystem::path sidecar_path(std::filesystem::path map);
 
+/// Returns `map`. If it is empty, returns "builtin" for the built-in avatar and "none" for any other.
+std::string map_or_default(const std::string& map, const std::string& avatar);
+
 /// `map` is "none" (both files are empty), "builtin", or a PNG file; its sidecar is read if it exists. Throws `Error`
 /// if a file cannot be read.
 ActuatorMapFiles read_actuator_map_files(const std::string& map);

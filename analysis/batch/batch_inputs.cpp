@@ -50,8 +50,7 @@ TracedAvatar avatar_of(const std::vector<BatchTrace>& traces) {
 
 /// Returns an avatar that is named, with the facing that the first trace of it records.
 TracedAvatar named_avatar(const std::string& avatar, const std::vector<BatchTrace>& traces) {
-  TracedAvatar named = {
-      .given = avatar, .glb = avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar), .facing = ""};
+  TracedAvatar named = {.given = avatar, .glb = read_builtin_or_file(avatar), .facing = ""};
   const bool all_made = std::ranges::all_of(traces, [](const BatchTrace& trace) { return trace.scenario != nullptr; });
   if (all_made) return named;
   try {
@@ -71,7 +70,7 @@ BatchActuators read_actuators(const std::string& file) {
 }
 
 ActuatorMapFiles map_files(const std::string& given, const Avatar& avatar, bool builtin_avatar) {
-  if (given == "builtin" && !builtin_avatar)
+  if (given == kBuiltin && !builtin_avatar)
     throw Error(given, "is the map of the built-in avatar, but the batch has another avatar",
                 "name one of the layouts, which fit any humanoid, or a PNG for this avatar");
   return read_map_files(avatar, given);
@@ -95,7 +94,7 @@ void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
     throw Error(map.given, "has no actuator", "paint regions other than black, or list actuators in the sidecar");
   if (plan.actuators.model) static_cast<void>(plan.actuators.model->motors(parsed));  // throws if they lack something
   map.warnings = parsed.warnings;
-  if (map.given != "builtin" && !is_layout(map.given)) add_problems(map, parsed, plan);
+  if (map.given != kBuiltin && !is_layout(map.given)) add_problems(map, parsed, plan);
   if (plan.avatar.facing.lies_deg)
     map.warnings.push_back(fmt::format("the avatar {}; scores take {} for its front",
                                        describe_lying(plan.avatar.facing), to_string(plan.avatar.facing.axis)));

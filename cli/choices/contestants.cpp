@@ -13,8 +13,12 @@ namespace vestige::cli {
 
 namespace {
 
-/// exact is too slow to measure.
-const std::vector<std::string> kContestants = {"paper", "geometry", "cpu", "embree", "embree_default"};
+/// The detectors that are measured: exact is too slow.
+std::vector<std::string> contestant_names() {
+  std::vector<std::string> names = detector_names();
+  std::erase(names, "exact");
+  return names;
+}
 
 bool needs_opengl(const std::string& detector) {
   return detector == "paper" || detector == "geometry";
@@ -27,7 +31,7 @@ bool is_embree(const std::string& detector) {
 }  // namespace
 
 void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
-  verb.add_option("--detector", choice.detectors, describe_detectors("measure", kContestants))
+  verb.add_option("--detector", choice.detectors, describe_detectors("measure", contestant_names()))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");
@@ -39,7 +43,7 @@ void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
 }
 
 void check_contestant_choice(const ContestantChoice& choice) {
-  parse_names(choice.detectors, kContestants, "--detector");
+  parse_names(choice.detectors, contestant_names(), "--detector");
   if (parse_names(choice.contexts, {"egl", "osmesa", "auto"}, "--context").size() > 1 &&
       choice.contexts.find("auto") != std::string::npos)
     throw UsageError("--context", "'auto' already means egl or osmesa", "name egl and osmesa, or auto alone");

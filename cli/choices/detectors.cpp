@@ -34,6 +34,8 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
 }  // namespace
 
 void add_detector_and_context(CLI::App& verb, DetectorChoice& choice) {
+  std::vector<std::string> values = detector_names();
+  values.insert(values.begin(), "auto");
   verb.add_option(
           "--detector", choice.detector,
           "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts (a geometry shader proves "
@@ -42,7 +44,7 @@ void add_detector_and_context(CLI::App& verb, DetectorChoice& choice) {
           "fastest configuration); embree_default: embree without the robust flag; auto: the cheapest exact detector")
       ->group(kDetectorGroup)
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "paper", "geometry", "cpu", "exact", "embree", "embree_default"}));
+      ->check(CLI::IsMember(values));
   verb.add_option("--context", choice.context, kContextHelp)
       ->group(kDetectorGroup)
       ->capture_default_str()

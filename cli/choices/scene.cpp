@@ -11,7 +11,6 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
-#include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 namespace vestige::cli {
@@ -20,10 +19,6 @@ namespace {
 
 void warn_all(const std::vector<std::string>& warnings, Verbosity verbosity) {
   for (const std::string& warning : warnings) warn(warning, verbosity);
-}
-
-std::vector<std::byte> read_avatar(const std::string& avatar) {
-  return avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar);
 }
 
 Scene scene_of(std::vector<std::byte> avatar_glb, const std::string& name, Verbosity verbosity) {
@@ -46,6 +41,16 @@ void give_map(Scene& scene, ActuatorMapFiles files, const SceneNames& names, Ver
   if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
 }
 
+/// Gives the scene its map, and settles the facing with what the map records.
+void complete(Scene& scene, ActuatorMapFiles map, const SceneNames& names, const FacingChoice& choice,
+              Verbosity verbosity) {
+  give_map(scene, std::move(map), names, verbosity);
+  AvatarFacing& facing = scene.avatar.facing;
+  warn_all(vestige::settle_facing(facing, choice.axis, scene.map.facing, names.avatar), verbosity);
+  if (const std::string other = other_facing(facing, scene.map.facing, names); !other.empty())
+    warn(other + kOrSetFacing, verbosity);
+}
+
 }  // namespace
 
 void require_surface(const Avatar& avatar, const std::string& name) {
@@ -61,89 +66,29 @@ void require_surface(const Avatar& avatar, const std::string& name) {
       "animation of that scale");
 }
 
-void add_facing_option(CLI::App& verb, FacingChoice& choice) {
-  std::vector<std::string> axes(kFacingNames.begin(), kFacingNames.end());
-  axes.emplace_back("auto");
-  verb.add_option("--facing", choice.axis,
-                  "Which way the avatar faces at rest: auto finds it by its joints' names, its feet or VRM; it decides "
-                  "what is left and what is front")
-      ->capture_default_str()
-      ->check(CLI::IsMember(axes));
-}
-
-std::string_view in_words(AvatarFacing::By by) {
-  switch (by) {
-    case AvatarFacing::By::kSides:
-      return "by its left and right joints";
-    case AvatarFacing::By::kFeet:
-      return "by its feet";
-    case AvatarFacing::By::kVrm:
-      return "by its version of VRM";
-    case AvatarFacing::By::kMap:
-      return "by its map";
-    case AvatarFacing::By::kTrace:
-      return "by the trace";
-    case AvatarFacing::By::kAsked:
-      return "as asked";
-    case AvatarFacing::By::kAssumed:
-      break;
+Scene load_scene(const std::string& avatar, const std::string& map, const FacingChoice& facing, Verbosity verbosity,
+                 const std::string& recorded_facing) {
+  const SceneNames names = {avatar, map_or_default(map, avatar)};
+  Scene scene = scene_of(read_builtin_or_file(avatar), avatar, verbosity);
+  take_recorded_facing(scene.avatar.facing, recorded_facing);
+  if (is_layout(names.map)) {
+    settle_facing(scene.avatar, facing, avatar, verbosity);  // the layout follows it
+    give_map(scene, read_map_files(scene.avatar, names.map), names, verbosity);
+    return scene;
   }
-  return "since nothing tells";
-}
-
-void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string& name, Verbosity verbosity) {
-  if (const auto axis = facing_named(choice.axis)) {
-    if (avatar.facing.by == AvatarFacing::By::kSides && avatar.facing.axis != *axis)
-      warn(fmt::format("{}: its left and right joints say that it faces {}; {} is taken, as asked", name,
-                       to_string(avatar.facing.axis), choice.axis),
-           verbosity);
-    set_facing(avatar.facing, *axis, AvatarFacing::By::kAsked);
-  }
-  if (avatar.facing.lies_deg)
-    warn(fmt::format("{}: {}; its left and its front are not known", name, describe_lying(avatar.facing)), verbosity);
-  if (avatar.facing.doubt.empty()) return;
-  warn(fmt::format("{}: {}; {} is taken; --facing sets it", name, avatar.facing.doubt, to_string(avatar.facing.axis)),
-       verbosity);
-  avatar.facing.doubt.clear();  // said once
-}
-
-namespace {
-
-/// Settles the facing with what the map of the scene records.
-void settle_facing(Scene& scene, const FacingChoice& choice, const SceneNames& names, Verbosity verbosity) {
-  const auto& of_map = scene.map.facing;
-  if (of_map && scene.avatar.facing.by == AvatarFacing::By::kAssumed)
-    set_facing(scene.avatar.facing, *of_map, AvatarFacing::By::kMap);
-  settle_facing(scene.avatar, choice, names.avatar, verbosity);
-  const Facing axis = scene.avatar.facing.axis;
-  if (of_map && *of_map != axis)
-    warn(fmt::format("{}: was made for an avatar that faces {}, and {} faces {}, {}; make it anew, or set --facing",
-                     names.map, to_string(*of_map), names.avatar, to_string(axis), in_words(scene.avatar.facing.by)),
-         verbosity);
-}
-
-}  // namespace
-
-Scene load_scene(const std::string& avatar, const std::string& map, const FacingChoice& facing, Verbosity verbosity) {
-  const std::string default_map = avatar == "builtin" ? "builtin" : "none";
-  const std::string& chosen_map = map.empty() ? default_map : map;
-  Scene scene = scene_of(read_avatar(avatar), avatar, verbosity);
-  if (is_layout(chosen_map)) settle_facing(scene.avatar, facing, avatar, verbosity);
-  give_map(scene, read_map_files(scene.avatar, chosen_map), {avatar, chosen_map}, verbosity);
-  settle_facing(scene, facing, {avatar, chosen_map}, verbosity);
+  complete(scene, read_map_files(scene.avatar, names.map), names, facing, verbosity);
   return scene;
 }
 
 Scene make_scene(SceneFiles files, const SceneNames& names, const FacingChoice& facing, Verbosity verbosity) {
   Scene scene = scene_of(std::move(files.avatar_glb), names.avatar, verbosity);
   take_recorded_facing(scene.avatar.facing, files.facing);
-  give_map(scene, std::move(files.map), names, verbosity);
-  settle_facing(scene, facing, names, verbosity);
+  complete(scene, std::move(files.map), names, facing, verbosity);
   return scene;
 }
 
 std::vector<std::byte> load_avatar(const std::string& avatar) {
-  std::vector<std::byte> glb = read_avatar(avatar);
+  std::vector<std::byte> glb = read_builtin_or_file(avatar);
   static_cast<void>(parse_avatar_glb(glb, avatar));
   return glb;
 }

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "cli/facing_flag.hpp"
 #include "cli/terminal.hpp"
 #include "detector/actuator_map.hpp"
 #include "traces/motion/animation_choice.hpp"
@@ -30,29 +29,11 @@ struct Scene {
 /// triangles, which takes minutes to decide. `name` is the avatar's name in the error.
 void require_surface(const Avatar& avatar, const std::string& name);
 
-/// The flag --facing.
-struct FacingChoice {
-  std::string axis = "auto";
-};
-void add_facing_option(CLI::App& verb, FacingChoice& choice);
-
-/// Returns what tells the facing: "by its left and right joints", ….
-std::string_view in_words(AvatarFacing::By by);
-
-/// Gives the avatar the facing that is asked for. Otherwise warns of any doubt about the facing that was found. Warns
-/// if the avatar does not stand. `name` is the avatar's name in the warning.
-void settle_facing(Avatar& avatar, const FacingChoice& choice, const std::string& name, Verbosity verbosity);
-
 /// `avatar` is "builtin" or a file. `map` is "builtin", "none", a layout's name, or a PNG file, whose sidecar is the
 /// .json of the same name, if it exists. If `map` is empty, it is "builtin" for the built-in avatar, otherwise "none".
-/// Warnings go to standard error.
-Scene load_scene(const std::string& avatar, const std::string& map, const FacingChoice& facing, Verbosity verbosity);
-
-/// The names for avatar and map in errors and warnings.
-struct SceneNames {
-  std::string avatar;
-  std::string map;
-};
+/// `recorded_facing` is as in `SceneFiles`. Warnings go to standard error.
+Scene load_scene(const std::string& avatar, const std::string& map, const FacingChoice& facing, Verbosity verbosity,
+                 const std::string& recorded_facing = "");
 
 /// The files of avatar and map, and the facing that is recorded beside them.
 struct SceneFiles {

@@ -15,6 +15,8 @@
 #include "traces/exchange/frame_thinning.hpp"
 #include "traces/exchange/trace_export.hpp"
 #include "traces/files/output_file.hpp"
+#include "traces/scene/facing.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
@@ -62,7 +64,7 @@ struct Attachment {
   std::span<const std::byte> bytes;  ///< empty: the trace has none
 };
 
-/// The frames' files beside the avatar and its map, so that `import` finds all of it.
+/// The frames' files beside the avatar, its map and its facing, so that `import` finds all of it.
 class CsvFolder {
  public:
   CsvFolder(const std::string& folder, const TraceReader& trace) {
@@ -72,11 +74,15 @@ class CsvFolder {
     attachments = {{inside("avatar.glb"), trace.avatar_glb()},
                    {inside("actuator_map.png"), trace.actuator_map_png()},
                    {inside("actuator_map.json"), trace.actuator_map_json()}};
+    session = inside("session.json");
+    if (facing_named(trace.facing()))
+      session_json = nlohmann::ordered_json({{trace_format::kFacingKey, trace.facing()}}).dump(2) + "\n";
   }
   std::vector<std::string> written() const {
     std::vector<std::string> all = {poses, colliders};
     for (const Attachment& attachment : attachments)
       if (!attachment.bytes.empty()) all.push_back(attachment.path);
+    if (!session_json.empty()) all.push_back(session);
     return all;
   }
   /// What an earlier export may have left, which `import` would take.
@@ -84,12 +90,15 @@ class CsvFolder {
     std::vector<std::string> all;
     for (const Attachment& attachment : attachments)
       if (attachment.bytes.empty()) all.push_back(attachment.path);
+    if (session_json.empty()) all.push_back(session);
     return all;
   }
 
   std::string poses;
   std::string colliders;
   std::vector<Attachment> attachments;
+  std::string session;
+  std::string session_json;  ///< empty: the trace does not say where its avatar faces
 };
 
 void check_flags(const ExportOptions& options, const std::string& format) {
@@ -106,9 +115,10 @@ void check_flags(const ExportOptions& options, const std::string& format) {
     throw UsageError("--json", "'vestige plot paraview' writes no JSON", "leave --json out");
 }
 
-void write_attachments(const std::vector<Attachment>& attachments, const CommonOptions& options) {
-  for (const Attachment& attachment : attachments)
+void write_beside_frames(const CsvFolder& folder, const CommonOptions& options) {
+  for (const Attachment& attachment : folder.attachments)
     if (!attachment.bytes.empty()) write_bytes(attachment.path, attachment.bytes, options);
+  if (!folder.session_json.empty()) write_bytes(folder.session, std::as_bytes(std::span(folder.session_json)), options);
 }
 
 void remove_files(const std::vector<std::string>& paths) {
@@ -205,7 +215,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
     const auto some = file->losses();
     losses.insert(losses.end(), some.begin(), some.end());
   }
-  if (folder) write_attachments(folder->attachments, options.common);
+  if (folder) write_beside_frames(*folder, options.common);
   for (const auto& file : files) file->commit();
   if (folder) remove_files(folder->removed());
   for (const std::string& loss : losses) warn(fmt::format("{}: {}", options.output, loss), verbosity);
@@ -238,7 +248,7 @@ void add_export(CLI::App& program, Invocation& invocation) {
   verb->add_option("FILE", options->file, "The trace, or '-' for standard input")->required();
   verb->add_option("-o,--output", options->output,
                    "The file to write; its extension sets the format. A name without an extension is a folder with "
-                   "poses.csv, colliders.csv, the avatar and its map. '-' is standard output")
+                   "poses.csv, colliders.csv, the avatar, its map and its facing. '-' is standard output")
       ->required()
       ->type_name("OUT|-");
   verb->add_option("--format", options->format,

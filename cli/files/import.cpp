@@ -15,6 +15,7 @@
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/base/strict_json.hpp"
 #include "traces/exchange/collider_files.hpp"
 #include "traces/exchange/collider_rows.hpp"
 #include "traces/exchange/pose_csv.hpp"
@@ -36,6 +37,7 @@ struct ImportOptions {
   std::string nodes;
   std::string avatar;
   std::string map;
+  std::string session;  ///< session.json of the folder; empty without one
   MotionChoice motion_choice;
   FacingChoice facing;
   std::optional<double> rate_hz;
@@ -95,12 +97,25 @@ void expand_folder(ImportOptions& options) {
   take("colliders.csv", options.colliders);
   take("avatar.glb", options.avatar);
   take("actuator_map.png", options.map);
+  take("session.json", options.session);
   if (options.poses.empty())
     throw Error(options.from, "holds no poses.csv", "name a folder that 'vestige export' wrote");
   if (options.avatar.empty())
     throw Error(options.from, "holds no avatar.glb",
                 "put avatar.glb back, or give --poses, --colliders and --avatar one by one");
   if (options.map.empty()) options.map = "none";
+}
+
+/// Returns the facing that a session.json records; empty if it records none.
+std::string recorded_facing(const std::string& session) {
+  if (session.empty()) return {};
+  constexpr const char* kRemedy = "export the trace again, or remove the file";
+  const nlohmann::json json = parse_strict_json(read_text_file(session), session, kRemedy);
+  const bool is_object = json.is_object();
+  if (is_object && !json.contains("facing")) return {};
+  if (!is_object || !json["facing"].is_string())
+    throw Error(session, "is not a JSON object with a text 'facing'", kRemedy);
+  return json["facing"].get<std::string>();
 }
 
 void check_flags(const ImportOptions& options) {
@@ -222,13 +237,16 @@ void run_import(ImportOptions options, Invocation& invocation) {
   if (!from_hdf5) check_flags(options);
   if (options.avatar.empty() && !from_hdf5) options.avatar = "builtin";
   const std::vector<std::string> outputs = {options.output, options.common.json};
-  check_outputs(outputs, {options.from, options.motion, options.poses, options.colliders, options.avatar, options.map},
-                options.common);
+  check_outputs(
+      outputs,
+      {options.from, options.motion, options.poses, options.colliders, options.avatar, options.map, options.session},
+      options.common);
   if (options.output == "-") refuse_terminal("-o -");
 
   Frames frames;
-  Scene scene = from_hdf5 ? read_hdf5(options.from, options.facing, frames, verbosity)
-                          : load_scene(options.avatar, options.map, options.facing, verbosity);
+  Scene scene =
+      from_hdf5 ? read_hdf5(options.from, options.facing, frames, verbosity)
+                : load_scene(options.avatar, options.map, options.facing, verbosity, recorded_facing(options.session));
   std::optional<LoadedMotion> motion;
   Session session = provenance_texts(invocation.argv);
   session["colliders"] = options.colliders;

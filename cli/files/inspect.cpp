@@ -5,6 +5,8 @@
 #include "cli/verbs.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/repair/trace_summary.hpp"
+#include "traces/scene/facing.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
@@ -51,6 +53,13 @@ nlohmann::ordered_json to_json(const McapSummary& summary) {
   return json;
 }
 
+/// Returns the axis that the session records; empty if it records none.
+std::string facing_of(const McapSummary& summary) {
+  if (!summary.session) return {};
+  const auto recorded = summary.session->find(std::string(trace_format::kFacingKey));
+  return recorded != summary.session->end() && facing_named(recorded->second) ? recorded->second : "";
+}
+
 std::string describe(const McapSummary& summary, const std::string& path, bool verbose) {
   std::string text = fmt::format("{}: {}, profile '{}', written by {}\n", path,
                                  summary.complete ? "complete" : "NOT complete", summary.profile, summary.library);
@@ -62,6 +71,8 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
   for (const auto& attachment : summary.attachments)
     text += fmt::format("  {:<20} {:>9} bytes     sha256 {}{}\n", attachment.name, attachment.bytes, attachment.sha256,
                         attachment.is_recorded.value_or(true) ? "" : " (not the recorded one)");
+  if (const std::string facing = facing_of(summary); !facing.empty())
+    text += fmt::format("  {:<20} {}, {}\n", "avatar faces", facing, in_words(AvatarFacing::By::kTrace));
   if (summary.dropped != 0) {
     text += fmt::format("lost {} while recording\n", counted(summary.dropped, "message"));
     for (const auto& [topic, count] : summary.dropped_by_topic)

@@ -6,6 +6,8 @@
 #include <numeric>
 #include <vector>
 
+#include "cli/help/command_table.hpp"
+
 namespace vestige::help {
 
 namespace {
@@ -39,6 +41,30 @@ std::string unknown_flag(const CLI::App& program) {
   for (const std::string& word : program.remaining(true))
     if (word.starts_with('-') && word.size() > 1) return word.substr(0, word.find('='));
   return {};
+}
+
+/// A flag with one value that was given several times, or without its value.
+struct ValueFault {
+  std::string flag;
+  std::string times;  ///< how many times it was given; empty if its value is missing
+};
+
+/// Reads it from CLI11's words: "--rate: At Most 1 required but received 2", "--rate: 1 required FLOAT missing".
+std::optional<ValueFault> value_fault(const CLI::ParseError& error) {
+  constexpr std::string_view kSeveral = ": At Most 1 required but received ";
+  const std::string text = error.what();
+  if (const std::size_t at = text.find(kSeveral); at != std::string::npos)
+    return ValueFault{.flag = text.substr(0, at), .times = text.substr(at + kSeveral.size())};
+  if (const std::size_t at = text.find(": 1 required "); at != std::string::npos && text.ends_with(" missing"))
+    return ValueFault{.flag = text.substr(0, at), .times = ""};
+  return std::nullopt;
+}
+
+/// Returns the verb that the command line names; the program itself without one.
+const CLI::App& named_verb(const CLI::App& program) {
+  const CLI::App* verb = &program;
+  while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
+  return *verb;
 }
 
 std::vector<std::string> flags_of(const CLI::App& verb) {
@@ -81,22 +107,27 @@ std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
   constexpr std::string_view kOverride = " was given a disallowed flag override";  // CLI11's words
   if (const std::string cause = error.what(); cause.ends_with(kOverride))
     return fmt::format("--{} takes no value", cause.substr(0, cause.size() - kOverride.size()));
+  if (const auto fault = value_fault(error))
+    return fault->times.empty() ? fmt::format("{}: its value is missing", fault->flag)
+                                : fmt::format("{}: is given {} times", fault->flag, fault->times);
   if (!is_about_unknown(program, error)) return error.what();
   if (const std::string flag = unknown_flag(program); !flag.empty()) return fmt::format("there is no flag '{}'", flag);
   return fmt::format("not expected: '{}'", fmt::join(program.remaining(true), "', '"));
 }
 
 std::string remedy_of(const CLI::App& program, const CLI::ParseError& error) {
-  std::string name = program.get_name();
-  const CLI::App* verb = &program;
-  while (!verb->get_subcommands().empty()) {
-    verb = verb->get_subcommands().front();
-    name += " " + verb->get_name();
+  const CLI::App& verb = named_verb(program);
+  const CommandTable table = command_table(verb);
+  if (const auto fault = value_fault(error)) {
+    if (!fault->times.empty()) return "name it once";
+    for (const FlagTable& flag : table.flags)
+      if (std::ranges::find(flag.names, fault->flag) != flag.names.end())
+        return fmt::format("write {} {}", fault->flag, flag.value);
   }
   const std::string word = is_about_unknown(program, error) ? unknown_flag(program) : "";
-  const std::vector<std::string> flags = flags_of(*verb);
+  const std::vector<std::string> flags = flags_of(verb);
   return fmt::format("{}'{} --help' {}", did_you_mean(word, std::vector<std::string_view>(flags.begin(), flags.end())),
-                     name, verb == &program ? "lists the verbs" : "explains the verb");
+                     table.name, &verb == &program ? "lists the verbs" : "explains the verb");
 }
 
 }  // namespace vestige::help

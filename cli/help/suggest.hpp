@@ -22,8 +22,8 @@ std::optional<std::string> unknown_verb_remedy(const CLI::App& program, const st
 /// unknown flag may be the missing flag, misspelt.
 std::string cause_of(const CLI::App& program, const CLI::ParseError& error);
 
-/// Returns what to do after a command line that was not understood: the flag of the named verb that an unknown flag
-/// probably means, and the verb's help.
+/// Returns what to do after a command line that was not understood: name the flag once, write its value, or take the
+/// flag of the named verb that an unknown flag probably means, and read the verb's help.
 std::string remedy_of(const CLI::App& program, const CLI::ParseError& error);
 
 }  // namespace vestige::help

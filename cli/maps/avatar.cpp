@@ -107,7 +107,7 @@ std::vector<std::byte> overlap_picture(const UvCoverage& coverage) {
 }
 
 void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
-  const bool is_builtin = options.avatar == "builtin";
+  const bool is_builtin = options.avatar == kBuiltin;
   if (!options.map_output.empty() && !is_builtin)
     throw UsageError("--map-output", "only the built-in avatar comes with a map", "leave out --map-output or AVATAR");
   check_extension("-o", options.output, ".glb", "binary glTF");
@@ -121,7 +121,7 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
                                    std::pair("--uv -", options.uv_output)})
     if (path == "-") refuse_terminal(flag);
 
-  const std::vector<std::byte> glb = is_builtin ? builtin_avatar_glb() : read_avatar_glb(options.avatar);
+  const std::vector<std::byte> glb = read_builtin_or_file(options.avatar);
   Avatar avatar = parse_avatar_glb(glb, options.avatar);
   for (const std::string& warning : avatar.warnings) warn(warning, options.common.verbosity());
   settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
@@ -136,7 +136,9 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
     write_bytes(options.output, is_builtin ? glb : clean_avatar_glb(glb, options.avatar), options.common);
   if (!options.map_output.empty()) {
     write_bytes(options.map_output, builtin_actuator_map_png(), options.common);
-    const std::string json = builtin_actuator_map_json();
+    nlohmann::ordered_json map = {{"facing", to_string(avatar.facing.axis)}};
+    map.update(nlohmann::ordered_json::parse(builtin_actuator_map_json()));
+    const std::string json = map.dump(2) + "\n";
     write_bytes(sidecar, std::as_bytes(std::span(json)), options.common);
   }
   if (!options.uv_output.empty()) write_bytes(options.uv_output, overlap_picture(coverage), options.common);

@@ -17,7 +17,6 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
-#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige::cli {
 
@@ -26,7 +25,7 @@ namespace {
 constexpr double kSquareCentimetres = 1e4;
 
 Avatar read_avatar(const std::string& avatar, const CommonOptions& options) {
-  Avatar read = parse_avatar_glb(avatar == "builtin" ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar);
+  Avatar read = parse_avatar_glb(read_builtin_or_file(avatar), avatar);
   if (read.triangles.empty()) throw Error(avatar, "has no triangles", "name an avatar with a mesh");
   for (const std::string& warning : read.warnings) warn(warning, options.verbosity());
   return read;
@@ -285,9 +284,9 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
   if (files.png.empty()) throw UsageError(options.map, "there is nothing to check", "name a layout or a PNG");
   const ActuatorMap map = parse_actuator_map(files, avatar, options.map);
   for (const std::string& warning : map.warnings) warn(warning, options.common.verbosity());
-  if (map.facing && avatar.facing.by == AvatarFacing::By::kAssumed)
-    set_facing(avatar.facing, *map.facing, AvatarFacing::By::kMap);
-  settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
+  if (!is_layout(options.map))
+    for (const std::string& warning : settle_facing(avatar.facing, options.facing.axis, map.facing, options.avatar))
+      warn(warning, options.common.verbosity());
   const MapCheck check = check_map(Body(avatar), map, options.avatar);
   print_summary(checked_text(options, check), {options.common.json}, options.common);
   nlohmann::ordered_json json = provenance(invocation.argv);
@@ -375,6 +374,7 @@ void add_parts(CLI::App& map, Invocation& invocation) {
 struct PreviewOptions {
   std::string map;
   std::string avatar = "builtin";
+  FacingChoice facing;
   std::string output;
   bool force = false;
   bool quiet = false;
@@ -390,12 +390,14 @@ void add_preview(CLI::App& map, Invocation& invocation) {
       ->required()
       ->type_name("FILE.png|builtin|LAYOUT");
   add_avatar_option(*verb, options->avatar);
+  add_facing_option(*verb, options->facing);
   verb->add_option("-o,--output", options->output, "Write OUT.svg and OUT.png")->required()->type_name("OUT");
   verb->add_flag("--force", options->force, "Overwrite existing files");
   verb->add_flag("-q,--quiet", options->quiet, "Print errors only");
   verb->callback([options, &invocation] {
-    std::vector<std::string> arguments = {"body",       "--avatar", options->avatar, "--map",
-                                          options->map, "-o",       options->output};
+    std::vector<std::string> arguments = {
+        "body",       "--avatar", options->avatar, "--facing", options->facing.axis, "--map",
+        options->map, "-o",       options->output};
     if (options->force) arguments.emplace_back("--force");
     if (options->quiet) arguments.emplace_back("-q");
     invocation.exit_code = run_plot(arguments);

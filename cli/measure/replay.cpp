@@ -113,7 +113,8 @@ void check_map_at(const ReplayOptions& options) {
 }
 
 std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace,
-                                 const DriveMaker* drives, Verbosity verbosity) {
+                                 const DriveMaker* drives, const ReplayOptions& options) {
+  const Verbosity verbosity = options.common.verbosity();
   std::vector<MapChange> changes;
   for (const TimedMap& timed : timed_maps) {
     const ActuatorMapFiles files = read_map_files(trace.avatar, timed.file);
@@ -125,6 +126,8 @@ std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const 
                               trace.map.actuator_count),
                   "use maps with the same number of actuators");
     for (const std::string& warning : change.map.warnings) warn(warning, verbosity);
+    const std::string other = other_facing(trace.avatar.facing, change.map.facing, {options.trace, timed.file});
+    if (!other.empty()) warn(other, verbosity);
     if (drives != nullptr) change.layout = drives->layout_of(change.map);
     changes.push_back(std::move(change));
   }
@@ -153,9 +156,8 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
       return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, planes);
     });
   } else if (options.verify == "-" || options.verify == "auto") {
-    throw UsageError(
-        "--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
-        "name cpu, exact, geometry, paper, embree or embree_default, or a file that an earlier replay wrote");
+    throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
+                     fmt::format("name {}, or a file that an earlier replay wrote", fmt::join(detector_names(), ", ")));
   } else if (options.verify.ends_with(".csv")) {
     verification.contacts = read_contacts_csv(options.verify);
     verification.from_csv = true;
@@ -163,8 +165,8 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
     const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
     if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
       throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
-                  "name cpu, exact, geometry, paper, embree or embree_default, or a file that 'vestige replay "
-                  "--contacts FILE.csv' or '--json FILE' wrote");
+                  fmt::format("name {}, or a file that 'vestige replay --contacts FILE.csv' or '--json FILE' wrote",
+                              fmt::join(detector_names(), ", ")));
     verification.texture_hash = json["texture_hash"].get<std::string>();
   }
   return verification;
@@ -341,7 +343,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   std::optional<DriveMaker> drives;
   if (!options.timeline.empty()) drives.emplace(options.law, trace.avatar, trace.map);
   if (drives) planes = planes | drives->planes();
-  const std::vector<MapChange> changes = read_maps(timed_maps, trace, drives ? &*drives : nullptr, verbosity);
+  const std::vector<MapChange> changes = read_maps(timed_maps, trace, drives ? &*drives : nullptr, options);
   const PlaneSet verified = changes.empty() ? kHashedPlanes : kHashedPlanes | Plane::kTextureCoordinate;
   planes = planes | verified;
   std::optional<PickedPath> picked;
@@ -410,7 +412,7 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(help::whole_number(1, 256));
-  const auto add_result = [&](const char* name, auto& value, const char* description) {
+  const auto add_result = [&](const char* name, auto& value, const std::string& description) {
     return verb->add_option(name, value, description)->group("Results");
   };
   add_result("--contacts", options->contacts, "Write the contacts, one row each")->type_name("OUT.csv|-");
@@ -436,8 +438,9 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->take_all();
   add_result(
       "--verify", options->verify,
-      "Compare with another detector (cpu, exact, geometry, paper, embree, embree_default), or with the --contacts "
-      "(.csv) or --json of an earlier replay; exit 4 if contacts differ by more than their times")
+      fmt::format("Compare with another detector ({}), or with the --contacts (.csv) or --json of an earlier replay; "
+                  "exit 4 if contacts differ by more than their times",
+                  fmt::join(detector_names(), ", ")))
       ->type_name("DETECTOR|FILE");
   add_law_options(*verb, options->law, "Intensity");
   add_common_options(*verb, options->common);

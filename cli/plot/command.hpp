@@ -11,6 +11,7 @@
 
 #include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/data/scene_moments.hpp"
+#include "cli/facing_flag.hpp"
 #include "traces/files/output_file.hpp"
 
 namespace vestige::plot {
@@ -20,6 +21,7 @@ struct Options {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   std::string avatar;
+  cli::FacingChoice facing;
   std::string map;
   std::filesystem::path contacts;
   std::filesystem::path measured;

@@ -41,6 +41,7 @@ int draw_results(const Options& options, const char* name,
 void warn_of(const Options& options, const Subject& subject) {
   warn(options, subject.avatar.warnings);
   warn(options, subject.map.warnings);
+  warn(options, subject.warnings);
 }
 
 /// What is wrong with a trace that was read to its end; its part of the exit code.
@@ -60,7 +61,7 @@ ContactLimits limits_of(const Options& options, const Subject& subject) {
 
 /// The map that --map names, which is of no certain avatar: a layout is made for the built-in one.
 ActuatorMap map_of(const Options& options) {
-  const ActuatorMapFiles files = read_map_files(read_subject("builtin", "none").avatar, options.map);
+  const ActuatorMapFiles files = read_map_files(read_subject("builtin", "none", "").avatar, options.map);
   ActuatorMap map = files.png.empty() ? ActuatorMap() : parse_actuator_map(files.png, files.json, options.map);
   warn(options, map.warnings);
   return map;
@@ -71,7 +72,7 @@ constexpr std::size_t kMostAnimations = 4;
 
 /// `damage` becomes the trace's part of the exit code.
 Subject body_subject(const Options& options, int& damage) {
-  if (options.inputs.empty()) return read_subject(options.avatar, options.map);
+  if (options.inputs.empty()) return read_subject(options.avatar, options.map, options.facing.axis);
   TraceReader trace(options.inputs.front());
   Subject subject = read_subject(trace, options.inputs.front(), options.map);
   trace.frame_count();  // reads all of it
@@ -146,7 +147,7 @@ int draw_avatar(Options options) {
   return write_figure(options, stem_of(options), [&] {
     const std::string input = options.inputs.front();
     ContactSheet sheet;
-    sheet.subject = read_subject(input, "none");
+    sheet.subject = read_subject(input, "none", options.facing.axis);
     warn_of(options, sheet.subject);
     sheet.animations = ContactSheet::choose(sheet.subject.avatar, options.animation);
     sheet.poses = options.poses;

@@ -5,17 +5,16 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "cli/command_line.hpp"
 #include "cli/help/command_table.hpp"
 #include "cli/help/completion.hpp"
 #include "cli/help/help_text.hpp"
 #include "cli/help/manual.hpp"
 #include "cli/help/markdown.hpp"
-#include "cli/help/suggest.hpp"
 #include "cli/plot/verbs.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
@@ -57,21 +56,7 @@ int run(int argc, char** argv) {
     answer(word, app, {argv + 2, argv + argc});
     return vestige::cli::kDone;
   }
-  if (!word.empty() && word.front() != '-')
-    if (const auto remedy = help::unknown_verb_remedy(app, word))
-      throw vestige::UsageError(word, "there is no such figure", *remedy);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& help_asked_for) {
-    const int shown = app.exit(help_asked_for);
-    std::cout.flush();
-    if (!std::cout) throw vestige::system_error("standard output", "could not write", errno);
-    return shown;
-  } catch (const CLI::ParseError& error) {
-    vestige::print_message(
-        fmt::format("vestige: error: {}\n  {}\n", help::cause_of(app, error), help::remedy_of(app, error)));
-    return vestige::cli::kWrongUsage;
-  }
+  if (const auto exit_code = vestige::cli::parse_command_line(app, "figure", argc, argv)) return *exit_code;
   if (options.output == "-")
     throw vestige::UsageError("-o -", "a plot is two files, and standard output is one", "name OUT");
   return std::ranges::find_if(verbs, [](const auto& verb) { return verb.command->parsed(); })->draw(options);

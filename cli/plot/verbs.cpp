@@ -96,8 +96,10 @@ CLI::App& add_body(CLI::App& app, Options& options) {
                   "  vestige plot body man.mcap --contacts contacts.csv\n"
                   "  vestige plot body --avatar man.glb --map regions.png -o figures/regions\n");
   body.add_option("INPUT", options.inputs, "A trace, whose avatar and map are drawn")->type_name("MCAP")->expected(1);
-  body.add_option("--avatar", options.avatar, "Instead of a trace: the built-in avatar, or a glTF file")
-      ->type_name("builtin|FILE");
+  CLI::Option* avatar =
+      body.add_option("--avatar", options.avatar, "Instead of a trace: the built-in avatar, or a glTF file")
+          ->type_name("builtin|FILE");
+  cli::add_facing_option(body, options.facing)->needs(avatar);
   body.add_option(
           "--map", options.map,
           "The actuator map: a greyscale PNG (FILE.json names the actuators, if it exists), or a layout ('vestige map "
@@ -146,6 +148,7 @@ CLI::App& add_avatar(CLI::App& app, Options& options) {
                                  "  vestige plot avatar builtin\n"
                                  "  vestige plot avatar man.glb --animation walk -o figures/walk\n");
   add_input(avatar, options, "builtin|FILE", "The built-in avatar, or a glTF file (.glb, .gltf, .vrm)");
+  cli::add_facing_option(avatar, options.facing);
   avatar
       .add_option("--animation", options.animation,
                   "One animation: a name, an index, or none for the rest pose [default: all]")

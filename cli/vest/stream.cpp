@@ -182,11 +182,19 @@ void check_flags(const StreamOptions& options) {
                      "choose another detector");
 }
 
+/// Returns the warnings about the map of --map.
+std::vector<std::string> map_warnings(const OpenTrace& trace, const StreamOptions& options) {
+  std::vector<std::string> warnings = trace.map.warnings;
+  std::string other = other_facing(trace.avatar.facing, trace.map.facing, {options.trace, options.map});
+  if (!other.empty()) warnings.push_back(std::move(other));
+  return warnings;
+}
+
 /// Puts the map of --map in the place of the trace's own, if one is named. Throws `Error` if there is no actuator.
 void choose_map(OpenTrace& trace, const StreamOptions& options) {
   if (!options.map.empty()) {
     trace.map = parse_actuator_map(read_map_files(trace.avatar, options.map), trace.avatar, options.map);
-    for (const std::string& warning : trace.map.warnings) warn(warning, options.common.verbosity());
+    for (const std::string& warning : map_warnings(trace, options)) warn(warning, options.common.verbosity());
   }
   if (trace.map.actuator_count == 0)
     throw Error(options.map.empty() ? options.trace : options.map, "has no actuator, so nothing would be felt",
@@ -244,7 +252,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
         trace.map = std::move(taken->map);
         laws.use(taken->layout);
         ++streamed.maps_reloaded;
-        for (const std::string& warning : trace.map.warnings) tell(warning);
+        for (const std::string& warning : map_warnings(trace, options)) tell(warning);
       }
       sender.still_here();
       return progress.update(share);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,7 +18,10 @@ namespace vestige {
 /// folder.
 std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path);
 
-/// Does the same for `content`, which was read from `path`; looks for its buffers beside `path`.
+/// Returns the built-in avatar if `avatar` is `kBuiltin`. Otherwise does the same as `read_avatar_glb`.
+std::vector<std::byte> read_builtin_or_file(const std::string& avatar);
+
+/// Does the same as `read_avatar_glb` for `content`, which was read from `path`; looks for its buffers beside `path`.
 std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std::filesystem::path& path);
 
 /// Parses and validates a binary glTF 2.0 file. `name` is used in errors and warnings. Images are never read.

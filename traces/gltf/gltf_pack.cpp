@@ -14,6 +14,7 @@
 #include "traces/gltf/gltf_meshopt.hpp"
 #include "traces/gltf/json/gltf_json.hpp"
 #include "traces/gltf/json/gltf_uri.hpp"
+#include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
 
@@ -193,6 +194,10 @@ bool names_other_files(const Json& source, Report& report) {
 
 std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path) {
   return pack_avatar_glb(read_file(path), path);
+}
+
+std::vector<std::byte> read_builtin_or_file(const std::string& avatar) {
+  return avatar == kBuiltin ? builtin_avatar_glb() : read_avatar_glb(avatar);
 }
 
 std::vector<std::byte> pack_avatar_glb(std::vector<std::byte> content, const std::filesystem::path& path) {

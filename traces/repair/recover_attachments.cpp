@@ -6,6 +6,7 @@
 #include "traces/base/sha256.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/repair/recoverer.hpp"
+#include "traces/scene/facing.hpp"
 
 namespace vestige {
 
@@ -25,13 +26,22 @@ void Recoverer::take_metadata(mcap::Metadata metadata) {
   }
   if (metadata.name == trace_format::kSessionName) {
     facts_.claims.session = metadata.metadata;
-    // Another avatar faces where its own file tells.
-    const auto avatar = plan_.attachments.find(std::string(trace_format::kAvatarName));
-    if (avatar != plan_.attachments.end() && !avatar->second.is_recorded)
-      metadata.metadata.erase(std::string(trace_format::kFacingKey));
+    drop_facing(metadata.metadata);
   }
   output_.write(metadata);
   ++result_.metadata;
+}
+
+/// Drops the facing of a session if it is no axis, or if another avatar takes the place of the recorded one: it faces
+/// where its own file tells.
+void Recoverer::drop_facing(mcap::StringMap& session) {
+  const auto facing = session.find(std::string(trace_format::kFacingKey));
+  if (facing == session.end()) return;
+  const auto avatar = plan_.attachments.find(std::string(trace_format::kAvatarName));
+  const bool is_other = avatar != plan_.attachments.end() && !avatar->second.is_recorded;
+  const bool is_axis = facing_named(facing->second).has_value();
+  if (!is_axis) repaired(fmt::format("the session's facing '{}', which is no axis, was left out", facing->second));
+  if (!is_axis || is_other) session.erase(facing);
 }
 
 AttachmentFacts Recoverer::facts() const {

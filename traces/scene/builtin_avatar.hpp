@@ -2,9 +2,13 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace vestige {
+
+/// What a flag names in place of a file: the built-in avatar, or its map.
+inline constexpr std::string_view kBuiltin = "builtin";
 
 /// Returns Vestige's built-in avatar, the mannequin, as binary glTF 2.0. It is one closed surface of a person 1.75 m
 /// tall with 4998 triangles and 21 joints. It has the animations `idle`, `walk`, `reach` and `spin`; metres, y up,

@@ -50,4 +50,50 @@ std::string_view to_string(AvatarFacing::By by) {
   return kNames[static_cast<std::size_t>(by)];
 }
 
+std::string_view in_words(AvatarFacing::By by) {
+  switch (by) {
+    case AvatarFacing::By::kSides:
+      return "by its left and right joints";
+    case AvatarFacing::By::kFeet:
+      return "by its feet";
+    case AvatarFacing::By::kVrm:
+      return "by its version of VRM";
+    case AvatarFacing::By::kMap:
+      return "by its map";
+    case AvatarFacing::By::kTrace:
+      return "by the trace";
+    case AvatarFacing::By::kAsked:
+      return "as asked";
+    case AvatarFacing::By::kAssumed:
+      break;
+  }
+  return "since nothing tells";
+}
+
+std::vector<std::string> settle_facing(AvatarFacing& facing, std::string_view asked, std::optional<Facing> of_map,
+                                       std::string_view name) {
+  std::vector<std::string> warnings;
+  if (const auto axis = facing_named(asked)) {
+    if (facing.by == AvatarFacing::By::kSides && facing.axis != *axis)
+      warnings.push_back(fmt::format("{}: its left and right joints say that it faces {}; {} is taken, as asked", name,
+                                     to_string(facing.axis), asked));
+    set_facing(facing, *axis, AvatarFacing::By::kAsked);
+  } else if (of_map && facing.by == AvatarFacing::By::kAssumed) {
+    set_facing(facing, *of_map, AvatarFacing::By::kMap);
+  }
+  if (facing.lies_deg)
+    warnings.push_back(fmt::format("{}: {}; its left and its front are not known", name, describe_lying(facing)));
+  if (!facing.doubt.empty())
+    warnings.push_back(
+        fmt::format("{}: {}; {} is taken; --facing sets it", name, facing.doubt, to_string(facing.axis)));
+  facing.doubt.clear();  // said once
+  return warnings;
+}
+
+std::string other_facing(const AvatarFacing& facing, std::optional<Facing> of_map, const SceneNames& names) {
+  if (!of_map || *of_map == facing.axis || facing.by == AvatarFacing::By::kAssumed) return {};
+  return fmt::format("{}: was made for an avatar that faces {}, and {} faces {}, {}; make it anew", names.map,
+                     to_string(*of_map), names.avatar, to_string(facing.axis), in_words(facing.by));
+}
+
 }  // namespace vestige

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace vestige {
 
@@ -104,5 +105,26 @@ void require_standing(const AvatarFacing& facing, std::string_view where);
 
 /// "sides", "feet", "vrm", "assumed", "map", "trace", "asked".
 std::string_view to_string(AvatarFacing::By by);
+
+/// Returns what tells the facing: "by its left and right joints", ….
+std::string_view in_words(AvatarFacing::By by);
+
+/// Decides which way an avatar faces. The axis that is asked for counts first, then what tells the facing already, then
+/// the map. `asked` is one of `kFacingNames`; any other text asks for nothing. `of_map` is empty if the map does not
+/// say it. Returns warnings: the avatar's sides contradict the axis that is asked for, the avatar does not stand, or
+/// there is a doubt, which --facing ends. `name` is the avatar's name in them.
+std::vector<std::string> settle_facing(AvatarFacing& facing, std::string_view asked, std::optional<Facing> of_map,
+                                       std::string_view name);
+
+/// The names of an avatar and its map in errors and warnings.
+struct SceneNames {
+  std::string avatar;
+  std::string map;
+};
+
+/// Returns a warning if the map was made for another facing than the avatar's, which something tells. Otherwise returns
+/// an empty text. Where the verb has --facing, `kOrSetFacing` ends the warning.
+std::string other_facing(const AvatarFacing& facing, std::optional<Facing> of_map, const SceneNames& names);
+inline constexpr const char* kOrSetFacing = ", or set --facing";
 
 }  // namespace vestige

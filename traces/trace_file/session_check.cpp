@@ -7,6 +7,7 @@
 
 #include "traces/base/sha256.hpp"
 #include "traces/scene/builtin_avatar.hpp"
+#include "traces/scene/facing.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
@@ -112,6 +113,10 @@ std::vector<SessionProblem> check_session(std::string_view file, const Attachmen
     problems.insert(problems.begin(),
                     {fmt::format("its format version is '{}', not {}", version->second, trace_format::kVersion),
                      "a later version of vestige wrote it; this version does not understand the new parts"});
+  const auto facing = claims.session.find(std::string(trace_format::kFacingKey));
+  if (facing != claims.session.end() && !facing_named(facing->second))
+    problems.push_back({fmt::format("the session records the facing '{}', which is no axis", facing->second),
+                        "the avatar faces where its own file tells; `vestige recover` leaves it out"});
   return problems;
 }
 

@@ -35,9 +35,9 @@ struct SessionProblem {
   std::string consequence;
 };
 
-/// Returns the contradictions between a file and what it says: an unknown format version, and attachments that are not
-/// the recorded ones or are missing. `sha256` holds the hashes of the undamaged attachments, by name. `file` is the
-/// file's name, for the commands that the problems name.
+/// Returns the contradictions between a file and what it says: an unknown format version, attachments that are not the
+/// recorded ones or are missing, and a facing that is no axis. `sha256` holds the hashes of the undamaged attachments,
+/// by name. `file` is the file's name, for the commands that the problems name.
 std::vector<SessionProblem> check_session(std::string_view file, const AttachmentClaims& claims,
                                           const std::map<std::string, std::string>& sha256);
 

@@ -1,9 +1,9 @@
 #include "analysis/plot/studio/subject.hpp"
 
 #include <glm/vec2.hpp>
+#include <utility>
 
 #include "analysis/mapping/layouts.hpp"
-#include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
@@ -21,13 +21,21 @@ std::uint16_t actuator_at(const Avatar& avatar, const ActuatorMap& map, std::uin
                               v * glm::dvec2(coordinates[corner.z]));
 }
 
-Subject read_subject(const std::string& avatar, const std::string& map) {
-  const bool is_builtin = avatar == "builtin";
+Subject read_subject(const std::string& avatar, const std::string& map, std::string_view facing) {
   Subject subject;
-  subject.title = is_builtin ? "built-in avatar" : std::filesystem::path(avatar).filename().string();
-  subject.avatar = parse_avatar_glb(is_builtin ? builtin_avatar_glb() : read_avatar_glb(avatar), avatar);
-  subject.map = read_map(!map.empty() ? map : is_builtin ? "builtin" : "none", subject.avatar);
-  if (subject.map.facing) set_facing(subject.avatar.facing, *subject.map.facing, AvatarFacing::By::kMap);
+  subject.title = avatar == kBuiltin ? "built-in avatar" : std::filesystem::path(avatar).filename().string();
+  subject.avatar = parse_avatar_glb(read_builtin_or_file(avatar), avatar);
+  const std::string chosen_map = map_or_default(map, avatar);
+  const auto settle = [&] {
+    for (std::string& warning : settle_facing(subject.avatar.facing, facing, subject.map.facing, avatar))
+      subject.warnings.push_back(std::move(warning));
+  };
+  if (is_layout(chosen_map)) settle();
+  subject.map = read_map(chosen_map, subject.avatar);
+  if (!is_layout(chosen_map)) settle();
+  if (const std::string other = other_facing(subject.avatar.facing, subject.map.facing, {avatar, chosen_map});
+      !other.empty())
+    subject.warnings.push_back(other + kOrSetFacing);
   return subject;
 }
 
@@ -40,6 +48,10 @@ Subject read_subject(const TraceReader& trace, const std::filesystem::path& path
     subject.map = read_map(map, subject.avatar);
   else if (!trace.actuator_map_png().empty())
     subject.map = parse_actuator_map(actuator_map_files(trace), subject.avatar, path.string() + ", actuator_map.png");
+  if (std::string other = other_facing(subject.avatar.facing, subject.map.facing,
+                                       {path.string(), map.empty() ? path.string() + ", actuator_map.png" : map});
+      !other.empty())
+    subject.warnings.push_back(std::move(other));
   return subject;
 }
 

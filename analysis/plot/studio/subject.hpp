@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "detector/actuator_map.hpp"
 #include "traces/scene/avatar.hpp"
@@ -18,7 +20,8 @@ std::uint16_t actuator_at(const Avatar& avatar, const ActuatorMap& map, std::uin
 struct Subject {
   std::string title;
   Avatar avatar;
-  ActuatorMap map;  ///< has no actuators if there is no map
+  ActuatorMap map;                    ///< has no actuators if there is no map
+  std::vector<std::string> warnings;  ///< about the facing, one sentence each
 
   std::uint16_t actuator_at(std::uint32_t triangle, double u, double v) const {
     return plot::actuator_at(avatar, map, triangle, u, v);
@@ -30,8 +33,9 @@ struct Subject {
 ActuatorMap read_map(const std::string& map, const Avatar& avatar);
 
 /// Reads an avatar with its map. `avatar` is "builtin" or a glTF file. `map` is as in `read_map`; if empty, it is
-/// "builtin" for the built-in avatar and "none" for others. Throws `Error`.
-Subject read_subject(const std::string& avatar, const std::string& map);
+/// "builtin" for the built-in avatar and "none" for others. `facing` is an axis that is asked for, or "auto". Throws
+/// `Error`.
+Subject read_subject(const std::string& avatar, const std::string& map, std::string_view facing);
 
 /// Returns the avatar of a trace with the trace's map, or with `map` if `map` is not empty. Throws `Error`.
 Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map);

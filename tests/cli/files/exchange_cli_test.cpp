@@ -109,7 +109,8 @@ TEST_F(Exchange, CsvLeavesNoMapOfTheExportBefore) {
   expect_failure("vestige export no_map.mcap -o there", 1, {"already exists"});
   EXPECT_TRUE(exists("there/actuator_map.json"));
   const auto report = json_of("vestige export no_map.mcap -o there --force --json -");
-  EXPECT_THAT(report["outputs"], ElementsAre("there/poses.csv", "there/colliders.csv", "there/avatar.glb"));
+  EXPECT_THAT(report["outputs"],
+              ElementsAre("there/poses.csv", "there/colliders.csv", "there/avatar.glb", "there/session.json"));
   EXPECT_FALSE(exists("there/actuator_map.png"));
   EXPECT_FALSE(exists("there/actuator_map.json"));
   ASSERT_EQ(run("vestige import there -o back.mcap").exit_code, 0);
