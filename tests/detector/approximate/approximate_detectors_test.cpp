@@ -1,0 +1,206 @@
+#include "detector/approximate/approximate_detectors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "detector/detectors/make_detectors.hpp"
+#include "tests/support/builtin_avatar.hpp"
+#include "tests/support/builtin_map.hpp"
+#include "tests/support/scene_run.hpp"
+#include "tests/support/small_avatar.hpp"
+#include "traces/base/error.hpp"
+#include "traces/scenarios/scenarios.hpp"
+
+namespace vestige {
+namespace {
+
+using test::builtin_avatar;
+using test::builtin_map;
+
+using Maker = std::unique_ptr<Detector> (*)(const Avatar&, const ActuatorMap&, const DetectorOptions&);
+
+struct Kind {
+  const char* name;
+  Maker make;
+};
+
+class ApproximateDetector : public ::testing::TestWithParam<Kind> {};
+
+INSTANTIATE_TEST_SUITE_P(Each, ApproximateDetector,
+                         ::testing::Values(Kind{"boxes", make_boxes_detector},
+                                           Kind{"capsules", make_capsules_detector}),
+                         [](const auto& test) { return test.param.name; });
+
+DetectorOptions with(Method method) {
+  return {Surface::kAll, PlaneSet::all(), method};
+}
+
+/// Two bones in a row along x, each with a rod of 1 x 0.2 x 0.2: the first from 0 to 1 moved by node 0, the second
+/// from 1 to 2 by node 1, whose origin is the elbow at x = 1. Texture coordinates: u is x / 2.
+Avatar limb() {
+  Avatar avatar;
+  avatar.nodes.resize(2);
+  avatar.nodes[1].parent = 0;
+  avatar.nodes[1].rest.translation = {1, 0, 0};
+  avatar.node_order = {0, 1};
+  avatar.palette.resize(2);
+  avatar.palette[1].node = 1;
+  avatar.palette[1].inverse_bind[3] = {-1, 0, 0, 1};
+  avatar.joint_count = 2;
+  for (std::uint16_t bone = 0; bone < 2; ++bone) {
+    const auto first = static_cast<std::uint32_t>(avatar.position_bind.size());
+    for (int corner = 0; corner < 8; ++corner) {
+      const float x = static_cast<float>(bone) + static_cast<float>(corner & 1);
+      avatar.position_bind.emplace_back(x, (corner & 2) != 0 ? 0.1F : -0.1F, (corner & 4) != 0 ? 0.1F : -0.1F);
+      avatar.texture_coordinate.emplace_back(x / 2, 0.5F);
+      Influences moved;
+      moved.palette[0] = bone;
+      moved.weight[0] = 1;
+      avatar.influences.push_back(moved);
+    }
+    for (const glm::uvec3& triangle : {glm::uvec3(0, 4, 6),
+                                       {0, 6, 2},
+                                       {1, 3, 7},
+                                       {1, 7, 5},
+                                       {0, 1, 5},
+                                       {0, 5, 4},
+                                       {2, 6, 7},
+                                       {2, 7, 3},
+                                       {0, 2, 3},
+                                       {0, 3, 1},
+                                       {4, 5, 7},
+                                       {4, 7, 6}})
+      avatar.triangles.push_back(first + triangle);
+  }
+  return avatar;
+}
+
+/// Actuator k + 1 covers a quarter of the limb's length.
+ActuatorMap quarters() {
+  ActuatorMap map;
+  map.width = 4;
+  map.actuator = {1, 2, 3, 4};
+  map.actuator_count = 4;
+  map.names = {"a", "b", "c", "d"};
+  return map;
+}
+
+TEST_P(ApproximateDetector, FindsWhereALimbOfTwoBonesIsEnteredAndLeft) {
+  const Avatar avatar = limb();
+  const ActuatorMap map = quarters();
+  const auto detector = GetParam().make(avatar, map, with(Method::kStatic));
+  EXPECT_TRUE(detector->is_approximate());
+  EXPECT_STREQ(detector->name(), GetParam().name);
+  std::vector<Segment> segments;
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const float x = 0.25F + 0.5F * static_cast<float>(i);
+    segments.push_back({i, {x, 0, 1}, {x, 0, 0}});  // from above into the limb
+  }
+  segments.push_back({4, {0.25F, 0, 0}, {0.25F, 0, 1}});  // out of it
+  segments.push_back({5, {0.25F, 0, 0.5F}, {0.25F, 0, 1}});
+  segments.push_back({6, {0.5F, 0, 0}, {1.5F, 0, 0}});  // from one bone into the other
+  ContactRow row;
+  const DetectorWork work = detector->detect(test::frame_of(avatar, segments), row);
+  EXPECT_EQ(work.pairs_meeting, 5U);
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    ASSERT_TRUE(row[i].hit()) << i;
+    EXPECT_EQ(row[i].actuator, i + 1);
+    EXPECT_EQ(row[i].side, 1);
+    EXPECT_NEAR(row[i].t, 0.9, 0.03);  // the skin is at 0.1; a capsule bulges and shrinks around it
+    EXPECT_NEAR(row[i].position.z, 0.1, 0.03);
+    EXPECT_NEAR(row[i].speed_m_per_s, 100, 1e-6);
+    EXPECT_EQ(row[i].actuator, map.at(row[i].triangle, row[i].texture_coordinate));
+  }
+  ASSERT_TRUE(row[4].hit());
+  EXPECT_EQ(row[4].side, -1);
+  EXPECT_NEAR(row[4].t, 0.1, 0.03);
+  EXPECT_FALSE(row[5].hit());
+  EXPECT_FALSE(row[6].hit());
+}
+
+TEST_P(ApproximateDetector, GoesAlongWithTheBones) {
+  const Avatar avatar = limb();
+  const ActuatorMap map = quarters();
+  const auto detector = GetParam().make(avatar, map, with(Method::kStatic));
+  DetectorFrame frame = test::frame_of(avatar, {{0, {1, 0.6F, 1}, {1, 0.6F, 0}}, {1, {1.5F, 0, 1}, {1.5F, 0, 0}}});
+  Pose pose = rest_pose(avatar);
+  const float half = std::sqrt(0.5F);
+  pose.nodes[1].rotation = glm::quat(half, 0, 0, half);  // the elbow bends up by a right angle
+  std::vector<glm::dmat4> world;
+  world_matrices(avatar, pose, world);
+  build_palette(avatar, world, glm::dvec3(0), frame.palette);
+  ContactRow row;
+  detector->detect(frame, row);
+  ASSERT_TRUE(row[0].hit());
+  EXPECT_TRUE(row[0].actuator == 3 || row[0].actuator == 4) << row[0].actuator;
+  EXPECT_NEAR(row[0].t, 0.9, 0.03);
+  EXPECT_FALSE(row[1].hit());
+}
+
+TEST_P(ApproximateDetector, CarriedSeesWhatALimbSweepsOver) {
+  const Avatar avatar = limb();
+  const ActuatorMap map = quarters();
+  const Segment still = {0, {0.5F, 0, 0.5F}, {0.5F, 0, 0.5F}};
+  DetectorFrame frame = test::frame_of(avatar, {still});
+  frame.palette_before = frame.palette;
+  for (SkinMatrix& matrix : frame.palette) matrix.column[3].z += 1;  // the limb moves from below it to above it
+  ContactRow row;
+  GetParam().make(avatar, map, with(Method::kStatic))->detect(frame, row);
+  EXPECT_FALSE(row[0].hit());
+  GetParam().make(avatar, map, with(Method::kCarried))->detect(frame, row);
+  ASSERT_TRUE(row[0].hit());
+  EXPECT_NEAR(row[0].t, 0.4, 0.03);
+  EXPECT_NEAR(row[0].speed_m_per_s, 100, 1e-4);
+}
+
+TEST_P(ApproximateDetector, HasNoContinuousMotion) {
+  EXPECT_THROW(GetParam().make(limb(), quarters(), with(Method::kCcd)), UsageError);
+}
+
+TEST_P(ApproximateDetector, PassesThroughSkinWithoutActuatorsIfAsked) {
+  const Avatar avatar = limb();
+  ActuatorMap map = quarters();
+  map.actuator = {0, 0, 0, 4};
+  const std::vector<Segment> segments = {{0, {1.25F, 0, 1}, {1.25F, 0, 0}}, {1, {1.75F, 0, 1}, {1.75F, 0, 0}}};
+  ContactRow row;
+  GetParam().make(avatar, map, {Surface::kMapped, PlaneSet::all()})->detect(test::frame_of(avatar, segments), row);
+  EXPECT_FALSE(row[0].hit());
+  EXPECT_EQ(row[1].actuator, 4);
+  GetParam().make(avatar, map, {Surface::kAll, PlaneSet::all()})->detect(test::frame_of(avatar, segments), row);
+  ASSERT_TRUE(row[0].hit());
+  EXPECT_EQ(row[0].actuator, 0);
+}
+
+TEST_P(ApproximateDetector, FindsAboutAsManyContactsAsTheSkinHas) {
+  const std::uint32_t colliders = 50;
+  const auto scene = test::scene("swarm", builtin_avatar(), colliders, 120, 60);
+  for (const Method method : {Method::kStatic, Method::kCarried}) {
+    const auto exact = make_cpu_detector(builtin_avatar(), builtin_map(), with(method));
+    const std::size_t truth = test::run_scene(scene, builtin_avatar(), colliders, *exact).contacts();
+    const auto detector = GetParam().make(builtin_avatar(), builtin_map(), with(method));
+    const std::size_t found = test::run_scene(scene, builtin_avatar(), colliders, *detector).contacts();
+    EXPECT_GT(truth, 30U);
+    EXPECT_GT(found, truth * 2 / 3) << name_of(method);
+    EXPECT_LT(found, truth * 3 / 2) << name_of(method);
+  }
+}
+
+// A collider that moves far makes every part's margin so wide that all pairs are tested.
+TEST_P(ApproximateDetector, LosesNoContactBecausePartsAreFarAway) {
+  const std::uint32_t colliders = 50;
+  auto scene = test::scene("swarm", builtin_avatar(), colliders, 60, 30);
+  const auto detector = GetParam().make(builtin_avatar(), builtin_map(), with(Method::kCarried));
+  const test::SceneRun near = test::run_scene(scene, builtin_avatar(), colliders, *detector);
+  for (std::size_t k = 0; k < scene.size(); ++k)
+    scene[k].colliders.push_back({colliders, {k % 2 == 0 ? 1e5 : 2e5, 0, 0}});
+  test::SceneRun all = test::run_scene(scene, builtin_avatar(), colliders + 1, *detector);
+  for (ContactRow& row : all.rows) row.pop_back();
+  EXPECT_GT(near.contacts(), 20U);
+  EXPECT_EQ(hash_of(all), hash_of(near));
+}
+
+}  // namespace
+}  // namespace vestige
