@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
 #include <map>
+#include <utility>
 
 #include "traces/scene/pose.hpp"
 #include "traces/scene/reference_skinning.hpp"
@@ -31,24 +32,20 @@ std::vector<JointSkin> skin_by_joint(const Avatar& avatar) {
   std::vector<glm::dmat4> palette;
   palette_matrices(avatar, pose, palette);
 
-  std::vector<JointSkin> skins(avatar.palette.size());
-  for (std::size_t i = 0; i < skins.size(); ++i) skins[i].palette = i;
-  for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i)
-    skins[joint_of(avatar, avatar.triangles[i])].triangles.push_back(i);
-  for (JointSkin& skin : skins) {
-    const double scale = glm::determinant(glm::dmat3(palette[skin.palette]));
-    if (!std::isnormal(scale)) {
-      skin.triangles.clear();
-      continue;
-    }
-    const glm::dmat4 to_bind = glm::inverse(palette[skin.palette]);
+  std::vector<std::vector<std::uint32_t>> moved(avatar.palette.size());
+  for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) moved[joint_of(avatar, avatar.triangles[i])].push_back(i);
+  std::vector<JointSkin> skins;
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    if (moved[i].empty() || !std::isnormal(glm::determinant(glm::dmat3(palette[i])))) continue;
+    const glm::dmat4 to_bind = glm::inverse(palette[i]);
     const auto bound = [&](std::uint32_t vertex) { return glm::dvec3(to_bind * glm::dvec4(at_rest[vertex], 1)); };
-    for (const std::uint32_t number : skin.triangles) {
+    std::vector<Corners> corners;
+    for (const std::uint32_t number : moved[i]) {
       const glm::uvec3& triangle = avatar.triangles[number];
-      skin.corners.push_back({bound(triangle.x), bound(triangle.y), bound(triangle.z)});
+      corners.push_back({bound(triangle.x), bound(triangle.y), bound(triangle.z)});
     }
+    skins.push_back({i, SkinPatch(std::move(moved[i]), std::move(corners))});
   }
-  std::erase_if(skins, [](const JointSkin& skin) { return skin.triangles.empty(); });
   return skins;
 }
 

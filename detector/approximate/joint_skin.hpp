@@ -1,21 +1,19 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include "detector/decision.hpp"
+#include "detector/approximate/skin_spots.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
 
 /// The skin that one joint moves: the triangles in which the joint has the largest sum of weights.
 struct JointSkin {
-  std::size_t palette = 0;               ///< entry of `Avatar::palette`
-  std::vector<std::uint32_t> triangles;  ///< ascending
-  /// One for each triangle: its corners in the rest pose, in the joint's bind space. The joint's skinning matrix of the
-  /// rest pose moves them to where the skin lies at rest.
-  std::vector<Corners> corners;
+  std::size_t palette = 0;  ///< entry of `Avatar::palette`
+  /// In the joint's bind space, as the skin lies in the rest pose: the joint's skinning matrix of the rest pose moves
+  /// the corners to the skin at rest.
+  SkinPatch patch;
 };
 
 /// Returns the skin of every joint that moves any, by ascending palette entry. Each triangle belongs to one joint. A

@@ -28,10 +28,10 @@ class ShapeDetector final : public Detector {
   ShapeDetector(const char* name, const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
       : name_(name), avatar_(avatar), method_(options.method), surface_(options.surface) {
     for (const JointSkin& skin : skin_by_joint(avatar)) {
-      Part part = {skin.palette, Shape::fit(skin.corners), {}};
+      Part part = {skin.palette, Shape::fit(skin.patch.corners()), {}};
       part.spots.reserve(Shape::kCells);
       for (std::size_t cell = 0; cell < Shape::kCells; ++cell)
-        part.spots.push_back(nearest_spot(avatar, map, skin, part.shape.middle_of_cell(cell)));
+        part.spots.push_back(nearest_spot(avatar, map, {&skin.patch, 1}, part.shape.middle_of_cell(cell)));
       parts_.push_back(std::move(part));
     }
   }
@@ -141,8 +141,10 @@ class ShapeDetector final : public Detector {
     const glm::dvec3 start_bind = moved.start.to_bind(start);
     const glm::dvec3 way_bind = moved.end.to_bind(end) - start_bind;
     const glm::dvec3 place = start_bind + crossing->t * way_bind;
-    Contact contact = moved.part->spots[moved.part->shape.cell(place)];
-    if (surface_ == Surface::kMapped && contact.actuator == 0) return {};
+    const SkinSpot& spot = moved.part->spots[moved.part->shape.cell(place)];
+    if (surface_ == Surface::kMapped && spot.actuator == 0) return {};
+    Contact contact;
+    put_spot(spot, contact);
     contact.t = static_cast<float>(crossing->t);
     contact.side = crossing->side;
     contact.position = start + crossing->t * (end - start);

@@ -27,12 +27,25 @@ struct Kind {
   Maker make;
 };
 
-class ApproximateDetector : public ::testing::TestWithParam<Kind> {};
+std::unique_ptr<Detector> make_decimated(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
+  return make_decimated_detector(0.1, avatar, map, options);
+}
 
+std::string name_of_kind(const ::testing::TestParamInfo<Kind>& test) {
+  return test.param.name;
+}
+
+class ApproximateDetector : public ::testing::TestWithParam<Kind> {};
 INSTANTIATE_TEST_SUITE_P(Each, ApproximateDetector,
+                         ::testing::Values(Kind{"boxes", make_boxes_detector}, Kind{"capsules", make_capsules_detector},
+                                           Kind{"decimated", make_decimated}),
+                         name_of_kind);
+
+class ShapesDetector : public ::testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(Each, ShapesDetector,
                          ::testing::Values(Kind{"boxes", make_boxes_detector},
                                            Kind{"capsules", make_capsules_detector}),
-                         [](const auto& test) { return test.param.name; });
+                         name_of_kind);
 
 DetectorOptions with(Method method) {
   return {Surface::kAll, PlaneSet::all(), method};
@@ -88,12 +101,10 @@ ActuatorMap quarters() {
   return map;
 }
 
-TEST_P(ApproximateDetector, FindsWhereALimbOfTwoBonesIsEnteredAndLeft) {
+TEST_P(ShapesDetector, FindsWhereALimbOfTwoBonesIsEnteredAndLeft) {
   const Avatar avatar = limb();
   const ActuatorMap map = quarters();
   const auto detector = GetParam().make(avatar, map, with(Method::kStatic));
-  EXPECT_TRUE(detector->is_approximate());
-  EXPECT_STREQ(detector->name(), GetParam().name);
   std::vector<Segment> segments;
   for (std::uint32_t i = 0; i < 4; ++i) {
     const float x = 0.25F + 0.5F * static_cast<float>(i);
@@ -121,7 +132,7 @@ TEST_P(ApproximateDetector, FindsWhereALimbOfTwoBonesIsEnteredAndLeft) {
   EXPECT_FALSE(row[6].hit());
 }
 
-TEST_P(ApproximateDetector, GoesAlongWithTheBones) {
+TEST_P(ShapesDetector, GoesAlongWithTheBones) {
   const Avatar avatar = limb();
   const ActuatorMap map = quarters();
   const auto detector = GetParam().make(avatar, map, with(Method::kStatic));
@@ -140,7 +151,7 @@ TEST_P(ApproximateDetector, GoesAlongWithTheBones) {
   EXPECT_FALSE(row[1].hit());
 }
 
-TEST_P(ApproximateDetector, CarriedSeesWhatALimbSweepsOver) {
+TEST_P(ShapesDetector, CarriedSeesWhatALimbSweepsOver) {
   const Avatar avatar = limb();
   const ActuatorMap map = quarters();
   const Segment still = {0, {0.5F, 0, 0.5F}, {0.5F, 0, 0.5F}};
@@ -156,11 +167,11 @@ TEST_P(ApproximateDetector, CarriedSeesWhatALimbSweepsOver) {
   EXPECT_NEAR(row[0].speed_m_per_s, 100, 1e-4);
 }
 
-TEST_P(ApproximateDetector, HasNoContinuousMotion) {
+TEST_P(ShapesDetector, HasNoContinuousMotion) {
   EXPECT_THROW(GetParam().make(limb(), quarters(), with(Method::kCcd)), UsageError);
 }
 
-TEST_P(ApproximateDetector, PassesThroughSkinWithoutActuatorsIfAsked) {
+TEST_P(ShapesDetector, PassesThroughSkinWithoutActuatorsIfAsked) {
   const Avatar avatar = limb();
   ActuatorMap map = quarters();
   map.actuator = {0, 0, 0, 4};
@@ -181,6 +192,8 @@ TEST_P(ApproximateDetector, FindsAboutAsManyContactsAsTheSkinHas) {
     const auto exact = make_cpu_detector(builtin_avatar(), builtin_map(), with(method));
     const std::size_t truth = test::run_scene(scene, builtin_avatar(), colliders, *exact).contacts();
     const auto detector = GetParam().make(builtin_avatar(), builtin_map(), with(method));
+    EXPECT_TRUE(detector->is_approximate());
+    EXPECT_STREQ(detector->name(), GetParam().name);
     const std::size_t found = test::run_scene(scene, builtin_avatar(), colliders, *detector).contacts();
     EXPECT_GT(truth, 30U);
     EXPECT_GT(found, truth * 2 / 3) << name_of(method);
@@ -189,7 +202,7 @@ TEST_P(ApproximateDetector, FindsAboutAsManyContactsAsTheSkinHas) {
 }
 
 // A collider that moves far makes every part's margin so wide that all pairs are tested.
-TEST_P(ApproximateDetector, LosesNoContactBecausePartsAreFarAway) {
+TEST_P(ShapesDetector, LosesNoContactBecausePartsAreFarAway) {
   const std::uint32_t colliders = 50;
   auto scene = test::scene("swarm", builtin_avatar(), colliders, 60, 30);
   const auto detector = GetParam().make(builtin_avatar(), builtin_map(), with(Method::kCarried));
@@ -200,6 +213,64 @@ TEST_P(ApproximateDetector, LosesNoContactBecausePartsAreFarAway) {
   for (ContactRow& row : all.rows) row.pop_back();
   EXPECT_GT(near.contacts(), 20U);
   EXPECT_EQ(hash_of(all), hash_of(near));
+}
+
+/// A plate from (0, 0) to (1, 1) of `across` x `across` squares. Its texture coordinates are x and y.
+Avatar plate(std::uint32_t across) {
+  std::vector<glm::vec3> vertices;
+  std::vector<glm::uvec3> triangles;
+  for (std::uint32_t y = 0; y <= across; ++y)
+    for (std::uint32_t x = 0; x <= across; ++x) {
+      vertices.emplace_back(static_cast<float>(x) / static_cast<float>(across),
+                            static_cast<float>(y) / static_cast<float>(across), 0);
+      if (x == across || y == across) continue;
+      const std::uint32_t first = y * (across + 1) + x;
+      triangles.push_back({first, first + 1, first + across + 2});
+      triangles.push_back({first, first + across + 2, first + across + 1});
+    }
+  return test::rigid_avatar(vertices, triangles);
+}
+
+TEST(DecimatedDetector, TellsTheActuatorOfTheSkinThatItStandsFor) {
+  const Avatar avatar = plate(20);
+  const ActuatorMap map = quarters();
+  std::vector<Segment> segments;
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    const float x = (static_cast<float>(i) + 0.5F) / 12;
+    segments.push_back({i, {x, 0.4F, 1}, {x, 0.4F, -1}});
+  }
+  ContactRow row;
+  const auto detector = make_decimated_detector(0.1, avatar, map, with(Method::kStatic));
+  const DetectorWork work = detector->detect(test::frame_of(avatar, segments), row);
+  EXPECT_LT(work.triangles_tested, avatar.triangles.size() / 5);
+  for (std::uint32_t i = 0; i < 12; ++i) {
+    ASSERT_TRUE(row[i].hit());
+    EXPECT_EQ(row[i].t, 0.5F);
+    EXPECT_EQ(row[i].side, 1);
+    // The place stands for the middle of its cell, which is up to a twelfth away.
+    EXPECT_NEAR(row[i].texture_coordinate.x, segments[i].start.x, 0.1);
+    EXPECT_EQ(row[i].actuator, map.at(row[i].triangle, row[i].texture_coordinate));
+  }
+}
+
+TEST(DecimatedDetector, ThatKeepsEveryTriangleFindsTheExactContacts) {
+  const auto scene = test::scene("swarm", builtin_avatar(), 50, 60, 30);
+  const auto exact = make_cpu_detector(builtin_avatar(), builtin_map(), with(Method::kCcd));
+  const auto decimated = make_decimated_detector(1, builtin_avatar(), builtin_map(), with(Method::kCcd));
+  const test::SceneRun truth = test::run_scene(scene, builtin_avatar(), 50, *exact);
+  const test::SceneRun run = test::run_scene(scene, builtin_avatar(), 50, *decimated);
+  std::size_t contacts = 0;
+  std::size_t same_actuator = 0;
+  for (std::size_t k = 0; k < scene.size(); ++k)
+    for (std::size_t i = 0; i < 50; ++i) {
+      EXPECT_EQ(run.rows[k][i].t, truth.rows[k][i].t);
+      EXPECT_EQ(run.rows[k][i].hit(), truth.rows[k][i].hit());
+      if (!truth.rows[k][i].hit()) continue;
+      ++contacts;
+      if (run.rows[k][i].actuator == truth.rows[k][i].actuator) ++same_actuator;
+    }
+  EXPECT_GT(contacts, 20U);
+  EXPECT_GE(same_actuator, contacts * 9 / 10);
 }
 
 }  // namespace

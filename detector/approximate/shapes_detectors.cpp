@@ -1,7 +1,6 @@
-#include "detector/approximate/approximate_detectors.hpp"
-
 #include <fmt/format.h>
 
+#include "detector/approximate/approximate_detectors.hpp"
 #include "detector/approximate/capsule.hpp"
 #include "detector/approximate/oriented_box.hpp"
 #include "detector/approximate/shape_detector.hpp"
