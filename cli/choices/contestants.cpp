@@ -14,7 +14,8 @@ namespace vestige::cli {
 namespace {
 
 /// exact is too slow to measure.
-const std::vector<std::string> kContestants = {"paper", "geometry", "cpu", "embree", "embree_default"};
+const std::vector<std::string> kContestants = {"paper",          "geometry", "cpu",      "embree",
+                                               "embree_default", "boxes",    "capsules", "decimated"};
 
 bool needs_opengl(const std::string& detector) {
   return detector == "paper" || detector == "geometry";

@@ -153,9 +153,8 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
       return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, planes);
     });
   } else if (options.verify == "-" || options.verify == "auto") {
-    throw UsageError(
-        "--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
-        "name cpu, exact, geometry, paper, embree or embree_default, or a file that an earlier replay wrote");
+    throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
+                     "name a detector, as --detector does, or a file that an earlier replay wrote");
   } else if (options.verify.ends_with(".csv")) {
     verification.contacts = read_contacts_csv(options.verify);
     verification.from_csv = true;
@@ -163,8 +162,8 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
     const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
     if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
       throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
-                  "name cpu, exact, geometry, paper, embree or embree_default, or a file that 'vestige replay "
-                  "--contacts FILE.csv' or '--json FILE' wrote");
+                  "name a detector, as --detector does, or a file that 'vestige replay --contacts FILE.csv' or "
+                  "'--json FILE' wrote");
     verification.texture_hash = json["texture_hash"].get<std::string>();
   }
   return verification;
@@ -218,6 +217,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const Run& run, const
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.trace;
   json["detector"] = run.detector.name();
+  json["approximate"] = run.detector.is_approximate();
   if (run.picked) {
     json["picked"] = describe_picked(*run.picked);
     json["why"] = run.picked->why;
@@ -266,9 +266,9 @@ std::string summary(const ReplayResult& result, const Run& run) {
   const GlInfo gl = detector.gl_info();
   const std::string where = gl.context.empty() ? "" : fmt::format(" on {} ({})", gl.context, gl.renderer);
   std::string text =
-      fmt::format("{}{}: {}, {}, {}, {:.0f} Hz\n", detector.name(), where, counted(result.frames, "frame"),
-                  counted(run.colliders, "collider"), counted(result.contacts, "contact"),
-                  static_cast<double>(result.frames) / result.detection_s);
+      fmt::format("{}{}{}: {}, {}, {}, {:.0f} Hz\n", detector.name(), detector.is_approximate() ? " (approximate)" : "",
+                  where, counted(result.frames, "frame"), counted(run.colliders, "collider"),
+                  counted(result.contacts, "contact"), static_cast<double>(result.frames) / result.detection_s);
   if (run.picked) text += fmt::format("picked {} ({})\n", describe_picked(*run.picked), run.picked->why);
   const auto add_row = [&](std::string_view actuator, std::uint64_t contacts) {
     text += fmt::format("  {:<24} {:>8} {}\n", actuator, contacts, contacts == 1 ? "contact" : "contacts");
@@ -433,10 +433,9 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->type_name("TIME=FILE.png|TIME=LAYOUT")
       ->expected(1)
       ->take_all();
-  add_result(
-      "--verify", options->verify,
-      "Compare with another detector (cpu, exact, geometry, paper, embree, embree_default), or with the --contacts "
-      "(.csv) or --json of an earlier replay; exit 4 if contacts differ by more than their times")
+  add_result("--verify", options->verify,
+             "Compare with another detector, by a name of --detector, or with the --contacts "
+             "(.csv) or --json of an earlier replay; exit 4 if contacts differ by more than their times")
       ->type_name("DETECTOR|FILE");
   add_law_options(*verb, options->law, "Intensity");
   add_common_options(*verb, options->common);
