@@ -4,14 +4,18 @@
 
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "detector/detectors/make_detectors.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
+#include "tests/support/scenario_names.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
+#include "tests/support/test_data.hpp"
 #include "traces/base/error.hpp"
+#include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scenarios/scenarios.hpp"
 
 namespace vestige {
@@ -213,6 +217,26 @@ TEST_P(ShapesDetector, LosesNoContactBecausePartsAreFarAway) {
   for (ContactRow& row : all.rows) row.pop_back();
   EXPECT_GT(near.contacts(), 20U);
   EXPECT_EQ(hash_of(all), hash_of(near));
+}
+
+TEST_P(ApproximateDetector, RunsThroughEveryScenario) {
+  const auto detector = GetParam().make(builtin_avatar(), builtin_map(), with(Method::kCarried));
+  for (const std::string_view scenario : test::scenario_names()) {
+    const std::uint32_t colliders = find_scenario(scenario)->default_count;
+    const auto scene = test::scene(scenario, builtin_avatar(), colliders, 60, 30);
+    const std::size_t contacts = test::run_scene(scene, builtin_avatar(), colliders, *detector).contacts();
+    if (scenario != "slide") EXPECT_GT(contacts, 0U) << scenario;  // its 4 mm may stay within one shape
+  }
+}
+
+TEST_P(ApproximateDetector, RunsWithAvatarsFromElsewhere) {
+  VESTIGE_REQUIRE_DATA(test::data("avatars"));
+  for (const char* file : {"CesiumMan.glb", "KayKit_Knight.glb", "MakeHumanBase_cc0_8inf.glb"}) {
+    const Avatar avatar = parse_avatar_glb(read_avatar_glb(test::data("avatars/avatars") / file), file);
+    const auto detector = GetParam().make(avatar, ActuatorMap(), with(Method::kCarried));
+    const auto scene = test::scene("swarm", avatar, 50, 30, 30);
+    EXPECT_GT(test::run_scene(scene, avatar, 50, *detector).contacts(), 10U) << file;
+  }
 }
 
 /// A plate from (0, 0) to (1, 1) of `across` x `across` squares. Its texture coordinates are x and y.
