@@ -70,7 +70,7 @@ foreach(library IN LISTS libraries)
   bundle_licence(${CMAKE_MATCH_1})
 endforeach()
 # What is compiled into the program.
-foreach(package libcli11-dev nlohmann-json3-dev libglm-dev libflatbuffers-dev)
+foreach(package libcli11-dev nlohmann-json3-dev libglm-dev libeigen3-dev libflatbuffers-dev)
   bundle_licence(${package})
 endforeach()
 configure_file(${SOURCE}/LICENSE ${BUNDLE}/licences/vestige.txt COPYONLY)

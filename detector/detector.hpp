@@ -80,6 +80,8 @@ class Detector {
   virtual const char* name() const = 0;
   /// Frames for `detect` must come from a FrameBuilder with this method.
   virtual Method method() const { return Method::kStatic; }
+  /// Whether simpler shapes stand in for the avatar's skin.
+  virtual bool is_approximate() const { return false; }
   virtual GlInfo gl_info() const { return {}; }
   /// Whether `skinned_vertices` come from a shader. If not, they are the CPU's.
   virtual bool skins_in_shader() const { return false; }

@@ -53,7 +53,9 @@ nlohmann::ordered_json series_json(
     const std::function<nlohmann::ordered_json(const AccuracyPoint&)>& point_json) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < contestants.size(); ++i) {
-    nlohmann::ordered_json series = {{"detector", contestants[i].detector}, {"method", name_of(contestants[i].method)}};
+    nlohmann::ordered_json series = {{"detector", contestants[i].detector},
+                                     {"approximate", contestants[i].instance->is_approximate()},
+                                     {"method", name_of(contestants[i].method)}};
     describe(contestants[i], series);
     series["points"] = nlohmann::ordered_json::array();
     for (const AccuracyPoint& point : points)
@@ -107,9 +109,10 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
       };
       fmt::format_to(
           std::back_inserter(table), "{:<23} {:>7} {:>6} {:>6} {:>7.2f} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n",
-          fmt::format("{}, {}", contestants[i].detector, name_of(contestants[i].method)), point.rate_hz,
-          score.true_events(), score.missed, 100 * score.missed_share(), score.mistaken, score.wrong_actuator,
-          score.false_events, pair_ms(score.impact_error_s), pair_ms(score.onset_error_s),
+          fmt::format("{}, {}{}", contestants[i].detector, name_of(contestants[i].method),
+                      contestants[i].instance->is_approximate() ? " (approximate)" : ""),
+          point.rate_hz, score.true_events(), score.missed, 100 * score.missed_share(), score.mistaken,
+          score.wrong_actuator, score.false_events, pair_ms(score.impact_error_s), pair_ms(score.onset_error_s),
           fmt::format("{:.0f}/{:.0f}", quantile(point.frame_us, 0.5), quantile(point.frame_us, 0.99)));
     }
   const EventScore halved = score_of_half(scene);

@@ -35,6 +35,16 @@ double quantile(std::span<const double> values, double p) {
   return sorted[below] + (place - std::floor(place)) * (sorted[above] - sorted[below]);
 }
 
+Interval wilson_interval(std::uint64_t errors, std::uint64_t cases) {
+  constexpr double kZSquared = 1.959963984540054 * 1.959963984540054;
+  const auto n = static_cast<double>(cases);
+  const double share = static_cast<double>(errors) / n;
+  const double middle = (share + kZSquared / (2 * n)) / (1 + kZSquared / n);
+  const double half = std::sqrt(kZSquared * (share * (1 - share) / n + kZSquared / (4 * n * n))) / (1 + kZSquared / n);
+  // At both ends, rounding must not leave a little.
+  return {errors == 0 ? 0 : middle - half, errors == cases ? 1 : middle + half};
+}
+
 double frequency_hz(std::span<const Repetition> repetitions) {
   double frames = 0;
   double seconds = 0;

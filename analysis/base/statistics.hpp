@@ -26,6 +26,11 @@ struct Interval {
   double high = 0;
 };
 
+/// Returns the 95 % interval of the share of errors among independent cases (Wilson 1927, Journal of the American
+/// Statistical Association 22:209). No error in n cases gives [0, 3.84 / (n + 3.84)]. Precondition: errors <= cases,
+/// and cases > 0.
+Interval wilson_interval(std::uint64_t errors, std::uint64_t cases);
+
 /// Returns frames over total time, of all repetitions together. NaN if the time is 0.
 double frequency_hz(std::span<const Repetition> repetitions);
 

@@ -95,6 +95,8 @@ nlohmann::ordered_json to_json(const BatchPlan& plan) {
   options["actuator"] = nullptr;
   if (plan.actuators.model) options["actuator"] = {{"given", plan.actuators.given}, {"sha256", plan.actuators.sha256}};
   options["detector"] = plan.detector;
+  if (plan.approximate) options["approximate"] = true;
+  if (plan.detector == "decimated") options["keep"] = plan.keep;
   options["method"] = plan.method;
   options["skip"] = plan.skip;
   options["seed"] = plan.seed;

@@ -82,6 +82,8 @@ struct BatchPlan {
   LawOptions law_options;
   BatchActuators actuators;
   std::string detector;
+  bool approximate = false;  ///< the detector puts simpler shapes in place of the skin
+  double keep = 0.1;         ///< share of the triangles that `decimated` keeps
   std::string method;
   std::string skip;
   ScenarioRecording recording;

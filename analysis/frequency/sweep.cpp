@@ -76,6 +76,7 @@ class Sweep {
       series.detector = contestant.detector;
       series.skip = contestant.skip;
       series.method = detectors_.back()->method();
+      series.approximate = detectors_.back()->is_approximate();
       renderers_.push_back(make_renderer(contestant));
       if (renderers_.back() != nullptr) series.renderer = renderers_.back()->gl_info();
       series.gl = detectors_.back()->gl_info();

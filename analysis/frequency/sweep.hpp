@@ -65,6 +65,7 @@ struct SweepSeries {
   std::string detector;
   Skip skip = Skip::kOff;
   Method method = Method::kStatic;
+  bool approximate = false;
   GlInfo gl;
   std::optional<GlInfo> renderer;  ///< context that drew the scene during the measurement, if any
   std::vector<SweepPoint> points;

@@ -134,6 +134,7 @@ std::string disagreement_lines(std::span<const SweepSeries> series) {
 
 std::string name_of(const SweepSeries& series) {
   std::string name = series.detector;
+  if (series.approximate) name += " (approximate)";
   if (!series.gl.context.empty()) name += ", " + series.gl.context;
   if (series.skip == Skip::kOn) name += ", skip on";
   if (series.renderer) name += ", rendering";
@@ -154,6 +155,7 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
       points.push_back(std::move(point));
     }
     list.push_back({{"detector", one.detector},
+                    {"approximate", one.approximate},
                     {"context", one.gl.context},
                     {"skip", one.skip == Skip::kOn ? "on" : "off"},
                     {"method", name_of(one.method)},

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <vector>
 
+#include "analysis/base/statistics.hpp"
+
 namespace vestige {
 
 namespace {
@@ -22,6 +24,28 @@ std::string cell_of(const StressCount& count) {
   if (count.felt() == 0 && count.wrong_winner == 0) return "0";
   return fmt::format("{}/{}/{}/{}", count.false_negatives, count.false_positives,
                      count.wrong_triangle + count.wrong_actuator, count.wrong_winner - count.wrong_triangle);
+}
+
+double share_of(const StressCount& count) {
+  return static_cast<double>(count.felt()) / static_cast<double>(count.cases);
+}
+
+/// Returns a line for each column: where it errs most, and how sure that is.
+std::string worst_lines(std::span<const StressCount> counts, const std::vector<std::string>& columns) {
+  std::string lines = "\nWhere each errs most (missed, false, other triangle or actuator; 95 % Wilson intervals):\n";
+  for (const std::string& column : columns) {
+    const StressCount* worst = nullptr;
+    for (const StressCount& count : counts)
+      if (column_of(count) == column && (worst == nullptr || share_of(count) > share_of(*worst))) worst = &count;
+    const Interval interval = wilson_interval(worst->felt(), worst->cases);
+    const std::string found =
+        worst->felt() == 0
+            ? fmt::format("nowhere: less than {:.2g} % in each family", 100 * interval.high)
+            : fmt::format("{} {:g}: {:.2g} % ({:.2g} to {:.2g} %)", name_of(worst->family), worst->magnitude,
+                          100 * share_of(*worst), 100 * interval.low, 100 * interval.high);
+    fmt::format_to(std::back_inserter(lines), "  {:<24} {}\n", column, found);
+  }
+  return lines;
 }
 
 bool same_row(const StressCount& a, const StressCount& b) {
@@ -45,7 +69,10 @@ nlohmann::ordered_json to_json(std::span<const StressCount> counts) {
                     {"wrong_winner", count.wrong_winner},
                     {"wrong_triangle", count.wrong_triangle},
                     {"wrong_actuator", count.wrong_actuator},
-                    {"unsure", count.unsure}});
+                    {"unsure", count.unsure},
+                    {"felt_share", share_of(count)},
+                    {"felt_share_low", wilson_interval(count.felt(), count.cases).low},
+                    {"felt_share_high", wilson_interval(count.felt(), count.cases).high}});
   return list;
 }
 
@@ -66,7 +93,8 @@ std::string stress_table(std::span<const StressCount> counts) {
     table += '\n';
     row = end;
   }
-  return table + "Missed / false / on another triangle or actuator / with other bits of t; 0: no errors.\n";
+  return table + "Missed / false / on another triangle or actuator / with other bits of t; 0: no errors.\n" +
+         worst_lines(counts, columns);
 }
 
 std::string family_definitions() {

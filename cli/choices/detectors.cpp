@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "cli/help/validators.hpp"
 #include "detector/actuators/mapped_skin.hpp"
+#include "detector/approximate/approximate_detectors.hpp"
 #include "detector/detectors/embree_detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "traces/base/error.hpp"
@@ -25,6 +27,10 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   };
   add("--device", choice.device, kDeviceHelp)->check(help::whole_number(0, 1023))->type_name("K");
   add("--method", choice.method, kMethodHelp)->capture_default_str()->check(CLI::IsMember(kMethodNames));
+  add("--keep", choice.keep, "Share of the avatar's triangles that decimated keeps, above 0 and up to 1")
+      ->type_name("SHARE")
+      ->capture_default_str()
+      ->check(help::between(std::numeric_limits<double>::denorm_min(), 1));
   add("--surface", choice.surface,
       "all: skin without an actuator hides the skin behind it; mapped: colliders pass through skin without an actuator")
       ->capture_default_str()
@@ -41,7 +47,10 @@ void add_detector_and_context(CLI::App& verb, DetectorChoice& choice) {
           "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts (a geometry shader proves "
           "misses, and the CPU decides the rest); cpu: exact contacts without OpenGL; exact: the same contacts by "
           "slow rational arithmetic, as a check; embree: Embree 3 with its robust flag, refitted each frame (its "
-          "fastest configuration); embree_default: embree without the robust flag; auto: the cheapest exact detector")
+          "fastest configuration); embree_default: embree without the robust flag; auto: the cheapest exact detector. "
+          "Approximate ones, with simpler shapes in place of the skin: boxes: a box around what each joint moves, as "
+          "vests with bounding boxes have it; capsules: a capsule for each joint, as game engines have it; decimated: "
+          "an avatar with fewer triangles (--keep)")
       ->group(kDetectorGroup)
       ->capture_default_str()
       ->check(CLI::IsMember(values));
@@ -68,7 +77,7 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice, std::string& s
 }
 
 bool knows_skip(const std::string& detector) {
-  return detector == "cpu" || detector == "geometry";
+  return detector == "cpu" || detector == "geometry" || detector == "decimated";
 }
 
 Method method_named(const std::string& name) {
@@ -77,7 +86,18 @@ Method method_named(const std::string& name) {
 }
 
 const std::vector<std::string>& detector_names() {
-  static const std::vector<std::string> names = {"paper", "geometry", "cpu", "exact", "embree", "embree_default"};
+  static const std::vector<std::string> names = {"paper",          "geometry", "cpu",      "exact",    "embree",
+                                                 "embree_default", "boxes",    "capsules", "decimated"};
+  return names;
+}
+
+bool is_approximate(const std::string& detector) {
+  return detector == "boxes" || detector == "capsules" || detector == "decimated";
+}
+
+std::vector<std::string> skin_detector_names() {
+  std::vector<std::string> names = detector_names();
+  std::erase_if(names, is_approximate);
   return names;
 }
 
@@ -111,6 +131,9 @@ std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, const std:
   if (name == "geometry")
     return make_geometry_detector(make_gl_context(context_kind(context), choice.device), avatar, map, options);
   if (name == "cpu" || name == "auto") return make_cpu_detector(avatar, map, options);
+  if (name == "boxes") return make_boxes_detector(avatar, map, options);
+  if (name == "capsules") return make_capsules_detector(avatar, map, options);
+  if (name == "decimated") return make_decimated_detector(choice.keep, avatar, map, options);
   if (name != "paper") throw std::logic_error(fmt::format("nothing here makes the detector '{}'", name));
   if (options.method != Method::kStatic)
     throw UsageError("--method", fmt::format("the published method does not support '{}'", choice.method),

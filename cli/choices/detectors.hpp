@@ -33,6 +33,7 @@ struct DetectorChoice {
   std::string surface = "all";
   std::string method = "static";
   std::string skip = "on";
+  double keep = 0.1;
 
   Method method_kind() const { return method_named(method); }
   Surface surface_kind() const { return surface == "mapped" ? Surface::kMapped : Surface::kAll; }
@@ -45,7 +46,7 @@ inline constexpr const char* kDetectorGroup = "Detector";
 /// Adds --detector and --context, for a verb that runs one detector.
 void add_detector_and_context(CLI::App& verb, DetectorChoice& choice);
 
-/// Adds --device, --method, --skip and --surface, which mean the same in every verb.
+/// Adds --device, --method, --keep, --skip and --surface, which mean the same in every verb.
 void add_detector_options(CLI::App& verb, DetectorChoice& choice);
 
 /// As above, for a verb that compares several settings of --skip: `skips` is their list.
@@ -62,6 +63,10 @@ ContextKind context_kind(const std::string& context);
 
 /// The names that `make_detector` knows, except "auto".
 const std::vector<std::string>& detector_names();
+/// Whether a detector puts simpler shapes in place of the avatar's skin.
+bool is_approximate(const std::string& detector);
+/// Those that test the avatar's skin itself, and no simpler shape in its place.
+std::vector<std::string> skin_detector_names();
 bool is_detector(const std::string& name);
 
 inline constexpr const char* kDeviceHelp =
@@ -73,8 +78,8 @@ std::string describe_detectors(const char* verb, const std::vector<std::string>&
 /// Returns the help of a list of methods. `verb` is what is done with them: "measure".
 std::string describe_methods(const char* verb);
 
-/// Makes a detector: "cpu" (also "auto"), "exact", "geometry", "embree", "embree_default" or "paper". `context` is
-/// "auto", "egl" or "osmesa". Throws `std::logic_error` for any other name of a detector.
+/// Makes a detector: one of `detector_names`, or "auto", which is "cpu". `context` is "auto", "egl" or "osmesa". Throws
+/// `std::logic_error` for any other name of a detector.
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes);

@@ -124,6 +124,8 @@ BatchPlan plan_of(const BatchOptions& options) {
   refuse_without(options.law_parameters.sigma_mm.has_value(), "--sigma", "gaussian");
   plan.law_options = options.law_parameters.options();
   plan.detector = options.choice.detector == "auto" ? "cpu" : options.choice.detector;
+  plan.approximate = is_approximate(plan.detector);
+  plan.keep = options.choice.keep;
   plan.method = options.choice.method;
   plan.skip = options.choice.skip;
   plan.seed = options.common.seed;
@@ -173,6 +175,7 @@ std::vector<std::string> arguments_of(const BatchOptions& options) {
   add("--detector", options.choice.detector);
   if (options.choice.context != "auto") add("--context", options.choice.context);
   if (options.choice.device >= 0) add("--device", fmt::format("{}", options.choice.device));
+  if (options.choice.detector == "decimated") add("--keep", fmt::format("{}", options.choice.keep));
   add("--method", options.choice.method);
   add("--skip", options.choice.skip);
   add("--seed", fmt::format("{}", options.common.seed));

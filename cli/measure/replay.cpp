@@ -220,6 +220,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const Run& run, const
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.trace;
   json["detector"] = run.detector.name();
+  json["approximate"] = run.detector.is_approximate();
   if (run.picked) {
     json["picked"] = describe_picked(*run.picked);
     json["why"] = run.picked->why;
@@ -268,9 +269,9 @@ std::string summary(const ReplayResult& result, const Run& run) {
   const GlInfo gl = detector.gl_info();
   const std::string where = gl.context.empty() ? "" : fmt::format(" on {} ({})", gl.context, gl.renderer);
   std::string text =
-      fmt::format("{}{}: {}, {}, {}, {:.0f} Hz\n", detector.name(), where, counted(result.frames, "frame"),
-                  counted(run.colliders, "collider"), counted(result.contacts, "contact"),
-                  static_cast<double>(result.frames) / result.detection_s);
+      fmt::format("{}{}{}: {}, {}, {}, {:.0f} Hz\n", detector.name(), detector.is_approximate() ? " (approximate)" : "",
+                  where, counted(result.frames, "frame"), counted(run.colliders, "collider"),
+                  counted(result.contacts, "contact"), static_cast<double>(result.frames) / result.detection_s);
   if (run.picked) text += fmt::format("picked {} ({})\n", describe_picked(*run.picked), run.picked->why);
   const auto add_row = [&](std::string_view actuator, std::uint64_t contacts) {
     text += fmt::format("  {:<24} {:>8} {}\n", actuator, contacts, contacts == 1 ? "contact" : "contacts");

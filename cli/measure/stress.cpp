@@ -56,7 +56,7 @@ struct Contestants {
 Contestants make_contestants(const StressOptions& options, Verbosity verbosity) {
   Contestants contestants;
   const StressSubject probe = make_subject(StressBody::kLoose);
-  for (const std::string& detector : parse_names(options.detectors, detector_names(), "--detector"))
+  for (const std::string& detector : parse_names(options.detectors, skin_detector_names(), "--detector"))
     for (const std::string& method : parse_names(options.methods, kMethodNames, "--method")) {
       DetectorChoice choice;
       choice.method = method;
@@ -85,7 +85,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<StressFamily> families = families_of(options);
   parse_names(options.methods, kMethodNames, "--method");
-  parse_names(options.detectors, detector_names(), "--detector");
+  parse_names(options.detectors, skin_detector_names(), "--detector");
   const std::string json_path = options.output + "/stress.json";
   const std::string run_path = options.output + "/run.json";
   make_output_folder(options.output);
@@ -129,7 +129,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
 
 void add_stress(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<StressOptions>();
-  std::vector<std::string> raced = detector_names();
+  std::vector<std::string> raced = skin_detector_names();
   std::erase(raced, "exact");
   options->detectors = fmt::format("{}", fmt::join(raced, ","));
   CLI::App* verb = add_verb(program, "stress", "Attack the detectors with hostile cases, and count their errors",
@@ -143,7 +143,7 @@ void add_stress(CLI::App& program, Invocation& invocation) {
   verb->add_option("--n", options->settings.cases, "Number of cases for each family and magnitude")
       ->capture_default_str()
       ->check(help::whole_number(1, 100000000));
-  verb->add_option("--detector", options->detectors, describe_detectors("attack", detector_names()))
+  verb->add_option("--detector", options->detectors, describe_detectors("attack", skin_detector_names()))
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->type_name("LIST");

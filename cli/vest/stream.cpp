@@ -82,6 +82,7 @@ nlohmann::ordered_json to_json(const Streamed& streamed, const StreamOptions& op
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.trace;
   json["detector"] = detector.name();
+  json["approximate"] = detector.is_approximate();
   json["law"] = laws.to_json();
   json["gl"] = vestige::to_json(detector.gl_info());
   json["frames"] = streamed.playback.frames;

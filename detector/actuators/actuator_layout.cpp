@@ -9,6 +9,7 @@
 
 #include "detector/actuators/texture_stretch.hpp"
 #include "detector/actuators/uv_texels.hpp"
+#include "detector/nearest_in_triangle.hpp"
 #include "traces/scene/pose.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
@@ -31,41 +32,14 @@ std::vector<glm::dvec3> at_rest(const Avatar& avatar) {
   return position_m;
 }
 
-/// Returns the weights of the corners for the triangle's point nearest to `p` (Ericson 2005, Real-Time Collision
-/// Detection, 5.1.5).
-glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
-  const glm::dvec3 ab = b - a;
-  const glm::dvec3 ac = c - a;
-  const double d1 = glm::dot(ab, p - a);
-  const double d2 = glm::dot(ac, p - a);
-  if (d1 <= 0 && d2 <= 0) return {1, 0, 0};
-  const double d3 = glm::dot(ab, p - b);
-  const double d4 = glm::dot(ac, p - b);
-  if (d3 >= 0 && d4 <= d3) return {0, 1, 0};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {1 - d1 / (d1 - d3), d1 / (d1 - d3), 0};
-  const double d5 = glm::dot(ab, p - c);
-  const double d6 = glm::dot(ac, p - c);
-  if (d6 >= 0 && d5 <= d6) return {0, 0, 1};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {1 - d2 / (d2 - d6), 0, d2 / (d2 - d6)};
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 >= d3 && d5 >= d6) {
-    const double share = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return {0, 1 - share, share};
-  }
-  const double sum = va + vb + vc;
-  return {va / sum, vb / sum, vc / sum};
-}
-
 std::optional<SkinPoint> nearest_on_skin(const SurfaceDistance& surface, const glm::dvec3& p) {
   std::optional<SkinPoint> best;
   double best_m = kUnreached_m;
   for (std::uint32_t number = 0; number < surface.triangles().size(); ++number) {
     const glm::uvec3& corner = surface.triangles()[number];
     const SkinPoint point = {number,
-                             nearest_in_triangle(p, surface.position_m()[corner.x], surface.position_m()[corner.y],
-                                                 surface.position_m()[corner.z])};
+                             nearest_in_triangle(p, {surface.position_m()[corner.x], surface.position_m()[corner.y],
+                                                     surface.position_m()[corner.z]})};
     const double away_m = glm::distance(p, surface.position_of(point));
     if (!(away_m < best_m)) continue;
     best = point;
@@ -186,7 +160,7 @@ class SharedTexels {
     const glm::uvec3& corner = surface_.triangles()[triangle];
     const std::array<glm::dvec3, 3> corners = {surface_.position_m()[corner.x], surface_.position_m()[corner.y],
                                                surface_.position_m()[corner.z]};
-    const glm::dvec3 weight = nearest_in_triangle(from, corners[0], corners[1], corners[2]);
+    const glm::dvec3 weight = nearest_in_triangle(from, {corners[0], corners[1], corners[2]});
     return glm::distance(from, weight.x * corners[0] + weight.y * corners[1] + weight.z * corners[2]) > kFar_m;
   }
 

@@ -127,9 +127,14 @@ void read_provenance(const JsonField& run, ReportData& data) {
     add("Machine", phrase(run.at("machine"), {{"processor", ""}, {"cores", " cores"}, {"system", ""}}));
   const JsonField batch = run.at("batch");
   add("Avatar", phrase(batch.at("avatar"), {{"given", ""}, {"sha256", " (SHA-256)"}}));
-  if (batch.has("options"))
-    add("Detection",
-        phrase(batch.at("options"), {{"detector", ""}, {"method", ""}, {"hold_ms", " ms hold"}, {"seed", " as seed"}}));
+  if (batch.has("options")) {
+    const JsonField options = batch.at("options");
+    add("Detection", phrase(options, {{"detector", options.has("approximate") ? " (approximate)" : ""},
+                                      {"keep", " of the triangles"},
+                                      {"method", ""},
+                                      {"hold_ms", " ms hold"},
+                                      {"seed", " as seed"}}));
+  }
   if (run.has("totals")) {
     const JsonField totals = run.at("totals");
     const auto seconds = [&](const char* key) { return totals.has(key) ? totals.at(key).within(0, kMost) : 0; };

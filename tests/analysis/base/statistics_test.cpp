@@ -17,6 +17,15 @@ TEST(Quantile, InterpolatesBetweenOrderStatistics) {
   EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
 }
 
+TEST(WilsonInterval, IsTheOneOfTheTables) {
+  EXPECT_NEAR(wilson_interval(10, 100).low, 0.0552, 5e-5);  // Newcombe 1998, method 3
+  EXPECT_NEAR(wilson_interval(10, 100).high, 0.1744, 5e-5);
+  EXPECT_EQ(wilson_interval(0, 100).low, 0);
+  EXPECT_EQ(wilson_interval(100, 100).high, 1);
+  EXPECT_LT(wilson_interval(0, 3840).high, 0.001);
+  EXPECT_GT(wilson_interval(0, 3830).high, 0.001);
+}
+
 TEST(Frequency, IsFramesOverTotalTimeNotTheMeanOfFrequencies) {
   const std::vector<Repetition> repetitions = {{10, 1}, {10, 3}};
   EXPECT_DOUBLE_EQ(frequency_hz(repetitions), 5);

@@ -156,6 +156,13 @@ TEST(Stress, TheTableShowsAZeroOnlyWhereNothingIsWrong) {
   EXPECT_THAT(stress_table(counts), HasSubstr("3/0/1/3"));
   EXPECT_EQ(to_json(counts)[0]["false_negatives"], 0);
   EXPECT_EQ(to_json(counts)[1]["wrong_winner"], 4);
+  const double share = to_json(counts)[1]["felt_share"];
+  EXPECT_GT(share, 0);
+  EXPECT_LT(to_json(counts)[1]["felt_share_low"], share);
+  EXPECT_GT(to_json(counts)[1]["felt_share_high"], share);
+  EXPECT_EQ(to_json(counts)[0]["felt_share_low"], 0);
+  EXPECT_GT(to_json(counts)[0]["felt_share_high"], 0);
+  EXPECT_THAT(stress_table(counts), HasSubstr("nowhere: less than"));
   EXPECT_THAT(family_definitions(), HasSubstr("edge: Segments through an edge that two triangles share."));
 }
 

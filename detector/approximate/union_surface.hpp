@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "detector/approximate/shape.hpp"
+
+namespace vestige {
+
+/// Where a way crosses the surface of the union of some shapes.
+struct Crossing {
+  double t = 0;           ///< in (0, 1]
+  std::size_t chord = 0;  ///< number of the chord whose shape is entered or left
+  std::int8_t side = 0;   ///< +1 entering, -1 leaving
+};
+
+/// Returns the first crossing in (0, 1] of the surface of the union. Where a way goes from one shape into another that
+/// overlaps it, no surface is crossed. Of shapes that are entered or left at the same time, the first counts.
+std::optional<Crossing> first_crossing(std::span<const Chord> chords);
+
+}  // namespace vestige
