@@ -4,9 +4,11 @@
 #include <chrono>
 #include <iterator>
 #include <numeric>
+#include <optional>
 #include <random>
 #include <utility>
 
+#include "analysis/base/clocks.hpp"
 #include "analysis/run/detection_run.hpp"
 #include "detector/frame.hpp"
 
@@ -21,61 +23,92 @@ constexpr int kWarmUpFrames = 2;
 /// The state that a contestant keeps from turn to turn at one rate.
 struct Run {
   Run(const MovingScene& scene, const AccuracyContestant& contestant)
-      : detection(scene.avatar, scene.collider_ids, *contestant.instance) {}
+      : detection(scene.avatar, scene.collider_ids, *contestant.instance),
+        has_threads(!contestant.instance->gl_info().context.empty()) {}
   DetectionRun detection;
   ContactEventFinder finder;
+  /// OpenGL may have some. With one thread, the time that passes is the processor's, and costs less to read.
+  bool has_threads;
 };
+
+/// Adds pass by pass.
+void add(const std::vector<Repetition>& passes, std::vector<Repetition>& sum) {
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    sum[i].frames += passes[i].frames;
+    sum[i].seconds += passes[i].seconds;
+  }
+}
 
 class RateMeasurement {
  public:
-  RateMeasurement(const MovingScene& scene, const std::vector<AccuracyContestant>& contestants, double rate_hz)
+  RateMeasurement(const MovingScene& scene, const std::vector<AccuracyContestant>& contestants, double rate_hz,
+                  std::size_t passes)
       : scene_(scene),
         contestants_(contestants),
-        sampler_(scene, rate_hz),
+        rate_hz_(rate_hz),
+        passes_(passes),
         last_(last_frame_within(scene, rate_hz)),
         skinning_step_(std::max<std::uint64_t>(1, last_ / kSkinningFrames)) {
-    runs_.reserve(contestants.size());
     points_.resize(contestants.size());
-    const TraceFrame first = sampler_.next();
     for (std::size_t i = 0; i < contestants.size(); ++i) {
-      warm_up(contestants[i], rate_hz);
-      runs_.emplace_back(scene, contestants[i]);
-      runs_[i].detection.begin(first);
+      warm_up(contestants[i]);
       points_[i].contestant = i;
       points_[i].rate_hz = rate_hz;
-      points_[i].frame_us.reserve(last_);
+      points_[i].frames = last_;
+      points_[i].frame_us.reserve(last_ * passes);
     }
+    begin_pass();
   }
 
-  bool is_done() const { return done_ == last_; }
-  std::uint64_t frames_done() const { return done_; }
+  bool is_done() const { return pass_ == passes_; }
+  /// Of all passes.
+  std::uint64_t frames_done() const { return pass_ * last_ + done_; }
 
   /// Runs the next frames through one contestant after the other.
   void take_turns(std::mt19937_64& random) {
     std::vector<TraceFrame> frames;
     frames.reserve(kTurnFrames);
-    for (; frames.size() < kTurnFrames && done_ < last_; ++done_) frames.push_back(sampler_.next());
+    for (; frames.size() < kTurnFrames && done_ < last_; ++done_) frames.push_back(sampler_->next());
     std::vector<std::size_t> order(contestants_.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::ranges::shuffle(order, random);
     for (const std::size_t contestant : order)
       for (const TraceFrame& frame : frames) measure(contestant, frame);
+    if (done_ == last_ && ++pass_ < passes_) begin_pass();
   }
 
-  std::vector<AccuracyPoint> score(const TrueContacts& truth) {
-    const double frame_s = 1 / points_.front().rate_hz;
+  std::vector<AccuracyPoint> score(const TrueContacts& truth, double tolerance_s) {
+    const double frame_s = 1 / rate_hz_;
+    const double until_s = static_cast<double>(last_) * frame_s;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       points_[i].contacts = runs_[i].finder.contacts();
       const std::vector<ContactEvent> events = runs_[i].finder.take();
-      points_[i].score = score_events(truth.events, events, frame_s, static_cast<double>(last_) * frame_s);
+      const std::size_t colliders = scene_.collider_ids.size();
+      points_[i].score = score_events(truth.events, events, colliders, {EventMatch::kOverlap, frame_s}, until_s);
+      points_[i].tolerated = score_events(truth.events, events, colliders, {EventMatch::kImpact, tolerance_s}, until_s);
     }
     return std::move(points_);
   }
 
  private:
+  /// Each pass sees the same frames.
+  void begin_pass() {
+    done_ = 0;
+    sampler_.emplace(scene_, rate_hz_);
+    const TraceFrame first = sampler_->next();
+    runs_.clear();
+    runs_.reserve(contestants_.size());
+    for (std::size_t i = 0; i < contestants_.size(); ++i) {
+      runs_.emplace_back(scene_, contestants_[i]);
+      runs_[i].detection.begin(first);
+      points_[i].passes.emplace_back();
+      points_[i].processor_passes.emplace_back();
+    }
+  }
+
   /// A driver may compile programs when they are first needed. This time must not count as a frame's time.
-  void warm_up(const AccuracyContestant& contestant, double rate_hz) const {
-    SceneSampler sampler(scene_, rate_hz);
+  void warm_up(const AccuracyContestant& contestant) const {
+    SceneSampler sampler(scene_, rate_hz_);
     DetectionRun detection(scene_.avatar, scene_.collider_ids, *contestant.instance);
     detection.begin(sampler.next());
     for (int i = 0; i < kWarmUpFrames; ++i) detection.step(sampler.next());
@@ -84,21 +117,30 @@ class RateMeasurement {
   void measure(std::size_t contestant, const TraceFrame& trace_frame) {
     Run& run = runs_[contestant];
     AccuracyPoint& point = points_[contestant];
+    const double processor_start_s = process_cpu_s();
     const auto start = std::chrono::steady_clock::now();
     run.detection.step(trace_frame);
-    const std::chrono::duration<double, std::micro> elapsed = std::chrono::steady_clock::now() - start;
-    point.frame_us.push_back(elapsed.count());
-    run.finder.add(run.detection.frame(), run.detection.row());
-    if (point.frames % skinning_step_ == 0)
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    const double processor_elapsed_s = process_cpu_s() - processor_start_s;
+    point.frame_us.push_back(elapsed.count() * 1e6);
+    Repetition& pass = point.passes.back();
+    if (pass_ == 0 && pass.frames % skinning_step_ == 0)
       point.skinning.add(scene_.avatar, trace_frame, run.detection.frame(), *contestants_[contestant].instance);
-    ++point.frames;
+    ++pass.frames;
+    pass.seconds += elapsed.count();
+    ++point.processor_passes.back().frames;
+    point.processor_passes.back().seconds += run.has_threads ? processor_elapsed_s : elapsed.count();
+    run.finder.add(run.detection.frame(), run.detection.row());
   }
 
   const MovingScene& scene_;
   const std::vector<AccuracyContestant>& contestants_;
-  SceneSampler sampler_;
+  double rate_hz_;
+  std::size_t passes_;
+  std::optional<SceneSampler> sampler_;
   std::uint64_t last_;
-  std::uint64_t done_ = 0;
+  std::size_t pass_ = 0;
+  std::uint64_t done_ = 0;  ///< of this pass
   std::uint64_t skinning_step_;
   std::vector<Run> runs_;
   std::vector<AccuracyPoint> points_;
@@ -106,28 +148,52 @@ class RateMeasurement {
 
 }  // namespace
 
-double AccuracyPoint::total_s() const {
-  return std::accumulate(frame_us.begin(), frame_us.end(), 0.0) * 1e-6;
+AccuracyPoint& AccuracyPoint::operator+=(const AccuracyPoint& other) {
+  frames += other.frames;
+  contacts += other.contacts;
+  score += other.score;
+  tolerated += other.tolerated;
+  skinning += other.skinning;
+  frame_us.insert(frame_us.end(), other.frame_us.begin(), other.frame_us.end());
+  add(other.passes, passes);
+  add(other.processor_passes, processor_passes);
+  return *this;
+}
+
+AccuracyScene& AccuracyScene::operator+=(const AccuracyScene& other) {
+  duration_s += other.duration_s;
+  seeds.insert(seeds.end(), other.seeds.begin(), other.seeds.end());
+  true_contacts += other.true_contacts;
+  true_events += other.true_events;
+  checked_frames += other.checked_frames;
+  half_contacts += other.half_contacts;
+  half_events += other.half_events;
+  half_score += other.half_score;
+  if (points.empty()) {
+    points = other.points;
+    return *this;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] += other.points[i];
+  return *this;
 }
 
 std::vector<AccuracyPoint> run_accuracy(const MovingScene& scene, const TrueContacts& truth,
                                         const std::vector<AccuracyContestant>& contestants,
-                                        const std::vector<double>& rates_hz, std::uint64_t seed,
-                                        const std::function<bool(double)>& progress) {
+                                        const AccuracySettings& settings, const std::function<bool(double)>& progress) {
   std::uint64_t total = 0;
-  for (const double rate_hz : rates_hz) total += last_frame_within(scene, rate_hz);
-  std::mt19937_64 random(seed);
+  for (const double rate_hz : settings.rates_hz) total += last_frame_within(scene, rate_hz) * settings.passes;
+  std::mt19937_64 random(settings.seed);
   std::vector<AccuracyPoint> points;
   std::uint64_t before = 0;
-  for (const double rate_hz : rates_hz) {
-    RateMeasurement measurement(scene, contestants, rate_hz);
+  for (const double rate_hz : settings.rates_hz) {
+    RateMeasurement measurement(scene, contestants, rate_hz, settings.passes);
     while (!measurement.is_done()) {
       measurement.take_turns(random);
       const std::uint64_t done = before + measurement.frames_done();
       if (!progress(static_cast<double>(done) / static_cast<double>(total))) return points;
     }
     before += measurement.frames_done();
-    std::ranges::move(measurement.score(truth), std::back_inserter(points));
+    std::ranges::move(measurement.score(truth, settings.tolerance_s), std::back_inserter(points));
   }
   return points;
 }

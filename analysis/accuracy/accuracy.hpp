@@ -9,6 +9,7 @@
 #include "analysis/accuracy/event_score.hpp"
 #include "analysis/accuracy/moving_scene.hpp"
 #include "analysis/accuracy/true_contacts.hpp"
+#include "analysis/base/statistics.hpp"
 #include "analysis/run/skinning_error.hpp"
 #include "detector/detector.hpp"
 
@@ -21,38 +22,58 @@ struct AccuracyContestant {
   std::unique_ptr<Detector> instance;  ///< its rows carry `Plane::kTime`
 };
 
-/// One detector with one method at one rate of the trace.
+/// One detector with one method at one rate of the trace, over all seeds of a scene.
 struct AccuracyPoint {
   std::size_t contestant = 0;
   double rate_hz = 0;
-  std::uint64_t frames = 0;
+  std::uint64_t frames = 0;  ///< of one pass
   std::uint64_t contacts = 0;
-  EventScore score;
+  EventScore score;              ///< by the rule of one test frame
+  EventScore tolerated;          ///< by the tolerance on the time of impact
   SkinningError skinning;        ///< of a few frames, evenly spread
-  std::vector<double> frame_us;  ///< duration of every frame
+  std::vector<double> frame_us;  ///< duration of every frame of every pass
+  std::vector<Repetition> passes;
+  std::vector<Repetition> processor_passes;  ///< the same passes by the processor time of all threads
 
-  double total_s() const;
+  /// Adds what was measured with another seed.
+  AccuracyPoint& operator+=(const AccuracyPoint& other);
 };
 
 /// What was measured on one scene.
 struct AccuracyScene {
   std::string colliders;  ///< as the user asked for them
   std::size_t collider_count = 0;
-  TrueContacts truth;
-  TrueContacts half;  ///< true contacts found at half the rate
+  double duration_s = 0;  ///< of all seeds together
+  std::vector<std::uint64_t> seeds;
+  double truth_rate_hz = 0;
+  std::uint64_t true_contacts = 0;
+  std::uint64_t true_events = 0;
+  std::uint64_t checked_frames = 0;  ///< of the truth, by `exact`: all agree
+  std::uint64_t half_contacts = 0;   ///< at half the truth's rate
+  std::uint64_t half_events = 0;
+  EventScore half_score;  ///< of the events at half the rate, as if a detector had found them
   std::vector<AccuracyPoint> points;
+
+  /// Adds what was measured with another seed. Both have the same points in the same order, or this has none yet.
+  AccuracyScene& operator+=(const AccuracyScene& other);
 };
 
-/// Samples the scene at each rate, runs every contestant over the frames, and scores the events that the contestant
-/// finds against the true events. A timing covers the whole round trip from a pose and collider positions to a row of
-/// contacts, as in a sweep. The contestants take turns of a few frames each. Each turn shuffles their order anew, so
-/// that other load on the machine affects all contestants alike.
+struct AccuracySettings {
+  std::vector<double> rates_hz;
+  double tolerance_s = 0.01;  ///< on the time of impact, the same for every rate
+  std::size_t passes = 5;     ///< how often each frame is timed
+  std::uint64_t seed = 1;     ///< of the order of turns
+};
+
+/// Samples the scene at each rate, runs every contestant over the frames as often as asked for, and scores the events
+/// that the contestant finds against the true events. A timing covers the whole round trip from a pose and collider
+/// positions to a row of contacts, as in a sweep. The contestants take turns of a few frames each. Each turn shuffles
+/// their order anew, so that other load on the machine affects all contestants alike.
 ///
 /// Returns the points by rate, then by contestant. `progress` receives the share done and returns false to stop the
 /// run. A stopped run returns only the points of the rates that are finished.
 std::vector<AccuracyPoint> run_accuracy(const MovingScene& scene, const TrueContacts& truth,
                                         const std::vector<AccuracyContestant>& contestants,
-                                        const std::vector<double>& rates_hz, std::uint64_t seed,
-                                        const std::function<bool(double)>& progress);
+                                        const AccuracySettings& settings, const std::function<bool(double)>& progress);
 
 }  // namespace vestige

@@ -3,15 +3,21 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <iterator>
+#include <utility>
 
+#include "analysis/base/pareto.hpp"
 #include "analysis/base/provenance.hpp"
 #include "analysis/base/statistics.hpp"
 
 namespace vestige {
 
 namespace {
+
+/// Intervals do not depend on the seed of the scenes.
+constexpr std::uint64_t kResamplingSeed = 1;
 
 double quantile_ms(const std::vector<double>& seconds, double p) {
   return quantile(seconds, p) * 1e3;
@@ -23,27 +29,74 @@ nlohmann::ordered_json quantiles_ms(const std::vector<double>& seconds) {
   return {{"median", quantile_ms(seconds, 0.5)}, {"p99", quantile_ms(seconds, 0.99)}, {"max", quantile_ms(seconds, 1)}};
 }
 
-nlohmann::ordered_json to_json(const EventScore& score) {
-  return {{"true_events", score.true_events()},
-          {"found", score.found},
-          {"mistaken", score.mistaken},
-          {"missed", score.missed},
-          {"missed_beside_another", score.missed_beside_another},
-          {"missed_share", score.missed_share()},
-          {"test_events", score.test_events()},
-          {"right", score.right},
-          {"wrong_actuator", score.wrong_actuator},
-          {"false_events", score.false_events},
-          {"impact_error_ms", quantiles_ms(score.impact_error_s)},
-          {"onset_error_ms", quantiles_ms(score.onset_error_s)}};
+/// A figure and its 95 % interval.
+struct Estimate {
+  double value = 0;
+  Interval interval;
+};
+
+using Count = std::uint64_t (*)(const EventCounts&);
+
+std::uint64_t wrong_of(const EventCounts& counts) {
+  return counts.wrong();
+}
+std::uint64_t missed_of(const EventCounts& counts) {
+  return counts.missed;
+}
+std::uint64_t false_of(const EventCounts& counts) {
+  return counts.false_events;
+}
+std::uint64_t wrong_actuator_of(const EventCounts& counts) {
+  return counts.wrong_actuator;
 }
 
-EventScore score_of_half(const AccuracyScene& scene) {
-  const TrueContacts& truth = scene.truth;
-  const TrueContacts& half = scene.half;
-  const double until_s =
-      truth.events.empty() ? 0 : std::ranges::max(truth.events, {}, &ContactEvent::impact_s).impact_s;
-  return score_events(truth.events, half.events, 1 / half.rate_hz, until_s);
+/// NaN if there are no true events.
+Estimate per_100(const EventScore& score, Count count) {
+  const auto share = [&](const EventCounts& counts) {
+    return Share{100 * static_cast<double>(count(counts)), static_cast<double>(counts.true_events())};
+  };
+  std::vector<Share> clusters;
+  clusters.reserve(score.of_collider.size());
+  for (const EventCounts& counts : score.of_collider) clusters.push_back(share(counts));
+  const Share all = share(score.all);
+  Interval interval = bootstrap_share(clusters, kResamplingSeed);
+  if (all.part == 0) interval.high *= 100;  // the rule of three is of a share
+  return {all.whole > 0 ? all.part / all.whole : kMissing, interval};
+}
+
+nlohmann::ordered_json number(double value) {
+  return std::isnan(value) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(value);
+}
+
+nlohmann::ordered_json counts_json(const EventScore& score) {
+  const EventCounts& all = score.all;
+  nlohmann::ordered_json json = {{"true_events", all.true_events()},
+                                 {"found", all.found},
+                                 {"mistaken", all.mistaken},
+                                 {"missed", all.missed},
+                                 {"missed_beside_another", all.missed_beside_another},
+                                 {"missed_share", score.missed_share()},
+                                 {"test_events", all.test_events()},
+                                 {"right", all.right},
+                                 {"wrong_actuator", all.wrong_actuator},
+                                 {"false_events", all.false_events}};
+  const std::pair<const char*, Count> rates[] = {{"wrong_per_100", wrong_of},
+                                                 {"missed_per_100", missed_of},
+                                                 {"false_per_100", false_of},
+                                                 {"wrong_actuator_per_100", wrong_actuator_of}};
+  for (const auto& [name, count] : rates) {
+    const Estimate rate = per_100(score, count);
+    json[name] = {
+        {"value", number(rate.value)}, {"low", number(rate.interval.low)}, {"high", number(rate.interval.high)}};
+  }
+  return json;
+}
+
+nlohmann::ordered_json to_json(const EventScore& score) {
+  nlohmann::ordered_json json = counts_json(score);
+  json["impact_error_ms"] = quantiles_ms(score.impact_error_s);
+  json["onset_error_ms"] = quantiles_ms(score.onset_error_s);
+  return json;
 }
 
 /// Contestants with their points.
@@ -66,60 +119,101 @@ nlohmann::ordered_json series_json(
 }
 
 nlohmann::ordered_json truth_json(const AccuracyScene& scene, const std::string& detector) {
-  const TrueContacts& truth = scene.truth;
-  const TrueContacts& half = scene.half;
   nlohmann::ordered_json halved = {
-      {"rate_hz", half.rate_hz}, {"contacts", half.contacts}, {"events", half.events.size()}};
-  halved.update(to_json(score_of_half(scene)));
-  return {{"detector", detector},          {"method", "ccd"}, {"rate_hz", truth.rate_hz}, {"contacts", truth.contacts},
-          {"events", truth.events.size()}, {"halved", halved}};
+      {"rate_hz", scene.truth_rate_hz / 2}, {"contacts", scene.half_contacts}, {"events", scene.half_events}};
+  halved.update(to_json(scene.half_score));
+  return {{"detector", detector},
+          {"method", "ccd"},
+          {"rate_hz", scene.truth_rate_hz},
+          {"contacts", scene.true_contacts},
+          {"events", scene.true_events},
+          {"frames_checked_by_exact", scene.checked_frames},
+          {"halved", halved}};
 }
 
 nlohmann::ordered_json point_errors_json(const AccuracyPoint& point) {
   nlohmann::ordered_json json = {{"rate_hz", point.rate_hz}, {"frames", point.frames}, {"contacts", point.contacts}};
   json.update(to_json(point.score));
+  json["within_tolerance"] = counts_json(point.tolerated);
   json["skinning_error_m"] = point.skinning.largest_m;
   return json;
 }
 
-nlohmann::ordered_json point_times_json(const AccuracyPoint& point) {
-  return {{"rate_hz", point.rate_hz},
-          {"frames", point.frames},
-          {"hz", static_cast<double>(point.frames) / point.total_s()},
-          {"us_median", quantile(point.frame_us, 0.5)},
-          {"us_p99", quantile(point.frame_us, 0.99)},
-          {"us_max", quantile(point.frame_us, 1)}};
+/// Processor time in milliseconds for one second of the scene.
+Estimate load_ms(const AccuracyPoint& point) {
+  const auto load = [&](double hz) { return 1e3 * point.rate_hz / hz; };
+  const Interval hz = bootstrap_frequency_hz(point.processor_passes, kResamplingSeed);
+  return {load(frequency_hz(point.processor_passes)), {load(hz.high), load(hz.low)}};
 }
 
-std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyContestant>& contestants) {
-  std::string table = fmt::format("{:<23} {:>7} {:>6} {:>6} {:>7} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n",
-                                  scene.colliders, "rate", "true", "missed", "missed", "mistaken", "wrong", "false",
-                                  "impact error", "onset error", "time a frame");
-  fmt::format_to(std::back_inserter(table),
-                 "{:<23} {:>7} {:>6} {:>6} {:>7} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n", "detector", "Hz",
-                 "events", "events", "%", "events", "motor", "events", "median/p99 ms", "median/p99 ms",
-                 "median/p99 us");
+/// Which points no other beats in both processor time and errors within the tolerance.
+std::vector<bool> front_of(const AccuracyScene& scene) {
+  std::vector<Trade> trades;
+  for (const AccuracyPoint& point : scene.points)
+    trades.push_back({load_ms(point).value, per_100(point.tolerated, wrong_of).value});
+  std::vector<bool> on_front(trades.size());
+  for (const std::size_t i : pareto_front(trades)) on_front[i] = true;
+  return on_front;
+}
+
+nlohmann::ordered_json point_times_json(const AccuracyPoint& point, bool on_front) {
+  const Estimate load = load_ms(point);
+  const bool has_interval = point.passes.size() > 1;
+  return {{"rate_hz", point.rate_hz},
+          {"frames", point.frames},
+          {"passes", point.passes.size()},
+          {"hz", frequency_hz(point.passes)},
+          {"us_median", quantile(point.frame_us, 0.5)},
+          {"us_p99", quantile(point.frame_us, 0.99)},
+          {"us_max", quantile(point.frame_us, 1)},
+          {"on_front", on_front},
+          {"processor_ms_per_s", load.value},
+          {"processor_ms_per_s_low", has_interval ? number(load.interval.low) : nullptr},
+          {"processor_ms_per_s_high", has_interval ? number(load.interval.high) : nullptr}};
+}
+
+/// "3.1 (1.0 to 5.2)", "< 0.8" if there are none.
+std::string per_100_text(const EventScore& score) {
+  const Estimate rate = per_100(score, wrong_of);
+  if (std::isnan(rate.value)) return "-";
+  if (score.all.wrong() == 0) return fmt::format("< {:.2g}", rate.interval.high);
+  return fmt::format("{:.1f} ({:.1f} to {:.1f})", rate.value, rate.interval.low, rate.interval.high);
+}
+
+std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyContestant>& contestants,
+                        double tolerance_s) {
+  constexpr const char* kLine = "{:<26} {:>6} {:>6} {:>6} {:>6} {:>6}  {:>20} {:>20}  {:>13} {:>13}  {:>10}\n";
+  std::string table =
+      fmt::format(kLine, scene.colliders, "rate", "true", "missed", "false", "wrong", "wrong per 100 true",
+                  fmt::format("within {:g} ms", tolerance_s * 1e3), "impact error", "onset error", "processor");
+  fmt::format_to(std::back_inserter(table), kLine, "detector", "Hz", "events", "events", "events", "motor",
+                 "95 % interval", "95 % interval", "median/p99 ms", "median/p99 ms", "ms a second");
+  const std::vector<bool> on_front = front_of(scene);
   for (std::size_t i = 0; i < contestants.size(); ++i)
     for (const AccuracyPoint& point : scene.points) {
       if (point.contestant != i) continue;
-      const EventScore& score = point.score;
       const auto pair_ms = [](const std::vector<double>& seconds) {
         return seconds.empty() ? std::string("-")
-                               : fmt::format("{:.3f}/{:.3f}", quantile_ms(seconds, 0.5), quantile_ms(seconds, 0.99));
+                               : fmt::format("{:.2f}/{:.2f}", quantile_ms(seconds, 0.5), quantile_ms(seconds, 0.99));
       };
+      const EventCounts& all = point.score.all;
       fmt::format_to(
-          std::back_inserter(table), "{:<23} {:>7} {:>6} {:>6} {:>7.2f} {:>8} {:>6} {:>6}  {:>15}  {:>15}  {:>17}\n",
+          std::back_inserter(table), kLine,
           fmt::format("{}, {}{}", contestants[i].detector, name_of(contestants[i].method),
-                      contestants[i].instance->is_approximate() ? " (approximate)" : ""),
-          point.rate_hz, score.true_events(), score.missed, 100 * score.missed_share(), score.mistaken,
-          score.wrong_actuator, score.false_events, pair_ms(score.impact_error_s), pair_ms(score.onset_error_s),
-          fmt::format("{:.0f}/{:.0f}", quantile(point.frame_us, 0.5), quantile(point.frame_us, 0.99)));
+                      contestants[i].instance->is_approximate() ? " (approx.)" : ""),
+          point.rate_hz, all.true_events(), all.missed, all.false_events, all.wrong_actuator, per_100_text(point.score),
+          per_100_text(point.tolerated), pair_ms(point.score.impact_error_s), pair_ms(point.score.onset_error_s),
+          fmt::format("{}{:.3g}", on_front[static_cast<std::size_t>(&point - scene.points.data())] ? "* " : "",
+                      load_ms(point).value));
     }
-  const EventScore halved = score_of_half(scene);
+  const EventCounts& halved = scene.half_score.all;
   return table + fmt::format(
-                     "True events: ccd at {} Hz finds {}. At {} Hz, ccd misses {} of them and mistakes {}; {} of its "
-                     "events are false, {} have another actuator.\n",
-                     scene.truth.rate_hz, scene.truth.events.size(), scene.half.rate_hz, halved.missed, halved.mistaken,
+                     "*: nothing here is as cheap and has as few events wrong within the tolerance. True events: ccd "
+                     "at {} Hz finds {} in {} seed{} of {:g} s; exact agrees in all {} frames that it "
+                     "checked. At half the rate, ccd misses {} of them; {} of its events are false, {} have another "
+                     "actuator.\n",
+                     scene.truth_rate_hz, scene.true_events, scene.seeds.size(), scene.seeds.size() == 1 ? "" : "s",
+                     scene.duration_s / static_cast<double>(scene.seeds.size()), scene.checked_frames, halved.missed,
                      halved.false_events, halved.wrong_actuator);
 }
 
@@ -131,6 +225,8 @@ nlohmann::ordered_json errors_json(std::span<const AccuracyScene> scenes,
   for (const AccuracyScene& scene : scenes)
     list.push_back({{"colliders", scene.colliders},
                     {"count", scene.collider_count},
+                    {"seeds", scene.seeds},
+                    {"duration_s", scene.duration_s},
                     {"truth", truth_json(scene, truth)},
                     {"series", series_json(
                                    scene.points, contestants, [](const AccuracyContestant&, nlohmann::ordered_json&) {},
@@ -144,17 +240,23 @@ nlohmann::ordered_json times_json(std::span<const AccuracyScene> scenes,
     series["gl"] = to_json(contestant.instance->gl_info());
   };
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const AccuracyScene& scene : scenes)
+  for (const AccuracyScene& scene : scenes) {
+    const std::vector<bool> on_front = front_of(scene);
+    const auto point_json = [&](const AccuracyPoint& point) {
+      return point_times_json(point, on_front[static_cast<std::size_t>(&point - scene.points.data())]);
+    };
     list.push_back(
-        {{"colliders", scene.colliders}, {"series", series_json(scene.points, contestants, add_gl, point_times_json)}});
+        {{"colliders", scene.colliders}, {"series", series_json(scene.points, contestants, add_gl, point_json)}});
+  }
   return list;
 }
 
-std::string accuracy_table(std::span<const AccuracyScene> scenes, const std::vector<AccuracyContestant>& contestants) {
+std::string accuracy_table(std::span<const AccuracyScene> scenes, const std::vector<AccuracyContestant>& contestants,
+                           double tolerance_s) {
   std::string table;
   for (const AccuracyScene& scene : scenes) {
     if (!table.empty()) table += '\n';
-    table += scene_table(scene, contestants);
+    table += scene_table(scene, contestants, tolerance_s);
   }
   return table;
 }

@@ -30,18 +30,21 @@ bool has_actuator(Events events, std::uint16_t actuator) {
   return std::ranges::find(events, actuator, &ContactEvent::actuator) != events.end();
 }
 
-}  // namespace
-
-double EventScore::missed_share() const {
-  return true_events() == 0 ? 0 : static_cast<double>(missed) / static_cast<double>(true_events());
+/// Returns the same events as if each ended at once.
+std::vector<ContactEvent> impacts_of(Events events) {
+  std::vector<ContactEvent> impacts(events.begin(), events.end());
+  for (ContactEvent& event : impacts) event.last_s = event.impact_s;
+  return impacts;
 }
 
-EventScore score_events(Events truth, Events test, double test_frame_s, double until_s) {
-  const double reach_s = test_frame_s + kTimeRounding_s;
+EventScore score(Events truth, Events test, std::size_t colliders, double rule_reach_s, double until_s) {
+  const double reach_s = rule_reach_s + kTimeRounding_s;
   EventScore score;
+  score.of_collider.resize(colliders);
   std::vector<bool> is_right;  // for each test event
   is_right.reserve(test.size());
   for (const ContactEvent& event : test) {
+    EventCounts& counts = score.of_collider[event.column];
     const Events met = meeting(of_column(truth, event.column), event, reach_s);
     const ContactEvent* nearest = nullptr;
     for (const ContactEvent& one : met)
@@ -50,31 +53,63 @@ EventScore score_events(Events truth, Events test, double test_frame_s, double u
         nearest = &one;
     is_right.push_back(nearest != nullptr);
     if (nearest != nullptr) {
-      ++score.right;
+      ++counts.right;
       score.impact_error_s.push_back(std::abs(event.impact_s - nearest->impact_s));
       score.onset_error_s.push_back(std::abs(event.reported_s - nearest->impact_s));
     } else if (!met.empty()) {
-      ++score.wrong_actuator;
+      ++counts.wrong_actuator;
     } else {
-      ++score.false_events;
+      ++counts.false_events;
     }
   }
   for (const ContactEvent& event : truth) {
     if (event.impact_s > until_s) continue;
+    EventCounts& counts = score.of_collider[event.column];
     const Events met = meeting(of_column(test, event.column), event, reach_s);
     const auto is_wrong = [&](const ContactEvent& one) {
       return !is_right[static_cast<std::size_t>(&one - test.data())];
     };
     if (has_actuator(met, event.actuator)) {
-      ++score.found;
+      ++counts.found;
     } else if (std::ranges::any_of(met, is_wrong)) {
-      ++score.mistaken;
+      ++counts.mistaken;
     } else {
-      ++score.missed;
-      if (!met.empty()) ++score.missed_beside_another;
+      ++counts.missed;
+      if (!met.empty()) ++counts.missed_beside_another;
     }
   }
+  for (const EventCounts& counts : score.of_collider) score.all += counts;
   return score;
+}
+
+}  // namespace
+
+EventCounts& EventCounts::operator+=(const EventCounts& other) {
+  found += other.found;
+  mistaken += other.mistaken;
+  missed += other.missed;
+  missed_beside_another += other.missed_beside_another;
+  right += other.right;
+  wrong_actuator += other.wrong_actuator;
+  false_events += other.false_events;
+  return *this;
+}
+
+double EventScore::missed_share() const {
+  return all.true_events() == 0 ? 0 : static_cast<double>(all.missed) / static_cast<double>(all.true_events());
+}
+
+EventScore& EventScore::operator+=(const EventScore& other) {
+  all += other.all;
+  of_collider.insert(of_collider.end(), other.of_collider.begin(), other.of_collider.end());
+  impact_error_s.insert(impact_error_s.end(), other.impact_error_s.begin(), other.impact_error_s.end());
+  onset_error_s.insert(onset_error_s.end(), other.onset_error_s.begin(), other.onset_error_s.end());
+  return *this;
+}
+
+EventScore score_events(Events truth, Events test, std::size_t colliders, const MatchRule& rule, double until_s) {
+  if (rule.match == EventMatch::kOverlap) return score(truth, test, colliders, rule.reach_s, until_s);
+  return score(impacts_of(truth), impacts_of(test), colliders, rule.reach_s, until_s);
 }
 
 }  // namespace vestige

@@ -1,13 +1,19 @@
 #include "analysis/accuracy/true_contacts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <future>
+#include <iterator>
+#include <numeric>
+#include <random>
 #include <thread>
 
 #include "analysis/run/detection_run.hpp"
 #include "detector/frame.hpp"
+#include "traces/base/error.hpp"
 
 namespace vestige {
 
@@ -83,6 +89,39 @@ TrueContacts find_true_contacts(const MovingScene& scene, double rate_hz,
   }
   truth.events = join_events(events);
   return truth;
+}
+
+std::uint64_t check_true_contacts(const MovingScene& scene, double rate_hz, std::uint64_t frames, std::uint64_t seed,
+                                  const std::function<std::unique_ptr<Detector>()>& make,
+                                  const std::function<std::unique_ptr<Detector>()>& make_exact,
+                                  const std::function<bool(double)>& progress) {
+  const std::uint64_t last = last_frame_within(scene, rate_hz);
+  std::vector<std::uint64_t> all(last);
+  std::iota(all.begin(), all.end(), std::uint64_t{1});
+  std::vector<std::uint64_t> drawn;
+  std::ranges::sample(all, std::back_inserter(drawn), static_cast<std::ptrdiff_t>(std::min(frames, last)),
+                      std::mt19937_64(seed));
+  const std::unique_ptr<Detector> fast = make();
+  const std::unique_ptr<Detector> exact = make_exact();
+  for (std::size_t i = 0; i < drawn.size(); ++i) {
+    if (!progress(static_cast<double>(i) / static_cast<double>(drawn.size()))) return 0;
+    const auto row_of = [&](Detector& detector) {
+      SceneSampler sampler(scene, rate_hz, drawn[i] - 1);
+      DetectionRun detection(scene.avatar, scene.collider_ids, detector);
+      detection.begin(sampler.next());
+      detection.step(sampler.next());
+      return detection.row();
+    };
+    const ContactRow found = row_of(*fast);
+    const ContactRow expected = row_of(*exact);
+    if (!std::ranges::equal(found, expected,
+                            [](const Contact& a, const Contact& b) { return a.triangle == b.triangle && a.t == b.t; }))
+      throw Error(
+          "the truth",
+          fmt::format("'{}' and '{}' differ in frame {} at {} Hz", fast->name(), exact->name(), drawn[i], rate_hz),
+          "this is a bug in Vestige: report it with this command");
+  }
+  return drawn.size();
 }
 
 }  // namespace vestige

@@ -26,4 +26,13 @@ TrueContacts find_true_contacts(const MovingScene& scene, double rate_hz,
                                 const std::function<std::unique_ptr<Detector>()>& make,
                                 const std::function<bool(double)>& progress);
 
+/// Compares `frames` whole frames of the truth with the slow truth, or all frames if there are fewer. The frames are
+/// drawn by `seed`. Returns how many were compared. Throws `Error` if a contact differs in hit, triangle or time: one
+/// of the two is wrong then. `make` is as above, `make_exact` makes the detector to compare with. `progress` is as
+/// above; a stopped check returns 0.
+std::uint64_t check_true_contacts(const MovingScene& scene, double rate_hz, std::uint64_t frames, std::uint64_t seed,
+                                  const std::function<std::unique_ptr<Detector>()>& make,
+                                  const std::function<std::unique_ptr<Detector>()>& make_exact,
+                                  const std::function<bool(double)>& progress);
+
 }  // namespace vestige

@@ -42,6 +42,18 @@ Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::ui
 /// 0 for fewer than two repetitions.
 double relative_noise(std::span<const Repetition> repetitions);
 
+/// Part of a whole in one cluster: errors of all true events of one collider, say.
+struct Share {
+  double part = 0;
+  double whole = 0;
+};
+
+/// Returns the 95 % interval of sum(part) / sum(whole) by the bootstrap, for what is independent only between clusters
+/// (Davison & Hinkley 1997, section 2.4). It resamples whole clusters, with the levels of `expanded_level`. If no
+/// cluster has a part, the interval is [0, 3 / n], n being the number of clusters with a whole ("rule of three", Hanley
+/// & Lippman-Hand 1983). NaN if no cluster has a whole. The same input and `seed` give the same interval.
+Interval bootstrap_share(std::span<const Share> clusters, std::uint64_t seed);
+
 /// A mean over units (traces, subjects, …) and its confidence interval.
 struct MeanInterval {
   double mean = 0;    ///< NaN if no unit has a value

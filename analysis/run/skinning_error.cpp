@@ -29,4 +29,14 @@ void SkinningError::add(const Avatar& avatar, const TraceFrame& trace_frame, con
   height_m = std::max(height_m, box_around(reference).longest_side());
 }
 
+SkinningError& SkinningError::operator+=(const SkinningError& other) {
+  frames += other.frames;
+  vertices += other.vertices;
+  if (other.identical) identical = identical.value_or(0) + *other.identical;
+  largest_m = std::max(largest_m, other.largest_m);
+  largest_cpu_m = std::max(largest_cpu_m, other.largest_cpu_m);
+  height_m = std::max(height_m, other.height_m);
+  return *this;
+}
+
 }  // namespace vestige

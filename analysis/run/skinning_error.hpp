@@ -22,6 +22,8 @@ struct SkinningError {
   double height_m = 0;       ///< longest side of the avatar's box, in the double reference
 
   void add(const Avatar& avatar, const TraceFrame& trace_frame, const DetectorFrame& frame, Detector& detector);
+  /// Adds what was compared elsewhere. Both are of one detector.
+  SkinningError& operator+=(const SkinningError& other);
 };
 
 }  // namespace vestige

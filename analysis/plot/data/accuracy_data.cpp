@@ -13,17 +13,36 @@ constexpr std::string_view kRemedy = "name a folder that 'vestige accuracy' wrot
 /// What an axis can show; nothing real lies outside.
 constexpr double kLeastRate_hz = 1e-3;
 constexpr double kMostRate_hz = 1e9;
-constexpr double kLeast_us = 1e-3;
-constexpr double kMost_us = 1e12;
+constexpr double kLeast_ms = 1e-6;
+constexpr double kMost = 1e12;
 constexpr double kMostEvents = 1e15;
+
+/// `least` is above 0 for what a logarithmic axis shows.
+Estimate read_estimate(const JsonField& parent, const char* value, const char* low, const char* high, double least) {
+  Estimate estimate;
+  estimate.value = parent.at(value).within(least, kMost);
+  estimate.low = parent.has(low) ? std::min(parent.at(low).within(least, kMost), estimate.value) : estimate.value;
+  estimate.high = parent.has(high) ? std::max(parent.at(high).within(least, kMost), estimate.value) : estimate.value;
+  return estimate;
+}
+
+Estimate read_estimate(const JsonField& field) {
+  return read_estimate(field, "value", "low", "high", 0);
+}
 
 AccuracyPoint read_point(const JsonField& errors, const JsonField& times) {
   AccuracyPoint point;
   point.rate_hz = errors.at("rate_hz").within(kLeastRate_hz, kMostRate_hz);
   if (times.at("rate_hz").within(kLeastRate_hz, kMostRate_hz) != point.rate_hz)
     times.at("rate_hz").refuse("differs from that of accuracy.json");
-  point.load = point.rate_hz * times.at("us_median").within(kLeast_us, kMost_us) * 1e-6;
-  point.missed_share = errors.at("missed_share").within(0, 1);
+  point.load_ms =
+      read_estimate(times, "processor_ms_per_s", "processor_ms_per_s_low", "processor_ms_per_s_high", kLeast_ms);
+  const JsonField within = errors.at("within_tolerance");
+  point.wrong = read_estimate(within.at("wrong_per_100"));
+  point.missed = read_estimate(within.at("missed_per_100"));
+  point.false_events = read_estimate(within.at("false_per_100"));
+  point.wrong_actuator = read_estimate(within.at("wrong_actuator_per_100"));
+  point.on_front = times.at("on_front").flag();
   return point;
 }
 
@@ -42,6 +61,7 @@ AccuracySeries read_series(const JsonField& errors, const JsonField& times) {
   AccuracySeries series;
   series.detector = errors.at("detector").text();
   series.method = errors.at("method").text();
+  series.approximate = errors.at("approximate").flag();
   const JsonField points = errors.at("points");
   for (std::size_t i = 0; i < points.count(); ++i)
     series.points.push_back(read_point(points.at(i), partner(points, times.at("points"), i, {})));
@@ -81,6 +101,7 @@ AccuracyResult read_accuracy(const std::filesystem::path& folder) {
         result.renderer = phrase(times.at("series").at(s).at("gl"), {{"renderer", ""}, {"version", ""}});
   }
   result.truth_rate_hz = scenes.at(std::size_t{0}).at("truth").at("rate_hz").within(kLeastRate_hz, kMostRate_hz);
+  result.tolerance_ms = errors.at("tolerance_ms").within(0, kMost);
   result.animation = errors.at("animation").text();
   result.avatar = phrase(errors.at("avatar"), {{"triangles", " triangles"}});
   if (run.has("machine")) result.machine = phrase(run.at("machine"), {{"processor", ""}, {"cores", " cores"}});

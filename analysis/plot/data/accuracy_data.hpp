@@ -6,18 +6,29 @@
 
 namespace vestige::plot {
 
-/// One detector with one method at one rate of the trace.
+/// A figure, above or equal to 0, and its 95 % interval. The interval may be missing: then both ends are the value.
+struct Estimate {
+  double value = 0;
+  double low = 0;
+  double high = 0;
+};
+
+/// One detector with one method at one rate of the trace. Errors are events for 100 true ones, within the tolerance.
 struct AccuracyPoint {
   double rate_hz = 0;  ///< above 0
-  /// Median run time of a frame times the rate: seconds for a second of motion. Above 0.
-  double load = 0;
-  double missed_share = 0;  ///< share of the true contact events, 0 … 1
+  Estimate load_ms;    ///< processor time for a second of the scene, above 0
+  Estimate wrong;      ///< all three kinds
+  Estimate missed;
+  Estimate false_events;
+  Estimate wrong_actuator;
+  bool on_front = false;  ///< no other point has both less load and fewer errors
 };
 
 /// Has at least one point. Points are by rising rate.
 struct AccuracySeries {
   std::string detector;
   std::string method;
+  bool approximate = false;
   std::vector<AccuracyPoint> points;
 };
 
@@ -32,6 +43,7 @@ struct AccuracyPanel {
 struct AccuracyResult {
   std::vector<AccuracyPanel> panels;  ///< all have the same series in the same order
   double truth_rate_hz = 0;
+  double tolerance_ms = 0;
   std::string animation;
   std::string avatar;
   std::string renderer;  ///< empty without OpenGL

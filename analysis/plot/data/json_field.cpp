@@ -49,6 +49,11 @@ double JsonField::within(double least, double most) const {
   return number;
 }
 
+bool JsonField::flag() const {
+  if (!value_.is_boolean()) refuse("is neither true nor false");
+  return value_.get<bool>();
+}
+
 std::string JsonField::text() const {
   if (!value_.is_string()) refuse("is not a text");
   return value_.get<std::string>();

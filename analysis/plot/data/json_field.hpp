@@ -29,6 +29,7 @@ class JsonField {
   std::size_t count() const;
   double within(double least, double most) const;
   std::string text() const;
+  bool flag() const;  ///< true or false
 
  private:
   JsonField(const JsonField& parent, const nlohmann::json& value, std::string name)

@@ -48,7 +48,7 @@ ContactEvent event(double impact_s, double last_s, std::uint16_t actuator = 1) {
 }
 
 EventScore score(const std::vector<ContactEvent>& truth, const std::vector<ContactEvent>& test) {
-  return score_events(truth, test, kFrame_s, 1);
+  return score_events(truth, test, 2, {EventMatch::kOverlap, kFrame_s}, 1);
 }
 
 TEST(ContactEvents, FramesThatFollowEachOtherWithOneActuatorAreOneEvent) {
@@ -98,9 +98,9 @@ TEST(ContactEvents, PartsOfATraceJoinedAreTheEventsOfTheWhole) {
 TEST(EventScore, WhatIsSeenAsItWasHasNoError) {
   const auto truth = events_of({1, kNone, 2, 2});
   const EventScore same = score(truth, truth);
-  EXPECT_EQ(same.found, 2U);
-  EXPECT_EQ(same.right, 2U);
-  EXPECT_EQ(same.missed + same.mistaken + same.wrong_actuator + same.false_events, 0U);
+  EXPECT_EQ(same.all.found, 2U);
+  EXPECT_EQ(same.all.right, 2U);
+  EXPECT_EQ(same.all.missed + same.all.mistaken + same.all.wrong_actuator + same.all.false_events, 0U);
   EXPECT_EQ(same.missed_share(), 0);
   EXPECT_THAT(same.impact_error_s, ElementsAre(0, 0));
   EXPECT_THAT(same.onset_error_s, ElementsAre(DoubleNear(0.005, kClose_s), DoubleNear(0.005, kClose_s)));
@@ -108,40 +108,62 @@ TEST(EventScore, WhatIsSeenAsItWasHasNoError) {
 
 TEST(EventScore, WhatNobodySawIsMissedAndWhatNeverWasIsFalse) {
   const EventScore nothing = score({event(0.2, 0.2)}, {});
-  EXPECT_EQ(nothing.missed, 1U);
+  EXPECT_EQ(nothing.all.missed, 1U);
   EXPECT_EQ(nothing.missed_share(), 1);
   const EventScore ghost = score({}, {event(0.2, 0.2)});
-  EXPECT_EQ(ghost.false_events, 1U);
+  EXPECT_EQ(ghost.all.false_events, 1U);
   EXPECT_EQ(ghost.missed_share(), 0);
 }
 
 TEST(EventScore, EventsMeetUpToOneTestFrameApart) {
-  EXPECT_EQ(score({event(0.2, 0.3)}, {event(0.31, 0.31)}).found, 1U);
-  EXPECT_EQ(score({event(0.2, 0.3)}, {event(0.3101, 0.3101)}).missed, 1U);
-  EXPECT_EQ(score({event(0.2, 0.3)}, {event(0.19, 0.19)}).found, 1U);
-  EXPECT_EQ(score({event(0.2, 0.3)}, {event(0.1899, 0.1899)}).missed, 1U);
+  EXPECT_EQ(score({event(0.2, 0.3)}, {event(0.31, 0.31)}).all.found, 1U);
+  EXPECT_EQ(score({event(0.2, 0.3)}, {event(0.3101, 0.3101)}).all.missed, 1U);
+  EXPECT_EQ(score({event(0.2, 0.3)}, {event(0.19, 0.19)}).all.found, 1U);
+  EXPECT_EQ(score({event(0.2, 0.3)}, {event(0.1899, 0.1899)}).all.missed, 1U);
+}
+
+TEST(EventScore, ByImpactEventsMeetUpToTheToleranceApartHoweverLongTheyLast) {
+  const auto found = [](const ContactEvent& truth, const ContactEvent& test) {
+    return score_events(std::vector{truth}, std::vector{test}, 1, {EventMatch::kImpact, 0.02}, 1).all.found;
+  };
+  EXPECT_EQ(found(event(0.2, 0.3), event(0.22, 0.22)), 1U);
+  EXPECT_EQ(found(event(0.2, 0.3), event(0.23, 0.3)), 0U);
+  EXPECT_EQ(found(event(0.2, 0.2), event(0.18, 0.5)), 1U);
+}
+
+TEST(EventScore, SumsWhatEachColliderHas) {
+  ContactEvent other = event(0.4, 0.4);
+  other.column = 1;
+  EventScore sum = score({event(0.2, 0.2), other}, {event(0.2, 0.2)});
+  EXPECT_EQ(sum.of_collider[0].found, 1U);
+  EXPECT_EQ(sum.of_collider[1].missed, 1U);
+  EXPECT_EQ(sum.all.wrong(), 1U);
+  sum += score({}, {other});
+  EXPECT_EQ(sum.of_collider.size(), 4U);
+  EXPECT_EQ(sum.of_collider[3].false_events, 1U);
+  EXPECT_EQ(sum.all.wrong(), 2U);
 }
 
 TEST(EventScore, AnotherActuatorInItsPlaceIsAMistakeNotAMiss) {
   const EventScore wrong = score({event(0.2, 0.2, 1)}, {event(0.201, 0.201, 2)});
-  EXPECT_EQ(wrong.mistaken, 1U);
-  EXPECT_EQ(wrong.wrong_actuator, 1U);
-  EXPECT_EQ(wrong.missed + wrong.found + wrong.false_events, 0U);
+  EXPECT_EQ(wrong.all.mistaken, 1U);
+  EXPECT_EQ(wrong.all.wrong_actuator, 1U);
+  EXPECT_EQ(wrong.all.missed + wrong.all.found + wrong.all.false_events, 0U);
   EXPECT_THAT(wrong.impact_error_s, IsEmpty());
 }
 
 TEST(EventScore, OneContactOfAFrameThatHadTwoMissesTheOther) {
   const EventScore one_of_two = score({event(0.2, 0.2, 1), event(0.204, 0.204, 2)}, {event(0.2, 0.2, 1)});
-  EXPECT_EQ(one_of_two.found, 1U);
-  EXPECT_EQ(one_of_two.missed, 1U);
-  EXPECT_EQ(one_of_two.missed_beside_another, 1U);
-  EXPECT_EQ(one_of_two.wrong_actuator, 0U);
+  EXPECT_EQ(one_of_two.all.found, 1U);
+  EXPECT_EQ(one_of_two.all.missed, 1U);
+  EXPECT_EQ(one_of_two.all.missed_beside_another, 1U);
+  EXPECT_EQ(one_of_two.all.wrong_actuator, 0U);
 }
 
 TEST(EventScore, OneTestEventCoversEveryTrueOneOfItsActuatorAndIsMeasuredByTheNearest) {
   const EventScore covered = score({event(0.195, 0.195), event(0.202, 0.202)}, {event(0.203, 0.203)});
-  EXPECT_EQ(covered.found, 2U);
-  EXPECT_EQ(covered.right, 1U);
+  EXPECT_EQ(covered.all.found, 2U);
+  EXPECT_EQ(covered.all.right, 1U);
   EXPECT_THAT(covered.impact_error_s, ElementsAre(DoubleNear(0.001, kClose_s)));
 }
 
@@ -149,13 +171,13 @@ TEST(EventScore, CollidersAreNotMistakenForEachOther) {
   ContactEvent other = event(0.2, 0.2);
   other.column = 1;
   const EventScore apart = score({event(0.2, 0.2)}, {other});
-  EXPECT_EQ(apart.missed, 1U);
-  EXPECT_EQ(apart.false_events, 1U);
+  EXPECT_EQ(apart.all.missed, 1U);
+  EXPECT_EQ(apart.all.false_events, 1U);
 }
 
 TEST(EventScore, WhatHappensAfterTheTestEndedDoesNotCount) {
   const std::vector<ContactEvent> truth = {event(0.2, 0.2), event(0.9, 0.9)};
-  EXPECT_EQ(score_events(truth, {}, kFrame_s, 0.5).missed, 1U);
+  EXPECT_EQ(score_events(truth, {}, 2, {EventMatch::kOverlap, kFrame_s}, 0.5).all.missed, 1U);
 }
 
 }  // namespace

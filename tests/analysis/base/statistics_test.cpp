@@ -26,6 +26,28 @@ TEST(WilsonInterval, IsTheOneOfTheTables) {
   EXPECT_GT(wilson_interval(0, 3830).high, 0.001);
 }
 
+TEST(BootstrapShare, IsWiderWhereErrorsComeInClusters) {
+  std::vector<Share> spread;
+  std::vector<Share> together;
+  for (int i = 0; i < 50; ++i) {
+    spread.push_back({1, 10});
+    together.push_back({i < 5 ? 10.0 : 0.0, 10});
+  }
+  EXPECT_DOUBLE_EQ(bootstrap_share(spread, 1).low, 0.1);
+  EXPECT_DOUBLE_EQ(bootstrap_share(spread, 1).high, 0.1);
+  const Interval wide = bootstrap_share(together, 1);
+  EXPECT_LT(wide.low, 0.04);
+  EXPECT_GT(wide.high, 0.17);
+  EXPECT_EQ(wide.low, bootstrap_share(together, 1).low);
+}
+
+TEST(BootstrapShare, OfNoErrorsIsThreeOverTheNumberOfClusters) {
+  const std::vector<Share> none = {{0, 5}, {0, 100}, {0, 0}, {0, 1}};
+  EXPECT_EQ(bootstrap_share(none, 1).low, 0);
+  EXPECT_DOUBLE_EQ(bootstrap_share(none, 1).high, 1);
+  EXPECT_TRUE(std::isnan(bootstrap_share({}, 1).high));
+}
+
 TEST(Frequency, IsFramesOverTotalTimeNotTheMeanOfFrequencies) {
   const std::vector<Repetition> repetitions = {{10, 1}, {10, 3}};
   EXPECT_DOUBLE_EQ(frequency_hz(repetitions), 5);

@@ -16,7 +16,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr const char* kSmall =
-    "vestige accuracy --detector cpu --rate 60,250 --truth-rate 4000 --duration 0.1 --no-figure ";
+    "vestige accuracy --detector cpu --rate 60,250 --truth-rate 4000 --duration 0.1 --events 1 --check-frames 20 "
+    "--passes 1 --no-figure ";
 
 class AccuracyCommandLine : public test::CommandLineTest {
  protected:
@@ -40,15 +41,62 @@ TEST_F(AccuracyCommandLine, AMethodThatSeesOnlyTheCollidersOwnWaysMissesWhatTheB
   EXPECT_EQ(still["colliders"], "still");
   EXPECT_EQ(still["truth"]["method"], "ccd");
   EXPECT_GT(still["truth"]["events"], 5);
+  EXPECT_EQ(still["truth"]["frames_checked_by_exact"], 20);
+  EXPECT_EQ(still["seeds"], nlohmann::json({1}));
   for (const std::size_t rate : {std::size_t{0}, std::size_t{1}}) {
     EXPECT_GT(point(still, "static", rate)["true_events"], 5);
     EXPECT_EQ(point(still, "static", rate)["missed"], point(still, "static", rate)["true_events"]);
     EXPECT_EQ(point(still, "static", rate)["impact_error_ms"], nullptr);
+    EXPECT_EQ(point(still, "static", rate)["wrong_per_100"]["value"], 100);
     EXPECT_EQ(point(still, "ccd", rate)["missed"], 0);
+    EXPECT_EQ(point(still, "ccd", rate)["wrong_per_100"]["value"], 0);
+    EXPECT_GT(point(still, "ccd", rate)["wrong_per_100"]["high"], 3);  // few colliders prove little
     EXPECT_LT(point(still, "ccd", rate)["impact_error_ms"]["median"], 0.5);
   }
   EXPECT_EQ(result["animation"], "walk");
   EXPECT_EQ(result["run"]["scenes"][0]["series"][0]["points"][1]["frames"], 25);
+}
+
+TEST_F(AccuracyCommandLine, AddsSeedsUntilThereAreEnoughEventsAndComparesApproximateDetectors) {
+  const test::Outcome outcome = run(
+      "vestige accuracy --detector cpu,boxes,capsules,decimated --method static,ccd --rate 60,250 --truth-rate 4000 "
+      "--duration 0.2 --colliders swarm --count 40 --events 150 --check-frames 10 --passes 2 --no-figure -o many");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_output, HasSubstr("boxes, static (approx.)"));
+  EXPECT_THAT(outcome.standard_output, HasSubstr("decimated, ccd (approx.)"));
+  const auto scene = json_in("many/accuracy.json")["scenes"][0];
+  EXPECT_GE(scene["truth"]["events"], 150);
+  EXPECT_GT(scene["seeds"].size(), 1U);
+  EXPECT_EQ(scene["truth"]["frames_checked_by_exact"], 10 * scene["seeds"].size());
+  double wrong_by_boxes = 0;
+  for (const auto& series : scene["series"]) {
+    EXPECT_EQ(series["approximate"], series["detector"] != "cpu");
+    for (const auto& point : series["points"]) {
+      const auto& wrong = point["within_tolerance"]["wrong_per_100"];
+      EXPECT_LE(wrong["low"], wrong["value"]);
+      EXPECT_GE(wrong["high"], wrong["value"]);
+      if (series["detector"] == "boxes") wrong_by_boxes = wrong["value"];
+    }
+  }
+  EXPECT_GT(wrong_by_boxes, 20);  // a box is not a body
+  EXPECT_EQ(point(scene, "ccd", 1)["missed"], 0);
+  std::size_t on_front = 0;
+  for (const auto& series : json_in("many/run.json")["scenes"][0]["series"])
+    for (const auto& point : series["points"]) {
+      EXPECT_EQ(point["passes"], 2);
+      EXPECT_LE(point["processor_ms_per_s_low"], point["processor_ms_per_s"]);
+      if (point["on_front"] == true) ++on_front;
+    }
+  EXPECT_GT(on_front, 0U);
+  EXPECT_THAT(outcome.standard_output, HasSubstr("* "));
+}
+
+TEST_F(AccuracyCommandLine, SaysThatNothingTouches) {
+  std::ofstream(folder_ / "far.csv") << "time_s,id,x,y,z\n0,7,50,1.2,-1\n1,7,50,1.2,1\n";
+  const test::Outcome outcome = run(std::string(kSmall) + "--colliders far.csv -o far");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.standard_error, HasSubstr("far.csv: no collider touches the avatar"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "far/accuracy.json"));
 }
 
 TEST_F(AccuracyCommandLine, EqualWorkGivesEqualBytesWhateverItsTime) {
@@ -65,8 +113,7 @@ TEST_F(AccuracyCommandLine, EqualWorkGivesEqualBytesWhateverItsTime) {
 TEST_F(AccuracyCommandLine, BothTruthsAreTheSame) {
   const std::string tiny =
       "vestige accuracy --detector cpu --method ccd --rate 60 --truth-rate 120 --duration 0.05 --count 3 --colliders "
-      "hug "
-      "--no-figure --json - ";
+      "hug --events 1 --no-figure --json - ";
   auto cpu = json_of(tiny + "-o a")["scenes"][0]["truth"];
   auto exact = json_of(tiny + "--truth exact -o b")["scenes"][0]["truth"];
   EXPECT_EQ(exact["detector"], "exact");
@@ -79,10 +126,12 @@ TEST_F(AccuracyCommandLine, ReadsCollidersFromAFileAndSaysWhatThePublishedMethod
   std::ofstream(folder_ / "hand.csv") << "time_s,id,x,y,z\n0,7,0,1.2,-1\n1,7,0,1.2,1\n";
   const test::Outcome outcome =
       run("vestige accuracy --detector paper,cpu --method static,ccd --rate 60 --truth-rate 2000 --colliders hand.csv "
+          "--check-frames 10 --passes 1 "
           "--no-figure -o hand" +
           test::gl_flags());
   EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
   EXPECT_THAT(outcome.standard_error, HasSubstr("'paper' with ccd is left out"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("hand.csv: 2 true events, but --events asks for 300"));
   EXPECT_THAT(outcome.standard_output, HasSubstr("paper, static"));
   const auto scene = json_in("hand/accuracy.json")["scenes"][0];
   EXPECT_EQ(scene["count"], 1);
@@ -101,6 +150,11 @@ TEST_F(AccuracyCommandLine, RefusesWhatItCannotMeasureBeforeAnyWork) {
   expect_refused("--rate 60 --duration 0.001", "two frames");
   expect_refused("--duration nan", "--duration");
   expect_refused("--truth paper", "--truth");
+  expect_refused("--tolerance 0", "--tolerance");
+  expect_refused("--tolerance 0.01", "0.0326 ms");
+  expect_refused("--keep 0", "--keep");
+  expect_refused("--keep 1.5", "--keep");
+  expect_refused("--events 0", "--events");
 }
 
 TEST_F(AccuracyCommandLine, DoesNotOverwriteWithoutForce) {
