@@ -50,22 +50,26 @@ std::uint64_t wrong_actuator_of(const EventCounts& counts) {
   return counts.wrong_actuator;
 }
 
-/// NaN if there are no true events.
-Estimate per_100(const EventScore& score, Count count) {
+/// Returns a count for each true event. It is above 1 where more is false than true. NaN if there are no true events.
+Estimate share_of(const EventScore& score, Count count) {
   const auto share = [&](const EventCounts& counts) {
-    return Share{100 * static_cast<double>(count(counts)), static_cast<double>(counts.true_events())};
+    return ClusterShare{static_cast<double>(count(counts)), static_cast<double>(counts.true_events())};
   };
-  std::vector<Share> clusters;
+  std::vector<ClusterShare> clusters;
   clusters.reserve(score.of_collider.size());
   for (const EventCounts& counts : score.of_collider) clusters.push_back(share(counts));
-  const Share all = share(score.all);
-  Interval interval = bootstrap_share(clusters, kResamplingSeed);
-  if (all.part == 0) interval.high *= 100;  // the rule of three is of a share
-  return {all.whole > 0 ? all.part / all.whole : kMissing, interval};
+  const ClusterShare all = share(score.all);
+  return {all.whole > 0 ? all.part / all.whole : kMissing, bootstrap_share(clusters, kResamplingSeed)};
 }
 
 nlohmann::ordered_json number(double value) {
   return std::isnan(value) ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(value);
+}
+
+nlohmann::ordered_json to_json(const Estimate& estimate) {
+  return {{"value", number(estimate.value)},
+          {"low", number(estimate.interval.low)},
+          {"high", number(estimate.interval.high)}};
 }
 
 nlohmann::ordered_json counts_json(const EventScore& score) {
@@ -75,20 +79,15 @@ nlohmann::ordered_json counts_json(const EventScore& score) {
                                  {"mistaken", all.mistaken},
                                  {"missed", all.missed},
                                  {"missed_beside_another", all.missed_beside_another},
-                                 {"missed_share", score.missed_share()},
                                  {"test_events", all.test_events()},
                                  {"right", all.right},
                                  {"wrong_actuator", all.wrong_actuator},
                                  {"false_events", all.false_events}};
-  const std::pair<const char*, Count> rates[] = {{"wrong_per_100", wrong_of},
-                                                 {"missed_per_100", missed_of},
-                                                 {"false_per_100", false_of},
-                                                 {"wrong_actuator_per_100", wrong_actuator_of}};
-  for (const auto& [name, count] : rates) {
-    const Estimate rate = per_100(score, count);
-    json[name] = {
-        {"value", number(rate.value)}, {"low", number(rate.interval.low)}, {"high", number(rate.interval.high)}};
-  }
+  const std::pair<const char*, Count> shares[] = {{"wrong_share", wrong_of},
+                                                  {"missed_share", missed_of},
+                                                  {"false_share", false_of},
+                                                  {"wrong_actuator_share", wrong_actuator_of}};
+  for (const auto& [name, count] : shares) json[name] = to_json(share_of(score, count));
   return json;
 }
 
@@ -142,23 +141,37 @@ nlohmann::ordered_json point_errors_json(const AccuracyPoint& point) {
 /// Processor time in milliseconds for one second of the scene.
 Estimate load_ms(const AccuracyPoint& point) {
   const auto load = [&](double hz) { return 1e3 * point.rate_hz / hz; };
+  const double value = load(frequency_hz(point.processor_passes));
+  if (point.processor_passes.size() < 2) return {value, {kMissing, kMissing}};
   const Interval hz = bootstrap_frequency_hz(point.processor_passes, kResamplingSeed);
-  return {load(frequency_hz(point.processor_passes)), {load(hz.high), load(hz.low)}};
+  return {value, {load(hz.high), load(hz.low)}};
 }
 
-/// Which points no other beats in both processor time and errors within the tolerance.
-std::vector<bool> front_of(const AccuracyScene& scene) {
+/// Returns the indices of the points that no other beats in both processor time and errors within the tolerance, by
+/// ascending time.
+std::vector<std::size_t> front_of(const AccuracyScene& scene) {
   std::vector<Trade> trades;
   for (const AccuracyPoint& point : scene.points)
-    trades.push_back({load_ms(point).value, per_100(point.tolerated, wrong_of).value});
-  std::vector<bool> on_front(trades.size());
-  for (const std::size_t i : pareto_front(trades)) on_front[i] = true;
-  return on_front;
+    trades.push_back({load_ms(point).value, share_of(point.tolerated, wrong_of).value});
+  return pareto_front(trades);
 }
 
-nlohmann::ordered_json point_times_json(const AccuracyPoint& point, bool on_front) {
-  const Estimate load = load_ms(point);
-  const bool has_interval = point.passes.size() > 1;
+/// Names the points of the front.
+nlohmann::ordered_json pareto_json(const AccuracyScene& scene, const std::vector<AccuracyContestant>& contestants) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const std::size_t i : front_of(scene)) {
+    const AccuracyPoint& point = scene.points[i];
+    const AccuracyContestant& contestant = contestants[point.contestant];
+    list.push_back({{"detector", contestant.detector},
+                    {"method", name_of(contestant.method)},
+                    {"rate_hz", point.rate_hz},
+                    {"processor_ms_per_s", load_ms(point).value},
+                    {"wrong_share", number(share_of(point.tolerated, wrong_of).value)}});
+  }
+  return list;
+}
+
+nlohmann::ordered_json point_times_json(const AccuracyPoint& point) {
   return {{"rate_hz", point.rate_hz},
           {"frames", point.frames},
           {"passes", point.passes.size()},
@@ -166,18 +179,15 @@ nlohmann::ordered_json point_times_json(const AccuracyPoint& point, bool on_fron
           {"us_median", quantile(point.frame_us, 0.5)},
           {"us_p99", quantile(point.frame_us, 0.99)},
           {"us_max", quantile(point.frame_us, 1)},
-          {"on_front", on_front},
-          {"processor_ms_per_s", load.value},
-          {"processor_ms_per_s_low", has_interval ? number(load.interval.low) : nullptr},
-          {"processor_ms_per_s_high", has_interval ? number(load.interval.high) : nullptr}};
+          {"processor_ms_per_s", to_json(load_ms(point))}};
 }
 
 /// "3.1 (1.0 to 5.2)", "< 0.8" if there are none.
 std::string per_100_text(const EventScore& score) {
-  const Estimate rate = per_100(score, wrong_of);
+  const Estimate rate = share_of(score, wrong_of);
   if (std::isnan(rate.value)) return "-";
-  if (score.all.wrong() == 0) return fmt::format("< {:.2g}", rate.interval.high);
-  return fmt::format("{:.1f} ({:.1f} to {:.1f})", rate.value, rate.interval.low, rate.interval.high);
+  if (score.all.wrong() == 0) return fmt::format("< {:.2g}", 100 * rate.interval.high);
+  return fmt::format("{:.1f} ({:.1f} to {:.1f})", 100 * rate.value, 100 * rate.interval.low, 100 * rate.interval.high);
 }
 
 std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyContestant>& contestants,
@@ -188,7 +198,10 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
                   fmt::format("within {:g} ms", tolerance_s * 1e3), "impact error", "onset error", "processor");
   fmt::format_to(std::back_inserter(table), kLine, "detector", "Hz", "events", "events", "events", "motor",
                  "95 % interval", "95 % interval", "median/p99 ms", "median/p99 ms", "ms a second");
-  const std::vector<bool> on_front = front_of(scene);
+  const std::vector<std::size_t> front = front_of(scene);
+  const auto is_on_front = [&](const AccuracyPoint& point) {
+    return std::ranges::find(front, static_cast<std::size_t>(&point - scene.points.data())) != front.end();
+  };
   for (std::size_t i = 0; i < contestants.size(); ++i)
     for (const AccuracyPoint& point : scene.points) {
       if (point.contestant != i) continue;
@@ -197,18 +210,17 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
                                : fmt::format("{:.2f}/{:.2f}", quantile_ms(seconds, 0.5), quantile_ms(seconds, 0.99));
       };
       const EventCounts& all = point.score.all;
-      fmt::format_to(
-          std::back_inserter(table), kLine,
-          fmt::format("{}, {}{}", contestants[i].detector, name_of(contestants[i].method),
-                      contestants[i].instance->is_approximate() ? " (approx.)" : ""),
-          point.rate_hz, all.true_events(), all.missed, all.false_events, all.wrong_actuator, per_100_text(point.score),
-          per_100_text(point.tolerated), pair_ms(point.score.impact_error_s), pair_ms(point.score.onset_error_s),
-          fmt::format("{}{:.3g}", on_front[static_cast<std::size_t>(&point - scene.points.data())] ? "* " : "",
-                      load_ms(point).value));
+      fmt::format_to(std::back_inserter(table), kLine,
+                     fmt::format("{}, {}{}", contestants[i].detector, name_of(contestants[i].method),
+                                 contestants[i].instance->is_approximate() ? " (approx.)" : ""),
+                     point.rate_hz, all.true_events(), all.missed, all.false_events, all.wrong_actuator,
+                     per_100_text(point.score), per_100_text(point.tolerated), pair_ms(point.score.impact_error_s),
+                     pair_ms(point.score.onset_error_s),
+                     fmt::format("{}{:.3g}", is_on_front(point) ? "* " : "", load_ms(point).value));
     }
   const EventCounts& halved = scene.half_score.all;
   return table + fmt::format(
-                     "*: nothing here is as cheap and has as few events wrong within the tolerance. True events: ccd "
+                     "*: nothing here is as cheap and has as few events wrong within the tolerance.\nTrue events: ccd "
                      "at {} Hz finds {} in {} seed{} of {:g} s; exact agrees in all {} frames that it "
                      "checked. At half the rate, ccd misses {} of them; {} of its events are false, {} have another "
                      "actuator.\n",
@@ -240,14 +252,10 @@ nlohmann::ordered_json times_json(std::span<const AccuracyScene> scenes,
     series["gl"] = to_json(contestant.instance->gl_info());
   };
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const AccuracyScene& scene : scenes) {
-    const std::vector<bool> on_front = front_of(scene);
-    const auto point_json = [&](const AccuracyPoint& point) {
-      return point_times_json(point, on_front[static_cast<std::size_t>(&point - scene.points.data())]);
-    };
-    list.push_back(
-        {{"colliders", scene.colliders}, {"series", series_json(scene.points, contestants, add_gl, point_json)}});
-  }
+  for (const AccuracyScene& scene : scenes)
+    list.push_back({{"colliders", scene.colliders},
+                    {"pareto", pareto_json(scene, contestants)},
+                    {"series", series_json(scene.points, contestants, add_gl, point_times_json)}});
   return list;
 }
 

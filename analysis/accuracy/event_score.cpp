@@ -95,10 +95,6 @@ EventCounts& EventCounts::operator+=(const EventCounts& other) {
   return *this;
 }
 
-double EventScore::missed_share() const {
-  return all.true_events() == 0 ? 0 : static_cast<double>(all.missed) / static_cast<double>(all.true_events());
-}
-
 EventScore& EventScore::operator+=(const EventScore& other) {
   all += other.all;
   of_collider.insert(of_collider.end(), other.of_collider.begin(), other.of_collider.end());

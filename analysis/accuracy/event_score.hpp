@@ -50,8 +50,6 @@ struct EventScore {
   std::vector<double> impact_error_s;
   std::vector<double> onset_error_s;
 
-  double missed_share() const;  ///< share of the true events; 0 if there are no true events
-
   /// Adds the score of the same scene with other colliders.
   EventScore& operator+=(const EventScore& other);
 };

@@ -67,17 +67,17 @@ Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::ui
   return {quantile(hz, 0.025), quantile(hz, 0.975)};
 }
 
-Interval bootstrap_share(std::span<const Share> clusters, std::uint64_t seed) {
-  const auto with_whole = std::ranges::count_if(clusters, [](const Share& share) { return share.whole > 0; });
+Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t seed) {
+  const auto with_whole = std::ranges::count_if(clusters, [](const ClusterShare& share) { return share.whole > 0; });
   if (with_whole == 0) return {kNotANumber, kNotANumber};
-  if (std::ranges::none_of(clusters, [](const Share& share) { return share.part > 0; }))
+  if (std::ranges::none_of(clusters, [](const ClusterShare& share) { return share.part > 0; }))
     return {0, 3 / static_cast<double>(with_whole)};
   std::mt19937_64 random(seed);
   std::vector<double> shares;
   for (int i = 0; i < kResamples; ++i) {
-    Share sum;
+    ClusterShare sum;
     for (std::size_t k = 0; k < clusters.size(); ++k) {
-      const Share& drawn = clusters[random() % clusters.size()];
+      const ClusterShare& drawn = clusters[random() % clusters.size()];
       sum.part += drawn.part;
       sum.whole += drawn.whole;
     }

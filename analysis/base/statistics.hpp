@@ -43,7 +43,7 @@ Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::ui
 double relative_noise(std::span<const Repetition> repetitions);
 
 /// Part of a whole in one cluster: errors of all true events of one collider, say.
-struct Share {
+struct ClusterShare {
   double part = 0;
   double whole = 0;
 };
@@ -52,7 +52,7 @@ struct Share {
 /// (Davison & Hinkley 1997, section 2.4). It resamples whole clusters, with the levels of `expanded_level`. If no
 /// cluster has a part, the interval is [0, 3 / n], n being the number of clusters with a whole ("rule of three", Hanley
 /// & Lippman-Hand 1983). NaN if no cluster has a whole. The same input and `seed` give the same interval.
-Interval bootstrap_share(std::span<const Share> clusters, std::uint64_t seed);
+Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t seed);
 
 /// A mean over units (traces, subjects, …) and its confidence interval.
 struct MeanInterval {

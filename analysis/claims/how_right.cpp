@@ -205,10 +205,15 @@ void add_queries(const std::vector<Result>& run, std::vector<Claim>& claims) {
   });
 }
 
+/// Schema 1 has a share as a number, without its interval.
+double value_of(const nlohmann::json& share) {
+  return share.is_object() ? share.at("value").get<double>() : share.get<double>();
+}
+
 /// Returns "8.2 to 11.0 %", or "0.0 %", for the shares missed at all rates.
 std::string range_missed(const nlohmann::json& points) {
   std::vector<double> percent;
-  for (const auto& point : points) percent.push_back(100 * point.at("missed_share").get<double>());
+  for (const auto& point : points) percent.push_back(100 * value_of(point.at("missed_share")));
   if (percent.empty()) return "nothing measured";
   const auto [least, most] = std::ranges::minmax(percent);
   const std::string highest = fmt::format("{:.1f}", most);

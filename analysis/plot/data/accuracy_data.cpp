@@ -17,17 +17,12 @@ constexpr double kLeast_ms = 1e-6;
 constexpr double kMost = 1e12;
 constexpr double kMostEvents = 1e15;
 
-/// `least` is above 0 for what a logarithmic axis shows.
-Estimate read_estimate(const JsonField& parent, const char* value, const char* low, const char* high, double least) {
-  Estimate estimate;
-  estimate.value = parent.at(value).within(least, kMost);
-  estimate.low = parent.has(low) ? std::min(parent.at(low).within(least, kMost), estimate.value) : estimate.value;
-  estimate.high = parent.has(high) ? std::max(parent.at(high).within(least, kMost), estimate.value) : estimate.value;
-  return estimate;
-}
-
-Estimate read_estimate(const JsonField& field) {
-  return read_estimate(field, "value", "low", "high", 0);
+/// `least` is above 0 for what a logarithmic axis shows. `unit` is what the figure counts in.
+Estimate read_estimate(const JsonField& field, double least, double unit) {
+  const double value = field.at("value").within(least, kMost);
+  const double low = field.has("low") ? std::min(field.at("low").within(least, kMost), value) : value;
+  const double high = field.has("high") ? std::max(field.at("high").within(least, kMost), value) : value;
+  return {value * unit, low * unit, high * unit};
 }
 
 AccuracyPoint read_point(const JsonField& errors, const JsonField& times) {
@@ -35,14 +30,12 @@ AccuracyPoint read_point(const JsonField& errors, const JsonField& times) {
   point.rate_hz = errors.at("rate_hz").within(kLeastRate_hz, kMostRate_hz);
   if (times.at("rate_hz").within(kLeastRate_hz, kMostRate_hz) != point.rate_hz)
     times.at("rate_hz").refuse("differs from that of accuracy.json");
-  point.load_ms =
-      read_estimate(times, "processor_ms_per_s", "processor_ms_per_s_low", "processor_ms_per_s_high", kLeast_ms);
+  point.load_ms = read_estimate(times.at("processor_ms_per_s"), kLeast_ms, 1);
   const JsonField within = errors.at("within_tolerance");
-  point.wrong = read_estimate(within.at("wrong_per_100"));
-  point.missed = read_estimate(within.at("missed_per_100"));
-  point.false_events = read_estimate(within.at("false_per_100"));
-  point.wrong_actuator = read_estimate(within.at("wrong_actuator_per_100"));
-  point.on_front = times.at("on_front").flag();
+  point.wrong = read_estimate(within.at("wrong_share"), 0, 100);
+  point.missed = read_estimate(within.at("missed_share"), 0, 100);
+  point.false_events = read_estimate(within.at("false_share"), 0, 100);
+  point.wrong_actuator = read_estimate(within.at("wrong_actuator_share"), 0, 100);
   return point;
 }
 
@@ -69,6 +62,19 @@ AccuracySeries read_series(const JsonField& errors, const JsonField& times) {
   return series;
 }
 
+/// Marks the points that `pareto` names.
+void mark_front(const JsonField& pareto, std::vector<AccuracySeries>& all) {
+  for (std::size_t i = 0; i < pareto.count(); ++i) {
+    const JsonField named = pareto.at(i);
+    const std::string detector = named.at("detector").text();
+    const std::string method = named.at("method").text();
+    const double rate_hz = named.at("rate_hz").within(kLeastRate_hz, kMostRate_hz);
+    for (AccuracySeries& series : all)
+      for (AccuracyPoint& point : series.points)
+        if (series.detector == detector && series.method == method && point.rate_hz == rate_hz) point.on_front = true;
+  }
+}
+
 AccuracyPanel read_panel(const JsonField& errors, const JsonField& times) {
   AccuracyPanel panel;
   panel.colliders = errors.at("colliders").text();
@@ -77,6 +83,7 @@ AccuracyPanel read_panel(const JsonField& errors, const JsonField& times) {
   const JsonField series = errors.at("series");
   for (std::size_t i = 0; i < series.count(); ++i)
     panel.series.push_back(read_series(series.at(i), partner(series, times.at("series"), i, {"detector", "method"})));
+  mark_front(times.at("pareto"), panel.series);
   return panel;
 }
 

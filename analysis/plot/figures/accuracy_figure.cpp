@@ -282,7 +282,10 @@ class AccuracyFigure : public Figure {
         const Place at = panel.place_of(point, kAll);
         free_place.take({at.x_pt - kMarkPt / 2, at.y_pt - kMarkPt / 2, at.x_pt + kMarkPt / 2, at.y_pt + kMarkPt / 2});
       }
-    for (const auto& [series, point] : front(scene)) {
+    // The best first: where there is no room for all, it is least for those of little use.
+    std::vector<FrontPoint> named = front(scene);
+    std::ranges::reverse(named);
+    for (const auto& [series, point] : named) {
       const std::string label = fmt::format("{} {} {}", series->detector, series->method, short_rate(point->rate_hz));
       const double width_pt = text_width_pt(label, kNameStyle);
       const Place at = panel.place_of(*point, kAll);
@@ -290,7 +293,10 @@ class AccuracyFigure : public Figure {
       for (const double up_pt : {6.0, -6.0, 12.0, -12.0, 18.0, -18.0, 24.0})
         for (const double left_pt : {at.x_pt + 3, at.x_pt - 3 - width_pt, at.x_pt - width_pt / 2})
           boxes.push_back({left_pt, at.y_pt + up_pt - 3, left_pt + width_pt, at.y_pt + up_pt + 3});
-      const Box box = free_place.take_first(boxes);
+      const auto free = std::ranges::find_if(boxes, [&](const Box& box) { return free_place.is_free(box); });
+      if (free == boxes.end()) continue;  // pareto in run.json names it
+      const Box box = *free;
+      free_place.take(box);
       canvas.text({box.left_pt, (box.bottom_pt + box.top_pt) / 2}, label, kNameStyle);
     }
   }

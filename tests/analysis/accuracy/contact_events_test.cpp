@@ -101,7 +101,6 @@ TEST(EventScore, WhatIsSeenAsItWasHasNoError) {
   EXPECT_EQ(same.all.found, 2U);
   EXPECT_EQ(same.all.right, 2U);
   EXPECT_EQ(same.all.missed + same.all.mistaken + same.all.wrong_actuator + same.all.false_events, 0U);
-  EXPECT_EQ(same.missed_share(), 0);
   EXPECT_THAT(same.impact_error_s, ElementsAre(0, 0));
   EXPECT_THAT(same.onset_error_s, ElementsAre(DoubleNear(0.005, kClose_s), DoubleNear(0.005, kClose_s)));
 }
@@ -109,10 +108,8 @@ TEST(EventScore, WhatIsSeenAsItWasHasNoError) {
 TEST(EventScore, WhatNobodySawIsMissedAndWhatNeverWasIsFalse) {
   const EventScore nothing = score({event(0.2, 0.2)}, {});
   EXPECT_EQ(nothing.all.missed, 1U);
-  EXPECT_EQ(nothing.missed_share(), 1);
   const EventScore ghost = score({}, {event(0.2, 0.2)});
   EXPECT_EQ(ghost.all.false_events, 1U);
-  EXPECT_EQ(ghost.missed_share(), 0);
 }
 
 TEST(EventScore, EventsMeetUpToOneTestFrameApart) {

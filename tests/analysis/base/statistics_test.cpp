@@ -27,8 +27,8 @@ TEST(WilsonInterval, IsTheOneOfTheTables) {
 }
 
 TEST(BootstrapShare, IsWiderWhereErrorsComeInClusters) {
-  std::vector<Share> spread;
-  std::vector<Share> together;
+  std::vector<ClusterShare> spread;
+  std::vector<ClusterShare> together;
   for (int i = 0; i < 50; ++i) {
     spread.push_back({1, 10});
     together.push_back({i < 5 ? 10.0 : 0.0, 10});
@@ -42,7 +42,7 @@ TEST(BootstrapShare, IsWiderWhereErrorsComeInClusters) {
 }
 
 TEST(BootstrapShare, OfNoErrorsIsThreeOverTheNumberOfClusters) {
-  const std::vector<Share> none = {{0, 5}, {0, 100}, {0, 0}, {0, 1}};
+  const std::vector<ClusterShare> none = {{0, 5}, {0, 100}, {0, 0}, {0, 1}};
   EXPECT_EQ(bootstrap_share(none, 1).low, 0);
   EXPECT_DOUBLE_EQ(bootstrap_share(none, 1).high, 1);
   EXPECT_TRUE(std::isnan(bootstrap_share({}, 1).high));

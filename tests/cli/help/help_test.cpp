@@ -216,7 +216,7 @@ TEST_F(Completion, InBashOffersVerbsFlagsValuesAndFiles) {
   EXPECT_THAT(bash("vestige --"), UnorderedElementsAre("--help", "--version"));
   EXPECT_THAT(bash("vestige replay --de"), UnorderedElementsAre("--detector", "--device"));
   EXPECT_THAT(bash("vestige replay --detector ''"), IsSupersetOf({"auto", "paper", "cpu"}));
-  EXPECT_THAT(bash("vestige replay --detector c"), UnorderedElementsAre("cpu"));
+  EXPECT_THAT(bash("vestige replay --detector cp"), UnorderedElementsAre("cpu"));
   EXPECT_THAT(bash("vestige replay --detector cpu --det"), UnorderedElementsAre("")) << "offered twice";
   EXPECT_THAT(bash("vestige replay a"), UnorderedElementsAre("a man.mcap", "ask.bash"));
   EXPECT_THAT(bash("vestige record --map "), Contains("--map"));
