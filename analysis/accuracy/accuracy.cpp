@@ -23,12 +23,9 @@ constexpr int kWarmUpFrames = 2;
 /// The state that a contestant keeps from turn to turn at one rate.
 struct Run {
   Run(const MovingScene& scene, const AccuracyContestant& contestant)
-      : detection(scene.avatar, scene.collider_ids, *contestant.instance),
-        has_threads(!contestant.instance->gl_info().context.empty()) {}
+      : detection(scene.avatar, scene.collider_ids, *contestant.instance) {}
   DetectionRun detection;
   ContactEventFinder finder;
-  /// OpenGL may have some. With one thread, the time that passes is the processor's, and costs less to read.
-  bool has_threads;
 };
 
 /// Adds pass by pass.
@@ -62,7 +59,7 @@ class RateMeasurement {
 
   bool is_done() const { return pass_ == passes_; }
   /// Of all passes.
-  std::uint64_t frames_done() const { return pass_ * last_ + done_; }
+  std::uint64_t frames_done() const { return is_done() ? passes_ * last_ : pass_ * last_ + done_; }
 
   /// Runs the next frames through one contestant after the other.
   void take_turns(std::mt19937_64& random) {
@@ -129,7 +126,7 @@ class RateMeasurement {
     ++pass.frames;
     pass.seconds += elapsed.count();
     ++point.processor_passes.back().frames;
-    point.processor_passes.back().seconds += run.has_threads ? processor_elapsed_s : elapsed.count();
+    point.processor_passes.back().seconds += processor_elapsed_s;
     run.finder.add(run.detection.frame(), run.detection.row());
   }
 

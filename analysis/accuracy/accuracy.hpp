@@ -61,7 +61,7 @@ struct AccuracyScene {
 struct AccuracySettings {
   std::vector<double> rates_hz;
   double tolerance_s = 0.035;  ///< on the time of impact, the same for every rate
-  std::size_t passes = 5;      ///< how often each frame is timed
+  std::size_t passes = 3;      ///< how often each frame is timed
   std::uint64_t seed = 1;      ///< of the order of turns
 };
 

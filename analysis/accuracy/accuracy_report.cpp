@@ -151,6 +151,7 @@ Estimate load_ms(const AccuracyPoint& point) {
 /// ascending time.
 std::vector<std::size_t> front_of(const AccuracyScene& scene) {
   std::vector<Trade> trades;
+  trades.reserve(scene.points.size());
   for (const AccuracyPoint& point : scene.points)
     trades.push_back({load_ms(point).value, share_of(point.tolerated, wrong_of).value});
   return pareto_front(trades);
@@ -186,7 +187,8 @@ nlohmann::ordered_json point_times_json(const AccuracyPoint& point) {
 std::string per_100_text(const EventScore& score) {
   const Estimate rate = share_of(score, wrong_of);
   if (std::isnan(rate.value)) return "-";
-  if (score.all.wrong() == 0) return fmt::format("< {:.2g}", 100 * rate.interval.high);
+  if (score.all.wrong() == 0) return fmt::format("< {:.3g}", 100 * rate.interval.high);
+  if (std::isnan(rate.interval.low)) return fmt::format("{:.1f}", 100 * rate.value);
   return fmt::format("{:.1f} ({:.1f} to {:.1f})", 100 * rate.value, 100 * rate.interval.low, 100 * rate.interval.high);
 }
 

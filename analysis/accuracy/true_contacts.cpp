@@ -6,9 +6,8 @@
 #include <atomic>
 #include <chrono>
 #include <future>
-#include <iterator>
-#include <numeric>
 #include <random>
+#include <set>
 #include <thread>
 
 #include "analysis/run/detection_run.hpp"
@@ -91,22 +90,19 @@ TrueContacts find_true_contacts(const MovingScene& scene, double rate_hz,
   return truth;
 }
 
-std::uint64_t check_true_contacts(const MovingScene& scene, double rate_hz, std::uint64_t frames, std::uint64_t seed,
-                                  const std::function<std::unique_ptr<Detector>()>& make,
-                                  const std::function<std::unique_ptr<Detector>()>& make_exact,
+std::uint64_t check_true_contacts(const MovingScene& scene, const TruthCheck& check,
                                   const std::function<bool(double)>& progress) {
-  const std::uint64_t last = last_frame_within(scene, rate_hz);
-  std::vector<std::uint64_t> all(last);
-  std::iota(all.begin(), all.end(), std::uint64_t{1});
-  std::vector<std::uint64_t> drawn;
-  std::ranges::sample(all, std::back_inserter(drawn), static_cast<std::ptrdiff_t>(std::min(frames, last)),
-                      std::mt19937_64(seed));
-  const std::unique_ptr<Detector> fast = make();
-  const std::unique_ptr<Detector> exact = make_exact();
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    if (!progress(static_cast<double>(i) / static_cast<double>(drawn.size()))) return 0;
+  const std::uint64_t last = last_frame_within(scene, check.rate_hz);
+  std::mt19937_64 random(check.seed);
+  std::set<std::uint64_t> drawn;
+  while (drawn.size() < std::min(check.frames, last)) drawn.insert(1 + random() % last);
+  const std::unique_ptr<Detector> fast = check.make();
+  const std::unique_ptr<Detector> exact = check.make_exact();
+  double done = 0;
+  for (const std::uint64_t index : drawn) {
+    if (!progress(done++ / static_cast<double>(drawn.size()))) return 0;
     const auto row_of = [&](Detector& detector) {
-      SceneSampler sampler(scene, rate_hz, drawn[i] - 1);
+      SceneSampler sampler(scene, check.rate_hz, index - 1);
       DetectionRun detection(scene.avatar, scene.collider_ids, detector);
       detection.begin(sampler.next());
       detection.step(sampler.next());
@@ -118,7 +114,7 @@ std::uint64_t check_true_contacts(const MovingScene& scene, double rate_hz, std:
                             [](const Contact& a, const Contact& b) { return a.triangle == b.triangle && a.t == b.t; }))
       throw Error(
           "the truth",
-          fmt::format("'{}' and '{}' differ in frame {} at {} Hz", fast->name(), exact->name(), drawn[i], rate_hz),
+          fmt::format("'{}' and '{}' differ in frame {} at {} Hz", fast->name(), exact->name(), index, check.rate_hz),
           "this is a bug in Vestige: report it with this command");
   }
   return drawn.size();

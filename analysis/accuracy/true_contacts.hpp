@@ -26,13 +26,18 @@ TrueContacts find_true_contacts(const MovingScene& scene, double rate_hz,
                                 const std::function<std::unique_ptr<Detector>()>& make,
                                 const std::function<bool(double)>& progress);
 
-/// Compares `frames` whole frames of the truth with the slow truth, or all frames if there are fewer. The frames are
-/// drawn by `seed`. Returns how many were compared. Throws `Error` if a contact differs in hit, triangle or time: one
-/// of the two is wrong then. `make` is as above, `make_exact` makes the detector to compare with. `progress` is as
-/// above; a stopped check returns 0.
-std::uint64_t check_true_contacts(const MovingScene& scene, double rate_hz, std::uint64_t frames, std::uint64_t seed,
-                                  const std::function<std::unique_ptr<Detector>()>& make,
-                                  const std::function<std::unique_ptr<Detector>()>& make_exact,
+/// Which frames of the truth are checked, and by what.
+struct TruthCheck {
+  double rate_hz = 0;
+  std::uint64_t frames = 0;  ///< whole frames, drawn by `seed`; all frames if there are fewer
+  std::uint64_t seed = 1;
+  std::function<std::unique_ptr<Detector>()> make;        ///< the detector that found the truth
+  std::function<std::unique_ptr<Detector>()> make_exact;  ///< the one to compare with
+};
+
+/// Compares frames of the truth with the slow truth. Returns how many were compared. Throws `Error` if a contact
+/// differs in hit, triangle or time: one of the two is wrong then. `progress` is as above; a stopped check returns 0.
+std::uint64_t check_true_contacts(const MovingScene& scene, const TruthCheck& check,
                                   const std::function<bool(double)>& progress);
 
 }  // namespace vestige

@@ -71,7 +71,8 @@ Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t s
   const auto with_whole = std::ranges::count_if(clusters, [](const ClusterShare& share) { return share.whole > 0; });
   if (with_whole == 0) return {kNotANumber, kNotANumber};
   if (std::ranges::none_of(clusters, [](const ClusterShare& share) { return share.part > 0; }))
-    return {0, 3 / static_cast<double>(with_whole)};
+    return {0, std::min(1.0, 3 / static_cast<double>(with_whole))};
+  if (with_whole < 2) return {kNotANumber, kNotANumber};
   std::mt19937_64 random(seed);
   std::vector<double> shares;
   for (int i = 0; i < kResamples; ++i) {

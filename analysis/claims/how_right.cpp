@@ -207,7 +207,8 @@ void add_queries(const std::vector<Result>& run, std::vector<Claim>& claims) {
 
 /// Schema 1 has a share as a number, without its interval.
 double value_of(const nlohmann::json& share) {
-  return share.is_object() ? share.at("value").get<double>() : share.get<double>();
+  const nlohmann::json& value = share.is_object() ? share.at("value") : share;
+  return value.is_number() ? value.get<double>() : 0;
 }
 
 /// Returns "8.2 to 11.0 %", or "0.0 %", for the shares missed at all rates.

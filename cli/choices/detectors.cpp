@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
 #include "cli/help/validators.hpp"
@@ -27,10 +26,10 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   };
   add("--device", choice.device, kDeviceHelp)->check(help::whole_number(0, 1023))->type_name("K");
   add("--method", choice.method, kMethodHelp)->capture_default_str()->check(CLI::IsMember(kMethodNames));
-  add("--keep", choice.keep, "Share of the avatar's triangles that decimated keeps, above 0 and up to 1")
+  add("--keep", choice.keep, "Share of the avatar's triangles that decimated keeps")
       ->type_name("SHARE")
       ->capture_default_str()
-      ->check(help::between(std::numeric_limits<double>::denorm_min(), 1));
+      ->check(help::between(1e-6, 1));
   add("--surface", choice.surface,
       "all: skin without an actuator hides the skin behind it; mapped: colliders pass through skin without an actuator")
       ->capture_default_str()

@@ -124,6 +124,7 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
   const std::vector<std::byte> glb = read_builtin_or_file(options.avatar);
   Avatar avatar = parse_avatar_glb(glb, options.avatar);
   for (const std::string& warning : avatar.warnings) warn(warning, options.common.verbosity());
+  const Facing of_builtin_map = avatar.facing.axis;  // whatever --facing asks for
   settle_facing(avatar, options.facing, options.avatar, options.common.verbosity());
   const UvCoverage coverage = uv_coverage(avatar, kTextureSide);
 
@@ -136,7 +137,7 @@ void run_avatar(const AvatarOptions& options, const Invocation& invocation) {
     write_bytes(options.output, is_builtin ? glb : clean_avatar_glb(glb, options.avatar), options.common);
   if (!options.map_output.empty()) {
     write_bytes(options.map_output, builtin_actuator_map_png(), options.common);
-    nlohmann::ordered_json map = {{"facing", to_string(avatar.facing.axis)}};
+    nlohmann::ordered_json map = {{"facing", to_string(of_builtin_map)}};
     map.update(nlohmann::ordered_json::parse(builtin_actuator_map_json()));
     const std::string json = map.dump(2) + "\n";
     write_bytes(sidecar, std::as_bytes(std::span(json)), options.common);

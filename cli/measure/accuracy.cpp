@@ -144,6 +144,12 @@ class Measurement {
     sum.truth_rate_hz = options_.truth_rate_hz;
     for (std::uint64_t k = 0; k < kMostSeeds && (k == 0 || sum.true_events < options_.events); ++k) {
       const AccuracyScene one = measure(choice, options_.common.seed + k);
+      if (k == 0 && one.true_events == 0 && !interrupted()) {
+        warn(fmt::format("{}: no collider touches the avatar, so there is no contact to miss: it is left out",
+                         choice.colliders),
+             options_.common.verbosity());
+        return one;
+      }
       if (interrupted()) {
         if (k == 0) return one;
         break;
@@ -174,9 +180,7 @@ class Measurement {
     result.seeds = {seed};
     const TrueContacts truth = find_truth(moving, result);
     if (interrupted()) return result;
-    if (truth.events.empty() && seed == options_.common.seed)
-      throw Error(choice.colliders, "no collider touches the avatar, so there is no contact to miss",
-                  "raise --duration or --count, or name other colliders");
+    if (truth.events.empty() && seed == options_.common.seed) return result;
     Progress progress(choice.colliders + ", measuring", options_.common.verbosity());
     result.points =
         run_accuracy(moving, truth, contestants_, settings_, [&](double share) { return progress.update(share); });
@@ -199,7 +203,7 @@ class Measurement {
     const TrueContacts half =
         find_true_contacts(moving, rate_hz / 2, make, [&](double share) { return progress.update((share + 2) / 4); });
     result.checked_frames = check_true_contacts(
-        moving, rate_hz, options_.checked_frames, result.seeds.front(), make, [&] { return make_truth("exact"); },
+        moving, {rate_hz, options_.checked_frames, result.seeds.front(), make, [&] { return make_truth("exact"); }},
         [&](double share) { return progress.update((share + 3) / 4); });
     result.true_contacts = truth.contacts;
     result.true_events = truth.events.size();
@@ -263,6 +267,9 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
     if (!measured.points.empty()) scenes.push_back(std::move(measured));
     if (interrupted()) break;
   }
+  if (scenes.empty() && !interrupted())
+    throw Error("--colliders", "no collider touches the avatar in any scene",
+                "raise --duration or --count, or name other colliders");
   if (scenes.empty()) throw Error("accuracy", "was stopped before anything had been measured", "start it again");
 
   const std::vector<AccuracyContestant>& contestants = measurement.contestants();
@@ -275,11 +282,52 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
   results["run"] = run;
   write_json(options.common.json, results, options.common);
 
-  if (interrupted()) warn("stopped early; only the measured rates were written", options.common.verbosity());
+  if (interrupted()) warn("stopped early; only what was measured completely was written", options.common.verbosity());
   print_summary(accuracy_table(scenes, contestants, options.tolerance_ms / 1e3), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", errors_path, run_path), {options.common.json}, options.common);
   draw_or_remove_figure("accuracy", "accuracy", options.output, !options.no_figure && !interrupted(), options.common);
   if (interrupted()) invocation.exit_code = kDataLost;
+}
+
+/// How much is measured, and how it is judged.
+void add_effort_options(CLI::App& verb, AccuracyOptions& options) {
+  verb.add_option("--events", options.events,
+                  "Fewest true events of a scene: seeds are added until there are so many. More of them make the "
+                  "intervals narrower")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(help::whole_number(1, 1000000));
+  verb.add_option("--passes", options.passes, "How often each frame is timed")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(help::whole_number(1, 1000));
+  verb.add_option("--tolerance", options.tolerance_ms,
+                  "An event is also judged by this tolerance on its time of impact, in ms, the same for every rate; "
+                  "the default is a little more than a frame at 30 Hz")
+      ->type_name("MS")
+      ->capture_default_str()
+      ->check(help::between(1e-6, 1e6));
+  verb.add_flag("--thorough", options.thorough,
+                "For publication, in hours: rates up to 10000 Hz, 2000 true events and 10 passes, where no flag says "
+                "otherwise");
+}
+
+void add_truth_options(CLI::App& verb, AccuracyOptions& options) {
+  verb.add_option("--truth", options.truth,
+                  "The detector that finds the true contacts, by ccd. Of its frames, exact checks some")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"cpu", "exact"}));
+  verb.add_option("--truth-rate", options.truth_rate_hz,
+                  "Frames per second at which the true contacts are found; half of this rate is used too, to show "
+                  "the difference")
+      ->type_name("HZ")
+      ->capture_default_str()
+      ->check(help::kPositive);
+  verb.add_option("--check-frames", options.checked_frames,
+                  "Whole frames of the truth that exact checks for each seed, drawn at random; they must agree")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(help::whole_number(0, 1000000000));
 }
 
 }  // namespace
@@ -315,44 +363,12 @@ void add_accuracy(CLI::App& program, Invocation& invocation) {
                    "separately; 'vestige record --help' explains them")
       ->capture_default_str()
       ->type_name("SCENARIO|FILE.csv|FILE.glb");
-  verb->add_option("--events", options->events,
-                   "Fewest true events of a scene: seeds are added until there are so many. More of them make the "
-                   "intervals narrower")
-      ->type_name("N")
-      ->capture_default_str()
-      ->check(help::whole_number(1, 1000000));
-  verb->add_option("--passes", options->passes, "How often each frame is timed")
-      ->type_name("N")
-      ->capture_default_str()
-      ->check(help::whole_number(1, 1000));
-  verb->add_option("--tolerance", options->tolerance_ms,
-                   "An event is also judged by this tolerance on its time of impact, in ms, the same for every rate; "
-                   "the default is a little more than a frame at 30 Hz")
-      ->type_name("MS")
-      ->capture_default_str()
-      ->check(help::kPositive);
-  verb->add_flag("--thorough", options->thorough,
-                 "For publication, in hours: rates up to 10000 Hz, 2000 true events and 10 passes, where no flag says "
-                 "otherwise");
+  add_effort_options(*verb, *options);
   verb->add_option("--duration", options->duration_s, "How long the scene lasts with each seed, in seconds")
       ->type_name("S")
       ->capture_default_str()
       ->check(help::kPositive);
-  verb->add_option("--truth", options->truth,
-                   "The detector that finds the true contacts, by ccd. Of its frames, exact checks some")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"cpu", "exact"}));
-  verb->add_option("--truth-rate", options->truth_rate_hz,
-                   "Frames per second at which the true contacts are found; half of this rate is used too, to show "
-                   "the difference")
-      ->type_name("HZ")
-      ->capture_default_str()
-      ->check(help::kPositive);
-  verb->add_option("--check-frames", options->checked_frames,
-                   "Whole frames of the truth that exact checks for each seed, drawn at random; they must agree")
-      ->type_name("N")
-      ->capture_default_str()
-      ->check(help::whole_number(0, 1000000000));
+  add_truth_options(*verb, *options);
   verb->add_flag("--no-figure", options->no_figure, "Do not draw the figure");
   verb->add_option("-o,--output", options->output, "Folder for accuracy.json, run.json (times), and the figure")
       ->required()

@@ -23,7 +23,7 @@ std::unique_ptr<Detector> make_capsules_detector(const Avatar& avatar, const Act
 
 /// The avatar simplified in its rest pose to `keep`, in (0, 1], of its triangles, or to as few as its seams and edges
 /// allow (meshoptimizer). Contacts with that mesh are exact, for every method. Each sixteenth of its triangles stands
-/// for the skin nearest to it; `Surface::kMapped` as above.
+/// for the skin nearest to it; `Surface::kMapped` as for boxes.
 std::unique_ptr<Detector> make_decimated_detector(double keep, const Avatar& avatar, const ActuatorMap& map,
                                                   const DetectorOptions& options);
 

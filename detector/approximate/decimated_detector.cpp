@@ -28,7 +28,8 @@ std::size_t cell_along(double share) {
 /// out a parallelogram, the two triangles in it are two cells.
 std::size_t cell_of(const glm::dvec2& weight) {
   const std::size_t column = cell_along(weight.x);
-  const std::size_t row = cell_along(weight.y);
+  // On the third edge, a point may lie at the corner of cells: then it belongs to the one inside.
+  const std::size_t row = std::min(cell_along(weight.y), kCellsAcross - 1 - column);
   const double beyond =
       weight.x * kCellsAcross - static_cast<double>(column) + weight.y * kCellsAcross - static_cast<double>(row);
   return (row * kCellsAcross + column) * 2 + (beyond > 1 ? 1 : 0);
@@ -54,8 +55,7 @@ std::vector<glm::dvec3> at_rest(const Avatar& avatar) {
 }
 
 Avatar simplified(const Avatar& avatar, const std::vector<glm::dvec3>& places, double keep) {
-  std::vector<glm::vec3> positions;
-  for (const glm::dvec3& place : places) positions.emplace_back(place);
+  const std::vector<glm::vec3> positions(places.begin(), places.end());
   std::vector<unsigned> indices;
   for (const glm::uvec3& triangle : avatar.triangles)
     indices.insert(indices.end(), {triangle.x, triangle.y, triangle.z});

@@ -1,7 +1,6 @@
 #include "detector/approximate/joint_skin.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>

@@ -1,7 +1,5 @@
 #include "detector/approximate/union_surface.hpp"
 
-#include <algorithm>
-
 namespace vestige {
 
 std::optional<Crossing> first_crossing(std::span<const Chord> chords) {

@@ -114,7 +114,7 @@ Humanoid find_humanoid(const Avatar& avatar, std::string_view extensions) {
   // Other extensions may be long, and a tree of them even longer.
   if (extensions.find("\"VRM") != std::string_view::npos)
     humanoid = by_vrm(json::parse(extensions, nullptr, false), avatar);
-  if (const auto bodies = bodies_of(avatar); humanoid.node_of.empty() && bodies.size() > 1)
+  if (const auto bodies = humanoid.node_of.empty() ? bodies_of(avatar) : std::vector<std::size_t>(); bodies.size() > 1)
     note(humanoid,
          fmt::format("has {} skeletons of bodies, the first below nodes[{}] '{}' and another below nodes[{}] "
                      "'{}': the first one's bones tell its parts, its facing, and what follows a motion",

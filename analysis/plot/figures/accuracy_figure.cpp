@@ -180,6 +180,7 @@ class AccuracyFigure : public Figure {
       if (std::ranges::find(detectors, one.detector) == detectors.end()) detectors.push_back(one.detector);
     const std::vector<Colour> of_detector = line_colours(detectors);
     std::vector<Colour> colours;
+    colours.reserve(all.size());
     for (const AccuracySeries& one : all)
       colours.push_back(
           of_detector[static_cast<std::size_t>(std::ranges::find(detectors, one.detector) - detectors.begin())]);
@@ -258,6 +259,7 @@ class AccuracyFigure : public Figure {
     const std::vector<Colour> colours = this->colours();
     for (std::size_t i = 0; i < scene.series.size(); ++i) {
       std::vector<Place> line;
+      line.reserve(scene.series[i].points.size());
       for (const AccuracyPoint& point : scene.series[i].points) line.push_back(panel.place_of(point, kind));
       canvas.polyline(line, {faded(colours[i], 0.45), 0.6, Dash::kSolid});
     }

@@ -1,5 +1,7 @@
 #include "analysis/plot/studio/subject.hpp"
 
+#include <fmt/format.h>
+
 #include <glm/vec2.hpp>
 #include <utility>
 
@@ -48,6 +50,9 @@ Subject read_subject(const TraceReader& trace, const std::filesystem::path& path
     subject.map = read_map(map, subject.avatar);
   else if (!trace.actuator_map_png().empty())
     subject.map = parse_actuator_map(actuator_map_files(trace), subject.avatar, path.string() + ", actuator_map.png");
+  if (subject.avatar.facing.lies_deg)
+    subject.warnings.push_back(fmt::format("{}: its avatar {}; its left and its front are not known", path.string(),
+                                           describe_lying(subject.avatar.facing)));
   if (std::string other = other_facing(subject.avatar.facing, subject.map.facing,
                                        {path.string(), map.empty() ? path.string() + ", actuator_map.png" : map});
       !other.empty())

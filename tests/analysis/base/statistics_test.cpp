@@ -46,6 +46,8 @@ TEST(BootstrapShare, OfNoErrorsIsThreeOverTheNumberOfClusters) {
   EXPECT_EQ(bootstrap_share(none, 1).low, 0);
   EXPECT_DOUBLE_EQ(bootstrap_share(none, 1).high, 1);
   EXPECT_TRUE(std::isnan(bootstrap_share({}, 1).high));
+  const std::vector<ClusterShare> one = {{1, 2}, {0, 0}};
+  EXPECT_TRUE(std::isnan(bootstrap_share(one, 1).high));
 }
 
 TEST(Frequency, IsFramesOverTotalTimeNotTheMeanOfFrequencies) {

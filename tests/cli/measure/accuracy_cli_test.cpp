@@ -96,7 +96,7 @@ TEST_F(AccuracyCommandLine, SaysThatNothingTouches) {
   std::ofstream(folder_ / "far.csv") << "time_s,id,x,y,z\n0,7,50,1.2,-1\n1,7,50,1.2,1\n";
   const test::Outcome outcome = run(std::string(kSmall) + "--colliders far.csv -o far");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.standard_error, HasSubstr("far.csv: no collider touches the avatar"));
+  EXPECT_THAT(outcome.standard_error, HasSubstr("no collider touches the avatar in any scene"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "far/accuracy.json"));
 }
 

@@ -278,6 +278,25 @@ TEST(DecimatedDetector, TellsTheActuatorOfTheSkinThatItStandsFor) {
   }
 }
 
+TEST(DecimatedDetector, KnowsTheSkinAtEveryPlaceOfATrianglesEdges) {
+  const Avatar avatar = test::rigid_avatar({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
+  const ActuatorMap map = quarters();
+  const auto detector = make_decimated_detector(1, avatar, map, with(Method::kStatic));
+  std::vector<Segment> segments;
+  for (std::uint32_t i = 0; i <= 16; ++i) {
+    const float x = static_cast<float>(i) / 16;
+    segments.push_back({3 * i, {x, 0, 1}, {x, 0, -1}});
+    segments.push_back({3 * i + 1, {x, 1 - x, 1}, {x, 1 - x, -1}});
+    segments.push_back({3 * i + 2, {0, x, 1}, {0, x, -1}});
+  }
+  ContactRow row;
+  detector->detect(test::frame_of(avatar, segments), row);
+  for (const Segment& segment : segments) {
+    EXPECT_EQ(row[segment.column].triangle, 0U) << segment.start.x << ' ' << segment.start.y;
+    EXPECT_GT(row[segment.column].actuator, 0) << segment.start.x << ' ' << segment.start.y;
+  }
+}
+
 TEST(DecimatedDetector, ThatKeepsEveryTriangleFindsTheExactContacts) {
   const auto scene = test::scene("swarm", builtin_avatar(), 50, 60, 30);
   const auto exact = make_cpu_detector(builtin_avatar(), builtin_map(), with(Method::kCcd));
