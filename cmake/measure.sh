@@ -98,7 +98,8 @@ machine() {
 
 if [ "$quick" ]; then
   pairs=${pairs:-5000} duration=0.05 counts=1,100 sweep_flags="--min-time 0.02 --runs 2 --run-frames 5"
-  accuracy_flags="--duration 0.05 --rate 60,1000 --truth-rate 2000" stress_flags="--n 3"
+  accuracy_flags="--detector paper,cpu,boxes --duration 0.05 --rate 60,1000 --truth-rate 2000 --events 1 --passes 1 --check-frames 5"
+  stress_flags="--n 3"
 else
   pairs=${pairs:-10000000} duration=2 counts=1,2,4,6,8,10:100:5 sweep_flags='' accuracy_flags='' stress_flags=''
 fi
