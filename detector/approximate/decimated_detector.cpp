@@ -72,9 +72,9 @@ Avatar simplified(const Avatar& avatar, const std::vector<glm::dvec3>& places, d
   return simple;
 }
 
-std::vector<SkinPatch> patches_of(const Avatar& avatar, const std::vector<glm::dvec3>& places) {
+std::vector<RestPatch> patches_of(const Avatar& avatar, const std::vector<glm::dvec3>& places) {
   const Meshlets meshlets(avatar);
-  std::vector<SkinPatch> patches;
+  std::vector<RestPatch> patches;
   for (std::size_t i = 0; i < meshlets.size(); ++i) {
     const auto triangles = meshlets.triangles(i);
     std::vector<Corners> corners;
@@ -93,7 +93,7 @@ class DecimatedDetector final : public Detector {
       : avatar_(avatar), surface_(options.surface) {
     const std::vector<glm::dvec3> places = at_rest(avatar);
     simple_ = simplified(avatar, places, keep);
-    const std::vector<SkinPatch> patches = patches_of(avatar, places);
+    const std::vector<RestPatch> patches = patches_of(avatar, places);
     spots_.resize(simple_.triangles.size() * kCells);
     for (std::size_t i = 0; i < spots_.size(); ++i) {
       if (!is_reached(i % kCells)) continue;

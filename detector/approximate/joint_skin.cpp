@@ -43,7 +43,7 @@ std::vector<JointSkin> skin_by_joint(const Avatar& avatar) {
       const glm::uvec3& triangle = avatar.triangles[number];
       corners.push_back({bound(triangle.x), bound(triangle.y), bound(triangle.z)});
     }
-    skins.push_back({i, SkinPatch(std::move(moved[i]), std::move(corners))});
+    skins.push_back({i, RestPatch(std::move(moved[i]), std::move(corners))});
   }
   return skins;
 }

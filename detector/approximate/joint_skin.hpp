@@ -13,7 +13,7 @@ struct JointSkin {
   std::size_t palette = 0;  ///< entry of `Avatar::palette`
   /// In the joint's bind space, as the skin lies in the rest pose: the joint's skinning matrix of the rest pose moves
   /// the corners to the skin at rest.
-  SkinPatch patch;
+  RestPatch patch;
 };
 
 /// Returns the skin of every joint that moves any, by ascending palette entry. Each triangle belongs to one joint. A

@@ -26,7 +26,7 @@ struct Nearest {
   double distance_squared = std::numeric_limits<double>::infinity();
 };
 
-void look_in(const SkinPatch& patch, const glm::dvec3& point, Nearest& nearest) {
+void look_in(const RestPatch& patch, const glm::dvec3& point, Nearest& nearest) {
   if (!(patch.distance_squared_at_least(point) < nearest.distance_squared)) return;
   for (std::size_t i = 0; i < patch.triangles().size(); ++i) {
     const auto& [a, b, c] = patch.corners()[i];
@@ -39,22 +39,22 @@ void look_in(const SkinPatch& patch, const glm::dvec3& point, Nearest& nearest) 
 
 }  // namespace
 
-SkinPatch::SkinPatch(std::vector<std::uint32_t> triangles, std::vector<Corners> corners)
+RestPatch::RestPatch(std::vector<std::uint32_t> triangles, std::vector<Corners> corners)
     : triangles_(std::move(triangles)), corners_(std::move(corners)), box_(box_around(corners_)) {}
 
-double SkinPatch::distance_squared_at_least(const glm::dvec3& point) const {
+double RestPatch::distance_squared_at_least(const glm::dvec3& point) const {
   const glm::dvec3 away = point - glm::clamp(point, box_.low, box_.high);
   return glm::dot(away, away);
 }
 
-SkinSpot nearest_spot(const Avatar& avatar, const ActuatorMap& map, std::span<const SkinPatch> patches,
+SkinSpot nearest_spot(const Avatar& avatar, const ActuatorMap& map, std::span<const RestPatch> patches,
                       const glm::dvec3& point) {
   Nearest nearest;
   // Where the nearest one probably is, so that most others need no look.
   look_in(
-      *std::ranges::min_element(patches, {}, [&](const SkinPatch& p) { return p.distance_squared_at_least(point); }),
+      *std::ranges::min_element(patches, {}, [&](const RestPatch& p) { return p.distance_squared_at_least(point); }),
       point, nearest);
-  for (const SkinPatch& patch : patches) look_in(patch, point, nearest);
+  for (const RestPatch& patch : patches) look_in(patch, point, nearest);
 
   SkinSpot spot;
   spot.triangle = nearest.triangle;

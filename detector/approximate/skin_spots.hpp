@@ -14,10 +14,10 @@
 namespace vestige {
 
 /// Some triangles of an avatar, and where they lie.
-class SkinPatch {
+class RestPatch {
  public:
   /// `triangles` and `corners` are of equal size, and not empty.
-  SkinPatch(std::vector<std::uint32_t> triangles, std::vector<Corners> corners);
+  RestPatch(std::vector<std::uint32_t> triangles, std::vector<Corners> corners);
 
   std::span<const std::uint32_t> triangles() const { return triangles_; }
   std::span<const Corners> corners() const { return corners_; }
@@ -36,7 +36,7 @@ using SkinSpot = Contact;
 
 /// Returns the place of the patches nearest to a point; of places equally near, the first. Precondition: there is a
 /// patch.
-SkinSpot nearest_spot(const Avatar& avatar, const ActuatorMap& map, std::span<const SkinPatch> patches,
+SkinSpot nearest_spot(const Avatar& avatar, const ActuatorMap& map, std::span<const RestPatch> patches,
                       const glm::dvec3& point);
 
 /// Copies a place of the skin into a contact. The contact's t, side, position and speed stay.

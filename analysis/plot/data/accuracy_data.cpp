@@ -18,7 +18,7 @@ constexpr double kMost = 1e12;
 constexpr double kMostEvents = 1e15;
 
 /// `least` is above 0 for what a logarithmic axis shows. `unit` is what the figure counts in.
-Estimate read_estimate(const JsonField& field, double least, double unit) {
+ValueRange read_estimate(const JsonField& field, double least, double unit) {
   const double value = field.at("value").within(least, kMost);
   const double low = field.has("low") ? std::min(field.at("low").within(least, kMost), value) : value;
   const double high = field.has("high") ? std::max(field.at("high").within(least, kMost), value) : value;

@@ -6,8 +6,8 @@
 
 namespace vestige::plot {
 
-/// A figure, above or equal to 0, and its 95 % interval. The interval may be missing: then both ends are the value.
-struct Estimate {
+/// A value, above or equal to 0, and its 95 % interval. The interval may be missing: then both ends are the value.
+struct ValueRange {
   double value = 0;
   double low = 0;
   double high = 0;
@@ -16,11 +16,11 @@ struct Estimate {
 /// One detector with one method at one rate of the trace. Errors are events for 100 true ones, within the tolerance.
 struct AccuracyPoint {
   double rate_hz = 0;  ///< above 0
-  Estimate load_ms;    ///< processor time for a second of the scene, above 0
-  Estimate wrong;      ///< all three kinds
-  Estimate missed;
-  Estimate false_events;
-  Estimate wrong_actuator;
+  ValueRange load_ms;  ///< processor time for a second of the scene, above 0
+  ValueRange wrong;    ///< all three kinds
+  ValueRange missed;
+  ValueRange false_events;
+  ValueRange wrong_actuator;
   bool on_front = false;  ///< no other point has both less load and fewer errors
 };
 

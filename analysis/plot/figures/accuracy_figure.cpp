@@ -76,7 +76,7 @@ std::vector<std::string> small_print(const AccuracyResult& result) {
 /// One kind of error, and where a panel shows it.
 struct Kind {
   const char* title;
-  Estimate AccuracyPoint::*estimate;
+  ValueRange AccuracyPoint::*estimate;
 };
 constexpr std::array<Kind, 3> kKinds = {{{"Missed", &AccuracyPoint::missed},
                                          {"False", &AccuracyPoint::false_events},
@@ -267,7 +267,7 @@ class AccuracyFigure : public Figure {
       for (const AccuracyPoint& point : scene.series[i].points) {
         const Place place = panel.place_of(point, kind);
         const Pen pen = {faded(colours[i], 0.7), 0.5, Dash::kSolid};
-        const Estimate& errors = point.*kind.estimate;
+        const ValueRange& errors = point.*kind.estimate;
         canvas.line({place.x_pt, panel.height_of(errors.low)}, {place.x_pt, panel.height_of(errors.high)}, pen);
         canvas.line({panel.x.place_pt(point.load_ms.low), place.y_pt},
                     {panel.x.place_pt(point.load_ms.high), place.y_pt}, pen);
