@@ -143,7 +143,7 @@ class Measurement {
     sum.colliders = choice.colliders;
     sum.truth_rate_hz = options_.truth_rate_hz;
     for (std::uint64_t k = 0; k < kMostSeeds && (k == 0 || sum.true_events < options_.events); ++k) {
-      const AccuracyScene one = measure(choice, options_.common.seed + k);
+      AccuracyScene one = measure(choice, options_.common.seed + k);
       if (k == 0 && one.true_events == 0 && !interrupted()) {
         warn(fmt::format("{}: no collider touches the avatar, so there is no contact to miss: it is left out",
                          choice.colliders),

@@ -118,7 +118,8 @@ std::size_t Capsule::cell(const glm::dvec3& point) const {
 }
 
 glm::dvec3 Capsule::middle_of_cell(std::size_t cell) const {
-  const double along = (2.0 * static_cast<double>(cell / kCellsAround) + 1) / kCellsAlong - 1;
+  const std::size_t ring = cell / kCellsAround;
+  const double along = (2.0 * static_cast<double>(ring) + 1) / kCellsAlong - 1;
   const double x = along * (half_length + radius);
   const double beyond = std::max(0.0, std::abs(x) - half_length);
   const double out = std::sqrt(std::max(0.0, radius * radius - beyond * beyond));

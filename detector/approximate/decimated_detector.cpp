@@ -37,8 +37,9 @@ std::size_t cell_of(const glm::dvec2& weight) {
 
 glm::dvec2 middle_of_cell(std::size_t cell) {
   const double within = cell % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-  return {(static_cast<double>(cell / 2 % kCellsAcross) + within) / kCellsAcross,
-          (static_cast<double>(cell / 2 / kCellsAcross) + within) / kCellsAcross};
+  const std::size_t column = cell / 2 % kCellsAcross;
+  const std::size_t row = cell / 2 / kCellsAcross;
+  return {(static_cast<double>(column) + within) / kCellsAcross, (static_cast<double>(row) + within) / kCellsAcross};
 }
 
 constexpr std::size_t kCells = 2 * kCellsAcross * kCellsAcross;
