@@ -50,16 +50,22 @@ std::uint64_t wrong_actuator_of(const EventCounts& counts) {
   return counts.wrong_actuator;
 }
 
+ClusterShare share_in(const EventCounts& counts, Count count) {
+  return {static_cast<double>(count(counts)), static_cast<double>(counts.true_events())};
+}
+
 /// Returns a count for each true event. It is above 1 where more is false than true. NaN if there are no true events.
-Estimate share_of(const EventScore& score, Count count) {
-  const auto share = [&](const EventCounts& counts) {
-    return ClusterShare{static_cast<double>(count(counts)), static_cast<double>(counts.true_events())};
-  };
+double share_of(const EventScore& score, Count count) {
+  const ClusterShare all = share_in(score.all, count);
+  return all.whole > 0 ? all.part / all.whole : kMissing;
+}
+
+/// As above, and how sure it is.
+Estimate estimated_share(const EventScore& score, Count count) {
   std::vector<ClusterShare> clusters;
   clusters.reserve(score.of_collider.size());
-  for (const EventCounts& counts : score.of_collider) clusters.push_back(share(counts));
-  const ClusterShare all = share(score.all);
-  return {all.whole > 0 ? all.part / all.whole : kMissing, bootstrap_share(clusters, kResamplingSeed)};
+  for (const EventCounts& counts : score.of_collider) clusters.push_back(share_in(counts, count));
+  return {share_of(score, count), bootstrap_share(clusters, kResamplingSeed)};
 }
 
 nlohmann::ordered_json number(double value) {
@@ -87,7 +93,7 @@ nlohmann::ordered_json counts_json(const EventScore& score) {
                                                   {"missed_share", missed_of},
                                                   {"false_share", false_of},
                                                   {"wrong_actuator_share", wrong_actuator_of}};
-  for (const auto& [name, count] : shares) json[name] = to_json(share_of(score, count));
+  for (const auto& [name, count] : shares) json[name] = to_json(estimated_share(score, count));
   return json;
 }
 
@@ -139,12 +145,15 @@ nlohmann::ordered_json point_errors_json(const AccuracyPoint& point) {
 }
 
 /// Processor time in milliseconds for one second of the scene.
-Estimate load_ms(const AccuracyPoint& point) {
-  const auto load = [&](double hz) { return 1e3 * point.rate_hz / hz; };
-  const double value = load(frequency_hz(point.processor_passes));
-  if (point.processor_passes.size() < 2) return {value, {kMissing, kMissing}};
+double load_ms(const AccuracyPoint& point) {
+  return 1e3 * point.rate_hz / frequency_hz(point.processor_passes);
+}
+
+/// As above, and how sure it is: one pass does not tell.
+Estimate estimated_load_ms(const AccuracyPoint& point) {
+  if (point.processor_passes.size() < 2) return {load_ms(point), {kMissing, kMissing}};
   const Interval hz = bootstrap_frequency_hz(point.processor_passes, kResamplingSeed);
-  return {value, {load(hz.high), load(hz.low)}};
+  return {load_ms(point), {1e3 * point.rate_hz / hz.high, 1e3 * point.rate_hz / hz.low}};
 }
 
 /// Returns the indices of the points that no other beats in both processor time and errors within the tolerance, by
@@ -153,7 +162,7 @@ std::vector<std::size_t> front_of(const AccuracyScene& scene) {
   std::vector<Trade> trades;
   trades.reserve(scene.points.size());
   for (const AccuracyPoint& point : scene.points)
-    trades.push_back({load_ms(point).value, share_of(point.tolerated, wrong_of).value});
+    trades.push_back({load_ms(point), share_of(point.tolerated, wrong_of)});
   return pareto_front(trades);
 }
 
@@ -166,8 +175,8 @@ nlohmann::ordered_json pareto_json(const AccuracyScene& scene, const std::vector
     list.push_back({{"detector", contestant.detector},
                     {"method", name_of(contestant.method)},
                     {"rate_hz", point.rate_hz},
-                    {"processor_ms_per_s", load_ms(point).value},
-                    {"wrong_share", number(share_of(point.tolerated, wrong_of).value)}});
+                    {"processor_ms_per_s", load_ms(point)},
+                    {"wrong_share", number(share_of(point.tolerated, wrong_of))}});
   }
   return list;
 }
@@ -180,12 +189,12 @@ nlohmann::ordered_json point_times_json(const AccuracyPoint& point) {
           {"us_median", quantile(point.frame_us, 0.5)},
           {"us_p99", quantile(point.frame_us, 0.99)},
           {"us_max", quantile(point.frame_us, 1)},
-          {"processor_ms_per_s", to_json(load_ms(point))}};
+          {"processor_ms_per_s", to_json(estimated_load_ms(point))}};
 }
 
 /// "3.1 (1.0 to 5.2)", "< 0.8" if there are none.
 std::string per_100_text(const EventScore& score) {
-  const Estimate rate = share_of(score, wrong_of);
+  const Estimate rate = estimated_share(score, wrong_of);
   if (std::isnan(rate.value)) return "-";
   if (score.all.wrong() == 0) return fmt::format("< {:.3g}", 100 * rate.interval.high);
   if (std::isnan(rate.interval.low)) return fmt::format("{:.1f}", 100 * rate.value);
@@ -218,7 +227,7 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
                      point.rate_hz, all.true_events(), all.missed, all.false_events, all.wrong_actuator,
                      per_100_text(point.score), per_100_text(point.tolerated), pair_ms(point.score.impact_error_s),
                      pair_ms(point.score.onset_error_s),
-                     fmt::format("{}{:.3g}", is_on_front(point) ? "* " : "", load_ms(point).value));
+                     fmt::format("{}{:.3g}", is_on_front(point) ? "* " : "", load_ms(point)));
     }
   const EventCounts& halved = scene.half_score.all;
   return table + fmt::format(

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <random>
 
 namespace vestige {
@@ -15,8 +14,6 @@ constexpr int kResamples = 1000;
 /// More resamples than for frequencies, since the levels for few units lie far out.
 constexpr std::size_t kPairedResamples = 4000;
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-
 std::vector<double> frequencies(std::span<const Repetition> repetitions) {
   std::vector<double> hz;
   for (const Repetition& repetition : repetitions) hz.push_back(frequency_hz({&repetition, 1}));
@@ -26,7 +23,7 @@ std::vector<double> frequencies(std::span<const Repetition> repetitions) {
 }  // namespace
 
 double quantile(std::span<const double> values, double p) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (values.empty()) return kMissing;
   std::vector<double> sorted(values.begin(), values.end());
   std::ranges::sort(sorted);
   const double place = p * static_cast<double>(sorted.size() - 1);
@@ -52,11 +49,11 @@ double frequency_hz(std::span<const Repetition> repetitions) {
     frames += static_cast<double>(repetition.frames);
     seconds += repetition.seconds;
   }
-  return seconds > 0 ? frames / seconds : std::numeric_limits<double>::quiet_NaN();
+  return seconds > 0 ? frames / seconds : kMissing;
 }
 
 Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::uint64_t seed) {
-  if (repetitions.empty()) return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+  if (repetitions.empty()) return {kMissing, kMissing};
   std::mt19937_64 random(seed);
   std::vector<double> hz;
   std::vector<Repetition> sample(repetitions.size());
@@ -69,10 +66,10 @@ Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::ui
 
 Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t seed) {
   const auto with_whole = std::ranges::count_if(clusters, [](const ClusterShare& share) { return share.whole > 0; });
-  if (with_whole == 0) return {kNotANumber, kNotANumber};
+  if (with_whole == 0) return {kMissing, kMissing};
   if (std::ranges::none_of(clusters, [](const ClusterShare& share) { return share.part > 0; }))
     return {0, std::min(1.0, 3 / static_cast<double>(with_whole))};
-  if (with_whole < 2) return {kNotANumber, kNotANumber};
+  if (with_whole < 2) return {kMissing, kMissing};
   std::mt19937_64 random(seed);
   std::vector<double> shares;
   for (int i = 0; i < kResamples; ++i) {
@@ -111,7 +108,7 @@ PairedBootstrap::PairedBootstrap(std::size_t units, std::uint64_t seed) : units_
 }
 
 MeanInterval PairedBootstrap::mean(std::span<const double> values) const {
-  MeanInterval result = {kNotANumber, {kNotANumber, kNotANumber}, 0};
+  MeanInterval result = {kMissing, {kMissing, kMissing}, 0};
   double sum = 0;
   for (const double value : values) {
     if (std::isnan(value)) continue;

@@ -26,12 +26,6 @@ constexpr double kFar_m = 0.050;             // skin farther apart than this is 
 constexpr double kPointsASpacing = 8;
 constexpr int kMostPoints = 32;
 
-std::vector<glm::dvec3> at_rest(const Avatar& avatar) {
-  std::vector<glm::dvec3> position_m;
-  skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), position_m);
-  return position_m;
-}
-
 std::optional<SkinPoint> nearest_on_skin(const SurfaceDistance& surface, const glm::dvec3& p) {
   std::optional<SkinPoint> best;
   double best_m = kUnreached_m;
@@ -174,7 +168,7 @@ class SharedTexels {
 ActuatorLayout::ActuatorLayout(const Avatar& avatar, ActuatorMap map)
     : map_(std::move(map)),
       facing_(avatar.facing.axis),
-      surface_(at_rest(avatar), avatar.triangles, SurfaceDistance::Gaps::kBridged) {
+      surface_(skin_at_rest(avatar), avatar.triangles, SurfaceDistance::Gaps::kBridged) {
   for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) skin_area_m2_ += area_of(surface_, i);
   place_actuators(avatar);
   measure_distances();

@@ -10,7 +10,6 @@
 #include "detector/approximate/skin_spots.hpp"
 #include "detector/broad/meshlets.hpp"
 #include "detector/detectors/make_detectors.hpp"
-#include "traces/scene/pose.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
@@ -47,12 +46,6 @@ constexpr std::size_t kCells = 2 * kCellsAcross * kCellsAcross;
 /// Whether a point of the triangle may fall into the cell: those farther out lie beyond its third edge.
 bool is_reached(std::size_t cell) {
   return cell / 2 % kCellsAcross + cell / 2 / kCellsAcross < kCellsAcross;
-}
-
-std::vector<glm::dvec3> at_rest(const Avatar& avatar) {
-  std::vector<glm::dvec3> places;
-  skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), places);
-  return places;
 }
 
 Avatar simplified(const Avatar& avatar, const std::vector<glm::dvec3>& places, double keep) {
@@ -92,7 +85,7 @@ class DecimatedDetector final : public Detector {
  public:
   DecimatedDetector(double keep, const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
       : avatar_(avatar), surface_(options.surface) {
-    const std::vector<glm::dvec3> places = at_rest(avatar);
+    const std::vector<glm::dvec3> places = skin_at_rest(avatar);
     simple_ = simplified(avatar, places, keep);
     const std::vector<RestPatch> patches = patches_of(avatar, places);
     spots_.resize(simple_.triangles.size() * kCells);

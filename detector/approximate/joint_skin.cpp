@@ -25,11 +25,9 @@ std::size_t joint_of(const Avatar& avatar, const glm::uvec3& triangle) {
 }  // namespace
 
 std::vector<JointSkin> skin_by_joint(const Avatar& avatar) {
-  const Pose pose = rest_pose(avatar);
-  std::vector<glm::dvec3> at_rest;
-  skin_reference(avatar, pose, glm::dvec3(0), at_rest);
+  const std::vector<glm::dvec3> at_rest = skin_at_rest(avatar);
   std::vector<glm::dmat4> palette;
-  palette_matrices(avatar, pose, palette);
+  palette_matrices(avatar, rest_pose(avatar), palette);
 
   std::vector<std::vector<std::uint32_t>> moved(avatar.palette.size());
   for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) moved[joint_of(avatar, avatar.triangles[i])].push_back(i);

@@ -34,10 +34,14 @@ void skin_reference(const Avatar& avatar, const Pose& pose, const glm::dvec3& or
     out.push_back(skin_vertex(avatar, palette, vertex) + shift);
 }
 
-Box rest_box(const Avatar& avatar) {
+std::vector<glm::dvec3> skin_at_rest(const Avatar& avatar) {
   std::vector<glm::dvec3> positions;
   skin_reference(avatar, rest_pose(avatar), glm::dvec3(0), positions);
-  return box_around(positions);
+  return positions;
+}
+
+Box rest_box(const Avatar& avatar) {
+  return box_around(skin_at_rest(avatar));
 }
 
 }  // namespace vestige

@@ -22,6 +22,9 @@ glm::dvec3 skin_vertex(const Avatar& avatar, const std::vector<glm::dmat4>& pale
 /// Avatar::position_bind. Computed entirely in double, as the reference for single-precision skinning.
 void skin_reference(const Avatar& avatar, const Pose& pose, const glm::dvec3& origin_m, std::vector<glm::dvec3>& out);
 
+/// Returns all vertices in the rest pose, as `skin_reference` does, in metres.
+std::vector<glm::dvec3> skin_at_rest(const Avatar& avatar);
+
 /// Returns the box around the skin at rest, in metres. Precondition: the avatar has vertices.
 Box rest_box(const Avatar& avatar);
 
