@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -48,10 +49,17 @@ class PlaneSet {
   constexpr PlaneSet(Plane plane) : bits_(static_cast<unsigned>(plane) | 1U) {}
   constexpr bool has(Plane plane) const { return (bits_ & static_cast<unsigned>(plane)) != 0; }
   constexpr unsigned bits() const { return bits_; }
+  constexpr unsigned count() const { return static_cast<unsigned>(std::popcount(bits_)); }
   friend constexpr PlaneSet operator|(PlaneSet a, PlaneSet b) {
     PlaneSet both;
     both.bits_ = a.bits_ | b.bits_;
     return both;
+  }
+  /// The first `count` planes in the order of `Plane`. Precondition: 1 <= count <= 9.
+  static constexpr PlaneSet first(unsigned count) {
+    PlaneSet set;
+    set.bits_ = (1U << count) - 1;
+    return set;
   }
   static constexpr PlaneSet all() {
     PlaneSet set;

@@ -152,7 +152,7 @@ double load_ms(const AccuracyPoint& point) {
 /// As above, and how sure it is: one pass does not tell.
 Estimate estimated_load_ms(const AccuracyPoint& point) {
   if (point.processor_passes.size() < 2) return {load_ms(point), {kMissing, kMissing}};
-  const Interval hz = bootstrap_frequency_hz(point.processor_passes, kResamplingSeed);
+  const Interval hz = bootstrap_frequency_hz(point.processor_passes, 1, kResamplingSeed);
   return {load_ms(point), {1e3 * point.rate_hz / hz.high, 1e3 * point.rate_hz / hz.low}};
 }
 

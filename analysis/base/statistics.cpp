@@ -14,10 +14,33 @@ constexpr int kResamples = 1000;
 /// More resamples than for frequencies, since the levels for few units lie far out.
 constexpr std::size_t kPairedResamples = 4000;
 
-std::vector<double> frequencies(std::span<const Repetition> repetitions) {
-  std::vector<double> hz;
-  for (const Repetition& repetition : repetitions) hz.push_back(frequency_hz({&repetition, 1}));
-  return hz;
+/// How the repetitions of a measurement differ from what their places cost.
+struct Residuals {
+  std::vector<double> expected_s;  ///< for each repetition: its frames at the mean of its place
+  /// Time over expected time, less 1, of every repetition whose place was measured more than once. Widened, since a
+  /// mean lies in the middle of what it is the mean of.
+  std::vector<double> relative;
+};
+
+Residuals residuals(std::span<const Repetition> repetitions, std::size_t places) {
+  Residuals found;
+  found.expected_s.resize(repetitions.size());
+  for (std::size_t place = 0; place < std::min(places, repetitions.size()); ++place) {
+    double frames = 0;
+    double seconds = 0;
+    double count = 0;
+    for (std::size_t r = place; r < repetitions.size(); r += places) {
+      frames += static_cast<double>(repetitions[r].frames);
+      seconds += repetitions[r].seconds;
+      ++count;
+    }
+    for (std::size_t r = place; r < repetitions.size(); r += places) {
+      found.expected_s[r] = static_cast<double>(repetitions[r].frames) * seconds / frames;
+      if (count > 1 && seconds > 0)
+        found.relative.push_back((repetitions[r].seconds / found.expected_s[r] - 1) * std::sqrt(count / (count - 1)));
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -52,14 +75,19 @@ double frequency_hz(std::span<const Repetition> repetitions) {
   return seconds > 0 ? frames / seconds : kMissing;
 }
 
-Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::uint64_t seed) {
-  if (repetitions.empty()) return {kMissing, kMissing};
+Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::size_t places, std::uint64_t seed) {
+  const Residuals found = residuals(repetitions, places);
+  if (found.relative.empty()) return {kMissing, kMissing};
+  double frames = 0;
+  for (const Repetition& repetition : repetitions) frames += static_cast<double>(repetition.frames);
   std::mt19937_64 random(seed);
   std::vector<double> hz;
-  std::vector<Repetition> sample(repetitions.size());
+  hz.reserve(kResamples);
   for (int i = 0; i < kResamples; ++i) {
-    for (Repetition& repetition : sample) repetition = repetitions[random() % repetitions.size()];
-    hz.push_back(frequency_hz(sample));
+    double seconds = 0;
+    for (const double expected_s : found.expected_s)
+      seconds += expected_s * (1 + found.relative[random() % found.relative.size()]);
+    hz.push_back(frames / seconds);
   }
   return {quantile(hz, 0.025), quantile(hz, 0.975)};
 }
@@ -85,10 +113,9 @@ Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t s
   return {quantile(shares, level), quantile(shares, 1 - level)};
 }
 
-double relative_noise(std::span<const Repetition> repetitions) {
-  if (repetitions.size() < 2) return 0;
-  const std::vector<double> hz = frequencies(repetitions);
-  return 0.5 * (quantile(hz, 0.75) - quantile(hz, 0.25)) / quantile(hz, 0.5);
+double relative_noise(std::span<const Repetition> repetitions, std::size_t places) {
+  const std::vector<double> relative = residuals(repetitions, places).relative;
+  return relative.empty() ? 0 : 0.5 * (quantile(relative, 0.75) - quantile(relative, 0.25));
 }
 
 double expanded_level(std::size_t n) {

@@ -34,13 +34,16 @@ Interval wilson_interval(std::uint64_t errors, std::uint64_t cases);
 /// Returns frames over total time, of all repetitions together. NaN if the time is 0.
 double frequency_hz(std::span<const Repetition> repetitions);
 
-/// Returns the 95 % percentile bootstrap interval of `frequency_hz` (Efron & Tibshirani 1993, ch. 13). It resamples
-/// whole repetitions, since consecutive frames are not independent. The same input and `seed` give the same interval.
-Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::uint64_t seed);
+/// Returns the 95 % percentile bootstrap interval of `frequency_hz` (Davison & Hinkley 1997, section 3.2). Repetition r
+/// measured place r % `places`. Places cost differently, and all of them are measured equally often. So what is
+/// resampled is by how much each repetition differs from the mean of its place, for all places together, and for whole
+/// repetitions, since consecutive frames are not independent. NaN if no place was measured twice. The same input and
+/// `seed` give the same interval. Precondition: places > 0.
+Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::size_t places, std::uint64_t seed);
 
-/// Returns the noise of a measurement: half the interquartile range of the repetitions' frequencies over their median.
-/// 0 for fewer than two repetitions.
-double relative_noise(std::span<const Repetition> repetitions);
+/// Returns the noise of a measurement: half the interquartile range of the repetitions' times, each over the mean of
+/// its place (as in `bootstrap_frequency_hz`). 0 if no place was measured twice.
+double relative_noise(std::span<const Repetition> repetitions, std::size_t places);
 
 /// Part of a whole in one cluster: errors of all true events of one collider, say.
 struct ClusterShare {

@@ -57,8 +57,10 @@ Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& m
   };
   for (const std::uint32_t count : settings.sweep.counts) {
     if (!goes_on) return growth;
-    append(growth.by_colliders,
-           run_sweep(trace, avatar, make(avatar, map), settings_for(settings, avatar, count), step_progress));
+    const GrowthContestants made = make(avatar, map);
+    append(growth.by_colliders, run_sweep(trace, avatar, *made.survey, made.contestants,
+                                          settings_for(settings, avatar, count), step_progress)
+                                    .series);
     ++step;
   }
   Avatar fine = avatar;
@@ -69,9 +71,10 @@ Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& m
       fine_map = subdivided(fine_map);
     }
     const SweepSettings sweep = settings_for(settings, fine, settings.colliders);
-    GrowthSize size = {fine.triangles.size(), fine.position_bind.size(), sweep.runs * sweep.run_frames, {}};
-    size.series = run_sweep(trace, fine, make(fine, fine_map), sweep, step_progress);
-    growth.by_triangles.push_back(std::move(size));
+    const GrowthContestants made = make(fine, fine_map);
+    Sweep measured = run_sweep(trace, fine, *made.survey, made.contestants, sweep, step_progress);
+    growth.by_triangles.push_back({fine.triangles.size(), fine.position_bind.size(), measured.places * sweep.run_frames,
+                                   std::move(measured.series)});
     ++step;
   }
   return growth;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,8 +36,14 @@ struct Growth {
 /// places are measured, whatever the settings say.
 inline constexpr std::uint64_t kManyPairs = 500'000;
 
-/// Makes the contestants for an avatar and its map. The contestants keep references to both.
-using ContestantMaker = std::function<std::vector<Contestant>(const Avatar&, const ActuatorMap&)>;
+/// What is measured on one avatar.
+struct GrowthContestants {
+  std::unique_ptr<Detector> survey;  ///< as in `run_sweep`
+  std::vector<Contestant> contestants;
+};
+
+/// Makes the contestants for an avatar and its map. They keep references to both.
+using ContestantMaker = std::function<GrowthContestants(const Avatar&, const ActuatorMap&)>;
 
 /// Measures the cost against colliders on the avatar, then against triangles on subdivisions of the avatar. Within one
 /// size (of colliders or of triangles), all contestants take turns. The sizes follow one another, since the largest

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <iterator>
 #include <random>
-#include <span>
 #include <utility>
 
 #include "analysis/frequency/render_thread.hpp"
@@ -19,41 +18,29 @@ namespace vestige {
 namespace {
 
 constexpr std::size_t kWarmUpFrames = 2;
+/// The fewest passes after the first: one pass alone tells nothing of noise.
+constexpr std::size_t kFewestPasses = 2;
 /// Length of one stretch beside a renderer: 18 of the renderer's frames.
 constexpr double kRenderedStretch_s = 0.2;
 
-/// Consecutive frames of the trace. The first frame only gives the start of the second frame's segments.
-using Place = std::vector<TraceFrame>;
+/// The colliders of one place: those that are drawn for one count, or for any count.
+using Colliders = std::vector<std::uint32_t>;
 
-std::uint64_t place_length(std::uint64_t trace_frames, const SweepSettings& settings) {
-  return std::min<std::uint64_t>(settings.run_frames + 1, trace_frames);
+/// The rows of one contestant with all colliders that were drawn at a place for any count, by place, then frame.
+using Reference = std::vector<std::vector<ContactRow>>;
+
+/// Picks from a row with all drawn colliders those of one count. Both lists of ids are ascending.
+ContactRow picked(const ContactRow& row, const Colliders& all, const Colliders& some) {
+  ContactRow result;
+  result.reserve(some.size());
+  auto column = all.begin();
+  for (const std::uint32_t id : some) {
+    column = std::lower_bound(column, all.end(), id);
+    result.push_back(row[static_cast<std::size_t>(column - all.begin())]);
+  }
+  return result;
 }
 
-std::vector<Place> read_places(TraceReader& trace, const SweepSettings& settings) {
-  const std::uint64_t frames = trace.frame_count();
-  if (frames < 2)
-    throw Error("the trace", fmt::format("has {} frame{}; at least two are needed", frames, frames == 1 ? "" : "s"),
-                "record a longer trace");
-  const std::uint64_t length = place_length(frames, settings);
-  const std::uint64_t count = sweep_places(frames, settings);
-  std::vector<Place> places(count);
-  TraceFrame frame;
-  trace.rewind();
-  for (std::uint64_t number = 0; trace.next(frame); ++number)
-    for (std::uint64_t i = 0; i < count; ++i) {
-      const std::uint64_t start = count == 1 ? 0 : i * (frames - length) / (count - 1);
-      if (number >= start && number < start + length) places[i].push_back(frame);
-    }
-  return places;
-}
-
-/// The rows of one contestant with all colliders. Rows with fewer colliders should be prefixes of these, since a
-/// collider's contact does not depend on the other colliders.
-struct Reference {
-  std::vector<std::vector<ContactRow>> rows;  // by place, then frame
-};
-
-/// Returns how many contacts of `timed` differ from those at the beginning of `reference`.
 std::uint64_t differing(const ContactRow& timed, const ContactRow& reference) {
   std::uint64_t count = 0;
   for (std::size_t i = 0; i < timed.size(); ++i)
@@ -61,113 +48,99 @@ std::uint64_t differing(const ContactRow& timed, const ContactRow& reference) {
   return count;
 }
 
-class Sweep {
+/// What one measurement of one place showed.
+struct PlaceRun {
+  Repetition repetition;
+  std::vector<double> frame_us;
+  DetectorWork work;
+  std::uint64_t skipped_frames = 0;
+  double skipped_us = 0;
+  std::uint64_t disagreements = 0;
+};
+
+class RunningSweep {
  public:
-  Sweep(TraceReader& trace, const Avatar& avatar, const std::vector<Contestant>& contestants,
-        const SweepSettings& settings)
-      : avatar_(avatar),
-        contestants_(contestants),
-        settings_(settings),
-        ids_(trace.collider_ids()),
-        places_(read_places(trace, settings)) {
-    for (const Contestant& contestant : contestants) {
-      detectors_.push_back(contestant.make(PlaneSet()));
-      SweepSeries series;
-      series.detector = contestant.detector;
-      series.skip = contestant.skip;
-      series.method = detectors_.back()->method();
-      series.approximate = detectors_.back()->is_approximate();
-      renderers_.push_back(make_renderer(contestant));
-      if (renderers_.back() != nullptr) series.renderer = renderers_.back()->gl_info();
-      series.gl = detectors_.back()->gl_info();
-      for (const std::uint32_t count : settings.counts) {
-        if (count > ids_.size())
-          throw Error("--counts", fmt::format("asks for {} colliders, but the trace has {}", count, ids_.size()),
-                      "record a trace with more colliders (--count), or ask for fewer");
-        SweepPoint point;
-        point.colliders = count;
-        series.points.push_back(std::move(point));
+  RunningSweep(const std::vector<std::uint32_t>& ids, const Avatar& avatar, SweepSample sample,
+               const std::vector<Contestant>& contestants, const SweepSettings& settings)
+      : avatar_(avatar), contestants_(contestants), settings_(settings), places_(std::move(sample.places)) {
+    sweep_.places = static_cast<std::uint32_t>(places_.size());
+    sweep_.trace = sample.trace;
+    sweep_.sampled = sample.sampled;
+    drawn_for_any_.resize(places_.size());
+    for (const std::uint32_t count : settings.counts) {
+      if (count > ids.size())
+        throw Error("--counts", fmt::format("asks for {} colliders, but the trace has {}", count, ids.size()),
+                    "record a trace with more colliders (--count), or ask for fewer");
+      drawn_.push_back(draw_colliders(ids, count, places_.size(), settings.seed));
+      for (std::size_t i = 0; i < places_.size(); ++i) {
+        Colliders both;
+        std::ranges::set_union(drawn_for_any_[i], drawn_.back()[i], std::back_inserter(both));
+        drawn_for_any_[i] = std::move(both);
       }
-      series_.push_back(std::move(series));
     }
+    for (const Contestant& contestant : contestants) add_series(contestant);
   }
 
-  std::vector<SweepSeries> run(const std::function<bool(double)>& progress) {
-    struct Entry {
-      std::size_t series;
-      std::size_t point;
-    };
+  Sweep run(const std::function<bool(double)>& progress) {
     std::vector<Entry> open;
-    for (std::size_t s = 0; s < series_.size(); ++s)
+    for (std::size_t s = 0; s < sweep_.series.size(); ++s)
       for (std::size_t p = 0; p < settings_.counts.size(); ++p) open.push_back({s, p});
-    for (std::size_t s = 0; s < series_.size(); ++s) {
-      if (!progress(0)) return std::move(series_);
+    for (std::size_t s = 0; s < sweep_.series.size(); ++s) {
+      if (!progress(0)) return std::move(sweep_);
       references_.push_back(make_reference(contestants_[s]));
-      for (SweepPoint& point : series_[s].points) describe(references_[s], point);
+      for (std::size_t p = 0; p < settings_.counts.size(); ++p) describe({s, p});
     }
     for (const Entry& entry : open) {
-      if (!progress(0)) return std::move(series_);
-      warm_up(entry.series, series_[entry.series].points[entry.point]);
+      if (!progress(0)) return std::move(sweep_);
+      warm_up(entry);
+    }
+    std::mt19937_64 random(settings_.seed);
+    std::ranges::shuffle(open, random);
+    for (const Entry& entry : open) {
+      if (!progress(0)) return std::move(sweep_);
+      measure_cold(entry);
     }
 
-    std::mt19937_64 random(settings_.seed);
     const double total_s = settings_.min_time_s * static_cast<double>(open.size());
     double spent_s = 0;
     while (!open.empty()) {
       std::ranges::shuffle(open, random);
       for (const Entry& entry : open) {
-        SweepPoint& point = series_[entry.series].points[entry.point];
-        const double seconds =
-            renderers_[entry.series] == nullptr ? measure(entry.series, point) : measure_rendered(entry.series, point);
+        const double seconds = renderers_[entry.series] == nullptr ? measure(entry) : measure_rendered(entry);
         spent_s += std::min(seconds, settings_.min_time_s);
-        if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return std::move(series_);
+        if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return std::move(sweep_);
       }
-      std::erase_if(open, [&](const Entry& entry) {
-        double seconds = 0;
-        const auto& repetitions = series_[entry.series].points[entry.point].repetitions;
-        for (const Repetition& repetition : repetitions) seconds += repetition.seconds;
-        return repetitions.size() >= places_.size() && seconds >= settings_.min_time_s;
-      });
+      std::erase_if(open, [&](const Entry& entry) { return is_measured(point_of(entry)); });
     }
-    return std::move(series_);
+    return std::move(sweep_);
   }
 
  private:
-  std::span<const std::uint32_t> first_ids(std::uint32_t count) const { return std::span(ids_).first(count); }
+  struct Entry {
+    std::size_t series;
+    std::size_t point;
+  };
 
-  Reference make_reference(const Contestant& contestant) const {
-    const auto detector = contestant.make(kHashedPlanes);
-    const std::uint32_t most = std::ranges::max(settings_.counts);
-    Reference reference;
-    for (const Place& place : places_) {
-      DetectionRun detection(avatar_, first_ids(most), *detector);
-      detection.begin(place.front());
-      auto& rows = reference.rows.emplace_back();
-      for (std::size_t i = 1; i < place.size(); ++i) {
-        detection.step(place[i]);
-        rows.push_back(detection.row());
-      }
+  SweepPoint& point_of(const Entry& entry) { return sweep_.series[entry.series].points[entry.point]; }
+
+  void add_series(const Contestant& contestant) {
+    detectors_.push_back(contestant.make(contestant.planes));
+    SweepSeries series;
+    series.detector = contestant.detector;
+    series.skip = contestant.skip;
+    series.planes = contestant.planes;
+    series.method = detectors_.back()->method();
+    series.approximate = detectors_.back()->is_approximate();
+    renderers_.push_back(make_renderer(contestant));
+    if (renderers_.back() != nullptr) series.renderer = renderers_.back()->gl_info();
+    series.gl = detectors_.back()->gl_info();
+    for (const std::uint32_t count : settings_.counts) {
+      SweepPoint point;
+      point.colliders = count;
+      point.places = places_.size();
+      series.points.push_back(std::move(point));
     }
-    return reference;
-  }
-
-  static void describe(const Reference& reference, SweepPoint& point) {
-    TextureHash hash;
-    for (const auto& rows : reference.rows)
-      for (const ContactRow& row : rows) {
-        const ContactRow beginning(row.begin(), row.begin() + point.colliders);
-        hash.add(beginning);
-        point.contacts += static_cast<std::uint64_t>(std::ranges::count_if(beginning, &Contact::hit));
-      }
-    point.texture_hash = hash.hex();
-  }
-
-  /// Runs at every place, since a place with another number of segments may need another program.
-  void warm_up(std::size_t series, const SweepPoint& point) {
-    for (const Place& place : places_) {
-      DetectionRun detection(avatar_, first_ids(point.colliders), *detectors_[series]);
-      for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i) detection.step(place[i]);
-    }
+    sweep_.series.push_back(std::move(series));
   }
 
   std::unique_ptr<RenderThread> make_renderer(const Contestant& contestant) const {
@@ -178,69 +151,133 @@ class Sweep {
     return std::make_unique<RenderThread>(contestant.make_renderer_context, avatar_, std::move(frames));
   }
 
+  Reference make_reference(const Contestant& contestant) const {
+    const auto detector = contestant.make(kHashedPlanes);
+    Reference reference;
+    for (std::size_t number = 0; number < places_.size(); ++number) {
+      const Place& place = places_[number];
+      DetectionRun detection(avatar_, drawn_for_any_[number], *detector);
+      detection.begin(place.front());
+      auto& rows = reference.emplace_back();
+      for (std::size_t i = 1; i < place.size(); ++i) {
+        detection.step(place[i]);
+        rows.push_back(detection.row());
+      }
+    }
+    return reference;
+  }
+
+  void describe(const Entry& entry) {
+    SweepPoint& point = point_of(entry);
+    TextureHash hash;
+    for (std::size_t number = 0; number < places_.size(); ++number)
+      for (const ContactRow& all : references_[entry.series][number]) {
+        const ContactRow row = picked(all, drawn_for_any_[number], drawn_[entry.point][number]);
+        hash.add(row);
+        const auto contacts = static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
+        point.contacts += contacts;
+        if (contacts == 0) ++point.empty_frames;
+        ++point.pass_frames;
+      }
+    point.texture_hash = hash.hex();
+  }
+
+  /// Runs at every place, since a place with another number of segments may need another program.
+  void warm_up(const Entry& entry) {
+    for (std::size_t number = 0; number < places_.size(); ++number) {
+      DetectionRun detection(avatar_, drawn_[entry.point][number], *detectors_[entry.series]);
+      for (std::size_t i = 0; i < std::min(kWarmUpFrames, places_[number].size()); ++i)
+        detection.step(places_[number][i]);
+    }
+  }
+
+  void measure_cold(const Entry& entry) {
+    SweepPoint& point = point_of(entry);
+    if (renderers_[entry.series] != nullptr) renderers_[entry.series]->resume();
+    for (std::size_t number = 0; number < places_.size(); ++number) {
+      const PlaceRun run = run_place(entry, number);
+      point.cold.push_back(run.repetition);
+      point.work += run.work;
+      point.disagreements += run.disagreements;
+    }
+    if (renderers_[entry.series] != nullptr) renderers_[entry.series]->pause();
+  }
+
   /// Measures as many places as fit into one stretch beside the renderer. Returns the seconds timed.
-  double measure_rendered(std::size_t series, SweepPoint& point) {
+  double measure_rendered(const Entry& entry) {
+    SweepPoint& point = point_of(entry);
     const auto start = std::chrono::steady_clock::now();
     std::chrono::duration<double> elapsed = {};
     double seconds = 0;
-    renderers_[series]->resume();
+    renderers_[entry.series]->resume();
     do {
-      seconds += measure(series, point);
+      seconds += measure(entry);
       elapsed = std::chrono::steady_clock::now() - start;
     } while (elapsed.count() < kRenderedStretch_s);
-    point.rendered_frames += renderers_[series]->pause();
+    point.rendered_frames += renderers_[entry.series]->pause();
     point.rendered_s += elapsed.count();
     return seconds;
   }
 
   /// Measures the place whose turn it is. Returns the seconds timed.
-  double measure(std::size_t series, SweepPoint& point) {
-    const std::size_t place_number = point.repetitions.size() % places_.size();
-    const Place& place = places_[place_number];
-    DetectionRun detection(avatar_, first_ids(point.colliders), *detectors_[series]);
+  double measure(const Entry& entry) {
+    SweepPoint& point = point_of(entry);
+    const PlaceRun run = run_place(entry, point.repetitions.size() % places_.size());
+    point.frame_us.insert(point.frame_us.end(), run.frame_us.begin(), run.frame_us.end());
+    point.skipped_timed += run.skipped_frames;
+    point.skipped_us += run.skipped_us;
+    point.repetitions.push_back(run.repetition);
+    return run.repetition.seconds;
+  }
+
+  PlaceRun run_place(const Entry& entry, std::size_t number) {
+    const Place& place = places_[number];
+    const Colliders& ids = drawn_[entry.point][number];
+    DetectionRun detection(avatar_, ids, *detectors_[entry.series]);
     detection.begin(place.front());
-    Repetition repetition;
-    DetectorWork work;
-    std::uint64_t disagreements = 0;
+    PlaceRun run;
     for (std::size_t i = 1; i < place.size(); ++i) {
       const auto start = std::chrono::steady_clock::now();
       const DetectorWork done = detection.step(place[i]);
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      point.frame_us.push_back(elapsed.count() * 1e6);
-      repetition.seconds += elapsed.count();
-      ++repetition.frames;
+      run.frame_us.push_back(elapsed.count() * 1e6);
+      run.repetition.seconds += elapsed.count();
+      ++run.repetition.frames;
       if (done.frames_skipped != 0) {
-        ++point.skipped_timed;
-        point.skipped_us += point.frame_us.back();
+        ++run.skipped_frames;
+        run.skipped_us += run.frame_us.back();
       }
-      work += done;
-      const ContactRow& expected = references_[series].rows[place_number][i - 1];
+      run.work += done;
+      const ContactRow expected = picked(references_[entry.series][number][i - 1], drawn_for_any_[number], ids);
       const std::uint64_t different = differing(detection.row(), expected);
-      disagreements += different;
-      if (different != 0 && promises_same_bits(series_[series].detector))
-        throw Error(series_[series].detector,
+      run.disagreements += different;
+      if (different != 0 && promises_same_bits(contestants_[entry.series].detector))
+        throw Error(contestants_[entry.series].detector,
                     fmt::format("frame {} gave other contacts with {} colliders than with {}", place[i].index,
-                                point.colliders, expected.size()),
+                                ids.size(), drawn_for_any_[number].size()),
                     "this is a bug in Vestige or in the GL driver: try another --context, and report it");
     }
-    if (point.repetitions.size() < places_.size()) {
-      point.pass_frames += repetition.frames;
-      point.work += work;
-      point.disagreements += disagreements;
-    }
-    point.repetitions.push_back(repetition);
-    return repetition.seconds;
+    return run;
+  }
+
+  bool is_measured(const SweepPoint& point) const {
+    const std::size_t passes = point.repetitions.size() / places_.size();
+    if (point.repetitions.size() % places_.size() != 0 || passes < kFewestPasses) return false;
+    double seconds = 0;
+    for (const Repetition& repetition : point.repetitions) seconds += repetition.seconds;
+    return seconds >= settings_.min_time_s;
   }
 
   const Avatar& avatar_;
   const std::vector<Contestant>& contestants_;
   const SweepSettings& settings_;
-  std::vector<std::uint32_t> ids_;
   std::vector<Place> places_;
+  std::vector<std::vector<Colliders>> drawn_;  // by count, then place
+  std::vector<Colliders> drawn_for_any_;       // by place
   std::vector<std::unique_ptr<Detector>> detectors_;
   std::vector<std::unique_ptr<RenderThread>> renderers_;  // null for a contestant that is measured alone
-  std::vector<SweepSeries> series_;
   std::vector<Reference> references_;
+  Sweep sweep_;
 };
 
 }  // namespace
@@ -249,14 +286,11 @@ bool promises_same_bits(std::string_view detector) {
   return detector == "cpu" || detector == "geometry" || detector == "exact";
 }
 
-std::uint32_t sweep_places(std::uint64_t trace_frames, const SweepSettings& settings) {
-  const std::uint64_t most = trace_frames / std::max<std::uint64_t>(1, place_length(trace_frames, settings));
-  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, settings.runs));
-}
-
-std::vector<SweepSeries> run_sweep(TraceReader& trace, const Avatar& avatar, const std::vector<Contestant>& contestants,
-                                   const SweepSettings& settings, const std::function<bool(double)>& progress) {
-  return Sweep(trace, avatar, contestants, settings).run(progress);
+Sweep run_sweep(TraceReader& trace, const Avatar& avatar, Detector& survey, const std::vector<Contestant>& contestants,
+                const SweepSettings& settings, const std::function<bool(double)>& progress) {
+  SweepSample sample =
+      sample_places(trace, avatar, survey, settings.runs, settings.run_frames, [&] { return progress(0); });
+  return RunningSweep(trace.collider_ids(), avatar, std::move(sample), contestants, settings).run(progress);
 }
 
 }  // namespace vestige

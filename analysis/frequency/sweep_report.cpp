@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
 #include <iterator>
 #include <string_view>
 
@@ -15,9 +17,6 @@ namespace vestige {
 namespace {
 
 constexpr double kNoisy = 0.05;
-/// The fewest repetitions that give an interval.
-constexpr std::size_t kFewestForInterval = 2;
-
 /// HAVE 2010, Fig. 2 and §IV: a GeForce GTX 285 under Windows 7.
 struct PaperFigure {
   std::uint32_t colliders;
@@ -48,45 +47,41 @@ double fastest_hz(std::span<const SweepSeries> series, const Rival& rival, std::
   return fastest;
 }
 
-/// Returns the table of ratios to a rival. Empty if the rival, or everything else, was not measured.
-std::string ratio_table(std::span<const SweepSeries> series, const Rival& rival) {
-  const auto is_rival = [&](const SweepSeries& one) { return one.detector.starts_with(rival.prefix); };
-  const auto rivals = std::ranges::count_if(series, is_rival);
-  if (rivals == 0 || rivals == std::ssize(series)) return "";
-  std::string table = fmt::format("\nTimes as fast as {}:\n{:>9}", rival.title, "colliders");
-  for (const SweepSeries& one : series)
-    if (!is_rival(one)) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
-  for (std::size_t p = 0; p < series.front().points.size(); ++p) {
-    fmt::format_to(std::back_inserter(table), "\n{:>9}", series.front().points[p].colliders);
-    const double rival_hz = fastest_hz(series, rival, p);
-    for (const SweepSeries& one : series) {
-      if (is_rival(one)) continue;
-      const bool known = rival_hz > 0 && !one.points[p].repetitions.empty();
-      fmt::format_to(std::back_inserter(table), "  {:>34}",
-                     known ? fmt::format("{:.2f}", one.points[p].hz() / rival_hz) : "-");
-    }
-  }
-  return table + "\n";
+Interval interval_of(const SweepPoint& point, std::uint64_t seed) {
+  return bootstrap_frequency_hz(point.repetitions, point.places, seed);
+}
+
+double noise_of(const SweepPoint& point) {
+  return relative_noise(point.repetitions, point.places);
+}
+
+nlohmann::ordered_json number_or_null(double value) {
+  return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+}
+
+nlohmann::ordered_json to_json(const FrameContacts& contacts) {
+  return {{"empty_share", contacts.empty_share}, {"contacts_per_frame", contacts.contacts_per_frame}};
 }
 
 nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
-  const Interval interval = bootstrap_frequency_hz(point.repetitions, seed);
-  const bool has_interval = point.repetitions.size() >= kFewestForInterval;
+  const Interval interval = interval_of(point, seed);
   const auto us = [&](double p) { return quantile(point.frame_us, p); };
   return {{"colliders", point.colliders},
           {"frames", point.frame_us.size()},
           {"pass_frames", point.pass_frames},
           {"frames_skipped", point.work.frames_skipped},
           {"hz", point.hz()},
-          {"hz_low", has_interval ? nlohmann::ordered_json(interval.low) : nullptr},
-          {"hz_high", has_interval ? nlohmann::ordered_json(interval.high) : nullptr},
+          {"hz_low", number_or_null(interval.low)},
+          {"hz_high", number_or_null(interval.high)},
+          {"cold_hz", number_or_null(point.cold_hz())},
           {"hz_median", 1e6 / us(0.5)},
           {"us_median", us(0.5)},
           {"us_p95", us(0.95)},
           {"us_p99", us(0.99)},
           {"us_max", us(1)},
-          {"noise", relative_noise(point.repetitions)},
+          {"noise", noise_of(point)},
           {"repetitions", point.repetitions.size()},
+          {"empty_share", static_cast<double>(point.empty_frames) / static_cast<double>(point.pass_frames)},
           {"contacts", point.contacts},
           {"pairs_tested", point.work.pairs_tested},
           {"pairs_meeting", point.work.pairs_meeting},
@@ -96,24 +91,92 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"disagreements", point.disagreements}};
 }
 
-/// Empty where nothing was drawn.
-std::string rendered_table(std::span<const SweepSeries> series) {
-  const auto is_rendered = [](const SweepSeries& one) { return one.renderer.has_value(); };
-  if (std::ranges::none_of(series, is_rendered)) return "";
-  std::string table = fmt::format("\nFrames of the scene drawn meanwhile, Hz ({:.0f} asked for):\n{:>9}",
-                                  RenderThread::kRate_hz, "colliders");
+/// Returns a table with one row for each count, and one column for each series that `has_column`. `cell` is what stands
+/// in it, empty where nothing was measured. Returns an empty text without columns.
+std::string table_of(std::span<const SweepSeries> series, const std::string& title,
+                     const std::function<bool(const SweepSeries&)>& has_column,
+                     const std::function<std::string(const SweepSeries&, std::size_t)>& cell) {
+  if (std::ranges::none_of(series, has_column)) return "";
+  std::string table = fmt::format("\n{}:\n{:>9}", title, "colliders");
   for (const SweepSeries& one : series)
-    if (is_rendered(one)) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
+    if (has_column(one)) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
   for (std::size_t p = 0; p < series.front().points.size(); ++p) {
     fmt::format_to(std::back_inserter(table), "\n{:>9}", series.front().points[p].colliders);
     for (const SweepSeries& one : series) {
-      if (!is_rendered(one)) continue;
-      const bool known = one.points[p].rendered_s > 0;
-      fmt::format_to(std::back_inserter(table), "  {:>34}",
-                     known ? fmt::format("{:.1f}", one.points[p].rendered_hz()) : "-");
+      if (!has_column(one)) continue;
+      const std::string text = one.points[p].repetitions.empty() ? "" : cell(one, p);
+      fmt::format_to(std::back_inserter(table), "  {:>34}", text.empty() ? "-" : text);
     }
   }
   return table + "\n";
+}
+
+/// Returns the table of ratios to a rival. Empty if the rival, or everything else, was not measured.
+std::string ratio_table(std::span<const SweepSeries> series, const Rival& rival) {
+  const auto is_rival = [&](const SweepSeries& one) { return one.detector.starts_with(rival.prefix); };
+  if (std::ranges::none_of(series, is_rival)) return "";
+  return table_of(series, fmt::format("Times as fast as {}", rival.title), std::not_fn(is_rival),
+                  [&](const SweepSeries& one, std::size_t p) {
+                    const double rival_hz = fastest_hz(series, rival, p);
+                    return rival_hz > 0 ? fmt::format("{:.2f}", one.points[p].hz() / rival_hz) : "";
+                  });
+}
+
+std::string cold_table(std::span<const SweepSeries> series) {
+  return table_of(
+      series, "Hz of the first pass, with cold caches", [](const SweepSeries&) { return true; },
+      [](const SweepSeries& one, std::size_t p) { return fmt::format("{:.0f}", one.points[p].cold_hz()); });
+}
+
+/// Empty where nothing was drawn.
+std::string rendered_table(std::span<const SweepSeries> series) {
+  return table_of(
+      series, fmt::format("Frames of the scene drawn meanwhile, Hz ({:.0f} asked for)", RenderThread::kRate_hz),
+      [](const SweepSeries& one) { return one.renderer.has_value(); },
+      [](const SweepSeries& one, std::size_t p) {
+        return one.points[p].rendered_s > 0 ? fmt::format("{:.1f}", one.points[p].rendered_hz()) : "";
+      });
+}
+
+/// Whether two series differ in nothing but their planes.
+bool differ_in_planes(const SweepSeries& a, const SweepSeries& b) {
+  return a.detector == b.detector && a.gl.context == b.gl.context && a.skip == b.skip && a.method == b.method &&
+         a.renderer.has_value() == b.renderer.has_value() && a.planes.count() != b.planes.count();
+}
+
+/// Says what planes cost beyond those of the series with the fewest. Empty unless a detector was measured with several
+/// numbers of planes.
+std::string planes_table(std::span<const SweepSeries> series) {
+  const auto with_fewest = [&](const SweepSeries& one) {
+    const SweepSeries* fewest = &one;
+    for (const SweepSeries& other : series)
+      if (differ_in_planes(one, other) && other.planes.count() < fewest->planes.count()) fewest = &other;
+    return fewest;
+  };
+  return table_of(
+      series, "What each further plane (render target) costs, µs a frame",
+      [&](const SweepSeries& one) { return with_fewest(one) != &one; },
+      [&](const SweepSeries& one, std::size_t p) -> std::string {
+        const SweepSeries& fewest = *with_fewest(one);
+        if (fewest.points[p].repetitions.empty()) return "";
+        const auto further = static_cast<double>(one.planes.count() - fewest.planes.count());
+        return fmt::format("{:+.1f}", (1e6 / one.points[p].hz() - 1e6 / fewest.points[p].hz()) / further);
+      });
+}
+
+/// Says how often the frames of each count have contacts, once for all series that agree with the first.
+std::string contacts_table(std::span<const SweepSeries> series) {
+  const auto tells_more = [&](const SweepSeries& one) {
+    return &one == &series.front() ||
+           !std::ranges::equal(one.points, series.front().points, {}, &SweepPoint::contacts, &SweepPoint::contacts);
+  };
+  return table_of(series, "Contacts in one pass, and share of its frames without any", tells_more,
+                  [](const SweepSeries& one, std::size_t p) {
+                    const SweepPoint& point = one.points[p];
+                    const double empty =
+                        static_cast<double>(point.empty_frames) / static_cast<double>(point.pass_frames);
+                    return fmt::format("{} ({:.0f} %)", point.contacts, 100 * empty);
+                  });
 }
 
 /// Returns one line for each point that disagreed with its reference.
@@ -136,6 +199,7 @@ std::string name_of(const SweepSeries& series) {
   std::string name = series.detector;
   if (series.approximate) name += " (approximate)";
   if (!series.gl.context.empty()) name += ", " + series.gl.context;
+  if (series.planes.count() > 1) name += fmt::format(", {} planes", series.planes.count());
   if (series.skip == Skip::kOn) name += ", skip on";
   if (series.renderer) name += ", rendering";
   return name;
@@ -159,6 +223,7 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
                     {"context", one.gl.context},
                     {"skip", one.skip == Skip::kOn ? "on" : "off"},
                     {"method", name_of(one.method)},
+                    {"planes", one.planes.count()},
                     {"renderer", one.renderer ? "on" : "off"},
                     {"renderer_gl", one.renderer ? to_json(*one.renderer) : nullptr},
                     {"gl", to_json(one.gl)},
@@ -167,16 +232,29 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
   return list;
 }
 
+nlohmann::ordered_json sample_json(const Sweep& sweep) {
+  return {{"places", sweep.places}, {"sampled", to_json(sweep.sampled)}, {"trace", to_json(sweep.trace)}};
+}
+
+std::string sample_sentence(const Sweep& sweep) {
+  return fmt::format(
+      "\nMeasured at {} places, with other colliders drawn for each. With all colliders, {:.1f} % of these frames have "
+      "no "
+      "contact, and {:.1f} % of the trace's; a frame has {:.2f} contacts, and {:.2f} in the whole trace.\n",
+      sweep.places, 100 * sweep.sampled.empty_share, 100 * sweep.trace.empty_share, sweep.sampled.contacts_per_frame,
+      sweep.trace.contacts_per_frame);
+}
+
 std::string frame_times_csv(std::span<const SweepSeries> series) {
-  std::string csv = "detector,context,skip,renderer,colliders,repetition,frame,us\n";
+  std::string csv = "detector,context,skip,planes,renderer,colliders,repetition,frame,us\n";
   for (const SweepSeries& one : series)
     for (const SweepPoint& point : one.points) {
       std::size_t frame = 0;
       for (std::size_t r = 0; r < point.repetitions.size(); ++r)
         for (std::uint64_t i = 0; i < point.repetitions[r].frames; ++i)
-          fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{:.2f}\n", one.detector, one.gl.context,
-                         one.skip == Skip::kOn ? "on" : "off", one.renderer ? "on" : "off", point.colliders, r, i,
-                         point.frame_us[frame++]);
+          fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{:.2f}\n", one.detector, one.gl.context,
+                         one.skip == Skip::kOn ? "on" : "off", one.planes.count(), one.renderer ? "on" : "off",
+                         point.colliders, r, i, point.frame_us[frame++]);
     }
   return csv;
 }
@@ -190,17 +268,19 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
     fmt::format_to(std::back_inserter(table), "{:>9}", series.front().points[p].colliders);
     for (const SweepSeries& one : series) {
       const SweepPoint& point = one.points[p];
-      const Interval interval = bootstrap_frequency_hz(point.repetitions, seed);
+      const Interval interval = interval_of(point, seed);
       std::string cell = fmt::format("{:.0f}", point.hz());
-      if (point.repetitions.size() >= kFewestForInterval)
-        cell += fmt::format(" ({:.0f} to {:.0f})", interval.low, interval.high);
+      if (std::isfinite(interval.low)) cell += fmt::format(" ({:.0f} to {:.0f})", interval.low, interval.high);
       fmt::format_to(std::back_inserter(table), "  {:>34}", point.repetitions.empty() ? "-" : cell);
     }
     const std::string_view paper = paper_figure(series.front().points[p].colliders);
     fmt::format_to(std::back_inserter(table), "   {}\n", paper);
   }
   table += "Hz: frames / total time, whole round trip (95 % bootstrap interval).\n";
+  table += cold_table(series);
+  table += contacts_table(series);
   for (const Rival& rival : kRivals) table += ratio_table(series, rival);
+  table += planes_table(series);
   table += rendered_table(series);
   table += disagreement_lines(series);
   return table;
@@ -231,7 +311,7 @@ std::vector<std::string> noise_warnings(std::span<const SweepSeries> series) {
     std::size_t noisy = 0;
     double worst = 0;
     for (const SweepPoint& point : one.points) {
-      const double noise = relative_noise(point.repetitions);
+      const double noise = noise_of(point);
       if (noise > kNoisy) ++noisy;
       worst = std::max(worst, noise);
     }

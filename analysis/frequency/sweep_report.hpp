@@ -10,19 +10,26 @@
 namespace vestige {
 
 /// Returns `series[…]` of a sweep's JSON (for the fields, see the comments of each struct). Medians and percentiles are
-/// of single frames, in microseconds. hz is frames over total time; hz_low and hz_high are its 95 % bootstrap interval.
-/// times_paper and times_embree are hz over the hz of the fastest `paper` or Embree detector at the same count, where
-/// one was measured.
+/// of single frames, in microseconds. hz is frames over total time of all passes but the first; hz_low and hz_high are
+/// its 95 % bootstrap interval. cold_hz is that of the first pass. empty_share is the share of frames without a
+/// contact. times_paper and times_embree are hz over the hz of the fastest `paper` or Embree detector at the same
+/// count, where one was measured.
 nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_t seed);
 
 /// Returns every frame's duration as CSV: `detector,context,skip,renderer,colliders,repetition,frame,us`.
 std::string frame_times_csv(std::span<const SweepSeries> series);
 
 /// Returns a table for people: the frequency of every series at every count, beside the paper's figures. Below, the
-/// table says how many times as fast each series is as the fastest `paper` and the fastest Embree detector, where they
-/// were measured without a renderer. It also says how many frames of the scene were drawn, and which points disagreed
-/// with their reference.
+/// table says how often the measured frames have contacts, how fast the first pass was, how many times as fast each
+/// series is as the fastest `paper` and the fastest Embree detector, where they were measured without a renderer, and
+/// what further planes cost. It also says how many frames of the scene were drawn, and which points disagreed with
+/// their reference.
 std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed);
+
+/// Returns, as JSON, how often the measured frames have contacts, and all frames of the trace.
+nlohmann::ordered_json sample_json(const Sweep& sweep);
+/// Says the same in a sentence.
+std::string sample_sentence(const Sweep& sweep);
 
 /// Returns one sentence, with cause and remedy, for each series whose repetitions scatter too much to be quoted.
 std::vector<std::string> noise_warnings(std::span<const SweepSeries> series);

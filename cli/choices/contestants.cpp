@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "cli/options.hpp"
@@ -13,6 +15,9 @@ namespace vestige::cli {
 
 namespace {
 
+/// The planes that shaders draw: all but the pressure, which the CPU computes.
+constexpr std::uint32_t kMostPlanes = 8;
+
 /// The detectors that are measured: exact is too slow.
 std::vector<std::string> contestant_names() {
   std::vector<std::string> names = detector_names();
@@ -22,6 +27,14 @@ std::vector<std::string> contestant_names() {
 
 bool needs_opengl(const std::string& detector) {
   return detector == "paper" || detector == "geometry";
+}
+
+/// The planes to measure a detector with: only `paper` renders each into a target of its own.
+std::vector<PlaneSet> planes_of(const std::string& detector, const ContestantChoice& choice) {
+  if (detector != "paper") return {PlaneSet()};
+  std::vector<PlaneSet> planes;
+  for (const std::uint32_t count : parse_counts(choice.planes, "--planes")) planes.push_back(PlaneSet::first(count));
+  return planes;
 }
 
 bool is_embree(const std::string& detector) {
@@ -48,6 +61,15 @@ void check_contestant_choice(const ContestantChoice& choice) {
       choice.contexts.find("auto") != std::string::npos)
     throw UsageError("--context", "'auto' already means egl or osmesa", "name egl and osmesa, or auto alone");
   parse_names(choice.skips, kSkipNames, "--skip");
+  if (const std::uint32_t most = std::ranges::max(parse_counts(choice.planes, "--planes")); most > kMostPlanes)
+    throw UsageError("--planes", fmt::format("asks for {} planes, but there are {}", most, kMostPlanes),
+                     "ask for 1 to 8 planes");
+}
+
+std::unique_ptr<Detector> make_survey(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map) {
+  DetectorChoice survey = choice.choice;
+  survey.skip = "on";
+  return make_detector("cpu", "", survey, avatar, map, PlaneSet());
 }
 
 std::vector<Contestant> make_contestants(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map,
@@ -59,15 +81,18 @@ std::vector<Contestant> make_contestants(const ContestantChoice& choice, const A
     for (const std::string& skip : skips) {
       DetectorChoice one = choice.choice;
       one.skip = skip;
-      contestants.push_back({detector, one.skip_kind(), [&avatar, &map, one, detector, context](PlaneSet planes) {
-                               return make_detector(detector, context, one, avatar, map, planes);
-                             }});
-      if (choice.renderer == "off") continue;
-      Contestant beside_renderer = contestants.back();
-      beside_renderer.make_renderer_context = [one, context] {
-        return make_gl_context(context_kind(context), one.device);
-      };
-      contestants.push_back(std::move(beside_renderer));
+      for (const PlaneSet planes : planes_of(detector, choice)) {
+        contestants.push_back(
+            {detector, one.skip_kind(), planes, [&avatar, &map, one, detector, context](PlaneSet set) {
+               return make_detector(detector, context, one, avatar, map, set);
+             }});
+        if (choice.renderer == "off") continue;
+        Contestant beside_renderer = contestants.back();
+        beside_renderer.make_renderer_context = [one, context] {
+          return make_gl_context(context_kind(context), one.device);
+        };
+        contestants.push_back(std::move(beside_renderer));
+      }
     }
   };
   for (const std::string& detector : parse_list(choice.detectors)) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct ContestantChoice {
   std::string detectors;
   std::string contexts;
   std::string skips;
+  std::string planes = "1";
   std::string renderer = "off";
 };
 
@@ -25,10 +27,14 @@ void add_contestant_options(CLI::App& verb, ContestantChoice& choice);
 /// Throws `UsageError` if a list has an unknown entry, or the same entry twice.
 void check_contestant_choice(const ContestantChoice& choice);
 
-/// Returns every requested detector: those of OpenGL once in every requested context that this machine has, and those
-/// that can skip with every requested setting of --skip. If a renderer is requested, each detector runs a second time
-/// beside it. Reports a context or a library that the machine lacks, by `verbosity`. Throws `Error` if no detector
-/// remains, or if a requested device cannot be used. The contestants keep references to avatar and map.
+/// Returns the detector by whose contacts `run_sweep` chooses frames. It keeps references to avatar and map.
+std::unique_ptr<Detector> make_survey(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map);
+
+/// Returns every requested detector: those of OpenGL once in every requested context that this machine has, those that
+/// can skip with every requested setting of --skip, and `paper` with every requested number of planes. If a renderer is
+/// requested, each detector runs a second time beside it. Reports a context or a library that the machine lacks, by
+/// `verbosity`. Throws `Error` if no detector remains, or if a requested device cannot be used. The contestants keep
+/// references to avatar and map.
 std::vector<Contestant> make_contestants(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                          Verbosity verbosity);
 

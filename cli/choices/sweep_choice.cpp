@@ -11,14 +11,16 @@ namespace vestige::cli {
 
 void add_swept_options(CLI::App& verb, SweepChoice& choice) {
   verb.add_option("TRACE", choice.trace, "The trace to measure on [default: the built-in avatar in a swarm]");
-  verb.add_option("--counts", choice.counts, "Numbers of colliders, as 1,10,40,100 or 1:100 or 5:100:5")
+  verb.add_option("--counts", choice.counts,
+                  "Numbers of colliders, drawn at random from the trace's, as 1,10,40,100 or 1:100 or 5:100:5")
       ->capture_default_str()
       ->type_name("LIST");
 }
 
 void add_measuring_options(CLI::App& verb, SweepChoice& choice, SweepSettings& settings,
                            const std::string& run_frames_help, const std::string& output_help) {
-  verb.add_option("--runs", settings.runs, "Number of evenly spread places in the trace to measure at")
+  verb.add_option("--runs", settings.runs,
+                  "Number of evenly spread places in the trace to measure at, each with other colliders")
       ->capture_default_str()
       ->check(help::whole_number(1, 10000));
   verb.add_option("--run-frames", settings.run_frames, run_frames_help)

@@ -55,7 +55,9 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
     Progress progress("Measuring", verbosity);
     Verbosity once = verbosity;  // what the machine lacks is said for the first size only
     const auto make = [&](const Avatar& avatar, const ActuatorMap& map) {
-      return make_contestants(choice.contestants, avatar, map, std::exchange(once, Verbosity::kQuiet));
+      return GrowthContestants{
+          make_survey(choice.contestants, avatar, map),
+          make_contestants(choice.contestants, avatar, map, std::exchange(once, Verbosity::kQuiet))};
     };
     growth = run_growth(trace.reader, trace.avatar, trace.map, make, options.settings,
                         [&](double share) { return progress.update(share); });

@@ -40,23 +40,26 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
       prepare_sweep(choice, {json_path, times_path}, std::ranges::max(options.settings.counts), invocation);
   OpenTrace trace(path, verbosity);
   const std::vector<Contestant> contestants = make_contestants(choice.contestants, trace.avatar, trace.map, verbosity);
-  std::vector<SweepSeries> series;
+  const std::unique_ptr<Detector> survey = make_survey(choice.contestants, trace.avatar, trace.map);
+  Sweep sweep;
   {
     Progress progress("Measuring", verbosity);
-    series = run_sweep(trace.reader, trace.avatar, contestants, options.settings,
-                       [&](double share) { return progress.update(share); });
+    sweep = run_sweep(trace.reader, trace.avatar, *survey, contestants, options.settings,
+                      [&](double share) { return progress.update(share); });
   }
+  const std::vector<SweepSeries>& series = sweep.series;
   check_measured("sweep", series);
-  const std::uint32_t runs = sweep_places(trace.reader.frame_count(), options.settings);
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["gl"] = first_gl(series);
   json["avatar"] = to_json(trace.avatar);
   json["trace"] = path;
   json["surface"] = choice.contestants.choice.surface;
-  json["runs"] = runs;
+  json["runs"] = sweep.places;
   json["run_frames"] = options.settings.run_frames;
   json["min_time_s"] = options.settings.min_time_s;
+  json["seed"] = options.settings.seed;
+  json["sample"] = sample_json(sweep);
   json["complete"] = !interrupted();
   json["series"] = to_json(series, options.settings.seed);
   write_json(json_path, json, common);
@@ -69,14 +72,14 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   times_file.commit();
 
   if (interrupted()) warn("stopped early; the results so far were written", verbosity);
-  if (runs < options.settings.runs)
-    warn(fmt::format("--runs {}: the trace has room for {} runs of {} frames each", options.settings.runs, runs,
+  if (sweep.places < options.settings.runs)
+    warn(fmt::format("--runs {}: the trace has room for {} runs of {} frames each", options.settings.runs, sweep.places,
                      options.settings.run_frames),
          verbosity);
   for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
   const std::vector<std::string> wrong = disagreements(series);
   for (const std::string& warning : wrong) warn(warning, verbosity);
-  print_summary(sweep_table(series, options.settings.seed), {common.json}, common);
+  print_summary(sweep_table(series, options.settings.seed) + sample_sentence(sweep), {common.json}, common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {common.json}, common);
   draw_or_remove_figure("sweep", "frequency", choice.output, !choice.no_figure && !interrupted(), common);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
@@ -99,6 +102,10 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
           "HAVE 2010 does")
       ->capture_default_str()
       ->check(CLI::IsMember({"on", "off"}));
+  verb->add_option("--planes", options->choice.contestants.planes,
+                   "Numbers of planes (render targets) that paper draws and reads back, 1 to 8, as 1,2,4,8 or 1:8")
+      ->capture_default_str()
+      ->type_name("LIST");
   add_measuring_options(*verb, options->choice, options->settings, "Consecutive frames at each place",
                         "Folder for sweep.json, every frame's duration, and the figure");
   verb->callback([options, &invocation] { run_sweep_verb(*options, invocation); });

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "detector/detector.hpp"
@@ -188,13 +189,14 @@ class PaperDetector final : public Detector {
   }
 
   void read_back(ContactRow& row) {
+    texture_.read();
     for (std::size_t i = 0; i < kGlPlanes.size(); ++i) {
       if (!options_.planes.has(kGlPlanes[i].plane)) continue;
-      texture_.read(i, texels_);
+      const std::span<const std::uint32_t> texels = texture_.texels(i);
       for (std::size_t column = 0; column < row.size(); ++column) {
         // The actuator plane comes first and shows which texels have a contact.
         if (i != VESTIGE_PLANE_ACTUATOR && !row[column].hit()) continue;
-        store(kGlPlanes[i].plane, &texels_[column * kGlPlanes[i].components], row[column]);
+        store(kGlPlanes[i].plane, &texels[column * kGlPlanes[i].components], row[column]);
       }
     }
   }
@@ -250,7 +252,6 @@ class PaperDetector final : public Detector {
   std::array<std::optional<GlProgram>, 16> programs_;  // by log2 of the block
   std::optional<GlProgram> skinning_program_;
   std::vector<GpuSegment> gpu_segments_;
-  std::vector<std::uint32_t> texels_;
 };
 
 }  // namespace

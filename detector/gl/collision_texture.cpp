@@ -42,12 +42,35 @@ void CollisionTexture::begin(std::size_t texels) {
   gl_.ClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &kFar);
 }
 
-void CollisionTexture::read(std::size_t plane_index, std::vector<std::uint32_t>& out) const {
+std::size_t CollisionTexture::values_of(std::size_t plane_index) const {
   const GlPlane& plane = kGlPlanes[plane_index];
-  out.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * plane.components);
-  gl_.NamedFramebufferReadBuffer(framebuffer_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(plane_index));
-  gl_.ReadPixels(0, 0, width_, height_, plane.format, plane.plane == Plane::kTriangle ? GL_UNSIGNED_INT : GL_FLOAT,
-                 out.data());
+  if (!planes_.has(plane.plane)) return 0;
+  return static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * plane.components;
+}
+
+void CollisionTexture::read() {
+  std::size_t values = 0;
+  for (std::size_t i = 0; i < kGlPlanes.size(); ++i) values += values_of(i);
+  if (read_.size() != values) pixels_.upload(nullptr, values * sizeof(std::uint32_t), GL_STREAM_READ);
+  read_.resize(values);
+  gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, pixels_.name());
+  std::uintptr_t offset = 0;
+  for (std::size_t i = 0; i < kGlPlanes.size(); ++i) {
+    const GlPlane& plane = kGlPlanes[i];
+    if (!planes_.has(plane.plane)) continue;
+    gl_.NamedFramebufferReadBuffer(framebuffer_, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+    gl_.ReadPixels(0, 0, width_, height_, plane.format, plane.plane == Plane::kTriangle ? GL_UNSIGNED_INT : GL_FLOAT,
+                   reinterpret_cast<void*>(offset));  // NOLINT(performance-no-int-to-ptr): OpenGL takes it so
+    offset += values_of(i) * sizeof(std::uint32_t);
+  }
+  gl_.BindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  gl_.GetNamedBufferSubData(pixels_.name(), 0, static_cast<GLsizeiptr>(values * sizeof(std::uint32_t)), read_.data());
+}
+
+std::span<const std::uint32_t> CollisionTexture::texels(std::size_t plane_index) const {
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < plane_index; ++i) first += values_of(i);
+  return std::span(read_).subspan(first, values_of(plane_index));
 }
 
 void CollisionTexture::create(std::size_t texels) {

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "detector/contact.hpp"
 #include "detector/gl/gl_functions.hpp"
+#include "detector/gl/gl_objects.hpp"
 #include "shaders/constants.h"
 
 namespace vestige {
@@ -37,7 +39,7 @@ static_assert(static_cast<unsigned>(Plane::kSide) == 1U << VESTIGE_PLANE_SIDE);
 /// with. That context must be current at every call.
 class CollisionTexture {
  public:
-  CollisionTexture(const GlFunctions& gl, PlaneSet planes) : gl_(gl), planes_(planes) {}
+  CollisionTexture(const GlFunctions& gl, PlaneSet planes) : gl_(gl), planes_(planes), pixels_(gl) {}
   ~CollisionTexture() { release(); }
   CollisionTexture(const CollisionTexture&) = delete;
   CollisionTexture& operator=(const CollisionTexture&) = delete;
@@ -49,12 +51,16 @@ class CollisionTexture {
   /// texture cannot hold that many texels, or if the driver refuses the planes.
   void begin(std::size_t texels);
 
-  /// Reads one plane back into `out`: width * height * components values of 32 bits.
-  void read(std::size_t plane_index, std::vector<std::uint32_t>& out) const;
+  /// Reads all planes of the set back, and waits once for all of them. The result is valid until the next call.
+  void read();
+  /// What `read` read of the plane kGlPlanes[plane_index], which must be in the set: width * height * components values
+  /// of 32 bits.
+  std::span<const std::uint32_t> texels(std::size_t plane_index) const;
 
  private:
   void create(std::size_t texels);
   void release();
+  std::size_t values_of(std::size_t plane_index) const;
 
   const GlFunctions& gl_;
   PlaneSet planes_;
@@ -64,6 +70,8 @@ class CollisionTexture {
   GLsizei width_ = 0;
   GLsizei height_ = 0;
   std::size_t texels_ = 0;
+  GlBuffer pixels_;                  ///< of all planes, one after the other
+  std::vector<std::uint32_t> read_;  ///< the same, as `read` left them
 };
 
 }  // namespace vestige

@@ -9,6 +9,7 @@ namespace vestige {
 #define VESTIGE_GL_FUNCTIONS(X)                                          \
   X(PFNGLATTACHSHADERPROC, AttachShader)                                 \
   X(PFNGLBEGINTRANSFORMFEEDBACKPROC, BeginTransformFeedback)             \
+  X(PFNGLBINDBUFFERPROC, BindBuffer)                                     \
   X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                             \
   X(PFNGLBINDBUFFERRANGEPROC, BindBufferRange)                           \
   X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                           \

@@ -20,6 +20,7 @@ std::string setting(const JsonField& field) {
 
 /// What an axis can show; nothing real lies outside.
 constexpr double kMostColliders = 1e9;
+constexpr double kMostPlanes = 16;
 constexpr double kLeastHz = 1e-6;
 constexpr double kMostHz = 1e12;
 
@@ -43,6 +44,7 @@ SweepSeries read_series(const JsonField& field) {
   if (field.has("skip")) series.skip = setting(field.at("skip"));
   if (field.has("method")) series.method = field.at("method").text();
   if (field.has("renderer")) series.renderer = setting(field.at("renderer"));
+  if (field.has("planes")) series.planes = fmt::format("{}", field.at("planes").within(1, kMostPlanes));
   const JsonField points = field.at("points");
   for (std::size_t i = 0; i < points.count(); ++i) series.points.push_back(read_point(points.at(i)));
   std::ranges::sort(series.points, {}, &SweepPoint::colliders);

@@ -92,6 +92,8 @@ std::vector<std::string> series_names(const Sweeps& sweeps) {
     std::string name = series.detector;
     if (contexts.size() > 1 && !series.context.empty()) name.append(", ").append(shown_context(series.context));
     if (methods.size() > 1) name.append(", ").append(series.method);
+    if (has_twin(sweeps, series, &SweepSeries::planes))
+      name += fmt::format(", {} plane{}", series.planes, series.planes == "1" ? "" : "s");
     if (is_without_skipping(sweeps, series)) name += ", no skipping";
     if (is_beside_renderer(sweeps, series)) name += ", rendering";
     if (sweeps.sources.size() > 1) name += fmt::format(" [{}]", series.sweep + 1);

@@ -30,6 +30,7 @@ TEST(Crossovers, AreNoneBetweenLinesThatKeepTheirOrderOrWereNotMeasured) {
 SweepPoint point(double us, std::uint64_t frames, std::uint64_t pairs) {
   SweepPoint point;
   point.colliders = 7;
+  point.places = 1;
   point.repetitions = {{frames, static_cast<double>(frames) * us / 1e6}};
   point.frame_us.assign(frames, us);
   point.pass_frames = frames;

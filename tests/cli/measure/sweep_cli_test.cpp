@@ -30,12 +30,21 @@ TEST_F(SweepCommandLine, MeasuresEverySeriesAndKeepsEveryFrame) {
   const auto json = json_in("s/sweep.json");
   EXPECT_EQ(json["schema_version"], 1);
   EXPECT_EQ(json["avatar"]["joints"], 21);
+  EXPECT_EQ(json["sample"]["places"], 2);
+  EXPECT_GT(json["sample"]["trace"]["contacts_per_frame"], 0);
+  EXPECT_NEAR(json["sample"]["sampled"]["empty_share"], json["sample"]["trace"]["empty_share"], 0.15);
+  EXPECT_THAT(sweep.standard_output, HasSubstr("with other colliders drawn for each"));
   ASSERT_EQ(json["series"].size(), 3U);
   for (const auto& series : json["series"]) {
     EXPECT_EQ(series["points"].size(), 5U);
     for (const auto& point : series["points"]) {
-      EXPECT_GE(point["frames"], 20);
+      EXPECT_GE(point["frames"], 40) << "two passes at least, beside the cold one";
+      EXPECT_EQ(point["frames"].get<int>() % 20, 0) << "whole passes";
       EXPECT_GT(point["hz"], 0);
+      EXPECT_GT(point["cold_hz"], 0);
+      EXPECT_GE(point["empty_share"], 0);
+      EXPECT_LE(point["empty_share"], 1);
+      EXPECT_EQ(point["contacts"] == 0, point["empty_share"] == 1);
       EXPECT_LE(point["hz_low"], point["hz"]);
       EXPECT_GE(point["hz_high"], point["hz"]);
       EXPECT_LE(point["us_median"], point["us_p99"]);
@@ -44,7 +53,7 @@ TEST_F(SweepCommandLine, MeasuresEverySeriesAndKeepsEveryFrame) {
   }
   EXPECT_EQ(json["series"][0]["points"][4]["texture_hash"], json["series"][1]["points"][4]["texture_hash"]);
   EXPECT_EQ(run("zstd -qdc s/frame_times.csv.zst | head -1").standard_output,
-            "detector,context,skip,renderer,colliders,repetition,frame,us\n");
+            "detector,context,skip,planes,renderer,colliders,repetition,frame,us\n");
 }
 
 TEST_F(SweepCommandLine, MeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) {
@@ -100,13 +109,34 @@ TEST_F(SweepCommandLine, MeasuresBesideARendererInAThreadOfItsOwn) {
   EXPECT_LE(json["series"][1]["points"][0]["rendered_hz"], 120) << "paced, however short the run";
 }
 
-TEST_F(SweepCommandLine, OneRepetitionHasNoInterval) {
+/// Whatever the colliders' order in the trace, the point of all of them sees what a replay sees.
+TEST_F(SweepCommandLine, MeasuresTheWholeTraceWhereItIsAllAsked) {
   record_small();
-  const test::Outcome sweep = run(
-      "vestige sweep small.mcap --detector cpu --counts 1 --min-time 1e-9 --runs 1 --run-frames 1 --no-figure -o s");
+  const auto replay = json_of("vestige replay small.mcap --detector cpu --json - -q");
+  const auto point = json_of(
+      "vestige sweep small.mcap --detector cpu --counts 20 --min-time 1e-9 --runs 1 "
+      "--run-frames 10000 --no-figure -o s --force --json -")["series"][0]["points"][0];
+  EXPECT_EQ(point["contacts"], replay["contacts"]);
+}
+
+TEST_F(SweepCommandLine, SaysWhatFurtherPlanesCost) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --detector paper,cpu --planes 1,3,8 --counts 5 --min-time 0.01 --runs 1 "
+          "--run-frames 5 --no-figure -o s" +
+          test::gl_flags("osmesa"));
   ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
-  EXPECT_THAT(sweep.standard_output, Not(HasSubstr(" to ")));
-  EXPECT_TRUE(json_in("s/sweep.json")["series"][0]["points"][0]["hz_low"].is_null());
+  EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("3 planes"), HasSubstr("each further plane")));
+  const auto series = json_in("s/sweep.json")["series"];
+  std::vector<int> planes;
+  for (const auto& one : series) {
+    planes.push_back(one["planes"].get<int>());
+    EXPECT_EQ(one["points"][0]["contacts"], series[0]["points"][0]["contacts"]);
+    EXPECT_EQ(one["points"][0]["disagreements"], 0);
+  }
+  EXPECT_THAT(planes, testing::ElementsAre(1, 3, 8, 1)) << "only paper draws planes";
+  expect_failure("vestige sweep small.mcap --planes 9 -o t", 2, {"--planes", "9", "8"}, "t/sweep.json");
+  expect_failure("vestige sweep small.mcap --planes 0 -o t", 2, {"--planes", "0"}, "t/sweep.json");
 }
 
 TEST_F(SweepCommandLine, SaysHowManyPlacesTheTraceHasRoomFor) {
