@@ -33,7 +33,10 @@ glm::dvec3 skin_reach_m(const SkinMatrix& matrix, const glm::dvec3& extent_m);
 /// change no bit, because a sum that starts at +0 is never -0.
 glm::vec3 skin_vertex(const Avatar& avatar, std::span<const SkinMatrix> palette, std::size_t vertex);
 
-/// Skins all vertices, with the same bits as `skin_vertex`.
+/// Skins all vertices, with the same bits as `skin_vertex`. All numbers of the palette must be finite.
 void skin_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::vector<glm::vec3>& out);
+
+/// As above. `out` has as many elements as the avatar has vertices.
+void skin_vertices(const Avatar& avatar, std::span<const SkinMatrix> palette, std::span<glm::vec3> out);
 
 }  // namespace vestige

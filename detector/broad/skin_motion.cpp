@@ -9,7 +9,7 @@ void SkinMotion::skin(const Avatar& avatar, const DetectorFrame& frame, Method m
   if (method != Method::kStatic) skin_vertices(avatar, frame.palette_before, before);
 }
 
-Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices, std::uint32_t triangle) {
+Corners corners_of(const Avatar& avatar, std::span<const glm::vec3> vertices, std::uint32_t triangle) {
   const glm::uvec3& corner = avatar.triangles[triangle];
   return {glm::dvec3(vertices[corner.x]), glm::dvec3(vertices[corner.y]), glm::dvec3(vertices[corner.z])};
 }

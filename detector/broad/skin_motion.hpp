@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <vector>
 
 #include "detector/decision.hpp"
@@ -27,7 +28,7 @@ struct MovingCorners {
   Corners now;
 };
 
-Corners corners_of(const Avatar& avatar, const std::vector<glm::vec3>& vertices, std::uint32_t triangle);
+Corners corners_of(const Avatar& avatar, std::span<const glm::vec3> vertices, std::uint32_t triangle);
 
 /// `skin` must come from `SkinMotion::skin` with the same method.
 MovingCorners moving_corners(const Avatar& avatar, const SkinMotion& skin, Method method, std::uint32_t triangle);

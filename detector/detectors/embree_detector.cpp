@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <memory>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -94,7 +95,10 @@ class EmbreeDetector final : public Detector {
         geometry_(embree().new_geometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE), embree().release_geometry) {
     check("making a scene");
     const int robust = mode == EmbreeMode::kRobust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE;
-    embree().set_scene_flags(scene_.get(), static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_DYNAMIC | robust));
+    // Measured fastest (docs/design/detectors.md): a compact tree refers to the vertices and copies none, so that its
+    // refit has less to write.
+    embree().set_scene_flags(scene_.get(),
+                             static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_DYNAMIC | RTC_SCENE_FLAG_COMPACT | robust));
     embree().set_scene_build_quality(scene_.get(), RTC_BUILD_QUALITY_LOW);
     embree().set_geometry_build_quality(geometry_.get(), RTC_BUILD_QUALITY_REFIT);
     vertices_ = new_buffer<glm::vec3>(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, avatar.position_bind.size());
@@ -114,8 +118,7 @@ class EmbreeDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
-    skin_.skin(avatar_, frame, Method::kStatic);
-    std::ranges::copy(skin_.now, vertices_);
+    skin_vertices(avatar_, frame.palette, vertices());
     embree().update_buffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0);
     embree().commit_geometry(geometry_.get());
     embree().commit_scene(scene_.get());
@@ -165,8 +168,10 @@ class EmbreeDetector final : public Detector {
     return describe(query.hit.primID, query.ray.tfar);
   }
 
+  std::span<glm::vec3> vertices() const { return {vertices_, avatar_.position_bind.size()}; }
+
   Contact describe(std::uint32_t triangle, float t) const {
-    const Corners corners = corners_of(avatar_, skin_.now, triangle);
+    const Corners corners = corners_of(avatar_, vertices(), triangle);
     const Way way = {glm::dvec3(segment_->start), glm::dvec3(segment_->end)};
     const double along =
         glm::dot(glm::cross(corners.b - corners.a, corners.c - corners.a), way.start - way.end);  // > 0: from the front
@@ -191,8 +196,7 @@ class EmbreeDetector final : public Detector {
   Handle<RTCDevice> device_;
   Handle<RTCScene> scene_;
   Handle<RTCGeometry> geometry_;
-  glm::vec3* vertices_ = nullptr;  ///< Embree's own buffer, one entry for each vertex
-  SkinMotion skin_;
+  glm::vec3* vertices_ = nullptr;         ///< Embree's own buffer, one entry for each vertex
   const DetectorFrame* frame_ = nullptr;  ///< set while `detect` runs
   const Segment* segment_ = nullptr;
 };
