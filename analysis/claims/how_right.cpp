@@ -205,16 +205,10 @@ void add_queries(const std::vector<Result>& run, std::vector<Claim>& claims) {
   });
 }
 
-/// Schema 1 has a share as a number, without its interval.
-double value_of(const nlohmann::json& share) {
-  const nlohmann::json& value = share.is_object() ? share.at("value") : share;
-  return value.is_number() ? value.get<double>() : 0;
-}
-
 /// Returns "8.2 to 11.0 %", or "0.0 %", for the shares missed at all rates.
 std::string range_missed(const nlohmann::json& points) {
   std::vector<double> percent;
-  for (const auto& point : points) percent.push_back(100 * value_of(point.at("missed_share")));
+  for (const auto& point : points) percent.push_back(100 * point.at("missed_share").get<double>());
   if (percent.empty()) return "nothing measured";
   const auto [least, most] = std::ranges::minmax(percent);
   const std::string highest = fmt::format("{:.1f}", most);
@@ -253,9 +247,9 @@ Scene read_scene(const nlohmann::json& json, const nlohmann::json& gl) {
   return scene;
 }
 
-/// What detectors miss on a moving avatar. If those with the same method miss the same in all scenes, a row of its own
-/// names them.
-void add_accuracy(const nlohmann::json& accuracy, const std::string& file, std::vector<Claim>& claims) {
+/// As written by version 0.2: what detectors miss on a moving avatar. If those with the same method miss the same in
+/// all scenes, a row of its own names them.
+void add_missed(const nlohmann::json& accuracy, const std::string& file, std::vector<Claim>& claims) {
   std::vector<Scene> scenes;
   std::set<std::string> rates;
   for (const auto& scene : accuracy.at("scenes")) {
@@ -278,6 +272,75 @@ void add_accuracy(const nlohmann::json& accuracy, const std::string& file, std::
                       topic,
                       "Every detector with the same method misses the same shares: " + detectors,
                       {file}});
+}
+
+/// The rate at which events are quoted: that of common head-mounted displays, where it was measured.
+constexpr double kQuotedRate_hz = 90;
+
+double quoted_rate_hz(const nlohmann::json& accuracy) {
+  std::vector<double> rates_hz;
+  for (const auto& scene : accuracy.at("scenes"))
+    for (const auto& series : scene.at("series"))
+      for (const auto& point : series.at("points")) rates_hz.push_back(point.at("rate_hz").get<double>());
+  if (rates_hz.empty() || std::ranges::find(rates_hz, kQuotedRate_hz) != rates_hz.end()) return kQuotedRate_hz;
+  return rates_hz.front();
+}
+
+/// Returns "62.1 (55.0 to 70.2)", or "< 0.14" if none is wrong, for each hundred.
+std::string per_100(const nlohmann::json& share) {
+  if (!share.at("value").is_number()) return "nothing measured";
+  const double value = share["value"].get<double>();
+  const auto has_interval = share.at("low").is_number() && share.at("high").is_number();
+  if (value == 0 && has_interval) return fmt::format("< {:.2g}", 100 * share["high"].get<double>());
+  if (!has_interval) return fmt::format("{:.1f}", 100 * value);
+  return fmt::format("{:.1f} ({:.1f} to {:.1f})", 100 * value, 100 * share["low"].get<double>(),
+                     100 * share["high"].get<double>());
+}
+
+/// What every detector gets wrong in one scene at one rate, those with the fewest errors first.
+std::string wrong_in(const nlohmann::json& scene, double rate_hz, const nlohmann::json& gl) {
+  Rows rows;
+  std::map<std::string, double> order;
+  for (const auto& series : scene.at("series"))
+    for (const auto& point : series.at("points")) {
+      if (point.at("rate_hz") != rate_hz) continue;
+      const auto& share = point.at("within_tolerance").at("wrong_share");
+      const auto detector = series.at("detector").get<std::string>();
+      const std::string text = fmt::format(" by {}: {}", code(series.at("method")), per_100(share));
+      const char* approximate = series.at("approximate").get<bool>() ? " (approximate)" : "";
+      add_to(rows, text, {detector, approximate + on_renderer(gl_used_by(detector, gl))});
+      order[text] = share.at("value").is_number() ? share["value"].get<double>() : 0;
+    }
+  std::ranges::stable_sort(rows, {}, [&](const Rows::value_type& row) { return order[row.first]; });
+  std::vector<std::string> texts;
+  for (const auto& [text, contestants] : rows) texts.push_back(listed(contestants) + text);
+  return fmt::format("{}", fmt::join(texts, "; "));
+}
+
+/// What detectors get wrong on a moving avatar, within the tolerance on the time of impact.
+void add_wrong(const nlohmann::json& accuracy, const std::string& file, std::vector<Claim>& claims) {
+  const double rate_hz = quoted_rate_hz(accuracy);
+  const std::string topic = fmt::format(
+      "Events wrong (missed, false or with another actuator) for each 100 true contacts of a moving avatar, at {} Hz, "
+      "within {} ms",
+      rate_hz, accuracy.at("tolerance_ms").get<double>());
+  for (const auto& scene : accuracy.at("scenes")) {
+    const std::string text = wrong_in(scene, rate_hz, accuracy.value("gl", nlohmann::json()));
+    if (text.empty()) continue;
+    claims.push_back({Question::kHowRight,
+                      topic,
+                      fmt::format("{}, {} true contacts: {}", scene.at("colliders").get<std::string>(),
+                                  scene.at("truth").at("events").get<std::uint64_t>(), text),
+                      {file}});
+  }
+}
+
+void add_accuracy(const nlohmann::json& accuracy, const std::string& file, std::vector<Claim>& claims) {
+  if (accuracy.contains("tolerance_ms")) {
+    add_wrong(accuracy, file, claims);
+  } else {
+    add_missed(accuracy, file, claims);
+  }
 }
 
 }  // namespace

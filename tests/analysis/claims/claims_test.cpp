@@ -159,6 +159,38 @@ TEST(Claims, QuoteWhatEachMethodMissesOverAllRates) {
               ElementsAre("hug, of 8 true contacts: 0.0 to 12.5 % by `static` (`cpu`); 25.0 % by `static` (`embree`)"));
 }
 
+TEST(Claims, QuoteTheEventsWrongAtTheRateOfDisplaysAndWhoIsApproximate) {
+  const auto share = [](nlohmann::json value, nlohmann::json low, nlohmann::json high) {
+    return nlohmann::json{{"value", std::move(value)}, {"low", std::move(low)}, {"high", std::move(high)}};
+  };
+  const auto series = [](const char* detector, const char* method, bool approximate, const nlohmann::json& wrong) {
+    const auto point = [](double rate_hz, const nlohmann::json& wrong_share) {
+      return nlohmann::json{{"rate_hz", rate_hz}, {"within_tolerance", {{"wrong_share", wrong_share}}}};
+    };
+    return nlohmann::json{{"detector", detector},
+                          {"method", method},
+                          {"approximate", approximate},
+                          {"points", {point(60, nullptr), point(90, wrong)}}};
+  };
+  nlohmann::json accuracy = {{"duration_s", 1.0}, {"tolerance_ms", 35.0}};
+  accuracy["scenes"] = {
+      {{"colliders", "hug"},
+       {"truth", {{"events", 2100}}},
+       {"series",
+        {series("boxes", "carried", true, share(0.621, 0.55, 0.7)), series("cpu", "ccd", false, share(0, 0, 0.0014)),
+         series("geometry", "ccd", false, share(0, 0, 0.0014)),
+         series("paper", "static", false, share(0.1, nullptr, nullptr))}}}};
+  nlohmann::json run = origin();
+  run["gl"] = gl("softpipe");
+  const auto claims = claims_of({result("accuracy.json", with_run(accuracy, run))});
+  ASSERT_EQ(claims.size(), 1U);
+  EXPECT_THAT(claims[0].topic, HasSubstr("at 90 Hz, within 35 ms"));
+  EXPECT_EQ(
+      claims[0].text,
+      "hug, 2100 true contacts: `geometry` on softpipe (software) and `cpu` by `ccd`: < 0.14; `paper` on softpipe "
+      "(software) by `static`: 10.0; `boxes` (approximate) by `carried`: 62.1 (55.0 to 70.0)");
+}
+
 TEST(Claims, SumAgreementUpOverFiles) {
   nlohmann::json agreement = origin();
   agreement["method"] = "ccd";
