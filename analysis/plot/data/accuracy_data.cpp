@@ -109,6 +109,7 @@ AccuracyResult read_accuracy(const std::filesystem::path& folder) {
   }
   result.truth_rate_hz = scenes.at(std::size_t{0}).at("truth").at("rate_hz").within(kLeastRate_hz, kMostRate_hz);
   result.tolerance_ms = errors.at("tolerance_ms").within(0, kMost);
+  if (errors.has("keep")) result.keep = errors.at("keep").within(0, 1);
   result.animation = errors.at("animation").text();
   result.avatar = phrase(errors.at("avatar"), {{"triangles", " triangles"}});
   if (run.has("machine")) result.machine = phrase(run.at("machine"), {{"processor", ""}, {"cores", " cores"}});

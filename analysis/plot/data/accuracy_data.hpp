@@ -44,6 +44,7 @@ struct AccuracyResult {
   std::vector<AccuracyPanel> panels;  ///< all have the same series in the same order
   double truth_rate_hz = 0;
   double tolerance_ms = 0;
+  double keep = 1;  ///< share of the triangles that `decimated` was to keep, 0 … 1
   std::string animation;
   std::string avatar;
   std::string renderer;  ///< empty without OpenGL

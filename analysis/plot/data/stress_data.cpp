@@ -19,6 +19,10 @@ StressCell read_cell(const JsonField& field) {
   cell.false_contacts = field.at("false_positives").within(0, cell.cases);
   cell.elsewhere = field.at("wrong_triangle").within(0, cell.cases) + field.at("wrong_actuator").within(0, cell.cases);
   if (cell.error_rate() > 1) field.refuse("has more errors than cases");
+  if (field.has("felt_share_low") && field.has("felt_share_high")) {
+    cell.low = field.at("felt_share_low").within(0, 1);
+    cell.high = field.at("felt_share_high").within(*cell.low, 1);
+  }
   return cell;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct StressCell {
   double missed = 0;
   double false_contacts = 0;
   double elsewhere = 0;  ///< on another triangle, or on another actuator
+  /// The 95 % Wilson interval of `error_rate`, 0 … 1. Absent if the file does not have it.
+  std::optional<double> low;
+  std::optional<double> high;
 
   double error_rate() const { return (missed + false_contacts + elsewhere) / cases; }
 };

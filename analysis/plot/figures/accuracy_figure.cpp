@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "analysis/plot/canvas/axis.hpp"
@@ -30,6 +31,7 @@ constexpr double kSmallLinePt = 8;
 constexpr double kLegendLinePt = 10;
 constexpr double kMarkPt = 3.4;
 constexpr double kVestMarkPt = 5.4;
+constexpr double kNearPt = 7;  ///< a name that is farther from its mark is joined with it
 constexpr double kMost = 200;  ///< events wrong for 100 true ones: more false than true ones is beyond use
 constexpr double kLeastShown = 0.5;
 /// The frame rate of a headset, at which a vest is driven too.
@@ -54,16 +56,31 @@ std::vector<std::string> wrapped(const std::string& text) {
   return plot::wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
 }
 
+bool has(const AccuracyResult& result, bool (*matches)(const AccuracySeries&, const AccuracyPoint&)) {
+  for (const AccuracyPanel& panel : result.panels)
+    for (const AccuracySeries& series : panel.series)
+      for (const AccuracyPoint& point : series.points)
+        if (matches(series, point)) return true;
+  return false;
+}
+
 std::vector<std::string> small_print(const AccuracyResult& result) {
-  std::vector<std::string> lines = wrapped(fmt::format(
+  std::string explained = fmt::format(
       "Wrong: true events that are missed, false events, and events of a wrong actuator, for 100 true events; 95 % "
       "intervals by the bootstrap over colliders. An event is a maximal run of contact of a collider with an actuator. "
       "It is found if an event of the same collider and actuator begins within {:g} ms of it. Truth: continuous "
       "collision detection at {} Hz, of which exact arithmetic checked whole frames. Each line joins the frame rates "
-      "of "
-      "one detector; large marks are at {:g} Hz. The black line is the Pareto front: nothing measured is as cheap and "
-      "has as few events wrong. Above 1000 ms, a detector is slower than real time.",
-      result.tolerance_ms, result.truth_rate_hz, kVestRate_hz));
+      "of one detector",
+      result.tolerance_ms, result.truth_rate_hz);
+  if (has(result, [](const auto&, const AccuracyPoint& point) { return point.rate_hz == kVestRate_hz; }))
+    explained += fmt::format("; large marks are at {:g} Hz", kVestRate_hz);
+  explained +=
+      ". The black line is the Pareto front: nothing measured is as cheap and has as few events wrong. Above 1000 ms, "
+      "a "
+      "detector is slower than real time.";
+  if (has(result, [](const AccuracySeries& series, const auto&) { return series.detector == "decimated"; }))
+    explained += fmt::format(" decimated keeps {:g} % of the triangles, or as many as seams need.", 100 * result.keep);
+  std::vector<std::string> lines = wrapped(explained);
   std::string text;
   if (!result.renderer.empty()) text += fmt::format("OpenGL: {}. ", result.renderer);
   if (!result.machine.empty()) text += fmt::format("Machine: {}. ", result.machine);
@@ -203,8 +220,8 @@ class AccuracyFigure : public Figure {
     const double bottom_pt = top_pt - kTitlePt - kErrorsPt - kNonePt;
     const Panel large = panel_at({kLeftPt, bottom_pt, right_pt, top_pt - kTitlePt});
     canvas.text({kLeftPt, large.plot.top_pt + kTitleGapPt},
-                fmt::format("{}: {} colliders, {} true events", scene.colliders, scene.collider_count,
-                            grouped(scene.true_events)),
+                fmt::format("{}: {} collider{}, {} true events", scene.colliders, scene.collider_count,
+                            scene.collider_count == 1 ? "" : "s", grouped(scene.true_events)),
                 kTitleStyle);
     draw_axes(canvas, large, kAll.title, "Processor time for a second of the scene (ms)");
     draw_front(canvas, large, scene);
@@ -212,7 +229,7 @@ class AccuracyFigure : public Figure {
     draw_names(canvas, large, scene);
 
     const double small_top_pt = bottom_pt - kAxisRoomPt - kTitlePt;
-    const double width_pt = (kWidthPt - kMarginPt - kLeftPt - 2 * kSmallGapPt) / 3;
+    const double width_pt = (kWidthPt - 2 * kMarginPt - kLeftPt - 2 * kSmallGapPt) / 3;
     for (std::size_t i = 0; i < kKinds.size(); ++i) {
       const double left_pt = kLeftPt + static_cast<double>(i) * (width_pt + kSmallGapPt);
       const Panel small =
@@ -299,7 +316,12 @@ class AccuracyFigure : public Figure {
       if (free == boxes.end()) continue;  // pareto in run.json names it
       const Box box = *free;
       free_place.take(box);
-      canvas.text({box.left_pt, (box.bottom_pt + box.top_pt) / 2}, label, kNameStyle);
+      const double label_pt = (box.bottom_pt + box.top_pt) / 2;
+      if (std::abs(label_pt - at.y_pt) > kNearPt)
+        canvas.line(at,
+                    {std::clamp(at.x_pt, box.left_pt, box.right_pt), label_pt > at.y_pt ? box.bottom_pt : box.top_pt},
+                    {kSmallPrint, 0.4, Dash::kSolid});
+      canvas.text({box.left_pt, label_pt}, label, kNameStyle);
     }
   }
 

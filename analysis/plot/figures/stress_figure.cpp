@@ -16,7 +16,7 @@ namespace vestige::plot {
 namespace {
 
 constexpr double kRowPt = 8.6;
-constexpr double kColumnPt = 50;
+constexpr double kColumnPt = 62;
 constexpr double kNamePt = 92;
 constexpr double kMagnitudePt = 44;
 constexpr double kHeadPt = 24;
@@ -55,9 +55,16 @@ double shade_of(double rate) {
   return std::clamp(1 + std::log10(rate) / kDecades, 0.0, 1.0);
 }
 
-std::string shown(double errors) {
-  if (errors < 1e5) return fmt::format("{:.0f}", errors);
-  return fmt::format("{:.3g}", errors);
+/// Returns "304 (72–80 %)": the errors, and what their share may be. No errors need no interval: the small print has
+/// it.
+std::string shown(const StressCell& cell) {
+  const double errors = cell.error_rate() * cell.cases;
+  const std::string count = errors < 1e5 ? fmt::format("{:.0f}", errors) : fmt::format("{:.3g}", errors);
+  if (errors == 0 || !cell.low || !cell.high) return count;
+  const auto percent = [](double share) {
+    return share < 0.1 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);
+  };
+  return fmt::format("{} ({}–{} %)", count, percent(*cell.low), percent(*cell.high));
 }
 
 class StressFigure : public Figure {
@@ -140,7 +147,7 @@ class StressFigure : public Figure {
     canvas.rectangle(box, rate > 0 ? number_ramp(shade_of(rate)) : kNoErrors);
     const Colour ink = rate > 0 && shade_of(rate) > 0.2 ? kWhite : kInk;
     const TextStyle style = {6, ink, Anchor::kCentre, Level::kMiddle, rate > 0 ? Weight::kBold : Weight::kRegular};
-    canvas.text({left_pt + kColumnPt / 2, bottom_pt + kRowPt / 2}, shown(rate * cell.cases), style);
+    canvas.text({left_pt + kColumnPt / 2, bottom_pt + kRowPt / 2}, shown(cell), style);
   }
 
   /// What the colours mean: none, then shares of a cell's cases.
@@ -167,10 +174,14 @@ class StressFigure : public Figure {
   }
 
   std::vector<std::string> small_print() const {
+    bool has_intervals = false;
+    double zero_high = 0;  // the highest share that cells without errors may have
     double fewest = result_.lines.front().cells.front().cases;
     double most = fewest;
     for (const StressLine& line : result_.lines)
       for (const StressCell& cell : line.cells) {
+        has_intervals |= cell.low.has_value();
+        if (cell.error_rate() == 0) zero_high = std::max(zero_high, cell.high.value_or(0));
         fewest = std::min(fewest, cell.cases);
         most = std::max(most, cell.cases);
       }
@@ -179,6 +190,11 @@ class StressFigure : public Figure {
     std::vector<std::string> lines = {
         fmt::format("Errors among {} cases a cell: missed, false, on another triangle or actuator.", cases),
         "Numbers beside the families: magnitudes, as 'vestige stress -v' defines them."};
+    if (has_intervals) {
+      std::string text = "In parentheses: 95 % Wilson interval of the share of wrong cases.";
+      if (zero_high > 0) text += fmt::format(" No error: the share is below {:.2g} %.", 100 * zero_high);
+      lines.push_back(std::move(text));
+    }
     if (!result_.renderer.empty()) lines.push_back(fmt::format("OpenGL: {}.", result_.renderer));
     std::string last;
     if (!result_.machine.empty()) last = fmt::format("Machine: {}. ", result_.machine);
