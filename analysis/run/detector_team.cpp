@@ -32,6 +32,15 @@ DetectorTeam::DetectorTeam(std::size_t threads, Make make)
     for (std::thread& helper : helpers_) helper.join();
     throw Error("--threads", "the system cannot start more threads", "use fewer threads");
   }
+  // Now every thread makes its detector, which a batch of frames would else contain.
+  FrameBatch no_frames;
+  try {
+    start(no_frames);
+    finish();
+  } catch (...) {
+    dismiss();
+    throw;
+  }
 }
 
 DetectorTeam::~DetectorTeam() {
@@ -39,6 +48,10 @@ DetectorTeam::~DetectorTeam() {
     next_ = batch_->count;
     end_.arrive_and_wait();
   }
+  dismiss();
+}
+
+void DetectorTeam::dismiss() {
   batch_ = nullptr;
   begin_.arrive_and_wait();
   for (std::thread& helper : helpers_) helper.join();

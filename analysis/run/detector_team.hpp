@@ -32,8 +32,8 @@ class DetectorTeam {
  public:
   using Make = std::function<std::unique_ptr<Detector>()>;  ///< called by several threads at a time
 
-  /// Makes the first detector, for the calling thread. The other threads make theirs while the first batch is under
-  /// way. `threads` is at least 1 and includes the calling thread.
+  /// Makes all detectors: the first for the calling thread. Throws what `make` threw. `threads` is at least 1 and
+  /// includes the calling thread.
   DetectorTeam(std::size_t threads, Make make);
   ~DetectorTeam();
   DetectorTeam(const DetectorTeam&) = delete;
@@ -50,6 +50,8 @@ class DetectorTeam {
 
  private:
   void help();
+  /// Lets the helpers return. Precondition: no batch is under way.
+  void dismiss();
   void work_through(Detector& detector);
   void note_failure();
 

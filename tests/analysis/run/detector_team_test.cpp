@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <stdexcept>
 
 #include "detector/detectors/make_detectors.hpp"
@@ -63,6 +64,25 @@ TEST(DetectorTeamTest, PassesOnWhatADetectorThrewOnAnyThread) {
 TEST(DetectorTeamTest, EndsWhereNothingWasAskedOfIt) {
   const DetectorTeam team(4, make_cpu);
   EXPECT_EQ(team.threads(), 4U);
+}
+
+/// What is timed are batches.
+TEST(DetectorTeamTest, MakesAllDetectorsBeforeTheFirstBatch) {
+  std::atomic<int> made = 0;
+  const DetectorTeam team(4, [&] {
+    ++made;
+    return make_cpu();
+  });
+  EXPECT_EQ(made, 4);
+}
+
+TEST(DetectorTeamTest, PassesOnWhatKeptAThreadFromItsDetector) {
+  std::atomic<int> made = 0;
+  const auto make = [&] {
+    if (++made == 3) throw std::runtime_error("this detector cannot be made");
+    return make_cpu();
+  };
+  EXPECT_THROW(DetectorTeam(4, make), std::runtime_error);
 }
 
 }  // namespace
