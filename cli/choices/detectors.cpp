@@ -20,6 +20,14 @@ constexpr const char* kSkipHelp =
     "on: cpu and geometry do not skin or test what bounds prove to miss (the result is the same); off: they skin the "
     "whole avatar and consider every pair of segment and triangle";
 
+/// Returns why --keep would change nothing, or "".
+std::string refusal_of_keep(const CLI::Option& detectors) {
+  const std::string names =
+      detectors.empty() ? detectors.get_default_str() : fmt::format("{}", fmt::join(detectors.results(), ","));
+  if (names.find("decimated") != std::string::npos) return "";
+  return fmt::format("changes nothing for --detector {}: only decimated keeps a share of the triangles", names);
+}
+
 void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   const auto add = [&](const char* name, auto& value, const char* description) {
     return verb.add_option(name, value, description)->group(kDetectorGroup);
@@ -29,7 +37,8 @@ void add_common_detector_options(CLI::App& verb, DetectorChoice& choice) {
   add("--keep", choice.keep, "Share of the avatar's triangles that decimated keeps")
       ->type_name("SHARE")
       ->capture_default_str()
-      ->check(help::between(1e-6, 1));
+      ->check(help::between(1e-6, 1))
+      ->check([&verb](const std::string&) { return refusal_of_keep(*verb.get_option("--detector")); });
   add("--surface", choice.surface,
       "all: skin without an actuator hides the skin behind it; mapped: colliders pass through skin without an actuator")
       ->capture_default_str()

@@ -94,7 +94,11 @@ std::string summary(const BatchOutcome& outcome, const nlohmann::ordered_json& r
   const auto earlier = static_cast<std::size_t>(std::ranges::count_if(outcome.items, &BatchItem::earlier));
   const nlohmann::ordered_json& totals = run["totals"];
   const std::size_t detected = outcome.items.size() - earlier;
-  std::string text = fmt::format("detected {} once, {}", counted(detected, "trace"),
+  const nlohmann::ordered_json& options = run["batch"]["options"];
+  const std::string by = options.value("approximate", false)
+                             ? fmt::format(" by {} (approximate)", options["detector"].get<std::string>())
+                             : "";
+  std::string text = fmt::format("detected {} once{}, {}", counted(detected, "trace"), by,
                                  counted(totals["scores"].get<std::size_t>(), "score"));
   if (earlier != 0) text += fmt::format(" ({} finished by an earlier run)", counted(earlier, "trace"));
   text += fmt::format(

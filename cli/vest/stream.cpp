@@ -123,12 +123,13 @@ const char* off_at_end(const SenderStatistics& sender, const ActuatorSink& sink)
   return sender.zeros_acknowledged ? "all levels 0 acknowledged, OFF not" : "NOT CONFIRMED";
 }
 
-std::string summary(const Streamed& streamed, const OpenSink& sink) {
+std::string summary(const Streamed& streamed, const OpenSink& sink, const Detector& detector) {
   const PlaybackResult& playback = streamed.playback;
   const SenderStatistics& sender = streamed.sender;
   std::string text =
-      fmt::format("{} in {:.2f} s, {}, {} missed{}\n", counted(playback.frames, "frame"), playback.duration_s,
-                  counted(playback.contacts, "contact"), counted(playback.missed_deadlines, "deadline"),
+      fmt::format("{} in {:.2f} s, {}{}, {} missed{}\n", counted(playback.frames, "frame"), playback.duration_s,
+                  counted(playback.contacts, "contact"), detector.is_approximate() ? " (approximate)" : "",
+                  counted(playback.missed_deadlines, "deadline"),
                   playback.fell_behind() ? fmt::format(", up to {:.1f} s late", playback.most_late_s) : "");
   text += fmt::format("sent {} frames, {} of them changes; {} changes superseded by newer ones", sender.sent,
                       sender.changes, sender.superseded);
@@ -275,7 +276,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   sink.commit();
   if (log) log->commit();
 
-  print_summary(summary(streamed, sink), outputs, options.common);
+  print_summary(summary(streamed, sink, *detector), outputs, options.common);
   write_json(options.common.json, to_json(streamed, options, sink, *detector, laws, invocation), options.common);
   const int losses = report_losses(streamed, sink, verbosity);
   const int damage = report_damage(trace.reader, options.trace, verbosity);

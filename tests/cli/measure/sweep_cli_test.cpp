@@ -84,6 +84,7 @@ TEST_F(SweepCommandLine, MeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) 
                     "--no-figure -o ccd --json -")["series"][0]["method"],
             "ccd");
   expect_failure("vestige sweep small.mcap -o t --skip maybe", 2, {"--skip", "maybe", "off"}, "t/sweep.json");
+  expect_failure("vestige sweep small.mcap -o t --keep 0.5", 2, {"--keep", "paper,cpu", "decimated"}, "t/sweep.json");
   expect_failure("vestige sweep small.mcap -o t --skip on,on", 2, {"--skip", "twice"}, "t/sweep.json");
 }
 
