@@ -12,14 +12,13 @@ namespace {
 constexpr int kLeastPasses = 3;
 
 /// Returns the number of frames.
-std::uint64_t run_pass(const Avatar& avatar, std::span<const std::uint32_t> collider_ids,
-                       std::span<const std::vector<TraceFrame>> places, Detector& detector) {
+std::uint64_t run_pass(const Avatar& avatar, std::span<const StagePlace> places, Detector& detector) {
   std::uint64_t frames = 0;
-  for (const std::vector<TraceFrame>& place : places) {
-    DetectionRun detection(avatar, collider_ids, detector);
-    detection.begin(place.front());
-    for (std::size_t i = 1; i < place.size(); ++i) detection.step(place[i]);
-    frames += place.size() - 1;
+  for (const StagePlace& place : places) {
+    DetectionRun detection(avatar, place.collider_ids, detector);
+    detection.begin(place.frames.front());
+    for (const TraceFrame& frame : place.frames.subspan(1)) detection.step(frame);
+    frames += place.frames.size() - 1;
   }
   return frames;
 }
@@ -44,16 +43,16 @@ double StageMeans::total_us() const {
   return total;
 }
 
-StageMeans measure_stages(const Avatar& avatar, std::span<const std::uint32_t> collider_ids,
-                          std::span<const std::vector<TraceFrame>> places, Detector& detector, double least_s) {
+StageMeans measure_stages(const Avatar& avatar, std::span<const StagePlace> places, Detector& detector,
+                          double least_s) {
   StageClock clock;
   const TimedStages timed(detector, clock);
-  run_pass(avatar, collider_ids, places, detector);
+  run_pass(avatar, places, detector);
   clock.reset();
   std::uint64_t frames = 0;
   const auto start = std::chrono::steady_clock::now();
   for (int pass = 0; pass < kLeastPasses || seconds(std::chrono::steady_clock::now() - start) < least_s; ++pass)
-    frames += run_pass(avatar, collider_ids, places, detector);
+    frames += run_pass(avatar, places, detector);
   StageMeans means = {clock.times(), clock.drawn_by()};
   for (StageTime& stage : means.stages) stage.us /= static_cast<double>(frames);
   return means;

@@ -20,11 +20,16 @@ struct StageMeans {
   double total_us() const;
 };
 
+/// Consecutive frames of a trace, at least two, and the colliders that are tested in them (as in `FrameBuilder`).
+struct StagePlace {
+  std::span<const TraceFrame> frames;
+  std::span<const std::uint32_t> collider_ids;
+};
+
 /// Measures how long each stage of a frame takes, as means over all frames but the first of each place. Reading clocks
-/// slows the detector down, so this is no pass whose frames are timed for anything else. All places are run once to
-/// warm up. Then they are run again and again, at least three times and for at least `least_s`. A place is a list of
-/// consecutive frames; `collider_ids` as in `FrameBuilder`. Afterwards, the detector times no stages.
-StageMeans measure_stages(const Avatar& avatar, std::span<const std::uint32_t> collider_ids,
-                          std::span<const std::vector<TraceFrame>> places, Detector& detector, double least_s);
+/// slows the detector down, so nothing else may be concluded from these frames. All places are run once to warm up.
+/// Then they are run again and again, at least three times and for at least `least_s`. Afterwards, the detector times
+/// no stages.
+StageMeans measure_stages(const Avatar& avatar, std::span<const StagePlace> places, Detector& detector, double least_s);
 
 }  // namespace vestige
