@@ -47,6 +47,8 @@ std::string details_of(const SweepSeries& series, const Sweeps& sweeps) {
   if (series.skip == "on") details.emplace_back("skipping");
   if (series.skip == "off" && differs(&SweepSeries::skip)) details.emplace_back("no skipping");
   if (differs(&SweepSeries::method)) details.push_back(series.method);
+  if (differs(&SweepSeries::planes))
+    details.push_back(fmt::format("{} plane{}", series.planes, series.planes == "1" ? "" : "s"));
   return fmt::format("{}", fmt::join(details, ", "));
 }
 
