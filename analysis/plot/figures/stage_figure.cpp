@@ -66,7 +66,7 @@ double total_of(const StageBar& bar) {
 
 /// About three digits.
 std::string shown_us(double us) {
-  if (us < 1) return fmt::format("{:.2f}", us);
+  if (us < 0.995) return fmt::format("{:.2f}", us);
   return us < 99.95 ? fmt::format("{:.1f}", us) : grouped(std::round(us));
 }
 
