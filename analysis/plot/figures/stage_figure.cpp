@@ -175,17 +175,20 @@ class StageFigure : public Figure {
   void draw_legend(Canvas& canvas, double top_pt) const {
     const double column_pt = (kWidthPt - 2 * kMarginPt) / kLegendColumns;
     const std::size_t lines = legend_lines();
-    std::size_t entry = 0;
+    std::size_t column = 0;
+    std::size_t line = 0;
     for (std::size_t i = 0; i < kLooks.size(); ++i) {
       if (!occurs_[i]) continue;
-      const double left_pt = kMarginPt + static_cast<double>(entry / lines) * column_pt;
-      const double y_pt = top_pt - (static_cast<double>(entry % lines) + 0.5) * kLegendLinePt;
+      const double left_pt = kMarginPt + static_cast<double>(column) * column_pt;
+      const double y_pt = top_pt - (static_cast<double>(line) + 0.5) * kLegendLinePt;
       canvas.rectangle({left_pt, y_pt - 3, left_pt + 9, y_pt + 3}, kLooks[i].colour);
       canvas.text({left_pt + 13, y_pt}, kLooks[i].name, kLegendStyle);
       const bool with_wait = static_cast<Stage>(i) == Stage::kDraw && !any_timer_;
       canvas.text({left_pt + 16 + text_width_pt(kLooks[i].name, kLegendStyle), y_pt},
                   with_wait ? kDrawAndWait : kLooks[i].meaning, kDetailStyle);
-      ++entry;
+      if (++line < lines) continue;
+      line = 0;
+      ++column;
     }
   }
 
