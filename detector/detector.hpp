@@ -12,6 +12,7 @@
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
 #include "detector/shader_arithmetic.hpp"
+#include "detector/stages.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
@@ -95,6 +96,17 @@ class Detector {
   /// Writes this detector's own skinned vertices to `out`, relative to the frame's origin, for comparison with the
   /// double-precision reference.
   virtual void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) = 0;
+
+  /// From now on, `detect` charges its time to the stages of `clock`, and an OpenGL detector waits until everything is
+  /// drawn before it reads back. The clock must live until it is replaced. Null, the default: nothing is timed.
+  virtual void time_stages(StageClock* clock) { clock_ = clock; }
+  StageClock* stage_clock() const { return clock_; }
+
+ protected:
+  void enter(Stage stage) const { enter_stage(clock_, stage); }
+
+ private:
+  StageClock* clock_ = nullptr;
 };
 
 }  // namespace vestige

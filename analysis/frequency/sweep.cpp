@@ -22,6 +22,8 @@ constexpr std::size_t kWarmUpFrames = 2;
 constexpr std::size_t kFewestPasses = 2;
 /// Length of one stretch beside a renderer: 18 of the renderer's frames.
 constexpr double kRenderedStretch_s = 0.2;
+/// Means need less time than intervals.
+constexpr double kStageShare = 0.2;
 
 /// The colliders of one place: those that are drawn for one count, or for any count.
 using Colliders = std::vector<std::uint32_t>;
@@ -112,6 +114,7 @@ class RunningSweep {
       }
       std::erase_if(open, [&](const Entry& entry) { return is_measured(point_of(entry)); });
     }
+    if (settings_.stages) measure_stages(progress);
     return std::move(sweep_);
   }
 
@@ -141,6 +144,22 @@ class RunningSweep {
       series.points.push_back(std::move(point));
     }
     sweep_.series.push_back(std::move(series));
+  }
+
+  /// In a pass of its own, so that no timed frame reads these clocks.
+  void measure_stages(const std::function<bool(double)>& progress) {
+    for (std::size_t s = 0; s < sweep_.series.size(); ++s) {
+      if (renderers_[s] != nullptr) continue;
+      for (std::size_t p = 0; p < settings_.counts.size(); ++p) {
+        if (!progress(1)) return;
+        std::vector<StagePlace> places;
+        places.reserve(places_.size());
+        for (std::size_t number = 0; number < places_.size(); ++number)
+          places.push_back({places_[number], drawn_[p][number]});
+        point_of({s, p}).stages =
+            vestige::measure_stages(avatar_, places, *detectors_[s], kStageShare * settings_.min_time_s);
+      }
+    }
   }
 
   std::unique_ptr<RenderThread> make_renderer(const Contestant& contestant) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "analysis/base/statistics.hpp"
+#include "analysis/frequency/stage_pass.hpp"
 #include "analysis/frequency/sweep_sample.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
@@ -37,6 +38,7 @@ struct SweepSettings {
   std::uint32_t run_frames = 12;      ///< consecutive frames at each place
   double min_time_s = 1;              ///< least time for every point; the places are repeated until then
   std::uint64_t seed = 1;             ///< seed of the drawn colliders and of the random order
+  bool stages = false;                ///< afterwards, measure where the time goes (`measure_stages`)
 };
 
 /// One point of HAVE 2010 Fig. 2: the detection frequency for a number of colliders. At every place, other colliders
@@ -60,6 +62,8 @@ struct SweepPoint {
   double skipped_us = 0;              ///< total duration of these frames
   std::uint64_t rendered_frames = 0;  ///< frames of the scene drawn during the measurement
   double rendered_s = 0;              ///< duration of that drawing
+
+  StageMeans stages;  ///< empty unless asked for, and beside a renderer
 
   double hz() const { return frequency_hz(repetitions); }
   double cold_hz() const { return frequency_hz(cold); }

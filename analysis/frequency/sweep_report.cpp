@@ -11,6 +11,7 @@
 
 #include "analysis/base/provenance.hpp"
 #include "analysis/frequency/render_thread.hpp"
+#include "analysis/frequency/stage_report.hpp"
 
 namespace vestige {
 
@@ -216,6 +217,7 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
         if (const double rival_hz = fastest_hz(series, rival, p); rival_hz > 0)
           point[rival.field] = one.points[p].hz() / rival_hz;
       if (one.renderer) point["rendered_hz"] = one.points[p].rendered_hz();
+      point.update(to_json(one.points[p].stages));
       points.push_back(std::move(point));
     }
     list.push_back({{"detector", one.detector},
@@ -282,6 +284,7 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
   for (const Rival& rival : kRivals) table += ratio_table(series, rival);
   table += planes_table(series);
   table += rendered_table(series);
+  table += stage_table(series);
   table += disagreement_lines(series);
   return table;
 }

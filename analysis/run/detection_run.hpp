@@ -6,6 +6,7 @@
 #include "detector/contact.hpp"
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
+#include "detector/stages.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 
@@ -22,9 +23,15 @@ class DetectionRun {
   void begin(const TraceFrame& first) { builder_.next(first); }
 
   /// Detects in the frame after the one given before. Its results stay good until the next call.
+  /// If the detector times its stages, the frame's making belongs to Stage::kPose, as does all that a detector does
+  /// before its own first stage.
   DetectorWork step(const TraceFrame& trace_frame) {
+    StageClock* const clock = detector_.stage_clock();
+    enter_stage(clock, Stage::kPose);
     frame_ = &builder_.next(trace_frame);
-    return detector_.detect(*frame_, row_);
+    const DetectorWork work = detector_.detect(*frame_, row_);
+    if (clock != nullptr) clock->leave();
+    return work;
   }
 
   /// Precondition of both: `step` was called.

@@ -81,7 +81,9 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   for (const std::string& warning : wrong) warn(warning, verbosity);
   print_summary(sweep_table(series, options.settings.seed) + sample_sentence(sweep), {common.json}, common);
   print_summary(fmt::format("written: {}, {}\n", json_path, times_path), {common.json}, common);
-  draw_or_remove_figure("sweep", "frequency", choice.output, !choice.no_figure && !interrupted(), common);
+  const bool wants_figures = !choice.no_figure && !interrupted();
+  draw_or_remove_figure("sweep", "frequency", choice.output, wants_figures, common);
+  draw_or_remove_figure("stages", "stages", choice.output, wants_figures && options.settings.stages, common);
   invocation.exit_code = report_damage(trace.reader, path, verbosity);
   if (interrupted()) invocation.exit_code = kDataLost;
   if (!wrong.empty()) invocation.exit_code = kCheckFailed;
@@ -106,8 +108,10 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
                    "Numbers of planes (render targets) that paper draws and reads back, 1 to 8, as 1,2,4,8 or 1:8")
       ->capture_default_str()
       ->type_name("LIST");
+  verb->add_flag("--stages", options->settings.stages,
+                 "Also measure where the time of a frame goes, in a pass of its own: pose, skinning, test, ...");
   add_measuring_options(*verb, options->choice, options->settings, "Consecutive frames at each place",
-                        "Folder for sweep.json, every frame's duration, and the figure");
+                        "Folder for sweep.json, every frame's duration, and the figures");
   verb->callback([options, &invocation] { run_sweep_verb(*options, invocation); });
 }
 

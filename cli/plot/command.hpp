@@ -34,6 +34,7 @@ struct Options {
   double rate_hz = 60;
   std::uint64_t every = 0;  ///< 0: by `rate_hz`
   std::size_t top = 12;
+  std::string counts;
   bool force = false;
   bool quiet = false;
 };

@@ -11,12 +11,14 @@
 #include "analysis/plot/figures/growth_figure.hpp"
 #include "analysis/plot/figures/measured_figure.hpp"
 #include "analysis/plot/figures/scene_figure.hpp"
+#include "analysis/plot/figures/stage_figure.hpp"
 #include "analysis/plot/figures/stress_figure.hpp"
 #include "analysis/plot/figures/sweep_figure.hpp"
 #include "analysis/plot/figures/texture_figure.hpp"
 #include "analysis/plot/figures/timeline_figure.hpp"
 #include "analysis/plot/paraview/paraview_export.hpp"
 #include "analysis/plot/report/report.hpp"
+#include "cli/options.hpp"
 #include "cli/terminal.hpp"
 #include "traces/base/error.hpp"
 #include "traces/files/output_file.hpp"
@@ -36,6 +38,13 @@ int draw_results(const Options& options, const char* name,
     throw Error(results.string(), "no such file", fmt::format("name a folder that 'vestige {} -o' wrote", name));
   return write_figure(options, (options.output.empty() ? folder : options.output) / name,
                       [&] { return figure_of(folder); });
+}
+
+/// Where figures of a sweep go: OUT, otherwise beside the first input.
+std::filesystem::path sweep_folder(const Options& options) {
+  if (!options.output.empty()) return options.output;
+  const std::filesystem::path& first = options.inputs.front();
+  return std::filesystem::is_directory(first) ? first : first.parent_path();
 }
 
 void warn_of(const Options& options, const Subject& subject) {
@@ -88,12 +97,15 @@ int draw_accuracy(const Options& options) {
 }
 
 int draw_sweep(const Options& options) {
-  std::filesystem::path folder = options.output;
-  if (folder.empty()) {
-    const auto& first = options.inputs.front();
-    folder = std::filesystem::is_directory(first) ? first : first.parent_path();
-  }
-  return write_figure(options, folder / "frequency", [&] { return sweep_figure(read_sweeps(options.inputs)); });
+  return write_figure(options, sweep_folder(options) / "frequency",
+                      [&] { return sweep_figure(read_sweeps(options.inputs)); });
+}
+
+int draw_stages(const Options& options) {
+  std::vector<std::uint32_t> counts;
+  if (!options.counts.empty()) counts = cli::parse_counts(options.counts, "--counts");
+  return write_figure(options, sweep_folder(options) / "stages",
+                      [&] { return stage_figure(read_stage_result(options.inputs.front(), counts)); });
 }
 
 int draw_growth(const Options& options) {

@@ -8,6 +8,7 @@ namespace vestige::plot {
 // PNG. It returns the exit code and throws `Error`.
 int draw_accuracy(const Options& options);
 int draw_sweep(const Options& options);
+int draw_stages(const Options& options);
 int draw_growth(const Options& options);
 int draw_stress(const Options& options);
 int draw_timeline(const Options& options);

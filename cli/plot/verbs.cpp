@@ -65,6 +65,21 @@ CLI::App& add_sweep(CLI::App& app, Options& options) {
   return sweep;
 }
 
+CLI::App& add_stages(CLI::App& app, Options& options) {
+  CLI::App& stages = add_command(app, "stages", "Where the time of a frame goes, by detector (stages.svg, .png)",
+                                 "  vestige plot stages results/sweep\n"
+                                 "  vestige plot stages results/sweep --counts 1,10 -o figures\n");
+  add_input(stages, options, "DIR|JSON",
+            "The sweep.json that 'vestige sweep --stages' wrote, or the folder that holds it");
+  stages
+      .add_option(
+          "--counts", options.counts,
+          "Numbers of colliders to draw, as 1,10,40,100 or 1:100 or 5:100:5 [default: up to three of the sweep's]")
+      ->type_name("LIST");
+  add_common_options(stages, options, "DIR", "Folder for the figure [default: beside the input]");
+  return stages;
+}
+
 CLI::App& add_timeline(CLI::App& app, Options& options) {
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
@@ -212,6 +227,7 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
 
 std::vector<Verb> add_verbs(CLI::App& app, Options& options) {
   return {{&add_sweep(app, options), draw_sweep},
+          {&add_stages(app, options), draw_stages},
           {&add_results(app, options, "accuracy", "Contacts missed over run time (accuracy.svg, .png)",
                         "Folder for the figure [default: the input]"),
            draw_accuracy},

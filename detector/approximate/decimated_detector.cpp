@@ -106,6 +106,7 @@ class DecimatedDetector final : public Detector {
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     const DetectorWork work = detector_->detect(frame, row);
+    if (!frame.segments.empty()) enter(Stage::kDecision);
     for (Contact& contact : row) {
       if (!contact.hit()) continue;
       const SkinSpot& spot = spots_[contact.triangle * kCells + cell_of(contact.barycentric)];
@@ -113,6 +114,11 @@ class DecimatedDetector final : public Detector {
       if (surface_ == Surface::kMapped && spot.actuator == 0) contact = Contact();
     }
     return work;
+  }
+
+  void time_stages(StageClock* clock) override {
+    Detector::time_stages(clock);
+    detector_->time_stages(clock);
   }
 
   void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {

@@ -43,7 +43,10 @@ class ShapeDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
+    enter(Stage::kSkinning);
     move_parts(frame);
+    enter(Stage::kCandidates);
+    bound_parts(frame);
     find_pairs(frame);
     DetectorWork work;
     for (std::size_t i = 0; i < frame.segments.size(); ++i) {
@@ -75,19 +78,23 @@ class ShapeDetector final : public Detector {
   };
 
   void move_parts(const DetectorFrame& frame) {
-    double longest_m = 0;
-    if (method_ == Method::kCarried)
-      for (const Segment& segment : frame.segments)
-        longest_m = std::max(longest_m, glm::distance(glm::dvec3(segment.start), glm::dvec3(segment.end)));
     moved_.clear();
-    boxes_.clear();
     for (const Part& part : parts_) {
       const MovingFrame end(frame.palette[part.palette]);
       const MovingFrame start = method_ == Method::kCarried ? MovingFrame(frame.palette_before[part.palette]) : end;
       if (!start.is_regular() || !end.is_regular()) continue;
       moved_.push_back({&part, start, end});
-      boxes_.push_back(around(moved_.back(), longest_m));
     }
+  }
+
+  void bound_parts(const DetectorFrame& frame) {
+    double longest_m = 0;
+    if (method_ == Method::kCarried)
+      for (const Segment& segment : frame.segments)
+        longest_m = std::max(longest_m, glm::distance(glm::dvec3(segment.start), glm::dvec3(segment.end)));
+    boxes_.clear();
+    boxes_.reserve(moved_.size());
+    for (const MovedPart& moved : moved_) boxes_.push_back(around(moved, longest_m));
   }
 
   /// Returns a box that every segment meets whose way meets the part.
@@ -127,6 +134,7 @@ class ShapeDetector final : public Detector {
   }
 
   Contact first_contact(const DetectorFrame& frame, const Segment& segment, std::span<const std::size_t> near) {
+    enter(Stage::kTest);
     chords_.clear();
     for (const std::size_t i : near) {
       const MovedPart& moved = moved_[i];
@@ -135,6 +143,7 @@ class ShapeDetector final : public Detector {
     }
     const std::optional<Crossing> crossing = first_crossing(chords_);
     if (!crossing) return {};
+    enter(Stage::kDecision);
     const MovedPart& moved = moved_[near[crossing->chord]];
     const glm::dvec3 start(segment.start);
     const glm::dvec3 end(segment.end);

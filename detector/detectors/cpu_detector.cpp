@@ -29,11 +29,16 @@ class CpuDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
+    enter(Stage::kSkinning);
     skin_.skin(avatar_, frame, method_);
+    enter(Stage::kCandidates);
     boxes_.build(avatar_, skin_, method_);
+    enter(Stage::kTest);
     for (const Segment& segment : frame.segments)
       boxes_.meet(segment, [&](std::uint32_t triangle) {
+        enter(Stage::kDecision);
         finder_.offer(frame, moving_corners(avatar_, skin_, method_, triangle), segment, triangle, row[segment.column]);
+        enter(Stage::kTest);
       });
     return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
             .triangles_tested = avatar_.triangles.size(),
@@ -70,6 +75,7 @@ class SkippingCpuDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
+    enter(Stage::kCandidates);
     candidates_.find(frame, method_);
     DetectorWork work;
     work.frames_skipped = candidates_.touched().empty() ? 1 : 0;
@@ -91,8 +97,10 @@ class SkippingCpuDetector final : public Detector {
 
  private:
   void test(const DetectorFrame& frame, const TouchedMeshlet& touched, ContactRow& row) {
+    enter(Stage::kSkinning);
     meshlet_skin_.skin(touched.meshlet, frame.palette, now_);
     if (method_ != Method::kStatic) meshlet_skin_.skin(touched.meshlet, frame.palette_before, before_);
+    enter(Stage::kTest);
     triangles_.bound(now_, before_, method_);
     const std::span<const std::uint32_t> numbers = candidates_.segments(touched);
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
@@ -103,6 +111,7 @@ class SkippingCpuDetector final : public Detector {
       for (std::uint32_t bits = meets_[k]; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(bits));
         if (i >= triangles.size()) break;
+        enter(Stage::kDecision);
         const Corners now = now_.corners(i);
         const Corners before = method_ == Method::kStatic ? now : before_.corners(i);
         finder_.offer(frame, {before, now}, segment, triangles[i], row[segment.column]);

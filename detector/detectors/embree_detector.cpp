@@ -118,7 +118,9 @@ class EmbreeDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
+    enter(Stage::kSkinning);
     skin_vertices(avatar_, frame.palette, vertices());
+    enter(Stage::kCandidates);
     embree().update_buffer(geometry_.get(), RTC_BUFFER_TYPE_VERTEX, 0);
     embree().commit_geometry(geometry_.get());
     embree().commit_scene(scene_.get());
@@ -149,6 +151,7 @@ class EmbreeDetector final : public Detector {
   }
 
   Contact first_contact(const Segment& segment) {
+    enter(Stage::kTest);
     segment_ = &segment;
     const glm::vec3 direction = segment.end - segment.start;
     RTCRayHit query = {};
@@ -165,6 +168,7 @@ class EmbreeDetector final : public Detector {
     rtcInitIntersectContext(&context);
     embree().intersect(scene_.get(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+    enter(Stage::kDecision);
     return describe(query.hit.primID, query.ray.tfar);
   }
 

@@ -16,9 +16,9 @@ enum class EmbreeMode { kRobust, kDefault };
 void require_embree();
 
 /// The usual alternative: Embree 3's BVH (https://www.embree.org), dynamic and refitted each frame, over the vertices
-/// as the CPU skins them. One ray for each segment, in one thread. Embree computes contact, t and triangle;
-/// `describe_contact` computes everything that follows from them. The name is "embree" for kRobust and "embree_default"
-/// for kDefault.
+/// as the CPU skins them. One ray for each segment, in one thread. The refit counts as Stage::kCandidates. Embree
+/// computes contact, t and triangle; `describe_contact` computes everything that follows from them. The name is
+/// "embree" for kRobust and "embree_default" for kDefault.
 ///
 /// Throws the errors of `require_embree`. Throws `UsageError` for any method except `kStatic`, because Embree has no
 /// other.

@@ -21,7 +21,9 @@ class ExactDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
+    enter(Stage::kSkinning);
     skin_.skin(avatar_, frame, options_.method);
+    enter(Stage::kDecision);
     for (const Segment& segment : frame.segments) row[segment.column] = first_contact(frame, segment);
     const std::uint64_t pairs = frame.segments.size() * avatar_.triangles.size();
     return {.pairs_tested = pairs, .triangles_tested = avatar_.triangles.size()};

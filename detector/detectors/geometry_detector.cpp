@@ -104,13 +104,14 @@ class GeometryDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
+    enter(Stage::kUpload);
     context_->make_current();
     gl_.UseProgram(program_.name());
     upload_palette(frame, program_);
     upload_segments(frame);
     std::uint64_t pairs_captured = 0;
     captured_.capture(
-        avatar_.triangles.size(), frame.segments.size(),
+        stage_clock(), avatar_.triangles.size(), frame.segments.size(),
         [&](std::size_t first, std::size_t count) { draw(frame.segments.size(), first, count); },
         [&](const CapturedPair& pair) {
           const Segment& segment = frame.segments[pair.segment];

@@ -11,6 +11,7 @@
 #include "detector/detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/gl/collision_texture.hpp"
+#include "detector/gl/draw_timer.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "detector/gl/gl_objects.hpp"
 #include "detector/gl/skinned_mesh.hpp"
@@ -49,7 +50,8 @@ class PaperDetector final : public Detector {
         palette_(gl_),
         segments_(gl_),
         mesh_(gl_, avatar),
-        texture_(gl_, options_.planes) {
+        texture_(gl_, options_.planes),
+        timer_(gl_) {
     std::size_t components = 4;  // gl_Position
     for (const GlPlane& plane : kGlPlanes)
       if (options_.planes.has(plane.plane)) components += plane.geometry_components;
@@ -79,22 +81,12 @@ class PaperDetector final : public Detector {
   bool skins_in_shader() const override { return true; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    context_->make_current();
     row.assign(frame.columns, Contact());
+    enter(Stage::kUpload);
+    context_->make_current();
     upload_frame(frame);
-    texture_.begin(frame.columns);
-
-    const GLuint program = program_for(frame.segments.size()).name();
-    const std::size_t block = block_for(frame.segments.size());
-    gl_.UseProgram(program);
-    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_SEGMENT_COUNT, static_cast<GLint>(frame.segments.size()));
-    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_TEXTURE_COLUMNS, texture_.width());
-    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_TEXTURE_ROWS, texture_.height());
-    gl_.ProgramUniform1f(program, VESTIGE_UNIFORM_FRAMES_PER_S,
-                         frame.duration_s > 0 ? static_cast<float>(1 / frame.duration_s) : 0.0F);
-    const auto blocks = static_cast<GLsizei>((frame.segments.size() + block - 1) / block);
-    mesh_.bind();
-    mesh_.draw(blocks);
+    timer_.time(stage_clock(), [&] { draw(frame); });
+    enter(Stage::kReadBack);
     read_back(row);
     check_gl(gl_, "detecting contacts");
     return {frame.segments.size() * avatar_.triangles.size(), avatar_.triangles.size()};
@@ -146,6 +138,21 @@ class PaperDetector final : public Detector {
     gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_PALETTE, palette_.name());
     gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_SEGMENTS, segments_.name());
     gl_.BindTextureUnit(VESTIGE_TEXTURE_ACTUATOR_MAP, map_texture_);
+  }
+
+  void draw(const DetectorFrame& frame) {
+    texture_.begin(frame.columns);
+    const GLuint program = program_for(frame.segments.size()).name();
+    const std::size_t block = block_for(frame.segments.size());
+    gl_.UseProgram(program);
+    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_SEGMENT_COUNT, static_cast<GLint>(frame.segments.size()));
+    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_TEXTURE_COLUMNS, texture_.width());
+    gl_.ProgramUniform1i(program, VESTIGE_UNIFORM_TEXTURE_ROWS, texture_.height());
+    gl_.ProgramUniform1f(program, VESTIGE_UNIFORM_FRAMES_PER_S,
+                         frame.duration_s > 0 ? static_cast<float>(1 / frame.duration_s) : 0.0F);
+    const auto blocks = static_cast<GLsizei>((frame.segments.size() + block - 1) / block);
+    mesh_.bind();
+    mesh_.draw(blocks);
   }
 
   /// Returns the number of segments that one invocation of the geometry shader tests. The shader may emit a point for
@@ -249,6 +256,7 @@ class PaperDetector final : public Detector {
   SkinnedMesh mesh_;
   GLuint map_texture_ = 0;
   CollisionTexture texture_;
+  DrawTimer timer_;
   std::array<std::optional<GlProgram>, 16> programs_;  // by log2 of the block
   std::optional<GlProgram> skinning_program_;
   std::vector<GpuSegment> gpu_segments_;

@@ -113,17 +113,20 @@ class SkippingGeometryDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.assign(frame.columns, Contact());
     if (frame.segments.empty()) return {};
+    enter(Stage::kCandidates);
     candidates_.find(frame, method_);
     DetectorWork work;
     if (candidates_.touched().empty()) {
       work.frames_skipped = 1;
       return work;
     }
+    enter(Stage::kSkinning);
     skin_touched(frame, work);
+    enter(Stage::kUpload);
     fill_slots(frame);
     upload();
     captured_.capture(
-        draws_.size(), kBlockSegments * kMeshletTriangles,
+        stage_clock(), draws_.size(), kBlockSegments * kMeshletTriangles,
         [this](std::size_t first, std::size_t count) { draw(first, count); },
         [&](const CapturedPair& pair) { work.pairs_captured += decide(frame, pair, row); });
     work.pairs_meeting = finder_.take_meeting();

@@ -24,7 +24,7 @@ constexpr std::size_t kPairsReadAtOnce = 64;
 
 }  // namespace
 
-CapturedPairs::CapturedPairs(const GlFunctions& gl) : gl_(gl), buffer_(gl) {
+CapturedPairs::CapturedPairs(const GlFunctions& gl) : gl_(gl), buffer_(gl), timer_(gl) {
   GLint64 block_bytes = 0;
   gl_.GetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &block_bytes);
   largest_ = std::min((static_cast<std::size_t>(block_bytes) - sizeof(Head)) / sizeof(CapturedPair), kLargestCount);

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "detector/gl/draw_timer.hpp"
 #include "detector/gl/gl_objects.hpp"
+#include "detector/stages.hpp"
 
 namespace vestige {
 
@@ -27,16 +29,20 @@ class CapturedPairs {
   /// the shaders captured. An item captures at most `pairs_of_item` pairs, which must be above 0 and below 2^32. A
   /// range is smaller than `items` if the shaders' count could wrap, or if the driver's largest buffer cannot hold the
   /// pairs. A range that found too small a buffer is drawn again. Throws `Error` if the largest buffer cannot hold the
-  /// pairs of one item, or if an OpenGL error occurred.
+  /// pairs of one item, or if an OpenGL error occurred. `clock` times the stages from kUpload to kDecision, unless it
+  /// is null.
   template <typename Draw, typename Consume>
-  void capture(std::size_t items, std::size_t pairs_of_item, Draw&& draw, Consume&& consume) {
+  void capture(StageClock* clock, std::size_t items, std::size_t pairs_of_item, Draw&& draw, Consume&& consume) {
     std::size_t range = kLargestCount / pairs_of_item;
     for (std::size_t first = 0; first < items;) {
       const std::size_t count = std::min(range, items - first);
+      enter_stage(clock, Stage::kUpload);
       begin();
-      draw(first, count);
+      timer_.time(clock, [&] { draw(first, count); });
+      enter_stage(clock, Stage::kReadBack);
       range = read(count);
       if (range == 0) {  // all pairs were read
+        enter_stage(clock, Stage::kDecision);
         for (const CapturedPair& pair : pairs_) consume(pair);
         first += count;
         range = count;
@@ -54,6 +60,7 @@ class CapturedPairs {
 
   const GlFunctions& gl_;
   GlBuffer buffer_;
+  DrawTimer timer_;
   std::size_t capacity_ = 0;  ///< in pairs
   std::size_t largest_;       ///< largest capacity that the driver allows
   std::vector<CapturedPair> pairs_;

@@ -8,6 +8,7 @@ namespace vestige {
 // libGL.
 #define VESTIGE_GL_FUNCTIONS(X)                                          \
   X(PFNGLATTACHSHADERPROC, AttachShader)                                 \
+  X(PFNGLBEGINQUERYPROC, BeginQuery)                                     \
   X(PFNGLBEGINTRANSFORMFEEDBACKPROC, BeginTransformFeedback)             \
   X(PFNGLBINDBUFFERPROC, BindBuffer)                                     \
   X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                             \
@@ -23,6 +24,7 @@ namespace vestige {
   X(PFNGLCREATEBUFFERSPROC, CreateBuffers)                               \
   X(PFNGLCREATEFRAMEBUFFERSPROC, CreateFramebuffers)                     \
   X(PFNGLCREATEPROGRAMPROC, CreateProgram)                               \
+  X(PFNGLCREATEQUERIESPROC, CreateQueries)                               \
   X(PFNGLCREATERENDERBUFFERSPROC, CreateRenderbuffers)                   \
   X(PFNGLCREATESHADERPROC, CreateShader)                                 \
   X(PFNGLCREATETEXTURESPROC, CreateTextures)                             \
@@ -33,6 +35,7 @@ namespace vestige {
   X(PFNGLDELETEBUFFERSPROC, DeleteBuffers)                               \
   X(PFNGLDELETEFRAMEBUFFERSPROC, DeleteFramebuffers)                     \
   X(PFNGLDELETEPROGRAMPROC, DeleteProgram)                               \
+  X(PFNGLDELETEQUERIESPROC, DeleteQueries)                               \
   X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                   \
   X(PFNGLDELETESHADERPROC, DeleteShader)                                 \
   X(PFNGLDELETETEXTURESPROC, DeleteTextures)                             \
@@ -43,6 +46,7 @@ namespace vestige {
   X(PFNGLDRAWELEMENTSINSTANCEDPROC, DrawElementsInstanced)               \
   X(PFNGLENABLEPROC, Enable)                                             \
   X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)           \
+  X(PFNGLENDQUERYPROC, EndQuery)                                         \
   X(PFNGLENDTRANSFORMFEEDBACKPROC, EndTransformFeedback)                 \
   X(PFNGLFINISHPROC, Finish)                                             \
   X(PFNGLGETERRORPROC, GetError)                                         \
@@ -51,6 +55,8 @@ namespace vestige {
   X(PFNGLGETNAMEDBUFFERSUBDATAPROC, GetNamedBufferSubData)               \
   X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                       \
   X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                 \
+  X(PFNGLGETQUERYIVPROC, GetQueryiv)                                     \
+  X(PFNGLGETQUERYOBJECTUI64VPROC, GetQueryObjectui64v)                   \
   X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                         \
   X(PFNGLGETSHADERIVPROC, GetShaderiv)                                   \
   X(PFNGLGETSTRINGPROC, GetString)                                       \

@@ -23,6 +23,22 @@ constexpr double kMostColliders = 1e9;
 constexpr double kMostPlanes = 16;
 constexpr double kLeastHz = 1e-6;
 constexpr double kMostHz = 1e12;
+constexpr double kMostUs = 1e12;
+
+SweepStages read_stages(const JsonField& field) {
+  SweepStages stages;
+  if (!field.value().is_object()) field.refuse("is not a JSON object");
+  double total_us = 0;
+  for (const auto& [name, ignored] : field.value().items()) {
+    const auto known = std::ranges::find(kStageNames, std::string_view(name));
+    if (known == kStageNames.end()) field.refuse(fmt::format("has a stage '{}', which is unknown", name));
+    const double us = field.at(name.c_str()).within(0, kMostUs);
+    stages.us[static_cast<std::size_t>(known - kStageNames.begin())] = us;
+    total_us += us;
+  }
+  if (!(total_us > 0)) field.refuse("has no stage that took time");
+  return stages;
+}
 
 SweepPoint read_point(const JsonField& field) {
   SweepPoint point;
@@ -32,6 +48,9 @@ SweepPoint read_point(const JsonField& field) {
     point.hz_low = field.at("hz_low").within(kLeastHz, kMostHz);
     point.hz_high = field.at("hz_high").within(*point.hz_low, kMostHz);
   }
+  if (!field.has("stages")) return point;
+  point.stages = read_stages(field.at("stages"));
+  point.stages->drawn_by_timer = field.has("draw_by") && field.at("draw_by").text() == "timer";
   return point;
 }
 

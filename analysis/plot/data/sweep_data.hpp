@@ -1,11 +1,20 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "detector/stages.hpp"
+
 namespace vestige::plot {
+
+/// Microseconds of a frame, in the order of `Stage`. At least one is above 0.
+struct SweepStages {
+  std::array<double, kStageNames.size()> us = {};
+  bool drawn_by_timer = false;  ///< the driver's timer tells drawing from waiting
+};
 
 /// One measured point of a sweep.
 struct SweepPoint {
@@ -14,6 +23,7 @@ struct SweepPoint {
   /// The ends of the 95 % bootstrap interval of `hz`. Absent if the file does not have them.
   std::optional<double> hz_low;
   std::optional<double> hz_high;
+  std::optional<SweepStages> stages = {};  ///< absent if the file does not have them
 };
 
 /// One line of the figure. It has at least one point, by rising number of colliders.

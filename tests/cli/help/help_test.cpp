@@ -86,7 +86,7 @@ TEST_F(Help, ExamplesRunAsTheyStand) {
           "printf '1,4,1,4,1,1,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,1,1,0,1,1\n"
           "1,4,1,4,-1,1,1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,1,1,0,1,1\n' >queries.csv && "
           "vestige sweep man.mcap --counts 1,10 --detector cpu --min-time 0.01 --runs 1 --run-frames 5 "
-          "--no-figure -o results/sweep -q && cp results/sweep/sweep.json gpu && cp results/sweep/sweep.json software "
+          "--stages --no-figure -o results/sweep -q && cp results/sweep/sweep.json gpu && cp results/sweep/sweep.json software "
           "&& vestige claims results -o results/README.md && vestige export man.mcap -o man_csv && "
           "printf 'HIERARCHY\nROOT hips\n{\nOFFSET 0 95 0\nCHANNELS 1 Yrotation\n"
           "JOINT leftUpperLeg\n{\nOFFSET 10 0 0\nCHANNELS 0\nJOINT leftFoot\n{\nOFFSET 0 -90 0\nCHANNELS 0\n}\n}\n}\n"

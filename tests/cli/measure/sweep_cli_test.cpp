@@ -110,6 +110,37 @@ TEST_F(SweepCommandLine, MeasuresBesideARendererInAThreadOfItsOwn) {
   EXPECT_LE(json["series"][1]["points"][0]["rendered_hz"], 120) << "paced, however short the run";
 }
 
+TEST_F(SweepCommandLine, SaysWhereTheTimeGoesIfAsked) {
+  record_small();
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --detector paper,cpu --renderer on --counts 1,20 --min-time 0.01 --runs 2 "
+          "--run-frames 10 --stages --no-figure -o s" +
+          test::gl_flags("osmesa"));
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  EXPECT_THAT(sweep.standard_output,
+              AllOf(HasSubstr("Where the time goes with 1 collider, \u00b5s a frame:"),
+                    HasSubstr("Where the time goes with 20 colliders"), HasSubstr("read_back"), HasSubstr("together")));
+  const auto json = json_in("s/sweep.json");
+  ASSERT_EQ(json["series"].size(), 4U);
+  for (const auto& series : json["series"]) {
+    const bool draws = series["detector"] == "paper";
+    for (const auto& point : series["points"]) {
+      // Another thread's work would be charged to stages.
+      EXPECT_EQ(point.contains("stages"), series["renderer"] == "off");
+      if (!point.contains("stages")) continue;
+      EXPECT_GT(point["stages"]["pose"], 0);
+      EXPECT_EQ(point["stages"].contains("draw"), draws);
+      EXPECT_EQ(point["stages"].contains("candidates"), !draws);
+      EXPECT_EQ(point.contains("draw_by"), draws);
+      EXPECT_EQ(point.value("draw_by", "") == "timer", point["stages"].contains("wait"));
+    }
+  }
+  const auto unasked = json_of(
+      "vestige sweep small.mcap --detector cpu --counts 1 --min-time 0.01 --runs 1 "
+      "--no-figure -o t --json -");
+  EXPECT_FALSE(unasked["series"][0]["points"][0].contains("stages"));
+}
+
 /// Whatever the colliders' order in the trace, the point of all of them sees what a replay sees.
 TEST_F(SweepCommandLine, MeasuresTheWholeTraceWhereItIsAllAsked) {
   record_small();

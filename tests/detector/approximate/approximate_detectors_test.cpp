@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "detector/detectors/make_detectors.hpp"
+#include "detector/stages.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
 #include "tests/support/scenario_names.hpp"
@@ -217,6 +218,19 @@ TEST_P(ShapesDetector, LosesNoContactBecausePartsAreFarAway) {
   for (ContactRow& row : all.rows) row.pop_back();
   EXPECT_GT(near.contacts(), 20U);
   EXPECT_EQ(hash_of(all), hash_of(near));
+}
+
+TEST_P(ApproximateDetector, SaysWhereItsTimeGoesWhichChangesNoBit) {
+  const auto scene = test::scene("hug", builtin_avatar(), 12, 8, 20);
+  const auto detector = GetParam().make(builtin_avatar(), builtin_map(), with(Method::kStatic));
+  const test::SceneRun untimed = test::run_scene(scene, builtin_avatar(), 12, *detector);
+  ASSERT_GT(untimed.contacts(), 0U);
+  StageClock clock;
+  detector->time_stages(&clock);
+  EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 12, *detector)), hash_of(untimed));
+  std::vector<std::string> names;
+  for (const StageTime& time : clock.times()) names.emplace_back(kStageNames[static_cast<std::size_t>(time.stage)]);
+  EXPECT_EQ(names, (std::vector<std::string>{"candidates", "skinning", "test", "decision"}));
 }
 
 TEST_P(ApproximateDetector, RunsThroughEveryScenario) {

@@ -80,7 +80,7 @@ TEST(CapturedPairs, AreDrawnInRangesWhoseCountCannotWrap) {
   CapturedPairs captured(current_gl(*context));
   std::vector<std::size_t> firsts;
   captured.capture(
-      7, std::size_t{1} << 30,
+      nullptr, 7, std::size_t{1} << 30,
       [&](std::size_t first, std::size_t count) {
         firsts.push_back(first);
         EXPECT_LT(count << 30, std::size_t{1} << 32);

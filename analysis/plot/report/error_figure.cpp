@@ -1,4 +1,4 @@
-#include "analysis/plot/figures/error_figure.hpp"
+#include "analysis/plot/report/error_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "analysis/plot/figures/ranking_figure.hpp"
+#include "analysis/plot/report/ranking_figure.hpp"
 
 #include <fmt/format.h>
 
