@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -83,6 +84,8 @@ class Detector {
   virtual Method method() const { return Method::kStatic; }
   /// Whether simpler shapes stand in for the avatar's skin.
   virtual bool is_approximate() const { return false; }
+  /// The number of triangles of the simpler mesh that stands in for the avatar's skin. Empty if no mesh does.
+  virtual std::optional<std::size_t> triangles_kept() const { return {}; }
   virtual GlInfo gl_info() const { return {}; }
   /// Whether `skinned_vertices` come from a shader. If not, they are the CPU's.
   virtual bool skins_in_shader() const { return false; }

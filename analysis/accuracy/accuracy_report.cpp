@@ -114,6 +114,7 @@ nlohmann::ordered_json series_json(
     nlohmann::ordered_json series = {{"detector", contestants[i].detector},
                                      {"approximate", contestants[i].instance->is_approximate()},
                                      {"method", name_of(contestants[i].method)}};
+    if (const auto kept = contestants[i].instance->triangles_kept()) series["triangles_kept"] = *kept;
     describe(contestants[i], series);
     series["points"] = nlohmann::ordered_json::array();
     for (const AccuracyPoint& point : points)

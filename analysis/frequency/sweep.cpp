@@ -134,6 +134,7 @@ class RunningSweep {
     series.planes = contestant.planes;
     series.method = detectors_.back()->method();
     series.approximate = detectors_.back()->is_approximate();
+    series.triangles_kept = detectors_.back()->triangles_kept();
     renderers_.push_back(make_renderer(contestant));
     if (renderers_.back() != nullptr) series.renderer = renderers_.back()->gl_info();
     series.gl = detectors_.back()->gl_info();

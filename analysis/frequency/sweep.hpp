@@ -75,6 +75,7 @@ struct SweepSeries {
   Skip skip = Skip::kOff;
   Method method = Method::kStatic;
   bool approximate = false;
+  std::optional<std::size_t> triangles_kept;  ///< as in Detector
   PlaneSet planes;
   GlInfo gl;
   std::optional<GlInfo> renderer;  ///< context that drew the scene during the measurement, if any

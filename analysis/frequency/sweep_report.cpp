@@ -198,7 +198,9 @@ std::string disagreement_lines(std::span<const SweepSeries> series) {
 
 std::string name_of(const SweepSeries& series) {
   std::string name = series.detector;
-  if (series.approximate) name += " (approximate)";
+  if (series.approximate)
+    name +=
+        series.triangles_kept ? fmt::format(" (approximate, {} triangles)", *series.triangles_kept) : " (approximate)";
   if (!series.gl.context.empty()) name += ", " + series.gl.context;
   if (series.planes.count() > 1) name += fmt::format(", {} planes", series.planes.count());
   if (series.skip == Skip::kOn) name += ", skip on";
@@ -224,6 +226,7 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
                     {"approximate", one.approximate},
                     {"context", one.gl.context},
                     {"skip", one.skip == Skip::kOn ? "on" : "off"},
+                    {"triangles_kept", one.triangles_kept ? nlohmann::ordered_json(*one.triangles_kept) : nullptr},
                     {"method", name_of(one.method)},
                     {"planes", one.planes.count()},
                     {"renderer", one.renderer ? "on" : "off"},

@@ -221,6 +221,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const Run& run, const
   json["trace"] = options.trace;
   json["detector"] = run.detector.name();
   json["approximate"] = run.detector.is_approximate();
+  if (const auto kept = run.detector.triangles_kept()) json["triangles_kept"] = *kept;
   if (run.picked) {
     json["picked"] = describe_picked(*run.picked);
     json["why"] = run.picked->why;
@@ -278,6 +279,8 @@ std::string summary(const ReplayResult& result, const Run& run) {
   };
   for (std::size_t i = 0; i < map.actuator_count; ++i) add_row(map.names[i], result.contacts_of_actuator[i + 1]);
   add_row("(no actuator)", result.contacts_of_actuator[0]);
+  if (const auto kept = detector.triangles_kept())
+    text += fmt::format("kept: {} of {} triangles\n", *kept, run.trace.avatar.triangles.size());
   if (detector.triangles_left_out() != 0)
     text += fmt::format("left out: {} of {} triangles, which no actuator covers\n", detector.triangles_left_out(),
                         run.trace.avatar.triangles.size());

@@ -103,6 +103,7 @@ class DecimatedDetector final : public Detector {
   const char* name() const override { return "decimated"; }
   Method method() const override { return detector_->method(); }
   bool is_approximate() const override { return true; }
+  std::optional<std::size_t> triangles_kept() const override { return simple_.triangles.size(); }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     const DetectorWork work = detector_->detect(frame, row);
