@@ -147,6 +147,7 @@ MeasuredSweep read_sweep(const std::filesystem::path& file, const std::filesyste
   mcap::RawBuffer buffer;
   const auto csv = mcap::decompress_beginning(mcap::name_of(mcap::Compression::kZstd), read_file(times_file),
                                               kMostTimesBytes, buffer);
+  if (csv.empty()) throw Error(times_file.string(), "holds nothing that zstd can expand", kSweepRemedy);
   FrameTimes times(text_of(csv), times_file.string());
   for (std::size_t i = 0; i < document.at("series").count(); ++i)
     read_series(document.at("series").at(i), times, sweep.points);
