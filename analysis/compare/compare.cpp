@@ -22,7 +22,7 @@ constexpr std::array<double, kMostBatches - kFewestPasses + 1> kStudent = {2.365
 /// are standard deviations of the logarithm of the ratio: one that is always there, and one for each unit by which the
 /// runs' scatter differs. If it differs, then the ratio of the medians is another one than that of the lower quartiles.
 /// Both were chosen by 14 sweeps of one program (24 points: `paper`, `geometry`, `cpu` and Embree on llvmpipe) on two
-/// virtual cores beside 2 to 6 other processes, and two committed sweeps on such a machine at rest. Of the points with
+/// virtual cores beside 2 to 6 other processes, and two committed sweeps on a machine at rest. Of the points with
 /// enough passes, the best six of these sweeps called 3 %, and a tenth more time was found at 92 %.
 /// compare_benchmark measures the same anew.
 constexpr double kBetweenRuns = 0.015;
@@ -134,7 +134,7 @@ const char* name_of(SpeedVerdict verdict) {
 SpeedRatio speed_ratio(const PassTime& a, const PassTime& b) {
   SpeedRatio ratio = {a.us / b.us, kMissing, kMissing};
   const std::size_t batches = std::min(a.batches, b.batches);
-  if (batches < kFewestPasses) return ratio;
+  if (batches < kFewestPasses || std::max(a.scatter, b.scatter) > kMostScatter) return ratio;
   const double scatter = kPerScatter * (a.scatter - b.scatter);
   const double between = kBetweenRuns * kBetweenRuns + scatter * scatter;
   const double student = kStudent[batches - kFewestPasses];

@@ -7,7 +7,8 @@
 
 namespace vestige {
 
-/// How many times as fast B is as A, and the 95 % interval. The ends are NaN if too few passes were measured.
+/// How many times as fast B is as A, and the 95 % interval. The ends are NaN if one of the runs has too
+/// few passes or scatters too much (`kFewestPasses`, `kMostScatter`).
 struct SpeedRatio {
   double ratio = 1;
   double low = 0;

@@ -94,6 +94,14 @@ std::vector<std::string> comparison_warnings(const SweepComparison& comparison) 
         fmt::format("at {} of {} a frame was repeated fewer than {} times, so that no verdict is possible: measure "
                     "both again with a longer --min-time, or with fewer --run-frames.",
                     few, all, kFewestPasses));
+  const auto scattered = std::ranges::count_if(comparison.points, [](const auto& point) {
+    return std::max(point.a.time.scatter, point.b.time.scatter) > kMostScatter;
+  });
+  if (scattered != 0)
+    warnings.push_back(
+        fmt::format("at {} of {} the repetitions of a frame scatter too much for a verdict: close other programs and "
+                    "measure again.",
+                    scattered, all));
   return warnings;
 }
 

@@ -67,7 +67,8 @@ std::string text_or_empty(const JsonField& field, const char* key) {
   return field.has(key) ? field.at(key).text() : "";
 }
 
-/// Returns what tells a series from others of its sweep, in words: "paper, egl-surfaceless", "cpu, skip on, ccd".
+/// Returns what tells a series from others of its sweep, in the words of a sweep's table: "paper, egl-surfaceless, 4
+/// planes", "cpu, skip on, ccd".
 std::string series_name(const JsonField& series) {
   std::string name = series.at("detector").text();
   if (name.empty()) series.at("detector").refuse("is empty");
@@ -75,15 +76,12 @@ std::string series_name(const JsonField& series) {
     if (!words.empty()) name += ", " + words;
   };
   add(text_or_empty(series, "context"));
+  // Version 0.2 did not know planes, and measured one.
+  const std::uint64_t planes = series.has("planes") ? whole(series.at("planes"), 0) : 1;
+  if (planes > 1) add(counted(planes, "plane"));
   if (text_or_empty(series, "skip") == "on") add("skip on");
   if (text_or_empty(series, "method") != "static") add(text_or_empty(series, "method"));
   if (text_or_empty(series, "renderer") == "on") add("rendering");
-  for (const char* key : {"planes", "avatars"}) {
-    if (!series.has(key)) continue;
-    const nlohmann::json& value = series.at(key).value();
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-    if (!text.empty() && text != "none" && text != "[]") add(fmt::format("{} {}", key, text));
-  }
   return name;
 }
 
@@ -119,7 +117,7 @@ void read_series(const JsonField& series, FrameTimes& times, std::vector<Measure
 void read_question(const JsonField& document, MeasuredSweep& sweep) {
   for (const char* key : {"vertices", "triangles", "joints"})
     sweep.question.emplace_back(fmt::format("avatar.{}", key), document.at("avatar").at(key).value().dump());
-  for (const char* key : {"surface", "runs", "run_frames", "draws"})
+  for (const char* key : {"surface", "runs", "run_frames", "seed"})
     if (document.has(key)) sweep.question.emplace_back(key, document.at(key).value().dump());
 }
 

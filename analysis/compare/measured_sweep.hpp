@@ -35,7 +35,8 @@ struct MeasuredSweep {
   std::string processor;
   std::uint64_t cores = 0;
   std::string system;
-  /// What was asked, as names and JSON: avatar, surface, runs, run_frames, draws. Absent fields are left out.
+  /// What was asked, as names and JSON: avatar, surface, runs, run_frames, seed (which draws
+  /// colliders). Absent fields are left out.
   std::vector<std::pair<std::string, std::string>> question;
   std::vector<MeasuredPoint> points;
 };

@@ -19,6 +19,9 @@ struct PassTime {
 /// The fewest passes from which `PassTime::error` is estimated.
 inline constexpr std::size_t kFewestPasses = 8;
 inline constexpr std::size_t kMostBatches = 10;
+/// The most scatter of a usable measurement. Above it, most repetitions were disturbed, and so was the lower quartile:
+/// by up to twice the time, on two cores with six other processes. At rest, scatter is 0.01 to 0.05.
+inline constexpr double kMostScatter = 0.25;
 
 /// Returns the typical pass of a point. `frame_us` are the durations of its frames in the order of measurement. Every
 /// `pass_frames` frames, the same frames of the trace come again, so that each is compared with itself only. An

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -35,7 +36,7 @@ constexpr double kMoreTime = 0.1;
 constexpr double kThreshold = 0.05;
 /// Slower runs lie between the others, so that what changes slowly in the machine concerns all alike.
 constexpr std::string_view kOrder = "esesee";
-const SweepSettings kSettings = {.counts = {1, 4, 8, 16, 32}, .runs = 5, .run_frames = 5, .min_time_s = 1.5};
+const SweepSettings kSettings = {.counts = {1, 4, 8, 16, 32}, .runs = 5, .run_frames = 3, .min_time_s = 1.2};
 
 /// Microseconds that the pose takes, by the number of colliders: it belongs to a frame, but no detector sees it.
 using PoseTimes = std::map<std::size_t, double>;
@@ -104,19 +105,19 @@ void write(const std::filesystem::path& file, std::span<const std::byte> bytes) 
 }
 
 /// Writes the sweep as `vestige sweep -o` does, as far as `compare` reads it.
-void write_sweep(const std::filesystem::path& folder, const std::vector<SweepSeries>& series) {
+void write_sweep(const std::filesystem::path& folder, const Sweep& sweep) {
   std::filesystem::create_directories(folder);
   nlohmann::ordered_json json = provenance({});
   json["avatar"] = to_json(test::builtin_avatar());
-  json["runs"] = kSettings.runs;
+  json["runs"] = sweep.places;
   json["run_frames"] = kSettings.run_frames;
   json["min_time_s"] = kSettings.min_time_s;
   json["complete"] = true;
-  json["series"] = to_json(series, kSettings.seed);
+  json["series"] = to_json(sweep.series, kSettings.seed);
   const std::string text = json.dump(2);
   write(folder / "sweep.json", std::as_bytes(std::span(text)));
   std::vector<std::byte> compressed;
-  const std::string times = frame_times_csv(series);
+  const std::string times = frame_times_csv(sweep.series);
   mcap::compress(mcap::Compression::kZstd, std::as_bytes(std::span(times)), compressed);
   write(folder / "frame_times.csv.zst", compressed);
 }
@@ -175,12 +176,19 @@ void report(const std::vector<std::vector<MeasuredSweep>>& sweeps) {
              slower[all].percent(SpeedVerdict::kSlower), slower[all].points);
 }
 
+/// Returns the load average of the last minute: other programs make verdicts unclear.
+std::string running_processes() {
+  double load = 0;
+  return ::getloadavg(&load, 1) == 1 ? fmt::format("{:.1f}", load) : "unknown";
+}
+
 int run(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   record_swarm(folder / "trace.mcap");
   TraceReader trace(folder / "trace.mcap");
   const PoseTimes pose_us = measure_poses(trace);
   const cli::ContestantChoice choice = {{}, "paper,geometry,cpu,embree", "egl", "off,on"};
+  const auto survey = cli::make_survey(choice, test::builtin_avatar(), test::builtin_map());
   const auto contestants =
       cli::make_contestants(choice, test::builtin_avatar(), test::builtin_map(), cli::Verbosity::kNormal);
   std::vector<Contestant> slowed = contestants;
@@ -190,16 +198,20 @@ int run(const std::filesystem::path& folder) {
     };
   const Machine machine = this_machine();
   fmt::print("{}, {} cores; commit {}; {}\n", machine.processor, machine.cores, commit(), utc_now());
-  fmt::print("{} sweeps, in this order (s: every frame takes a tenth more time): {}\n\n", kOrder.size(), kOrder);
+  fmt::print("Processes that ran or waited to run, at the beginning: {}\n", running_processes());
+  fmt::print("{} sweeps, in this order (s: every frame takes a tenth more time): {}\n", kOrder.size(), kOrder);
   std::vector<std::vector<MeasuredSweep>> sweeps;
   for (std::size_t i = 0; i < kOrder.size(); ++i) {
     const auto& raced = kOrder[i] == 's' ? slowed : contestants;
     const auto place = folder / fmt::format("{}-{}", i + 1, kOrder[i] == 's' ? "slower" : "equal");
-    write_sweep(place, run_sweep(trace, test::builtin_avatar(), raced, kSettings, [](double) { return true; }));
-    sweeps.push_back(read_measured_sweeps(place));
-  }
-  report(sweeps);
-  return 0;
+    write_sweep(place,
+                run_sweep(trace, test::builtin_avatar(), *survey, raced, kSettings, [](double) { return true; }));
+  }));
+  sweeps.push_back(read_measured_sweeps(place));
+}
+fmt::print("Processes that ran or waited to run, at the end: {} (one of them is this one)\n\n", running_processes());
+report(sweeps);
+return 0;
 }
 
 }  // namespace

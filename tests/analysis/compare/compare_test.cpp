@@ -83,9 +83,12 @@ TEST(SpeedRatios, AreNeverSurerThanTwoRunsOfOneProgramAreAlike) {
 TEST(SpeedRatios, AreUnsureIfOneRunScattersMore) {
   const PassTime steady = {.passes = 100, .us = 100, .error = 0, .batches = 10, .scatter = 0.02};
   PassTime scattered = steady;
-  scattered.scatter = 0.42;
-  EXPECT_NEAR(speed_ratio(steady, scattered).high, std::exp(1.959963984540054 * std::hypot(0.015, 0.24)), 1e-9);
+  scattered.scatter = 0.22;
+  EXPECT_NEAR(speed_ratio(steady, scattered).high, std::exp(1.959963984540054 * std::hypot(0.015, 0.12)), 1e-9);
   EXPECT_NEAR(speed_ratio(scattered, scattered).high, speed_ratio(steady, steady).high, kClose);
+  scattered.scatter = 0.26;
+  EXPECT_TRUE(std::isnan(speed_ratio(steady, scattered).low)) << "too much for any interval";
+  EXPECT_TRUE(std::isnan(speed_ratio(scattered, steady).high));
 }
 
 TEST(SpeedRatios, HaveStudentsIntervalForFewBatches) {
@@ -189,6 +192,15 @@ TEST(ComparedSweeps, SayThatTheContactsChanged) {
   EXPECT_EQ(to_json(comparison)["points"][2]["same_answers"], true);
 }
 
+TEST(ComparedSweeps, SayThatOtherProgramsRan) {
+  MeasuredSweep a = sweep("", {point("p", 1), point("q", 1)});
+  MeasuredSweep b = a;
+  b.points[0].time.scatter = 0.5;
+  const SweepComparison comparison = compare(a, b);
+  EXPECT_EQ(comparison.count(SpeedVerdict::kUnclear), 1U);
+  EXPECT_THAT(comparison_warnings(comparison), ElementsAre(HasSubstr("at 1 of 2 points the repetitions of a frame")));
+}
+
 TEST(ComparedSweeps, OfOtherMachinesAreRefusedUnlessAskedFor) {
   const MeasuredSweep a = sweep("", {point("p", 1)});
   MeasuredSweep b = a;
@@ -211,8 +223,8 @@ TEST(ComparedSweeps, OfOtherQuestionsAreRefused) {
   b.question[1].second = "10";
   EXPECT_THAT(message(b), AllOf(HasSubstr("run_frames 10"), HasSubstr("with 40")));
   b = a;
-  b.question.emplace_back("draws", "4");
-  EXPECT_THAT(message(b), AllOf(HasSubstr("draws 4"), HasSubstr("with none")));
+  b.question.emplace_back("seed", "4");
+  EXPECT_THAT(message(b), AllOf(HasSubstr("seed 4"), HasSubstr("with none")));
   b = a;
   b.schema_version = 2;
   EXPECT_THAT(message(b), AllOf(HasSubstr("schema_version 2"), HasSubstr("has 1")));
