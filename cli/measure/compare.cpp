@@ -18,7 +18,7 @@ struct CompareOptions {
   CommonOptions common;
   std::string a;
   std::string b;
-  double threshold_percent = 5;
+  double threshold_percent = 6;
   bool across_machines = false;
 };
 

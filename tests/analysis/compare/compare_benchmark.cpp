@@ -33,7 +33,7 @@ using Clock = std::chrono::steady_clock;
 using Microseconds = std::chrono::duration<double, std::micro>;
 
 constexpr double kMoreTime = 0.1;
-constexpr double kThreshold = 0.05;
+constexpr double kThreshold = 0.06;  // as by default
 /// Slower runs lie between the others, so that what changes slowly in the machine concerns all alike.
 constexpr std::string_view kOrder = "esesee";
 const SweepSettings kSettings = {.counts = {1, 4, 8, 16, 32}, .runs = 5, .run_frames = 3, .min_time_s = 1.2};
@@ -206,17 +206,18 @@ int run(const std::filesystem::path& folder) {
     const auto place = folder / fmt::format("{}-{}", i + 1, kOrder[i] == 's' ? "slower" : "equal");
     write_sweep(place,
                 run_sweep(trace, test::builtin_avatar(), *survey, raced, kSettings, [](double) { return true; }));
-  }));
-  sweeps.push_back(read_measured_sweeps(place));
-}
-fmt::print("Processes that ran or waited to run, at the end: {} (one of them is this one)\n\n", running_processes());
-report(sweeps);
-return 0;
+    sweeps.push_back(read_measured_sweeps(place));
+  }
+  fmt::print("Processes that ran or waited to run, at the end: {} (one of them is this one)\n\n", running_processes());
+  report(sweeps);
+  return 0;
 }
 
 }  // namespace
 }  // namespace vestige
 
 int main(int argc, char** argv) {
+  // llvmpipe draws in the calling thread: threads of its own wait for a core as often as other programs run.
+  ::setenv("LP_NUM_THREADS", "0", 0);
   return vestige::run(argc > 1 ? argv[1] : "out/compare_benchmark");
 }

@@ -77,14 +77,14 @@ TEST(SpeedRatios, SayHowManyTimesAsFastBIs) {
 TEST(SpeedRatios, AreNeverSurerThanTwoRunsOfOneProgramAreAlike) {
   const PassTime same = {.passes = 100, .us = 100, .error = 0, .batches = 10, .scatter = 0};
   const SpeedRatio ratio = speed_ratio(same, same);
-  EXPECT_NEAR(std::log(ratio.high), 1.959963984540054 * 0.015, 1e-9);
+  EXPECT_NEAR(std::log(ratio.high), 1.959963984540054 * 0.02, 1e-9);
 }
 
 TEST(SpeedRatios, AreUnsureIfOneRunScattersMore) {
   const PassTime steady = {.passes = 100, .us = 100, .error = 0, .batches = 10, .scatter = 0.02};
   PassTime scattered = steady;
   scattered.scatter = 0.22;
-  EXPECT_NEAR(speed_ratio(steady, scattered).high, std::exp(1.959963984540054 * std::hypot(0.015, 0.12)), 1e-9);
+  EXPECT_NEAR(speed_ratio(steady, scattered).high, std::exp(1.959963984540054 * std::hypot(0.02, 0.12)), 1e-9);
   EXPECT_NEAR(speed_ratio(scattered, scattered).high, speed_ratio(steady, steady).high, kClose);
   scattered.scatter = 0.26;
   EXPECT_TRUE(std::isnan(speed_ratio(steady, scattered).low)) << "too much for any interval";
@@ -94,7 +94,7 @@ TEST(SpeedRatios, AreUnsureIfOneRunScattersMore) {
 TEST(SpeedRatios, HaveStudentsIntervalForFewBatches) {
   const PassTime eight = {.passes = 8, .us = 100, .error = 0.03, .batches = 8, .scatter = 0};
   EXPECT_NEAR(std::log(speed_ratio(eight, eight).high),
-              std::hypot(2.365 * 0.03 * std::sqrt(2), 1.959963984540054 * 0.015), 1e-9);
+              std::hypot(2.365 * 0.03 * std::sqrt(2), 1.959963984540054 * 0.02), 1e-9);
   PassTime seven = eight;
   seven.passes = seven.batches = 7;
   EXPECT_TRUE(std::isnan(speed_ratio(eight, seven).low));

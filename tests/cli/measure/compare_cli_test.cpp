@@ -71,7 +71,7 @@ TEST_F(CompareCommandLine, SaysWhatBecameSlowerAndEndsWith4) {
                                              HasSubstr("cpu, skip on, 10 colliders"),
                                              HasSubstr("2 points: 2 slower, 0 faster, 0 same, 0 unclear")));
   const auto json = json_in("c.json");
-  EXPECT_EQ(json["threshold_percent"], 5);
+  EXPECT_EQ(json["threshold_percent"], 6);
   EXPECT_EQ(json["a"]["folder"], "a");
   EXPECT_EQ(json["counts"]["slower"], 2);
   const auto& point = json["points"][0];
