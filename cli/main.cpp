@@ -53,6 +53,7 @@ int run(int argc, char** argv) {
   add_vest(program, invocation);
   add_sweep(program, invocation);
   add_growth(program, invocation);
+  add_compare(program, invocation);
   add_query(program, invocation);
   add_stress(program, invocation);
   add_accuracy(program, invocation);

@@ -12,6 +12,7 @@ void add_record(CLI::App& program, Invocation& invocation);
 void add_replay(CLI::App& program, Invocation& invocation);
 void add_sweep(CLI::App& program, Invocation& invocation);
 void add_growth(CLI::App& program, Invocation& invocation);
+void add_compare(CLI::App& program, Invocation& invocation);
 void add_query(CLI::App& program, Invocation& invocation);
 void add_stress(CLI::App& program, Invocation& invocation);
 void add_accuracy(CLI::App& program, Invocation& invocation);

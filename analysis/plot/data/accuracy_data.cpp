@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "analysis/plot/data/json_field.hpp"
+#include "analysis/base/json_field.hpp"
 
 namespace vestige::plot {
 

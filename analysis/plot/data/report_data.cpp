@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "analysis/plot/data/json_field.hpp"
+#include "analysis/base/json_field.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/files/input_file.hpp"

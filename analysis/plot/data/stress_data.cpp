@@ -1,6 +1,6 @@
 #include "analysis/plot/data/stress_data.hpp"
 
-#include "analysis/plot/data/json_field.hpp"
+#include "analysis/base/json_field.hpp"
 
 namespace vestige::plot {
 

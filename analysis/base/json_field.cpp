@@ -1,11 +1,11 @@
-#include "analysis/plot/data/json_field.hpp"
+#include "analysis/base/json_field.hpp"
 
 #include <fmt/format.h>
 
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 
-namespace vestige::plot {
+namespace vestige {
 
 nlohmann::json read_json(const std::filesystem::path& file, std::string_view remedy) {
   try {
@@ -79,4 +79,4 @@ std::string commit_of(const JsonField& document) {
   return commit;
 }
 
-}  // namespace vestige::plot
+}  // namespace vestige

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace vestige::plot {
+namespace vestige {
 
 /// Reads a JSON file. Throws `Error` with the file, and with the byte at which the file stops being JSON. `remedy` is
 /// used as in `JsonField`.
@@ -47,4 +47,4 @@ std::string phrase(const JsonField& field, std::initializer_list<std::pair<const
 /// Returns the "commit" of a result file, shortened, with " (changed)" if files had been changed since.
 std::string commit_of(const JsonField& document);
 
-}  // namespace vestige::plot
+}  // namespace vestige
