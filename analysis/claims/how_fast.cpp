@@ -25,7 +25,10 @@ struct Curve {
 
 Curve curve_of(const nlohmann::json& series, ContextName context) {
   Curve curve;
-  curve.who = fmt::format("`{}`{}", series.at("detector").get<std::string>(), on_renderer(series.at("gl"), context));
+  curve.who =
+      fmt::format("`{}`{}{}", series.at("detector").get<std::string>(),
+                  series.value("approximate", false) ? " (approximate)" : "", on_renderer(series.at("gl"), context));
+  if (const auto planes = series.value("planes", 1); planes > 1) curve.who += fmt::format(" with {} planes", planes);
   curve.skips = series.value("skip", "off") == "on";
   if (series.value("renderer", "off") == "on")
     curve.beside = " beside a renderer" + on_renderer(series.value("renderer_gl", nlohmann::json()));

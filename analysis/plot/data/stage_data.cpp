@@ -43,6 +43,7 @@ std::string details_of(const SweepSeries& series, const Sweeps& sweeps) {
       return one.detector == series.detector && one.*setting != series.*setting;
     });
   };
+  if (series.approximate) details.emplace_back("approximate");
   if (!series.context.empty()) details.push_back(series.context);
   if (series.skip == "on") details.emplace_back("skipping");
   if (series.skip == "off" && differs(&SweepSeries::skip)) details.emplace_back("no skipping");

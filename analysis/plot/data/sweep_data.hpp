@@ -32,9 +32,10 @@ struct SweepSeries {
   std::string context;  ///< empty without OpenGL
   std::string skip;
   std::string method;
-  std::string renderer;   ///< "on": measured while a renderer was drawing
-  std::string planes;     ///< number of planes (render targets); empty if the file does not have it
-  std::size_t sweep = 0;  ///< index of the file
+  std::string renderer;      ///< "on": measured while a renderer was drawing
+  bool approximate = false;  ///< simpler shapes stand in for the avatar's skin
+  std::string planes;        ///< number of planes (render targets); empty if the file does not have it
+  std::size_t sweep = 0;     ///< index of the file
   std::vector<SweepPoint> points;
 };
 

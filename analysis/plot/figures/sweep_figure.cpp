@@ -90,6 +90,7 @@ std::vector<std::string> series_names(const Sweeps& sweeps) {
   std::vector<std::string> names;
   for (const SweepSeries& series : sweeps.series) {
     std::string name = series.detector;
+    if (series.approximate) name += " (approximate)";
     if (contexts.size() > 1 && !series.context.empty()) name.append(", ").append(shown_context(series.context));
     if (methods.size() > 1) name.append(", ").append(series.method);
     if (has_twin(sweeps, series, &SweepSeries::planes))
