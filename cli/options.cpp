@@ -160,7 +160,8 @@ glm::dvec3 parse_vector(const std::string& text, const std::string& flag) {
 
 std::vector<std::uint32_t> parse_counts(const std::string& text, const std::string& flag) {
   const auto fail = [&](std::string_view cause) {
-    return UsageError(flag, fmt::format("'{}' {}", text, cause), "give counts as 1,10,40,100, or 1:100, or 5:100:5");
+    return UsageError(flag, fmt::format("'{}' {}", text, cause),
+                      "give whole numbers as 1,10,40,100, or 1:100, or 5:100:5");
   };
   std::set<std::uint32_t> counts;
   for (const std::string& part : parse_list(text)) {

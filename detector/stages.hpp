@@ -32,8 +32,9 @@ struct StageTime {
   double us = 0;  ///< microseconds, at least 0
 };
 
-/// How kDraw was measured. kTimer: by the driver's timer. kClock: by the CPU's clock, because the driver has no timer
-/// whose answers can be true. Then kDraw contains the waiting, and there is no kWait.
+/// How kDraw was measured. kTimer: by the driver's timer. kClock: by the CPU's clock until the calls return, because
+/// the driver has no timer whose answers can be true. Then there is no kWait, and kReadBack contains what the driver
+/// does later.
 enum class DrawnBy { kNothing, kTimer, kClock };
 
 /// Charges time to stages: always to the stage that was entered last. The clock measures the cost of a switch when it
@@ -49,8 +50,8 @@ class StageClock {
   /// From now on, time belongs to no stage. Returns the time since the last switch, 0 if there was no stage.
   std::chrono::nanoseconds leave();
 
-  /// Says how long a draw took by the driver's own timer (0 if it has none) and by the CPU's clock, from its first call
-  /// to the return of glFinish. The latter was charged to kDraw.
+  /// Says how long a draw took by the driver's own timer (0 if it has none) and by the CPU's clock. The latter was
+  /// charged to kDraw.
   void note_draw(std::chrono::nanoseconds wall, std::chrono::nanoseconds timer);
 
   /// Forgets all that was charged.

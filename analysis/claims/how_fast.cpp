@@ -25,9 +25,8 @@ struct Curve {
 
 Curve curve_of(const nlohmann::json& series, ContextName context) {
   Curve curve;
-  curve.who =
-      fmt::format("`{}`{}{}", series.at("detector").get<std::string>(),
-                  series.value("approximate", false) ? " (approximate)" : "", on_renderer(series.at("gl"), context));
+  curve.who = fmt::format("`{}`{}{}", series.at("detector").get<std::string>(), approximate_words(series),
+                          on_renderer(series.at("gl"), context));
   if (const auto planes = series.value("planes", 1); planes > 1) curve.who += fmt::format(" with {} planes", planes);
   curve.skips = series.value("skip", "off") == "on";
   if (series.value("renderer", "off") == "on")

@@ -307,7 +307,7 @@ std::string wrong_in(const nlohmann::json& scene, double rate_hz, const nlohmann
       const auto& share = point.at("within_tolerance").at("wrong_share");
       const auto detector = series.at("detector").get<std::string>();
       const std::string text = fmt::format(" by {}: {}", code(series.at("method")), per_100(share));
-      const char* approximate = series.at("approximate").get<bool>() ? " (approximate)" : "";
+      const std::string approximate = approximate_words(series);
       add_to(rows, text, {detector, approximate + on_renderer(gl_used_by(detector, gl))});
       order[text] = share.at("value").is_number() ? share["value"].get<double>() : 0;
     }

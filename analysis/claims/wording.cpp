@@ -56,6 +56,13 @@ std::string shared_context(const nlohmann::json& series) {
   return contexts.size() == 1 ? *contexts.begin() : "";
 }
 
+std::string approximate_words(const nlohmann::json& series) {
+  if (!series.value("approximate", false)) return "";
+  const auto kept = series.find("triangles_kept");
+  if (kept == series.end() || !kept->is_number()) return " (approximate)";
+  return fmt::format(" (approximate, {} triangles)", kept->get<std::uint64_t>());
+}
+
 nlohmann::json gl_used_by(const std::string& detector, const nlohmann::json& gl) {
   if (detector != "paper" && detector != "geometry") return {};
   if (gl.is_object()) return gl;

@@ -30,6 +30,9 @@ std::string shared_context(const nlohmann::json& series);
 /// detector uses OpenGL and the result does not know its renderer.
 nlohmann::json gl_used_by(const std::string& detector, const nlohmann::json& gl);
 
+/// Returns " (approximate)" or " (approximate, 500 triangles)" for a series whose detector is, otherwise "".
+std::string approximate_words(const nlohmann::json& series);
+
 /// A detector, and " on …" as on_renderer() says it.
 using DetectorOnRenderer = std::pair<std::string, std::string>;
 

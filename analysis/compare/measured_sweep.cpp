@@ -75,6 +75,7 @@ std::string series_name(const JsonField& series) {
   const auto add = [&name](const std::string& words) {
     if (!words.empty()) name += ", " + words;
   };
+  if (series.has("triangles_kept")) name += fmt::format(" ({} triangles)", whole(series.at("triangles_kept"), 0));
   add(text_or_empty(series, "context"));
   // Version 0.2 did not know planes, and measured one.
   const std::uint64_t planes = series.has("planes") ? whole(series.at("planes"), 0) : 1;
@@ -119,6 +120,8 @@ void read_question(const JsonField& document, MeasuredSweep& sweep) {
     sweep.question.emplace_back(fmt::format("avatar.{}", key), document.at("avatar").at(key).value().dump());
   for (const char* key : {"surface", "runs", "run_frames", "seed"})
     if (document.has(key)) sweep.question.emplace_back(key, document.at(key).value().dump());
+  if (document.has("sample") && document.at("sample").has("sha256"))
+    sweep.question.emplace_back("poses and colliders of SHA-256", document.at("sample").at("sha256").text());
 }
 
 MeasuredSweep read_sweep(const std::filesystem::path& file, const std::filesystem::path& folder) {
@@ -139,7 +142,8 @@ MeasuredSweep read_sweep(const std::filesystem::path& file, const std::filesyste
   sweep.system = document.at("machine").at("system").text();
   read_question(document, sweep);
 
-  const std::filesystem::path times_file = file.parent_path() / kTimesName;
+  sweep.times_file = file.parent_path() / kTimesName;
+  const std::filesystem::path& times_file = sweep.times_file;
   if (!std::filesystem::exists(times_file))
     throw Error(times_file.string(), "is missing; a comparison needs the duration of every frame", kSweepRemedy);
   mcap::RawBuffer buffer;
@@ -159,8 +163,11 @@ std::vector<MeasuredSweep> read_measured_sweeps(const std::filesystem::path& fol
   if (!std::filesystem::is_directory(folder))
     throw Error(folder.string(), std::filesystem::exists(folder) ? "is not a folder" : "does not exist", kSweepRemedy);
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (entry.path().filename() == kSweepName) files.push_back(entry.path());
+  std::error_code failure;
+  for (std::filesystem::recursive_directory_iterator entry(folder, failure), end; !failure && entry != end;
+       entry.increment(failure))
+    if (entry->path().filename() == kSweepName) files.push_back(entry->path());
+  if (failure) throw Error(folder.string(), fmt::format("cannot be searched: {}", failure.message()), kSweepRemedy);
   if (files.empty()) throw Error(folder.string(), fmt::format("holds no {}", kSweepName), kSweepRemedy);
   std::ranges::sort(files);
   std::vector<MeasuredSweep> sweeps;

@@ -27,8 +27,9 @@ struct MeasuredPoint {
 
 /// What one sweep.json and the frame times beside it say.
 struct MeasuredSweep {
-  std::filesystem::path file;  ///< sweep.json
-  std::string place;           ///< its folder, relative to the result folder; empty for the folder itself
+  std::filesystem::path file;        ///< sweep.json
+  std::filesystem::path times_file;  ///< the durations beside it
+  std::string place;                 ///< its folder, relative to the result folder; empty for the folder itself
   std::uint64_t schema_version = 0;
   std::string commit;  ///< shortened, with " (changed)" if files had been changed since
   std::string time;    ///< UTC

@@ -73,8 +73,8 @@ Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& m
     const SweepSettings sweep = settings_for(settings, fine, settings.colliders);
     const GrowthContestants made = make(fine, fine_map);
     Sweep measured = run_sweep(trace, fine, *made.survey, made.contestants, sweep, step_progress);
-    growth.by_triangles.push_back({fine.triangles.size(), fine.position_bind.size(), measured.places * sweep.run_frames,
-                                   std::move(measured.series)});
+    growth.by_triangles.push_back({fine.triangles.size(), fine.position_bind.size(),
+                                   measured.places * measured.place_frames, std::move(measured.series)});
     ++step;
   }
   return growth;

@@ -19,27 +19,27 @@ std::string cell_of(double us) {
 }
 
 /// The row of one stage, or nothing if no series went through it.
-std::string stage_row(std::span<const SweepSeries* const> series, std::size_t point, Stage stage) {
+std::string stage_row(std::span<const SweepSeries* const> series, std::size_t point, Stage stage, std::size_t width) {
   std::string row = fmt::format("\n{:>10}", kStageNames[static_cast<std::size_t>(stage)]);
   bool any = false;
   for (const SweepSeries* one : series) {
     const auto& stages = one->points[point].stages.stages;
     const auto found = std::ranges::find(stages, stage, &StageTime::stage);
     any = any || found != stages.end();
-    fmt::format_to(std::back_inserter(row), "  {:>34}", found == stages.end() ? "-" : cell_of(found->us));
+    fmt::format_to(std::back_inserter(row), "  {:>{}}", found == stages.end() ? "-" : cell_of(found->us), width);
   }
   return any ? row : "";
 }
 
-std::string stage_table_at(std::span<const SweepSeries* const> series, std::size_t point) {
+std::string stage_table_at(std::span<const SweepSeries* const> series, std::size_t point, std::size_t width) {
   const std::uint32_t colliders = series.front()->points[point].colliders;
   std::string table = fmt::format("\nWhere the time goes with {} collider{}, \u00b5s a frame:\n{:>10}", colliders,
                                   colliders == 1 ? "" : "s", "");
-  for (const SweepSeries* one : series) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(*one));
-  for (std::size_t i = 0; i < kStageNames.size(); ++i) table += stage_row(series, point, static_cast<Stage>(i));
+  for (const SweepSeries* one : series) fmt::format_to(std::back_inserter(table), "  {:>{}}", name_of(*one), width);
+  for (std::size_t i = 0; i < kStageNames.size(); ++i) table += stage_row(series, point, static_cast<Stage>(i), width);
   fmt::format_to(std::back_inserter(table), "\n{:>10}", "together");
   for (const SweepSeries* one : series)
-    fmt::format_to(std::back_inserter(table), "  {:>34}", cell_of(one->points[point].stages.total_us()));
+    fmt::format_to(std::back_inserter(table), "  {:>{}}", cell_of(one->points[point].stages.total_us()), width);
   return table + "\n";
 }
 
@@ -64,10 +64,11 @@ std::string stage_table(std::span<const SweepSeries> series) {
   std::string table;
   bool by_clock = false;
   for (std::size_t p = points <= kFewPoints ? 0 : points - 1; p < points; ++p) {
-    table += stage_table_at(timed, p);
+    table += stage_table_at(timed, p, column_width(series));
     for (const SweepSeries* one : timed) by_clock = by_clock || one->points[p].stages.drawn_by == DrawnBy::kClock;
   }
-  if (by_clock) table += "draw: by the CPU's clock, with the waiting, where the driver has no timer to be believed.\n";
+  if (by_clock)
+    table += "draw: by the CPU's clock until its calls return, where the driver has no timer to be believed.\n";
   return table;
 }
 

@@ -66,6 +66,8 @@ class RunningSweep {
                const std::vector<Contestant>& contestants, const SweepSettings& settings)
       : avatar_(avatar), contestants_(contestants), settings_(settings), places_(std::move(sample.places)) {
     sweep_.places = static_cast<std::uint32_t>(places_.size());
+    if (!places_.empty()) sweep_.place_frames = static_cast<std::uint32_t>(places_.front().size() - 1);
+    sweep_.sample_sha256 = sample.sha256;
     sweep_.trace = sample.trace;
     sweep_.sampled = sample.sampled;
     drawn_for_any_.resize(places_.size());

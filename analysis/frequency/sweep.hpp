@@ -84,9 +84,11 @@ struct SweepSeries {
 
 struct Sweep {
   std::vector<SweepSeries> series;
-  std::uint32_t places = 0;  ///< `settings.runs`, or as many as the trace has room for
-  FrameContacts trace;       ///< of the whole trace, with all its colliders
-  FrameContacts sampled;     ///< of the frames that were measured, with all colliders of the trace
+  std::uint32_t places = 0;        ///< `settings.runs`, or as many as the trace has room for
+  std::uint32_t place_frames = 0;  ///< frames measured at each: `settings.run_frames`, or those that the trace has
+  std::string sample_sha256;       ///< as in SweepSample
+  FrameContacts trace;             ///< of the whole trace, with all its colliders
+  FrameContacts sampled;           ///< of the frames that were measured, with all colliders of the trace
 };
 
 /// Measures every contestant at every count, on frames (`sample_places`, by the contacts that `survey` finds) and

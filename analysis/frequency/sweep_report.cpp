@@ -12,6 +12,7 @@
 #include "analysis/base/provenance.hpp"
 #include "analysis/frequency/render_thread.hpp"
 #include "analysis/frequency/stage_report.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 
@@ -98,15 +99,16 @@ std::string table_of(std::span<const SweepSeries> series, const std::string& tit
                      const std::function<bool(const SweepSeries&)>& has_column,
                      const std::function<std::string(const SweepSeries&, std::size_t)>& cell) {
   if (std::ranges::none_of(series, has_column)) return "";
+  const std::size_t width = column_width(series);
   std::string table = fmt::format("\n{}:\n{:>9}", title, "colliders");
   for (const SweepSeries& one : series)
-    if (has_column(one)) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
+    if (has_column(one)) fmt::format_to(std::back_inserter(table), "  {:>{}}", name_of(one), width);
   for (std::size_t p = 0; p < series.front().points.size(); ++p) {
     fmt::format_to(std::back_inserter(table), "\n{:>9}", series.front().points[p].colliders);
     for (const SweepSeries& one : series) {
       if (!has_column(one)) continue;
       const std::string text = one.points[p].repetitions.empty() ? "" : cell(one, p);
-      fmt::format_to(std::back_inserter(table), "  {:>34}", text.empty() ? "-" : text);
+      fmt::format_to(std::back_inserter(table), "  {:>{}}", text.empty() ? "-" : text, width);
     }
   }
   return table + "\n";
@@ -165,18 +167,23 @@ std::string planes_table(std::span<const SweepSeries> series) {
       });
 }
 
+/// Per cent with one digit, rounded down: what is not all never reads 100.
+double percent_floor(double share) {
+  return std::floor(1000 * share) / 10;
+}
+
 /// Says how often the frames of each count have contacts, once for all series that agree with the first.
 std::string contacts_table(std::span<const SweepSeries> series) {
   const auto tells_more = [&](const SweepSeries& one) {
     return &one == &series.front() ||
            !std::ranges::equal(one.points, series.front().points, {}, &SweepPoint::contacts, &SweepPoint::contacts);
   };
-  return table_of(series, "Contacts in one pass, and share of its frames without any", tells_more,
-                  [](const SweepSeries& one, std::size_t p) {
+  return table_of(series, "Contacts in one pass, and share of its frames without any (those left out: as the first)",
+                  tells_more, [](const SweepSeries& one, std::size_t p) {
                     const SweepPoint& point = one.points[p];
                     const double empty =
                         static_cast<double>(point.empty_frames) / static_cast<double>(point.pass_frames);
-                    return fmt::format("{} ({:.0f} %)", point.contacts, 100 * empty);
+                    return fmt::format("{} ({:.1f} %)", point.contacts, percent_floor(empty));
                   });
 }
 
@@ -195,6 +202,12 @@ std::string disagreement_lines(std::span<const SweepSeries> series) {
 }
 
 }  // namespace
+
+std::size_t column_width(std::span<const SweepSeries> series) {
+  std::size_t width = 34;
+  for (const SweepSeries& one : series) width = std::max(width, name_of(one).size());
+  return width;
+}
 
 std::string name_of(const SweepSeries& series) {
   std::string name = series.detector;
@@ -238,16 +251,19 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
 }
 
 nlohmann::ordered_json sample_json(const Sweep& sweep) {
-  return {{"places", sweep.places}, {"sampled", to_json(sweep.sampled)}, {"trace", to_json(sweep.trace)}};
+  return {{"places", sweep.places},
+          {"sha256", sweep.sample_sha256},
+          {"sampled", to_json(sweep.sampled)},
+          {"trace", to_json(sweep.trace)}};
 }
 
 std::string sample_sentence(const Sweep& sweep) {
   return fmt::format(
-      "\nMeasured at {} places, with other colliders drawn for each. With all colliders, {:.1f} % of these frames have "
-      "no "
-      "contact, and {:.1f} % of the trace's; a frame has {:.2f} contacts, and {:.2f} in the whole trace.\n",
-      sweep.places, 100 * sweep.sampled.empty_share, 100 * sweep.trace.empty_share, sweep.sampled.contacts_per_frame,
-      sweep.trace.contacts_per_frame);
+      "\nMeasured at {} of {}{}. With all colliders, {:.1f} % of these frames have no contact, and {:.1f} % of the "
+      "trace's; a frame has {:.3g} contacts, and {:.3g} in the whole trace.\n",
+      counted(sweep.places, "place"), counted(sweep.place_frames, "frame"),
+      sweep.places > 1 ? ", with other colliders drawn for each" : "", percent_floor(sweep.sampled.empty_share),
+      percent_floor(sweep.trace.empty_share), sweep.sampled.contacts_per_frame, sweep.trace.contacts_per_frame);
 }
 
 std::string frame_times_csv(std::span<const SweepSeries> series) {
@@ -265,8 +281,9 @@ std::string frame_times_csv(std::span<const SweepSeries> series) {
 }
 
 std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed) {
+  const std::size_t width = column_width(series);
   std::string table = fmt::format("{:>9}", "colliders");
-  for (const SweepSeries& one : series) fmt::format_to(std::back_inserter(table), "  {:>34}", name_of(one));
+  for (const SweepSeries& one : series) fmt::format_to(std::back_inserter(table), "  {:>{}}", name_of(one), width);
   table += "   HAVE 2010, GTX 285\n";
   if (series.empty()) return table;
   for (std::size_t p = 0; p < series.front().points.size(); ++p) {
@@ -276,7 +293,7 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
       const Interval interval = interval_of(point, seed);
       std::string cell = fmt::format("{:.0f}", point.hz());
       if (std::isfinite(interval.low)) cell += fmt::format(" ({:.0f} to {:.0f})", interval.low, interval.high);
-      fmt::format_to(std::back_inserter(table), "  {:>34}", point.repetitions.empty() ? "-" : cell);
+      fmt::format_to(std::back_inserter(table), "  {:>{}}", point.repetitions.empty() ? "-" : cell, width);
     }
     const std::string_view paper = paper_figure(series.front().points[p].colliders);
     fmt::format_to(std::back_inserter(table), "   {}\n", paper);
@@ -323,7 +340,7 @@ std::vector<std::string> noise_warnings(std::span<const SweepSeries> series) {
     }
     if (noisy == 0) continue;
     warnings.push_back(fmt::format(
-        "{}: at {} of {} counts the repetitions scatter by more than {:.0f} % (worst {:.0f} %). Other programs were "
+        "{}: at {} of {} counts the repetitions scatter by more than {:.0f} % (worst {:.1f} %). Other programs were "
         "probably running: close them, or raise --min-time.",
         name_of(one), noisy, one.points.size(), 100 * kNoisy, 100 * worst));
   }

@@ -9,6 +9,7 @@
 
 #include "analysis/run/detection_run.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/sha256.hpp"
 
 namespace vestige {
 
@@ -61,8 +62,8 @@ FrameContacts describe(const Grid& grid, std::span<const std::uint32_t> contacts
 
 /// Returns how far a sample is from the trace: 0 if contacts and empty frames are as frequent.
 double distance_between(const FrameContacts& sampled, const FrameContacts& trace) {
-  const double most = std::max(sampled.contacts_per_frame, trace.contacts_per_frame);
-  const double contacts = most == 0 ? 0 : std::abs(sampled.contacts_per_frame - trace.contacts_per_frame) / most;
+  if (trace.contacts_per_frame == 0) return 0;
+  const double contacts = std::abs(sampled.contacts_per_frame - trace.contacts_per_frame) / trace.contacts_per_frame;
   return contacts + std::abs(sampled.empty_share - trace.empty_share);
 }
 
@@ -79,6 +80,28 @@ Grid best_grid(Grid grid, std::span<const std::uint32_t> contacts, const FrameCo
     best = grid;
   }
   return best;
+}
+
+void add(const TraceFrame& frame, Sha256& sha) {
+  const auto add_value = [&sha](const auto& value) { sha.update(std::as_bytes(std::span(&value, 1))); };
+  add_value(frame.time_ns);
+  add_value(frame.pose.origin_m);
+  for (const auto& node : frame.pose.nodes) {
+    add_value(node.translation);
+    add_value(node.rotation);
+    add_value(node.scale);
+  }
+  for (const auto& collider : frame.colliders) {
+    add_value(collider.id);
+    add_value(collider.position_m);
+  }
+}
+
+std::string sha256_of(const std::vector<Place>& places) {
+  Sha256 sha;
+  for (const Place& place : places)
+    for (const TraceFrame& frame : place) add(frame, sha);
+  return sha.hex();
 }
 
 }  // namespace
@@ -104,6 +127,7 @@ SweepSample sample_places(TraceReader& trace, const Avatar& avatar, Detector& su
   for (std::uint64_t number = 0; trace.next(frame); ++number)
     for (std::uint64_t i = 0; i < grid.count; ++i)
       if (number >= grid.start(i) && number < grid.start(i) + grid.length) sample.places[i].push_back(frame);
+  sample.sha256 = sha256_of(sample.places);
   return sample;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "detector/detector.hpp"
@@ -26,6 +27,7 @@ struct SweepSample {
   std::vector<Place> places;
   FrameContacts trace;    ///< of all frames but the first
   FrameContacts sampled;  ///< of the places' frames
+  std::string sha256;     ///< of the places' poses, colliders and times: equal for the same frames of equal traces
 };
 
 /// Chooses `places` evenly spaced places, or as many as the trace has room for, but at least one. Each has

@@ -30,6 +30,11 @@ double share_of(const StressCount& count) {
   return static_cast<double>(count.felt()) / static_cast<double>(count.cases);
 }
 
+/// Two digits, but 100 as such.
+std::string percent(double share) {
+  return share < 0.1 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);
+}
+
 /// Returns a line for each column: where it errs most, and how sure that is.
 std::string worst_lines(std::span<const StressCount> counts, const std::vector<std::string>& columns) {
   std::string lines = "\nWhere each errs most (missed, false, other triangle or actuator; 95 % Wilson intervals):\n";
@@ -39,10 +44,9 @@ std::string worst_lines(std::span<const StressCount> counts, const std::vector<s
       if (column_of(count) == column && (worst == nullptr || share_of(count) > share_of(*worst))) worst = &count;
     const Interval interval = wilson_interval(worst->felt(), worst->cases);
     const std::string found =
-        worst->felt() == 0
-            ? fmt::format("nowhere: less than {:.2g} % in each family", 100 * interval.high)
-            : fmt::format("{} {:g}: {:.2g} % ({:.2g} to {:.2g} %)", name_of(worst->family), worst->magnitude,
-                          100 * share_of(*worst), 100 * interval.low, 100 * interval.high);
+        worst->felt() == 0 ? fmt::format("nowhere: less than {} % in each family", percent(interval.high))
+                           : fmt::format("{} {:g}: {} % ({} to {} %)", name_of(worst->family), worst->magnitude,
+                                         percent(share_of(*worst)), percent(interval.low), percent(interval.high));
     fmt::format_to(std::back_inserter(lines), "  {:<24} {}\n", column, found);
   }
   return lines;

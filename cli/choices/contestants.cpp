@@ -56,11 +56,15 @@ void add_contestant_options(CLI::App& verb, ContestantChoice& choice) {
 }
 
 void check_contestant_choice(const ContestantChoice& choice) {
-  parse_names(choice.detectors, contestant_names(), "--detector");
+  const std::vector<std::string> detectors = parse_names(choice.detectors, contestant_names(), "--detector");
   if (parse_names(choice.contexts, {"egl", "osmesa", "auto"}, "--context").size() > 1 &&
       choice.contexts.find("auto") != std::string::npos)
     throw UsageError("--context", "'auto' already means egl or osmesa", "name egl and osmesa, or auto alone");
   parse_names(choice.skips, kSkipNames, "--skip");
+  if (choice.planes != "1" && std::ranges::find(detectors, "paper") == detectors.end())
+    throw UsageError("--planes",
+                     fmt::format("changes nothing for --detector {}: only paper draws planes", choice.detectors),
+                     "add paper to --detector");
   if (const std::uint32_t most = std::ranges::max(parse_counts(choice.planes, "--planes")); most > kMostPlanes)
     throw UsageError("--planes", fmt::format("asks for {} planes, but there are {}", most, kMostPlanes),
                      "ask for 1 to 8 planes");

@@ -17,7 +17,8 @@ namespace vestige::cli {
 namespace {
 
 constexpr const char* kSkipHelp =
-    "on: cpu and geometry do not skin or test what bounds prove to miss (the result is the same); off: they skin the "
+    "on: cpu, geometry and decimated do not skin or test what bounds prove to miss (the result is the same); off: they "
+    "skin the "
     "whole avatar and consider every pair of segment and triangle";
 
 /// Returns why --keep would change nothing, or "".

@@ -11,10 +11,11 @@ namespace vestige::cli {
 
 void add_swept_options(CLI::App& verb, SweepChoice& choice) {
   verb.add_option("TRACE", choice.trace, "The trace to measure on [default: the built-in avatar in a swarm]");
-  verb.add_option("--counts", choice.counts,
-                  "Numbers of colliders, drawn at random from the trace's, as 1,10,40,100 or 1:100 or 5:100:5")
-      ->capture_default_str()
-      ->type_name("LIST");
+  choice.counts_option =
+      verb.add_option("--counts", choice.counts,
+                      "Numbers of colliders, drawn at random from the trace's, as 1,10,40,100 or 1:100 or 5:100:5")
+          ->capture_default_str()
+          ->type_name("LIST");
 }
 
 void add_measuring_options(CLI::App& verb, SweepChoice& choice, SweepSettings& settings,
@@ -39,6 +40,11 @@ void check_sweep_choice(const SweepChoice& choice, SweepSettings& settings) {
   settings.counts = parse_counts(choice.counts, "--counts");
   settings.seed = choice.common.seed;
   check_contestant_choice(choice.contestants);
+}
+
+void leave_out_missing_colliders(const SweepChoice& choice, std::size_t colliders, SweepSettings& settings) {
+  if (!choice.counts_option->empty() || colliders == 0) return;
+  std::erase_if(settings.counts, [&](std::uint32_t count) { return count > colliders; });
 }
 
 std::string prepare_sweep(const SweepChoice& choice, std::vector<std::string> results, std::uint32_t colliders,

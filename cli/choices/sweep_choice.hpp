@@ -20,6 +20,7 @@ struct SweepChoice {
   std::string trace = {};
   bool no_figure = false;
   std::string output = {};
+  const CLI::Option* counts_option = nullptr;  ///< set by `add_swept_options`
 };
 
 /// Adds TRACE and --counts.
@@ -31,6 +32,9 @@ void add_measuring_options(CLI::App& verb, SweepChoice& choice, SweepSettings& s
 
 /// Copies counts and seed to `settings`. Throws `UsageError` for values that cannot be measured.
 void check_sweep_choice(const SweepChoice& choice, SweepSettings& settings);
+
+/// Leaves out the default counts that are above the trace's number of colliders. Those that --counts asks for stay.
+void leave_out_missing_colliders(const SweepChoice& choice, std::size_t colliders, SweepSettings& settings);
 
 /// Makes the folder of the results, and checks the outputs (`check_outputs`) before any work is done. Returns the trace
 /// to measure on: TRACE, if given. Otherwise it records trace.mcap in that folder with this many colliders.

@@ -28,6 +28,13 @@ void run_compare_verb(const CompareOptions& options, Invocation& invocation) {
   const std::vector<MeasuredSweep> b = read_measured_sweeps(options.b);
   if (std::filesystem::equivalent(options.a, options.b))
     throw Error(options.b, "is the folder that it is to be compared with", "name the folders of two runs");
+  std::vector<std::string> inputs;
+  for (const std::vector<MeasuredSweep>* run : {&a, &b})
+    for (const MeasuredSweep& sweep : *run) {
+      inputs.push_back(sweep.file.string());
+      inputs.push_back(sweep.times_file.string());
+    }
+  check_outputs({options.common.json}, inputs, options.common);
   const double threshold = options.threshold_percent / 100;
   const SweepComparison comparison =
       compare_sweeps(a, b, threshold, options.across_machines ? Machines::kAny : Machines::kSame);

@@ -45,6 +45,7 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
   const std::uint32_t colliders = std::max(std::ranges::max(sweep.counts), options.settings.colliders);
   const std::string path = prepare_sweep(choice, {json_path}, colliders, invocation);
   OpenTrace trace(path, verbosity);
+  leave_out_missing_colliders(choice, trace.reader.collider_ids().size(), sweep);
   if (trace.reader.collider_ids().size() < options.settings.colliders)
     throw Error("--count",
                 fmt::format("{} colliders are asked for, and the trace has {}", options.settings.colliders,

@@ -11,6 +11,7 @@
 #include "cli/choices/scene.hpp"
 #include "cli/choices/sweep_choice.hpp"
 #include "cli/verbs.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/mcap/compression.hpp"
 
 namespace vestige::cli {
@@ -39,6 +40,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   const std::string path =
       prepare_sweep(choice, {json_path, times_path}, std::ranges::max(options.settings.counts), invocation);
   OpenTrace trace(path, verbosity);
+  leave_out_missing_colliders(choice, trace.reader.collider_ids().size(), options.settings);
   const std::vector<Contestant> contestants = make_contestants(choice.contestants, trace.avatar, trace.map, verbosity);
   const std::unique_ptr<Detector> survey = make_survey(choice.contestants, trace.avatar, trace.map);
   Sweep sweep;
@@ -56,7 +58,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   json["trace"] = path;
   json["surface"] = choice.contestants.choice.surface;
   json["runs"] = sweep.places;
-  json["run_frames"] = options.settings.run_frames;
+  json["run_frames"] = sweep.place_frames;
   json["min_time_s"] = options.settings.min_time_s;
   json["seed"] = options.settings.seed;
   json["sample"] = sample_json(sweep);
@@ -72,9 +74,9 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   times_file.commit();
 
   if (interrupted()) warn("stopped early; the results so far were written", verbosity);
-  if (sweep.places < options.settings.runs)
-    warn(fmt::format("--runs {}: the trace has room for {} runs of {} frames each", options.settings.runs, sweep.places,
-                     options.settings.run_frames),
+  if (sweep.places < options.settings.runs || sweep.place_frames < options.settings.run_frames)
+    warn(fmt::format("the trace has room for {} of {}, fewer than --runs and --run-frames ask for",
+                     counted(sweep.places, "run"), counted(sweep.place_frames, "frame")),
          verbosity);
   for (const std::string& warning : noise_warnings(series)) warn(warning, verbosity);
   const std::vector<std::string> wrong = disagreements(series);

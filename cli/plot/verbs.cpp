@@ -68,7 +68,7 @@ CLI::App& add_sweep(CLI::App& app, Options& options) {
 CLI::App& add_stages(CLI::App& app, Options& options) {
   CLI::App& stages = add_command(app, "stages", "Where the time of a frame goes, by detector (stages.svg, .png)",
                                  "  vestige plot stages results/sweep\n"
-                                 "  vestige plot stages results/sweep --counts 1,10 -o figures\n");
+                                 "  vestige plot stages results/sweep --counts 1,10\n");
   add_input(stages, options, "DIR|JSON",
             "The sweep.json that 'vestige sweep --stages' wrote, or the folder that holds it");
   stages

@@ -83,6 +83,7 @@ nlohmann::ordered_json to_json(const Streamed& streamed, const StreamOptions& op
   json["trace"] = options.trace;
   json["detector"] = detector.name();
   json["approximate"] = detector.is_approximate();
+  if (const auto kept = detector.triangles_kept()) json["triangles_kept"] = *kept;
   json["law"] = laws.to_json();
   json["gl"] = vestige::to_json(detector.gl_info());
   json["frames"] = streamed.playback.frames;

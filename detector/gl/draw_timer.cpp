@@ -19,12 +19,14 @@ void DrawTimer::begin(StageClock& clock) {
     has_timer_ = counter_bits > 0 && !is_software_renderer(reinterpret_cast<const char*>(renderer));
   }
   clock.enter(Stage::kDraw);
-  gl_.BeginQuery(GL_TIME_ELAPSED, query_);
+  if (has_timer_) gl_.BeginQuery(GL_TIME_ELAPSED, query_);
 }
 
 void DrawTimer::end(StageClock& clock) {
-  gl_.EndQuery(GL_TIME_ELAPSED);
-  gl_.Finish();
+  if (has_timer_) {
+    gl_.EndQuery(GL_TIME_ELAPSED);
+    gl_.Finish();
+  }
   const std::chrono::nanoseconds wall = clock.leave();
   GLuint64 drawn_ns = 0;
   if (has_timer_) gl_.GetQueryObjectui64v(query_, GL_QUERY_RESULT, &drawn_ns);

@@ -58,7 +58,7 @@ constexpr std::array<StageLook, kStageNames.size()> kLooks = {{
     {"test", "segments against triangles", kOrange},
     {"decision", "exact answers, contacts", kVermillion},
 }};
-constexpr const char* kDrawAndWait = "the shaders, and waiting";
+constexpr const char* kDrawAndWait = "the shaders";
 
 double total_of(const StageBar& bar) {
   return std::accumulate(bar.stages.us.begin(), bar.stages.us.end(), 0.0);
@@ -159,8 +159,9 @@ class StageFigure : public Figure {
         "taken off. ";
     if (any_timer_) text += "Draw is by the driver's timer; the rest of the time until all is drawn counts as wait. ";
     if (any_clock_)
-      text += any_timer_ ? "Where there is no wait, draw is by the CPU's clock, with the waiting. "
-                         : "Draw is by the CPU's clock, with the waiting: the driver has no timer to be believed. ";
+      text += any_timer_ ? "Where there is no wait, draw is by the CPU's clock until its calls return. "
+                         : "Draw is by the CPU's clock until its calls return, as the driver has no timer to be "
+                           "believed; what it does later is a part of the read-back. ";
     const SweepSource& source = result_.source;
     if (!source.renderer.empty() && (any_timer_ || any_clock_)) text += fmt::format("OpenGL: {}. ", source.renderer);
     if (!source.machine.empty()) text += fmt::format("Machine: {}. ", source.machine);

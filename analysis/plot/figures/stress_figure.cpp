@@ -59,7 +59,7 @@ double shade_of(double rate) {
 /// it.
 std::string shown(const StressCell& cell) {
   const double errors = cell.error_rate() * cell.cases;
-  const std::string count = errors < 1e5 ? fmt::format("{:.0f}", errors) : fmt::format("{:.3g}", errors);
+  std::string count = errors < 1e5 ? fmt::format("{:.0f}", errors) : fmt::format("{:.3g}", errors);
   if (errors == 0 || !cell.low || !cell.high) return count;
   const auto percent = [](double share) {
     return share < 0.1 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);

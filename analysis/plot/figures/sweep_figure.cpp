@@ -115,7 +115,8 @@ std::vector<std::string> small_print(const Sweeps& sweeps) {
   if (has_interval) first += " Shaded: 95 % bootstrap interval.";
   first += " Triangles: published lower bounds.";
   if (any_skips(sweeps))
-    first += " cpu and geometry skip triangles that no collider can touch, unless their names say otherwise.";
+    first +=
+        " cpu, geometry and decimated skip triangles that no collider can touch, unless their names say otherwise.";
   if (const auto methods = methods_of(sweeps); methods.size() == 1 && !methods.begin()->empty())
     first += fmt::format(" Method: {}.", *methods.begin());
   lines = wrapped(first);

@@ -85,6 +85,20 @@ TEST_F(SampledTrace, HasContactsAsOftenAsTheWholeTrace) {
   for (const Place& place : sampled.places) EXPECT_EQ(place.back().index - place.front().index, 10U);
 }
 
+/// One contact among 40 frames would be ten times as many as among the trace's 400.
+TEST_F(SampledTrace, LeavesOutAContactThatItWouldOverrate) {
+  const SweepSample sampled = sample([](std::uint64_t frame) { return frame == 399; }, 4, 10);
+  EXPECT_GT(sampled.trace.contacts_per_frame, 0);
+  EXPECT_EQ(sampled.sampled.contacts_per_frame, 0);
+}
+
+TEST_F(SampledTrace, HasAHashOfItsPosesAndColliders) {
+  const auto never = [](std::uint64_t) { return false; };
+  EXPECT_EQ(sample(never, 4, 10).sha256.size(), 64U);
+  EXPECT_EQ(sample(never, 4, 10).sha256, sample(never, 4, 10).sha256);
+  EXPECT_NE(sample(never, 4, 10).sha256, sample(never, 4, 11).sha256);
+}
+
 TEST_F(SampledTrace, HasNoMorePlacesThanRoom) {
   EXPECT_THAT(sample([](std::uint64_t) { return false; }, 1000, 99).places, SizeIs(4));
   const SweepSample whole = sample([](std::uint64_t) { return true; }, 5, 100000);

@@ -61,6 +61,30 @@ class CompareCommandLine : public test::CommandLineTest {
   }
 };
 
+TEST_F(CompareCommandLine, LeavesItsInputsAsTheyAre) {
+  write_sweep("a");
+  write_sweep("b");
+  for (const char* file : {"a/sweep.json", "b/sweep.json", "b/frame_times.csv.zst"}) {
+    const test::Outcome compare = run(std::string("vestige compare a b --force --json ") + file);
+    EXPECT_EQ(compare.exit_code, 2) << file;
+    EXPECT_THAT(compare.standard_error, HasSubstr("would change an input file"));
+  }
+  EXPECT_EQ(run("vestige compare a b").exit_code, 0);
+}
+
+TEST_F(CompareCommandLine, TakesAnotherTraceForAnotherQuestionAndAnotherDecimationForAnotherPoint) {
+  write_sweep("a");
+  write_sweep("b");
+  change("a", "s/\"runs\":2/\"runs\":2,\"sample\":{\"sha256\":\"aa\"}/");
+  change("b", "s/\"runs\":2/\"runs\":2,\"sample\":{\"sha256\":\"bb\"}/");
+  EXPECT_THAT(run("vestige compare a b").standard_error,
+              AllOf(HasSubstr("poses and colliders of SHA-256 bb"), HasSubstr("aa")));
+  write_sweep("c");
+  write_sweep("d");
+  change("c", "s/\"context\":/\"triangles_kept\":500,\"context\":/");
+  EXPECT_THAT(run("vestige compare c d").standard_error, HasSubstr("cpu (500 triangles), skip on"));
+}
+
 TEST_F(CompareCommandLine, SaysWhatBecameSlowerAndEndsWith4) {
   write_sweep("a");
   write_sweep("b", 1.25);

@@ -167,8 +167,18 @@ TEST_F(SweepCommandLine, SaysWhatFurtherPlanesCost) {
     EXPECT_EQ(one["points"][0]["disagreements"], 0);
   }
   EXPECT_THAT(planes, testing::ElementsAre(1, 3, 8, 1)) << "only paper draws planes";
+  expect_failure("vestige sweep small.mcap --detector cpu --planes 1:8 -o t", 2, {"--planes", "paper"}, "t/sweep.json");
   expect_failure("vestige sweep small.mcap --planes 9 -o t", 2, {"--planes", "9", "8"}, "t/sweep.json");
   expect_failure("vestige sweep small.mcap --planes 0 -o t", 2, {"--planes", "0"}, "t/sweep.json");
+}
+
+/// The default goes up to 100 colliders.
+TEST_F(SweepCommandLine, MeasuresAsManyCollidersAsThereAreUnlessAskedForMore) {
+  ASSERT_EQ(run("vestige record --count 3 --rate 100 --duration 0.1 -o three.mcap -q").exit_code, 0);
+  ASSERT_EQ(run("vestige sweep three.mcap --detector cpu --min-time 1e-9 --no-figure -o s").exit_code, 0);
+  EXPECT_EQ(json_in("s/sweep.json")["series"][0]["points"].size(), 3U);
+  expect_failure("vestige sweep three.mcap --detector cpu --counts 1:4 -o t", 1, {"--counts", "4", "3"},
+                 "t/sweep.json");
 }
 
 TEST_F(SweepCommandLine, SaysHowManyPlacesTheTraceHasRoomFor) {
@@ -176,8 +186,13 @@ TEST_F(SweepCommandLine, SaysHowManyPlacesTheTraceHasRoomFor) {
   const test::Outcome sweep =
       run("vestige sweep small.mcap --detector cpu --counts 1 --min-time 1e-9 --runs 9999 --no-figure -o s");
   ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
-  EXPECT_THAT(sweep.standard_error, HasSubstr("--runs 9999: the trace has room for "));
+  EXPECT_THAT(sweep.standard_error, HasSubstr("the trace has room for "));
   EXPECT_LT(json_in("s/sweep.json")["runs"], 9999);
+  const test::Outcome whole =
+      run("vestige sweep small.mcap --detector cpu --counts 1 --min-time 1e-9 --runs 1 --run-frames 100000 --no-figure "
+          "-o w");
+  EXPECT_THAT(whole.standard_error, HasSubstr("has room for 1 run of "));
+  EXPECT_LT(json_in("w/sweep.json")["run_frames"], 100000);
 }
 
 /// Another than the one that was named is not measured in its stead.
