@@ -187,7 +187,10 @@ int run(const std::filesystem::path& folder) {
   record_swarm(folder / "trace.mcap");
   TraceReader trace(folder / "trace.mcap");
   const PoseTimes pose_us = measure_poses(trace);
-  const cli::ContestantChoice choice = {{}, "paper,geometry,cpu,embree", "egl", "off,on"};
+  cli::ContestantChoice choice;
+  choice.detectors = "paper,geometry,cpu,embree";
+  choice.contexts = "egl";
+  choice.skips = "off,on";
   const auto survey = cli::make_survey(choice, test::builtin_avatar(), test::builtin_map());
   const auto contestants =
       cli::make_contestants(choice, test::builtin_avatar(), test::builtin_map(), cli::Verbosity::kNormal);
