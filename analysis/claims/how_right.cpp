@@ -208,7 +208,10 @@ void add_queries(const std::vector<Result>& run, std::vector<Claim>& claims) {
 /// Returns "8.2 to 11.0 %", or "0.0 %", for the shares missed at all rates.
 std::string range_missed(const nlohmann::json& points) {
   std::vector<double> percent;
-  for (const auto& point : points) percent.push_back(100 * point.at("missed_share").get<double>());
+  for (const auto& point : points) {
+    const nlohmann::json& share = point.at("missed_share");  // null: there was no true contact
+    percent.push_back(share.is_number() ? 100 * share.get<double>() : 0);
+  }
   if (percent.empty()) return "nothing measured";
   const auto [least, most] = std::ranges::minmax(percent);
   const std::string highest = fmt::format("{:.1f}", most);
