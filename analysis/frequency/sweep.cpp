@@ -31,22 +31,22 @@ using Colliders = std::vector<std::uint32_t>;
 /// The rows of one contestant with all colliders that were drawn at a place for any count, by place, then frame.
 using Reference = std::vector<std::vector<ContactRow>>;
 
-/// Picks from a row with all drawn colliders those of one count. Both lists of ids are ascending.
-ContactRow picked(const ContactRow& row, const Colliders& all, const Colliders& some) {
-  ContactRow result;
-  result.reserve(some.size());
-  auto column = all.begin();
-  for (const std::uint32_t id : some) {
-    column = std::lower_bound(column, all.end(), id);
-    result.push_back(row[static_cast<std::size_t>(column - all.begin())]);
-  }
-  return result;
+/// Returns where the colliders of one count stand in a row with all drawn colliders. Both lists are ascending.
+std::vector<std::size_t> columns_of(const Colliders& some, const Colliders& all) {
+  std::vector<std::size_t> columns;
+  columns.reserve(some.size());
+  for (const std::uint32_t id : some)
+    columns.push_back(static_cast<std::size_t>(std::ranges::lower_bound(all, id) - all.begin()));
+  return columns;
 }
 
-std::uint64_t differing(const ContactRow& timed, const ContactRow& reference) {
+/// Returns how many contacts of `timed` differ from those in these columns of `reference`.
+std::uint64_t differing(const ContactRow& timed, const ContactRow& reference, const std::vector<std::size_t>& columns) {
   std::uint64_t count = 0;
-  for (std::size_t i = 0; i < timed.size(); ++i)
-    if (timed[i].hit() != reference[i].hit() || timed[i].actuator != reference[i].actuator) ++count;
+  for (std::size_t i = 0; i < timed.size(); ++i) {
+    const Contact& expected = reference[columns[i]];
+    if (timed[i].hit() != expected.hit() || timed[i].actuator != expected.actuator) ++count;
+  }
   return count;
 }
 
@@ -72,9 +72,6 @@ class RunningSweep {
     sweep_.sampled = sample.sampled;
     drawn_for_any_.resize(places_.size());
     for (const std::uint32_t count : settings.counts) {
-      if (count > ids.size())
-        throw Error("--counts", fmt::format("asks for {} colliders, but the trace has {}", count, ids.size()),
-                    "record a trace with more colliders (--count), or ask for fewer");
       drawn_.push_back(draw_colliders(ids, count, places_.size(), settings.seed));
       for (std::size_t i = 0; i < places_.size(); ++i) {
         Colliders both;
@@ -192,15 +189,19 @@ class RunningSweep {
   void describe(const Entry& entry) {
     SweepPoint& point = point_of(entry);
     TextureHash hash;
-    for (std::size_t number = 0; number < places_.size(); ++number)
+    ContactRow row;
+    for (std::size_t number = 0; number < places_.size(); ++number) {
+      const std::vector<std::size_t> columns = columns_of(drawn_[entry.point][number], drawn_for_any_[number]);
       for (const ContactRow& all : references_[entry.series][number]) {
-        const ContactRow row = picked(all, drawn_for_any_[number], drawn_[entry.point][number]);
+        row.clear();
+        for (const std::size_t column : columns) row.push_back(all[column]);
         hash.add(row);
         const auto contacts = static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
         point.contacts += contacts;
         if (contacts == 0) ++point.empty_frames;
         ++point.pass_frames;
       }
+    }
     point.texture_hash = hash.hex();
   }
 
@@ -255,6 +256,7 @@ class RunningSweep {
   PlaceRun run_place(const Entry& entry, std::size_t number) {
     const Place& place = places_[number];
     const Colliders& ids = drawn_[entry.point][number];
+    const std::vector<std::size_t> columns = columns_of(ids, drawn_for_any_[number]);
     DetectionRun detection(avatar_, ids, *detectors_[entry.series]);
     detection.begin(place.front());
     PlaceRun run;
@@ -270,8 +272,7 @@ class RunningSweep {
         run.skipped_us += run.frame_us.back();
       }
       run.work += done;
-      const ContactRow expected = picked(references_[entry.series][number][i - 1], drawn_for_any_[number], ids);
-      const std::uint64_t different = differing(detection.row(), expected);
+      const std::uint64_t different = differing(detection.row(), references_[entry.series][number][i - 1], columns);
       run.disagreements += different;
       if (different != 0 && promises_same_bits(contestants_[entry.series].detector))
         throw Error(contestants_[entry.series].detector,
@@ -310,6 +311,11 @@ bool promises_same_bits(std::string_view detector) {
 
 Sweep run_sweep(TraceReader& trace, const Avatar& avatar, Detector& survey, const std::vector<Contestant>& contestants,
                 const SweepSettings& settings, const std::function<bool(double)>& progress) {
+  // Before the survey, which takes long for a long trace.
+  const std::size_t colliders = trace.collider_ids().size();
+  if (const std::uint32_t most = std::ranges::max(settings.counts); most > colliders)
+    throw Error("--counts", fmt::format("asks for {} colliders, but the trace has {}", most, colliders),
+                "record a trace with more colliders (--count), or ask for fewer");
   SweepSample sample =
       sample_places(trace, avatar, survey, settings.runs, settings.run_frames, [&] { return progress(0); });
   return RunningSweep(trace.collider_ids(), avatar, std::move(sample), contestants, settings).run(progress);
