@@ -95,8 +95,10 @@ Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::si
 Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t seed) {
   const auto with_whole = std::ranges::count_if(clusters, [](const ClusterShare& share) { return share.whole > 0; });
   if (with_whole == 0) return {kMissing, kMissing};
-  if (std::ranges::none_of(clusters, [](const ClusterShare& share) { return share.part > 0; }))
-    return {0, std::min(1.0, 3 / static_cast<double>(with_whole))};
+  const double three = std::min(1.0, 3 / static_cast<double>(with_whole));
+  if (std::ranges::all_of(clusters, [](const ClusterShare& share) { return share.part == 0; })) return {0, three};
+  if (std::ranges::all_of(clusters, [](const ClusterShare& share) { return share.part == share.whole; }))
+    return {1 - three, 1};
   if (with_whole < 2) return {kMissing, kMissing};
   std::mt19937_64 random(seed);
   std::vector<double> shares;

@@ -52,10 +52,11 @@ struct ClusterShare {
 };
 
 /// Returns the 95 % interval of sum(part) / sum(whole) by the bootstrap, for what is independent only between clusters
-/// (Davison & Hinkley 1997, section 2.4). It resamples whole clusters, with the levels of `expanded_level`. If no
-/// cluster has a part, the interval is [0, 3 / n], at most 1, n being the number of clusters with a whole ("rule of
-/// three", Hanley & Lippman-Hand 1983). NaN if no cluster has a whole, or if only one has it: one cluster does not tell
-/// how clusters differ. The same input and `seed` give the same interval.
+/// (Davison & Hinkley 1997, section 2.4). It resamples whole clusters, with the levels of `expanded_level`. Clusters
+/// that all agree do not tell how clusters differ: if none has a part, the interval is [0, 3 / n], at most 1, n being
+/// the number of clusters with a whole ("rule of three", Hanley & Lippman-Hand 1983); if in all of them the part is the
+/// whole, it is [1 - 3 / n, 1]. Else NaN if no cluster has a whole, or if only one has it. The same input and `seed`
+/// give the same interval.
 Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t seed);
 
 /// A mean over units (traces, subjects, …) and its confidence interval.

@@ -52,6 +52,12 @@ TEST(BootstrapShare, OfNoErrorsIsThreeOverTheNumberOfClusters) {
   EXPECT_TRUE(std::isnan(bootstrap_share(one, 1).high));
 }
 
+TEST(BootstrapShare, OfNothingButErrorsIsWithinThreeOverTheNumberOfClustersOfAll) {
+  const std::vector<ClusterShare> all(30, {4, 4});
+  EXPECT_DOUBLE_EQ(bootstrap_share(all, 1).low, 0.9);
+  EXPECT_DOUBLE_EQ(bootstrap_share(all, 1).high, 1);
+}
+
 TEST(Frequency, IsFramesOverTotalTimeNotTheMeanOfFrequencies) {
   const std::vector<Repetition> repetitions = {{10, 1}, {10, 3}};
   EXPECT_DOUBLE_EQ(frequency_hz(repetitions), 5);
