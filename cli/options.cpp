@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "cli/help/help_text.hpp"
+#include "cli/help/suggest.hpp"
 #include "traces/base/error.hpp"
 #include "traces/scene/trace.hpp"
 
@@ -208,7 +209,8 @@ std::vector<std::string> parse_names(const std::string& text, const std::vector<
   std::vector<std::string> names = parse_distinct(text, flag);
   for (const std::string& name : names)
     if (std::ranges::find(known, name) == known.end())
-      throw UsageError(flag, fmt::format("there is no '{}'", name), remedy);
+      throw UsageError(flag, fmt::format("there is no '{}'", name),
+                       help::did_you_mean(name, std::vector<std::string_view>(known.begin(), known.end())) + remedy);
   if (names.empty()) throw UsageError(flag, "is empty", remedy);
   return names;
 }

@@ -38,18 +38,19 @@ void add(const std::vector<Repetition>& passes, std::vector<Repetition>& sum) {
 
 class RateMeasurement {
  public:
-  RateMeasurement(const MovingScene& scene, const std::vector<AccuracyContestant>& contestants, double rate_hz,
-                  std::size_t passes)
+  RateMeasurement(const MovingScene& scene, const std::vector<AccuracyContestant>& contestants,
+                  const std::vector<std::size_t>& which, double rate_hz, std::size_t passes)
       : scene_(scene),
-        contestants_(contestants),
         rate_hz_(rate_hz),
         passes_(passes),
         last_(last_frame_within(scene, rate_hz)),
         skinning_step_(std::max<std::uint64_t>(1, last_ / kSkinningFrames)) {
-    points_.resize(contestants.size());
-    for (std::size_t i = 0; i < contestants.size(); ++i) {
-      warm_up(contestants[i]);
-      points_[i].contestant = i;
+    points_.resize(which.size());
+    contestants_.reserve(which.size());
+    for (std::size_t i = 0; i < which.size(); ++i) {
+      contestants_.push_back(&contestants[which[i]]);
+      warm_up(*contestants_[i]);
+      points_[i].contestant = which[i];
       points_[i].rate_hz = rate_hz;
       points_[i].frames = last_;
       points_[i].frame_us.reserve(last_ * passes);
@@ -96,7 +97,7 @@ class RateMeasurement {
     runs_.clear();
     runs_.reserve(contestants_.size());
     for (std::size_t i = 0; i < contestants_.size(); ++i) {
-      runs_.emplace_back(scene_, contestants_[i]);
+      runs_.emplace_back(scene_, *contestants_[i]);
       runs_[i].detection.begin(first);
       points_[i].passes.emplace_back();
       points_[i].processor_passes.emplace_back();
@@ -122,7 +123,7 @@ class RateMeasurement {
     point.frame_us.push_back(elapsed.count() * 1e6);
     Repetition& pass = point.passes.back();
     if (pass_ == 0 && pass.frames % skinning_step_ == 0)
-      point.skinning.add(scene_.avatar, trace_frame, run.detection.frame(), *contestants_[contestant].instance);
+      point.skinning.add(scene_.avatar, trace_frame, run.detection.frame(), *contestants_[contestant]->instance);
     ++pass.frames;
     pass.seconds += elapsed.count();
     ++point.processor_passes.back().frames;
@@ -131,7 +132,7 @@ class RateMeasurement {
   }
 
   const MovingScene& scene_;
-  const std::vector<AccuracyContestant>& contestants_;
+  std::vector<const AccuracyContestant*> contestants_;
   double rate_hz_;
   std::size_t passes_;
   std::optional<SceneSampler> sampler_;
@@ -144,6 +145,18 @@ class RateMeasurement {
 };
 
 }  // namespace
+
+double AccuracyPoint::precision() const {
+  constexpr double kQuantile = 1.96;  // of the normal distribution, 95 % two-sided
+  const auto error_of = [](const EventScore& events) {
+    std::vector<ClusterShare> clusters;
+    clusters.reserve(events.of_collider.size());
+    for (const EventCounts& counts : events.of_collider)
+      clusters.push_back({static_cast<double>(counts.wrong()), static_cast<double>(counts.true_events())});
+    return share_standard_error(clusters);
+  };
+  return kQuantile * std::max(error_of(score), error_of(tolerated));
+}
 
 AccuracyPoint& AccuracyPoint::operator+=(const AccuracyPoint& other) {
   frames += other.frames;
@@ -170,20 +183,26 @@ AccuracyScene& AccuracyScene::operator+=(const AccuracyScene& other) {
     points = other.points;
     return *this;
   }
-  for (std::size_t i = 0; i < points.size(); ++i) points[i] += other.points[i];
+  for (const AccuracyPoint& added : other.points) {
+    const auto same = [&](const AccuracyPoint& point) {
+      return point.contestant == added.contestant && point.rate_hz == added.rate_hz;
+    };
+    if (const auto mine = std::ranges::find_if(points, same); mine != points.end()) *mine += added;
+  }
   return *this;
 }
 
 std::vector<AccuracyPoint> run_accuracy(const MovingScene& scene, const TrueContacts& truth,
                                         const std::vector<AccuracyContestant>& contestants,
-                                        const AccuracySettings& settings, const std::function<bool(double)>& progress) {
+                                        const std::vector<std::size_t>& which, const AccuracySettings& settings,
+                                        const std::function<bool(double)>& progress) {
   std::uint64_t total = 0;
   for (const double rate_hz : settings.rates_hz) total += last_frame_within(scene, rate_hz) * settings.passes;
   std::mt19937_64 random(settings.seed);
   std::vector<AccuracyPoint> points;
   std::uint64_t before = 0;
   for (const double rate_hz : settings.rates_hz) {
-    RateMeasurement measurement(scene, contestants, rate_hz, settings.passes);
+    RateMeasurement measurement(scene, contestants, which, rate_hz, settings.passes);
     while (!measurement.is_done()) {
       measurement.take_turns(random);
       const std::uint64_t done = before + measurement.frames_done();

@@ -35,6 +35,10 @@ struct AccuracyPoint {
   std::vector<Repetition> passes;
   std::vector<Repetition> processor_passes;  ///< the same passes by the processor time of all threads
 
+  /// Returns about half the width of the 95 % interval of the wrong events' share, by the rule whose interval is wider.
+  /// NaN if there are too few colliders to tell.
+  double precision() const;
+
   /// Adds what was measured with another seed.
   AccuracyPoint& operator+=(const AccuracyPoint& other);
 };
@@ -54,7 +58,8 @@ struct AccuracyScene {
   EventScore half_score;  ///< of the events at half the rate, as if a detector had found them
   std::vector<AccuracyPoint> points;
 
-  /// Adds what was measured with another seed. Both have the same points in the same order, or this has none yet.
+  /// Adds what was measured with another seed, perhaps for some of the points only. But if this has no points yet, it
+  /// takes those of `other`.
   AccuracyScene& operator+=(const AccuracyScene& other);
 };
 
@@ -65,15 +70,16 @@ struct AccuracySettings {
   std::uint64_t seed = 1;      ///< of the order of turns
 };
 
-/// Samples the scene at each rate, runs every contestant over the frames as often as asked for, and scores the events
-/// that the contestant finds against the true events. A timing covers the whole round trip from a pose and collider
-/// positions to a row of contacts, as in a sweep. The contestants take turns of a few frames each. Each turn shuffles
-/// their order anew, so that other load on the machine affects all contestants alike.
+/// Samples the scene at each rate, runs the contestants with these indices (`which`) over the frames as often as asked
+/// for, and scores the events that the contestant finds against the true events. A timing covers the whole round trip
+/// from a pose and collider positions to a row of contacts, as in a sweep. The contestants take turns of a few frames
+/// each. Each turn shuffles their order anew, so that other load on the machine affects all contestants alike.
 ///
-/// Returns the points by rate, then by contestant. `progress` receives the share done and returns false to stop the
-/// run. A stopped run returns only the points of the rates that are finished.
+/// Returns the points by rate, then in the order of `which`. `progress` receives the share done and returns false to
+/// stop the run. A stopped run returns only the points of the rates that are finished.
 std::vector<AccuracyPoint> run_accuracy(const MovingScene& scene, const TrueContacts& truth,
                                         const std::vector<AccuracyContestant>& contestants,
-                                        const AccuracySettings& settings, const std::function<bool(double)>& progress);
+                                        const std::vector<std::size_t>& which, const AccuracySettings& settings,
+                                        const std::function<bool(double)>& progress);
 
 }  // namespace vestige

@@ -11,6 +11,7 @@
 #include "analysis/base/pareto.hpp"
 #include "analysis/base/provenance.hpp"
 #include "analysis/base/statistics.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 
@@ -231,13 +232,15 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
                      fmt::format("{}{:.3g}", is_on_front(point) ? "* " : "", load_ms(point)));
     }
   const EventCounts& halved = scene.half_score.all;
+  const std::string checked = scene.checked_frames == 0
+                                  ? "no frame of them was checked"
+                                  : fmt::format("exact agrees in all {} frames that it checked", scene.checked_frames);
   return table + fmt::format(
                      "*: nothing here is as cheap and has as few events wrong within the tolerance.\nTrue events: ccd "
-                     "at {} Hz finds {} in {} seed{} of {:g} s; exact agrees in all {} frames that it "
-                     "checked. At half the rate, ccd misses {} of them; {} of its events are false, {} have another "
-                     "actuator.\n",
-                     scene.truth_rate_hz, scene.true_events, scene.seeds.size(), scene.seeds.size() == 1 ? "" : "s",
-                     scene.duration_s / static_cast<double>(scene.seeds.size()), scene.checked_frames, halved.missed,
+                     "at {} Hz finds {} in {} of {:g} s; {}. At half the rate, ccd misses {} of them; {} of its events "
+                     "are false, {} have another actuator.\n",
+                     scene.truth_rate_hz, scene.true_events, counted(scene.seeds.size(), "seed"),
+                     scene.duration_s / static_cast<double>(scene.seeds.size()), checked, halved.missed,
                      halved.false_events, halved.wrong_actuator);
 }
 

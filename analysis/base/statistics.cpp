@@ -115,6 +115,23 @@ Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t s
   return {quantile(shares, level), quantile(shares, 1 - level)};
 }
 
+double share_standard_error(std::span<const ClusterShare> clusters) {
+  ClusterShare sum;
+  double with_whole = 0;
+  for (const ClusterShare& share : clusters) {
+    sum.part += share.part;
+    sum.whole += share.whole;
+    if (share.whole > 0) ++with_whole;
+  }
+  if (with_whole < 2) return kMissing;
+  double squares = 0;
+  for (const ClusterShare& share : clusters) {
+    const double residual = share.part - share.whole * sum.part / sum.whole;
+    squares += residual * residual;
+  }
+  return std::sqrt(squares * with_whole / (with_whole - 1)) / sum.whole;
+}
+
 double relative_noise(std::span<const Repetition> repetitions, std::size_t places) {
   const std::vector<double> relative = residuals(repetitions, places).relative;
   return relative.empty() ? 0 : 0.5 * (quantile(relative, 0.75) - quantile(relative, 0.25));

@@ -59,6 +59,11 @@ struct ClusterShare {
 /// give the same interval.
 Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t seed);
 
+/// Returns the standard error of sum(part) / sum(whole) by linearisation (Cochran 1977, Sampling Techniques, eq. 6.13),
+/// for what is independent only between clusters. Quick, and good enough to see whether there are enough clusters. NaN
+/// if no cluster has a whole, or if only one has it.
+double share_standard_error(std::span<const ClusterShare> clusters);
+
 /// A mean over units (traces, subjects, …) and its confidence interval.
 struct MeanInterval {
   double mean = 0;    ///< NaN if no unit has a value

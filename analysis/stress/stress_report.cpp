@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "analysis/base/statistics.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 
@@ -30,23 +31,25 @@ double share_of(const StressCount& count) {
   return static_cast<double>(count.felt()) / static_cast<double>(count.cases);
 }
 
-/// Two digits, but 100 as such.
-std::string percent(double share) {
-  return share < 0.1 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);
-}
-
 /// Returns a line for each column: where it errs most, and how sure that is.
 std::string worst_lines(std::span<const StressCount> counts, const std::vector<std::string>& columns) {
-  std::string lines = "\nWhere each errs most (missed, false, other triangle or actuator; 95 % Wilson intervals):\n";
+  std::string lines =
+      "\nWhere each errs most, as a share of the cases (missed, false, other triangle or actuator; 95 % Wilson "
+      "intervals):\n";
   for (const std::string& column : columns) {
     const StressCount* worst = nullptr;
     for (const StressCount& count : counts)
       if (column_of(count) == column && (worst == nullptr || share_of(count) > share_of(*worst))) worst = &count;
     const Interval interval = wilson_interval(worst->felt(), worst->cases);
-    const std::string found =
-        worst->felt() == 0 ? fmt::format("nowhere: less than {} % in each family", percent(interval.high))
-                           : fmt::format("{} {:g}: {} % ({} to {} %)", name_of(worst->family), worst->magnitude,
-                                         percent(share_of(*worst)), percent(interval.low), percent(interval.high));
+    const auto alike = std::ranges::count_if(counts, [&](const StressCount& count) {
+      return column_of(count) == column && share_of(count) == share_of(*worst);
+    });
+    std::string found = fmt::format("nowhere: less than {} % in each family", percent_text(interval.high));
+    if (worst->felt() != 0)
+      found = fmt::format(
+          "{} {:g}{}: {} % ({} to {} %)", name_of(worst->family), worst->magnitude,
+          alike == 1 ? "" : fmt::format(" (and {} alike)", counted(static_cast<std::uint64_t>(alike - 1), "more row")),
+          percent_text(share_of(*worst)), percent_text(interval.low), percent_text(interval.high));
     fmt::format_to(std::back_inserter(lines), "  {:<24} {}\n", column, found);
   }
   return lines;

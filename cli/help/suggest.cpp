@@ -28,13 +28,6 @@ std::size_t distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// Whether the error is an unknown word, or a missing flag beside one.
-bool is_about_unknown(const CLI::App& program, const CLI::ParseError& error) {
-  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) return true;
-  const bool is_missing = error.get_name() == "RequiredError" || error.get_name() == "RequiresError";
-  return is_missing && program.remaining_size(true) > 0;
-}
-
 /// Returns the first flag of the command line that the named verb does not have, without its =VALUE; empty if there is
 /// none.
 std::string unknown_flag(const CLI::App& program) {
@@ -58,6 +51,35 @@ std::optional<ValueFault> value_fault(const CLI::ParseError& error) {
   if (const std::size_t at = text.find(": 1 required "); at != std::string::npos && text.ends_with(" missing"))
     return ValueFault{.flag = text.substr(0, at), .times = ""};
   return std::nullopt;
+}
+
+/// Whether the error is an unknown word, or follows from an unknown flag: a missing flag beside it, or an input too
+/// many, which is the value of that flag.
+bool is_about_unknown(const CLI::App& program, const CLI::ParseError& error) {
+  if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) return true;
+  if (const auto fault = value_fault(error); fault && !fault->flag.starts_with('-') && !unknown_flag(program).empty())
+    return true;
+  const bool is_missing = error.get_name() == "RequiredError" || error.get_name() == "RequiresError";
+  return is_missing && program.remaining_size(true) > 0;
+}
+
+/// Returns what a value that is none of a flag's values probably means. Reads it from CLI11's words: "--skip: no not in
+/// {off,on}".
+std::string value_hint(const CLI::ParseError& error) {
+  constexpr std::string_view kNotIn = " not in {";
+  const std::string text = error.what();
+  const std::size_t value = text.find(": ");
+  const std::size_t list = text.find(kNotIn);
+  if (value == std::string::npos || list == std::string::npos || list < value + 2 || !text.ends_with('}')) return {};
+  std::vector<std::string_view> names;
+  std::string_view rest = std::string_view(text).substr(list + kNotIn.size());
+  rest.remove_suffix(1);
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    names.push_back(rest.substr(0, comma));
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return did_you_mean(std::string_view(text).substr(value + 2, list - value - 2), names);
 }
 
 /// Returns the verb that the command line names; the program itself without one.
@@ -107,7 +129,7 @@ std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
   constexpr std::string_view kOverride = " was given a disallowed flag override";  // CLI11's words
   if (const std::string cause = error.what(); cause.ends_with(kOverride))
     return fmt::format("--{} takes no value", cause.substr(0, cause.size() - kOverride.size()));
-  if (const auto fault = value_fault(error))
+  if (const auto fault = value_fault(error); fault && !is_about_unknown(program, error))
     return fault->times.empty() ? fmt::format("{}: its value is missing", fault->flag)
                                 : fmt::format("{}: is given {} times", fault->flag, fault->times);
   if (!is_about_unknown(program, error)) return error.what();
@@ -118,7 +140,7 @@ std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
 std::string remedy_of(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& verb = named_verb(program);
   const CommandTable table = command_table(verb);
-  if (const auto fault = value_fault(error)) {
+  if (const auto fault = value_fault(error); fault && !is_about_unknown(program, error)) {
     if (!fault->times.empty()) return "name it once";
     for (const FlagTable& flag : table.flags)
       if (std::ranges::find(flag.names, fault->flag) != flag.names.end())
@@ -126,8 +148,9 @@ std::string remedy_of(const CLI::App& program, const CLI::ParseError& error) {
   }
   const std::string word = is_about_unknown(program, error) ? unknown_flag(program) : "";
   const std::vector<std::string> flags = flags_of(verb);
-  return fmt::format("{}'{} --help' {}", did_you_mean(word, std::vector<std::string_view>(flags.begin(), flags.end())),
-                     table.name, &verb == &program ? "lists the verbs" : "explains the verb");
+  return fmt::format("{}{}'{} --help' {}", value_hint(error),
+                     did_you_mean(word, std::vector<std::string_view>(flags.begin(), flags.end())), table.name,
+                     &verb == &program ? "lists the verbs" : "explains the verb");
 }
 
 }  // namespace vestige::help

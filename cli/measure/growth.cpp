@@ -74,7 +74,7 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
   write_json(json_path, json, common);
   write_json(common.json, json, common);
 
-  if (interrupted()) warn("stopped early; the results so far were written", verbosity);
+  if (interrupted()) warn("stopped early; the results so far were written, and no figure is drawn", verbosity);
   for (const std::string& warning : noise_warnings(growth.by_colliders)) warn(warning, verbosity);
   const std::vector<std::string> wrong = all_disagreements(growth);
   for (const std::string& warning : wrong) warn(warning, verbosity);

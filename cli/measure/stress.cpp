@@ -118,7 +118,7 @@ void run_stress_verb(const StressOptions& options, Invocation& invocation) {
   run.update(result);
   write_json(options.common.json, run, options.common);
 
-  if (interrupted()) warn("stopped early; the complete results so far were written", verbosity);
+  if (interrupted()) warn("stopped early; the complete results so far were written, and no figure is drawn", verbosity);
   print_summary(stress_table(counts), {options.common.json}, options.common);
   print_summary(fmt::format("written: {}, {}\n", json_path, run_path), {options.common.json}, options.common);
   draw_or_remove_figure("stress", "stress", options.output, !options.no_figure && !interrupted(), options.common);

@@ -73,7 +73,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   times_file.write(compressed);
   times_file.commit();
 
-  if (interrupted()) warn("stopped early; the results so far were written", verbosity);
+  if (interrupted()) warn("stopped early; the results so far were written, and no figure is drawn", verbosity);
   if (sweep.places < options.settings.runs || sweep.place_frames < options.settings.run_frames)
     warn(fmt::format("the trace has room for {} of {}, fewer than --runs and --run-frames ask for",
                      counted(sweep.places, "run"), counted(sweep.place_frames, "frame")),

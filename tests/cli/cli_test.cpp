@@ -281,6 +281,8 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige record --ouput x.mcap", 2, {"no flag '--ouput'", "did you mean '--output'?"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --cuont=5", 2, {"no flag '--cuont'", "did you mean '--count'?"}, "x.mcap");
   expect_failure("vestige map make --layuot paper6 -o a.png", 2, {"did you mean '--layout'?"}, "a.png");
+  expect_failure("vestige replay x.mcap --detector geometri", 2, {"geometri not in", "did you mean 'geometry'?"});
+  expect_failure("vestige sweep --detector cpu,embre -o s", 2, {"there is no 'embre'", "did you mean 'embree'?"}, "s");
   expect_failure("vestige inspect small.mcap one two", 2, {"not expected: 'one', 'two'"});
   expect_failure("vestige replay small.mcap --planes t --texture t.exr", 2,
                  {"there is no flag '--texture'", "did you mean '--textures'?"}, "t.exr");

@@ -52,6 +52,10 @@ std::int64_t nanoseconds_of(double time_s) {
   return std::llround(time_s * 1e9);
 }
 
+std::string percent_text(double share) {
+  return share < 0.1 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);
+}
+
 std::string counted(std::uint64_t count, std::string_view thing) {
   return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
 }

@@ -22,6 +22,9 @@ void append_seconds(std::string& out, std::int64_t time_ns);
 ///  < 9e9.
 std::int64_t nanoseconds_of(double time_s);
 
+/// Returns a share in per cent with two digits: 0.0123 is "1.2", 0.5 is "50", 1 is "100".
+std::string percent_text(double share);
+
 /// "1 trace", "4 traces"
 std::string counted(std::uint64_t count, std::string_view thing);
 

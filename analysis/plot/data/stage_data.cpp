@@ -38,7 +38,7 @@ std::set<double> shown_counts(const std::set<double>& measured, const std::vecto
 
 std::string details_of(const SweepSeries& series, const Sweeps& sweeps) {
   std::vector<std::string> details;
-  const auto differs = [&](std::string SweepSeries::*setting) {
+  const auto differs = [&](auto SweepSeries::*setting) {
     return std::ranges::any_of(sweeps.series, [&](const SweepSeries& one) {
       return one.detector == series.detector && one.*setting != series.*setting;
     });
@@ -49,7 +49,7 @@ std::string details_of(const SweepSeries& series, const Sweeps& sweeps) {
   if (series.skip == "off" && differs(&SweepSeries::skip)) details.emplace_back("no skipping");
   if (differs(&SweepSeries::method)) details.push_back(series.method);
   if (differs(&SweepSeries::planes))
-    details.push_back(fmt::format("{} plane{}", series.planes, series.planes == "1" ? "" : "s"));
+    details.push_back(fmt::format("{} plane{}", series.planes, series.planes == 1 ? "" : "s"));
   return fmt::format("{}", fmt::join(details, ", "));
 }
 

@@ -64,7 +64,7 @@ SweepSeries read_series(const JsonField& field) {
   if (field.has("method")) series.method = field.at("method").text();
   if (field.has("renderer")) series.renderer = setting(field.at("renderer"));
   if (field.has("approximate")) series.approximate = field.at("approximate").flag();
-  if (field.has("planes")) series.planes = fmt::format("{}", field.at("planes").within(1, kMostPlanes));
+  if (field.has("planes")) series.planes = field.at("planes").within(1, kMostPlanes);
   const JsonField points = field.at("points");
   for (std::size_t i = 0; i < points.count(); ++i) series.points.push_back(read_point(points.at(i)));
   std::ranges::sort(series.points, {}, &SweepPoint::colliders);

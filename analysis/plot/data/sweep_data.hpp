@@ -34,7 +34,7 @@ struct SweepSeries {
   std::string method;
   std::string renderer;      ///< "on": measured while a renderer was drawing
   bool approximate = false;  ///< simpler shapes stand in for the avatar's skin
-  std::string planes;        ///< number of planes (render targets); empty if the file does not have it
+  double planes = 0;         ///< number of planes (render targets); 0 if the file does not have it
   std::size_t sweep = 0;     ///< index of the file
   std::vector<SweepPoint> points;
 };

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analysis/plot/canvas/palette.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 
@@ -61,10 +62,7 @@ std::string shown(const StressCell& cell) {
   const double errors = cell.error_rate() * cell.cases;
   std::string count = errors < 1e5 ? fmt::format("{:.0f}", errors) : fmt::format("{:.3g}", errors);
   if (errors == 0 || !cell.low || !cell.high) return count;
-  const auto percent = [](double share) {
-    return share < 0.1 ? fmt::format("{:.2g}", 100 * share) : fmt::format("{:.0f}", 100 * share);
-  };
-  return fmt::format("{} ({}–{} %)", count, percent(*cell.low), percent(*cell.high));
+  return fmt::format("{} ({}–{} %)", count, percent_text(*cell.low), percent_text(*cell.high));
 }
 
 class StressFigure : public Figure {

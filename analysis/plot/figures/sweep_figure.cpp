@@ -43,12 +43,6 @@ constexpr TextStyle kLabelStyle = {8, kInk, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kNoteStyle = {7, kInk, Anchor::kLeft, Level::kFoot};
 constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
-std::string shown_context(std::string context) {
-  if (context == "egl") return "EGL";
-  if (context == "osmesa") return "OSMesa";
-  return context;
-}
-
 /// Letters are thinner than lines: the same colour needs more contrast.
 Colour darkened(Colour colour) {
   const auto part = [](std::uint8_t value) { return static_cast<std::uint8_t>(value * 3 / 4); };
@@ -56,7 +50,8 @@ Colour darkened(Colour colour) {
 }
 
 /// Whether the same was also measured with another value of `setting`, from which a line must be told.
-bool has_twin(const Sweeps& sweeps, const SweepSeries& series, std::string SweepSeries::*setting) {
+template <typename T>
+bool has_twin(const Sweeps& sweeps, const SweepSeries& series, T SweepSeries::*setting) {
   return std::ranges::any_of(sweeps.series, [&](const SweepSeries& one) {
     return one.detector == series.detector && one.context == series.context && one.method == series.method &&
            one.sweep == series.sweep && one.*setting != series.*setting;
@@ -77,8 +72,13 @@ std::set<std::string> methods_of(const Sweeps& sweeps) {
   return methods;
 }
 
-bool any_skips(const Sweeps& sweeps) {
-  return std::ranges::any_of(sweeps.series, [](const SweepSeries& series) { return series.skip == "on"; });
+/// The detectors that skip, as "cpu, geometry".
+std::string skipping_detectors(const Sweeps& sweeps) {
+  std::vector<std::string> detectors;
+  for (const SweepSeries& series : sweeps.series)
+    if (series.skip == "on" && std::ranges::find(detectors, series.detector) == detectors.end())
+      detectors.push_back(series.detector);
+  return fmt::format("{}", fmt::join(detectors, ", "));
 }
 
 /// Names each series by its detector and by whatever else tells it from the others.
@@ -91,10 +91,10 @@ std::vector<std::string> series_names(const Sweeps& sweeps) {
   for (const SweepSeries& series : sweeps.series) {
     std::string name = series.detector;
     if (series.approximate) name += " (approximate)";
-    if (contexts.size() > 1 && !series.context.empty()) name.append(", ").append(shown_context(series.context));
+    if (contexts.size() > 1 && !series.context.empty()) name.append(", ").append(series.context);
     if (methods.size() > 1) name.append(", ").append(series.method);
     if (has_twin(sweeps, series, &SweepSeries::planes))
-      name += fmt::format(", {} plane{}", series.planes, series.planes == "1" ? "" : "s");
+      name += fmt::format(", {} plane{}", series.planes, series.planes == 1 ? "" : "s");
     if (is_without_skipping(sweeps, series)) name += ", no skipping";
     if (is_beside_renderer(sweeps, series)) name += ", rendering";
     if (sweeps.sources.size() > 1) name += fmt::format(" [{}]", series.sweep + 1);
@@ -110,13 +110,16 @@ std::vector<std::string> wrapped(const std::string& text) {
 std::vector<std::string> small_print(const Sweeps& sweeps) {
   std::vector<std::string> lines;
   bool has_interval = false;
-  for (const SweepSeries& series : sweeps.series) has_interval |= series.points.front().hz_low.has_value();
+  bool has_area = false;
+  for (const SweepSeries& series : sweeps.series) {
+    has_interval |= series.points.front().hz_low.has_value();
+    has_area |= series.points.size() > 1;
+  }
   std::string first = "Frequency is frames / total time, whole round trip.";
-  if (has_interval) first += " Shaded: 95 % bootstrap interval.";
+  if (has_interval) first += fmt::format(" {}: 95 % bootstrap interval.", has_area ? "Shaded" : "Upright lines");
   first += " Triangles: published lower bounds.";
-  if (any_skips(sweeps))
-    first +=
-        " cpu, geometry and decimated skip triangles that no collider can touch, unless their names say otherwise.";
+  if (const std::string skipping = skipping_detectors(sweeps); !skipping.empty())
+    first += fmt::format(" Without skin that no collider can touch, unless a name says otherwise: {}.", skipping);
   if (const auto methods = methods_of(sweeps); methods.size() == 1 && !methods.begin()->empty())
     first += fmt::format(" Method: {}.", *methods.begin());
   lines = wrapped(first);
@@ -185,8 +188,8 @@ class SweepFigure : public Figure {
     return std::max(kPlotHeightPt, static_cast<double>(names_.size() + 1) * kLabelGapPt);
   }
 
-  /// Colour tells detectors and contexts apart, dashes say that nothing was skipped, dots that a renderer ran beside
-  /// it, marks tell files apart: what belongs together looks alike.
+  /// Colour tells detectors and contexts apart, paleness numbers of planes, dashes say that nothing was skipped, dots
+  /// that a renderer ran beside it, marks tell files apart: what belongs together looks alike.
   Colour colour(std::size_t index) const {
     std::vector<std::array<std::string, 3>> kinds;
     const auto kind = [](const SweepSeries& series) {
@@ -199,6 +202,18 @@ class SweepFigure : public Figure {
     detectors.reserve(kinds.size());
     for (const auto& one : kinds) detectors.push_back(one.front());
     return line_colours(detectors)[static_cast<std::size_t>(found - kinds.begin())];
+  }
+
+  /// The more planes, the paler.
+  Colour line_colour(std::size_t index) const {
+    constexpr double kPalest = 0.6;
+    const SweepSeries& series = sweeps_.series[index];
+    if (!has_twin(sweeps_, series, &SweepSeries::planes)) return colour(index);
+    std::set<double> counts;
+    for (const SweepSeries& one : sweeps_.series)
+      if (one.detector == series.detector) counts.insert(one.planes);
+    const auto fewer = std::distance(counts.begin(), counts.find(series.planes));
+    return blend(colour(index), kWhite, kPalest * static_cast<double>(fewer) / static_cast<double>(counts.size() - 1));
   }
 
   Axis x_axis(const Box& plot) const {
@@ -243,7 +258,11 @@ class SweepFigure : public Figure {
 
   void draw_band(Canvas& canvas, std::size_t index, const Axis& x, const Axis& y) const {
     const std::vector<SweepPoint>& points = sweeps_.series[index].points;
-    const Colour shade = faded(colour(index), 0.22);
+    const Colour shade = faded(line_colour(index), 0.22);
+    // A single point has no area.
+    if (const SweepPoint& only = points.front(); points.size() == 1 && only.hz_low)
+      canvas.line(place({only.colliders, *only.hz_low, {}, {}}, x, y),
+                  place({only.colliders, *only.hz_high, {}, {}}, x, y), {line_colour(index), 0.8, Dash::kSolid});
     for (std::size_t i = 1; i < points.size(); ++i) {
       const SweepPoint& from = points[i - 1];
       const SweepPoint& to = points[i];
@@ -263,10 +282,10 @@ class SweepFigure : public Figure {
     for (const SweepPoint& point : series.points) line.push_back(place(point, x, y));
     Dash dash = is_without_skipping(sweeps_, series) ? Dash::kDashed : Dash::kSolid;
     if (is_beside_renderer(sweeps_, series)) dash = Dash::kDotted;
-    canvas.polyline(line, {colour(index), 1.2, dash});
+    canvas.polyline(line, {line_colour(index), 1.2, dash});
     const std::size_t step = (line.size() + kMarkedPoints - 1) / kMarkedPoints;
     for (std::size_t i = line.size(); i > 0; i -= std::min(step, i))
-      canvas.mark(line[i - 1], kMarks[series.sweep % kMarks.size()], 3.6, colour(index), kWhite);
+      canvas.mark(line[i - 1], kMarks[series.sweep % kMarks.size()], 3.6, line_colour(index), kWhite);
     return line;
   }
 
@@ -328,7 +347,7 @@ class SweepFigure : public Figure {
                                            Place{std::max(end.x_pt + 2.5, plot.right_pt + 3), end.y_pt},
                                            Place{left_pt - 2, heights_pt[i]}};
       const bool far = end.x_pt < plot.right_pt - 2 * kLabelIndentPt;
-      canvas.polyline(leader, {colour(i), 0.5, far ? Dash::kDotted : Dash::kSolid});
+      canvas.polyline(leader, {line_colour(i), 0.5, far ? Dash::kDotted : Dash::kSolid});
       TextStyle style = kLabelStyle;
       style.colour = darkened(colour(i));
       canvas.text({left_pt, heights_pt[i]}, names_[i], style);

@@ -52,6 +52,18 @@ TEST(BootstrapShare, OfNoErrorsIsThreeOverTheNumberOfClusters) {
   EXPECT_TRUE(std::isnan(bootstrap_share(one, 1).high));
 }
 
+TEST(ShareStandardError, IsThatOfAMeanWhereClustersAreAlikeInSize) {
+  // 20 clusters of 10, half of them with 2 parts, half with none: the share varies by 0.1 around 0.1.
+  std::vector<ClusterShare> clusters;
+  clusters.reserve(20);
+  for (int i = 0; i < 20; ++i) clusters.push_back({i % 2 == 0 ? 2.0 : 0.0, 10});
+  EXPECT_NEAR(share_standard_error(clusters), 0.1 / std::sqrt(19.0), 1e-12);
+  const Interval interval = bootstrap_share(clusters, 1);
+  EXPECT_NEAR((interval.high - interval.low) / 2, 1.96 * share_standard_error(clusters),
+              0.006);  // shares in steps of 0.01
+  EXPECT_TRUE(std::isnan(share_standard_error(std::vector<ClusterShare>{{1, 2}, {0, 0}})));
+}
+
 TEST(BootstrapShare, OfNothingButErrorsIsWithinThreeOverTheNumberOfClustersOfAll) {
   const std::vector<ClusterShare> all(30, {4, 4});
   EXPECT_DOUBLE_EQ(bootstrap_share(all, 1).low, 0.9);

@@ -92,6 +92,21 @@ TEST_F(AccuracyCommandLine, AddsSeedsUntilThereAreEnoughEventsAndComparesApproxi
   EXPECT_THAT(outcome.standard_output, HasSubstr("* "));
 }
 
+TEST_F(AccuracyCommandLine, MeasuresWithFurtherSeedsOnlyWhatIsNotPreciseYet) {
+  const auto result = json_of(
+      "vestige accuracy --detector cpu,boxes --method static --rate 60 --truth-rate 4000 --duration 0.2 --colliders "
+      "swarm --count 40 --events 1 --precision 8 --check-frames 1 --passes 1 --no-figure -o precise --json -");
+  const auto& scene = result["scenes"][0];
+  const auto true_events = [&](std::size_t series) { return scene["series"][series]["points"][0]["true_events"]; };
+  EXPECT_LT(true_events(0), true_events(1));
+  EXPECT_EQ(true_events(1), scene["truth"]["events"]);
+  for (const auto& series : scene["series"])
+    for (const auto& point : series["points"])
+      for (const auto& share : {point["wrong_share"], point["within_tolerance"]["wrong_share"]})
+        EXPECT_LE(share["high"].get<double>() - share["low"].get<double>(), 2 * 0.08) << series["detector"];
+  EXPECT_EQ(result["precision_pp"], 8);
+}
+
 TEST_F(AccuracyCommandLine, SaysThatNothingTouches) {
   std::ofstream(folder_ / "far.csv") << "time_s,id,x,y,z\n0,7,50,1.2,-1\n1,7,50,1.2,1\n";
   const test::Outcome outcome = run(std::string(kSmall) + "--colliders far.csv -o far");
