@@ -90,7 +90,8 @@ MeasuredPoint read_point(const JsonField& field, const std::string& series, Fram
   MeasuredPoint point;
   point.name = fmt::format("{}, {}", series, counted(whole(field.at("colliders"), 1), "collider"));
   point.hz = field.at("hz").within(kLeastHz, kMostHz);
-  const std::uint64_t frames = whole(field.at("frames"), 1);
+  // Before stored_frames, all durations were stored.
+  const std::uint64_t frames = whole(field.at(field.has("stored_frames") ? "stored_frames" : "frames"), 1);
   point.pass_frames = whole(field.at("pass_frames"), 1);
   if (point.pass_frames > frames) field.at("pass_frames").refuse("is more than frames");
   point.contacts = whole(field.at("contacts"), 0);

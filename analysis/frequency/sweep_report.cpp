@@ -57,6 +57,27 @@ double noise_of(const SweepPoint& point) {
   return relative_noise(point.repetitions, point.places);
 }
 
+/// Of more passes than these, the file of durations holds as many, evenly spread: enough to compare runs by.
+constexpr std::size_t kMostStoredPasses = 100;
+
+/// Returns the repetitions whose durations are stored: those of whole passes, unless all are.
+std::vector<std::size_t> stored_repetitions(const SweepPoint& point) {
+  const std::size_t passes = point.repetitions.size() / point.places;
+  const std::size_t stored_passes = std::min(passes, kMostStoredPasses);
+  std::vector<std::size_t> stored;
+  stored.reserve(stored_passes * point.places);
+  for (std::size_t k = 0; k < stored_passes; ++k)
+    for (std::size_t place = 0; place < point.places; ++place)
+      stored.push_back(k * passes / stored_passes * point.places + place);
+  return stored;
+}
+
+std::uint64_t stored_frames(const SweepPoint& point) {
+  std::uint64_t frames = 0;
+  for (const std::size_t repetition : stored_repetitions(point)) frames += point.repetitions[repetition].frames;
+  return frames;
+}
+
 nlohmann::ordered_json number_or_null(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
 }
@@ -70,6 +91,7 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
   const auto us = [&](double p) { return quantile(point.frame_us, p); };
   return {{"colliders", point.colliders},
           {"frames", point.frame_us.size()},
+          {"stored_frames", stored_frames(point)},
           {"pass_frames", point.pass_frames},
           {"frames_skipped", point.work.frames_skipped},
           {"hz", point.hz()},
@@ -270,12 +292,15 @@ std::string frame_times_csv(std::span<const SweepSeries> series) {
   std::string csv = "detector,context,skip,planes,renderer,colliders,repetition,frame,us\n";
   for (const SweepSeries& one : series)
     for (const SweepPoint& point : one.points) {
-      std::size_t frame = 0;
-      for (std::size_t r = 0; r < point.repetitions.size(); ++r)
-        for (std::uint64_t i = 0; i < point.repetitions[r].frames; ++i)
+      std::vector<std::size_t> first_frame = {0};  // of each repetition
+      first_frame.reserve(point.repetitions.size() + 1);
+      for (const Repetition& repetition : point.repetitions)
+        first_frame.push_back(first_frame.back() + repetition.frames);
+      for (const std::size_t r : stored_repetitions(point))
+        for (std::size_t frame = first_frame[r]; frame < first_frame[r + 1]; ++frame)
           fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{:.2f}\n", one.detector, one.gl.context,
                          one.skip == Skip::kOn ? "on" : "off", one.planes.count(), one.renderer ? "on" : "off",
-                         point.colliders, r, i, point.frame_us[frame++]);
+                         point.colliders, r, frame - first_frame[r], point.frame_us[frame]);
     }
   return csv;
 }

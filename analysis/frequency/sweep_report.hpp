@@ -16,7 +16,8 @@ namespace vestige {
 /// count, where one was measured.
 nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_t seed);
 
-/// Returns every frame's duration as CSV: `detector,context,skip,renderer,colliders,repetition,frame,us`.
+/// Returns the durations of frames as CSV: `detector,context,skip,planes,renderer,colliders,repetition,frame,us`. Of
+/// each point, these are at most 100 whole passes, evenly spread over its repetitions; stored_frames is their number.
 std::string frame_times_csv(std::span<const SweepSeries> series);
 
 /// Returns a table for people: the frequency of every series at every count, beside the paper's figures. Below, the

@@ -88,6 +88,27 @@ TEST_F(SweepCommandLine, MeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) 
   expect_failure("vestige sweep small.mcap -o t --skip on,on", 2, {"--skip", "twice"}, "t/sweep.json");
 }
 
+TEST_F(SweepCommandLine, StoresAHundredPassesOfManyAndComparesThem) {
+  record_small();
+  ASSERT_EQ(
+      run("vestige sweep small.mcap --detector cpu --skip on --counts 1,20 --min-time 0.1 --runs 2 --run-frames 3 "
+          "--no-figure -o many -q")
+          .exit_code,
+      0);
+  const nlohmann::json json = json_in("many/sweep.json");
+  const auto& points = json["series"][0]["points"];
+  for (const auto& point : points) {
+    EXPECT_EQ(point["stored_frames"], 600);
+    EXPECT_GT(point["frames"], 600);
+  }
+  EXPECT_EQ(run("zstdcat many/frame_times.csv.zst | wc -l").standard_output, "1201\n");
+  // The first repetition and one near the end are among them.
+  const test::Outcome last = run("zstdcat many/frame_times.csv.zst | awk -F, '$6 == 20 { r = $7 } END { print r }'");
+  const auto repetitions = points[1]["repetitions"].get<double>();
+  EXPECT_GT(std::stod(last.standard_output), 0.95 * repetitions);
+  EXPECT_EQ(run("cp -r many again && vestige compare many again").exit_code, 0);
+}
+
 TEST_F(SweepCommandLine, MeasuresBesideARendererInAThreadOfItsOwn) {
   record_small();
   const test::Outcome sweep =
