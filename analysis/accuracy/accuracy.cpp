@@ -28,14 +28,6 @@ struct Run {
   ContactEventFinder finder;
 };
 
-/// Adds pass by pass.
-void add(const std::vector<Repetition>& passes, std::vector<Repetition>& sum) {
-  for (std::size_t i = 0; i < sum.size(); ++i) {
-    sum[i].frames += passes[i].frames;
-    sum[i].seconds += passes[i].seconds;
-  }
-}
-
 class RateMeasurement {
  public:
   RateMeasurement(const MovingScene& scene, const std::vector<AccuracyContestant>& contestants,
@@ -165,8 +157,9 @@ AccuracyPoint& AccuracyPoint::operator+=(const AccuracyPoint& other) {
   tolerated += other.tolerated;
   skinning += other.skinning;
   frame_us.insert(frame_us.end(), other.frame_us.begin(), other.frame_us.end());
-  add(other.passes, passes);
-  add(other.processor_passes, processor_passes);
+  seeds += other.seeds;
+  passes.insert(passes.end(), other.passes.begin(), other.passes.end());
+  processor_passes.insert(processor_passes.end(), other.processor_passes.begin(), other.processor_passes.end());
   return *this;
 }
 

@@ -32,7 +32,8 @@ struct AccuracyPoint {
   EventScore tolerated;          ///< by the tolerance on the time of impact
   SkinningError skinning;        ///< of a few frames, evenly spread
   std::vector<double> frame_us;  ///< duration of every frame of every pass
-  std::vector<Repetition> passes;
+  std::size_t seeds = 1;
+  std::vector<Repetition> passes;            ///< all passes of one seed, then those of the next
   std::vector<Repetition> processor_passes;  ///< the same passes by the processor time of all threads
 
   /// Returns about half the width of the 95 % interval of the wrong events' share, by the rule whose interval is wider.

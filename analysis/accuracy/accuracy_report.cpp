@@ -151,10 +151,15 @@ double load_ms(const AccuracyPoint& point) {
   return 1e3 * point.rate_hz / frequency_hz(point.processor_passes);
 }
 
-/// As above, and how sure it is: one pass does not tell.
+/// As above, and how sure it is: one pass does not tell. Seeds cost differently.
 Estimate estimated_load_ms(const AccuracyPoint& point) {
-  if (point.processor_passes.size() < 2) return {load_ms(point), {kMissing, kMissing}};
-  const Interval hz = bootstrap_frequency_hz(point.processor_passes, 1, kResamplingSeed);
+  std::vector<Repetition> in_turn;  // the first pass of each seed, then the second of each
+  in_turn.reserve(point.processor_passes.size());
+  const std::size_t passes = point.processor_passes.size() / point.seeds;
+  for (std::size_t pass = 0; pass < passes; ++pass)
+    for (std::size_t seed = 0; seed < point.seeds; ++seed)
+      in_turn.push_back(point.processor_passes[seed * passes + pass]);
+  const Interval hz = bootstrap_frequency_hz(in_turn, point.seeds, kResamplingSeed);
   return {load_ms(point), {1e3 * point.rate_hz / hz.high, 1e3 * point.rate_hz / hz.low}};
 }
 
@@ -186,7 +191,7 @@ nlohmann::ordered_json pareto_json(const AccuracyScene& scene, const std::vector
 nlohmann::ordered_json point_times_json(const AccuracyPoint& point) {
   return {{"rate_hz", point.rate_hz},
           {"frames", point.frames},
-          {"passes", point.passes.size()},
+          {"passes", point.passes.size() / point.seeds},
           {"hz", frequency_hz(point.passes)},
           {"us_median", quantile(point.frame_us, 0.5)},
           {"us_p99", quantile(point.frame_us, 0.99)},
