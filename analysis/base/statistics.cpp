@@ -124,6 +124,11 @@ double share_standard_error(std::span<const ClusterShare> clusters) {
     if (share.whole > 0) ++with_whole;
   }
   if (with_whole < 2) return kMissing;
+  // Clusters that all agree do not tell how clusters differ: as in bootstrap_share.
+  const auto all = [&](auto holds) { return std::ranges::all_of(clusters, holds); };
+  if (all([](const ClusterShare& share) { return share.part == 0; }) ||
+      all([](const ClusterShare& share) { return share.part == share.whole; }))
+    return std::min(1.0, 3 / with_whole) / (2 * 1.96);
   double squares = 0;
   for (const ClusterShare& share : clusters) {
     const double residual = share.part - share.whole * sum.part / sum.whole;

@@ -55,13 +55,14 @@ struct ClusterShare {
 /// (Davison & Hinkley 1997, section 2.4). It resamples whole clusters, with the levels of `expanded_level`. Clusters
 /// that all agree do not tell how clusters differ: if none has a part, the interval is [0, 3 / n], at most 1, n being
 /// the number of clusters with a whole ("rule of three", Hanley & Lippman-Hand 1983); if in all of them the part is the
-/// whole, it is [1 - 3 / n, 1]. Else NaN if no cluster has a whole, or if only one has it. The same input and `seed`
-/// give the same interval.
+/// whole, it is [1 - 3 / n, 1]. NaN if no cluster has a whole, or if only one has it and its part is neither 0 nor the
+/// whole. The same input and `seed` give the same interval.
 Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t seed);
 
 /// Returns the standard error of sum(part) / sum(whole) by linearisation (Cochran 1977, Sampling Techniques, eq. 6.13),
-/// for what is independent only between clusters. Quick, and good enough to see whether there are enough clusters. NaN
-/// if no cluster has a whole, or if only one has it.
+/// for what is independent only between clusters. Quick, and good enough to see whether there are enough clusters.
+/// Where all clusters agree, 1.96 times it is half the interval of `bootstrap_share`. NaN if no cluster has a whole, or
+/// if only one has it.
 double share_standard_error(std::span<const ClusterShare> clusters);
 
 /// A mean over units (traces, subjects, …) and its confidence interval.

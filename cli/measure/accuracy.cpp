@@ -138,7 +138,7 @@ class Measurement {
 
   const std::vector<AccuracyContestant>& contestants() const { return contestants_; }
 
-  /// Measures seed after seed, until there are enough true events.
+  /// Measures seed after seed, until there are enough true events and intervals are narrow.
   AccuracyScene measure(const SceneChoice& choice) const {
     AccuracyScene sum;
     sum.colliders = choice.colliders;

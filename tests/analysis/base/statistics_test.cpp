@@ -62,6 +62,8 @@ TEST(ShareStandardError, IsThatOfAMeanWhereClustersAreAlikeInSize) {
   EXPECT_NEAR((interval.high - interval.low) / 2, 1.96 * share_standard_error(clusters),
               0.006);  // shares in steps of 0.01
   EXPECT_TRUE(std::isnan(share_standard_error(std::vector<ClusterShare>{{1, 2}, {0, 0}})));
+  EXPECT_NEAR(2 * 1.96 * share_standard_error(std::vector<ClusterShare>(30, {0, 4})), 0.1, 1e-12);
+  EXPECT_NEAR(2 * 1.96 * share_standard_error(std::vector<ClusterShare>(30, {4, 4})), 0.1, 1e-12);
 }
 
 TEST(BootstrapShare, OfNothingButErrorsIsWithinThreeOverTheNumberOfClustersOfAll) {
