@@ -60,7 +60,7 @@ double noise_of(const SweepPoint& point) {
 /// Of more passes than these, the file of durations holds as many, evenly spread: enough to compare runs by.
 constexpr std::size_t kMostStoredPasses = 100;
 
-/// Returns the repetitions whose durations are stored: those of whole passes, unless all are.
+/// Returns the repetitions whose durations are stored: those of whole passes.
 std::vector<std::size_t> stored_repetitions(const SweepPoint& point) {
   const std::size_t passes = point.repetitions.size() / point.places;
   const std::size_t stored_passes = std::min(passes, kMostStoredPasses);

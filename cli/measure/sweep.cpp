@@ -113,7 +113,7 @@ void add_sweep(CLI::App& program, Invocation& invocation) {
   verb->add_flag("--stages", options->settings.stages,
                  "Also measure where the time of a frame goes, in a pass of its own: pose, skinning, test, ...");
   add_measuring_options(*verb, options->choice, options->settings, "Consecutive frames at each place",
-                        "Folder for sweep.json, every frame's duration, and the figures");
+                        "Folder for sweep.json, the durations of frames, and the figures");
   verb->callback([options, &invocation] { run_sweep_verb(*options, invocation); });
 }
 

@@ -119,7 +119,7 @@ std::vector<std::string> small_print(const Sweeps& sweeps) {
   if (has_interval) first += fmt::format(" {}: 95 % bootstrap interval.", has_area ? "Shaded" : "Upright lines");
   first += " Triangles: published lower bounds.";
   if (const std::string skipping = skipping_detectors(sweeps); !skipping.empty())
-    first += fmt::format(" Without skin that no collider can touch, unless a name says otherwise: {}.", skipping);
+    first += fmt::format(" {} skip skin that no collider can touch, unless a name says otherwise.", skipping);
   if (const auto methods = methods_of(sweeps); methods.size() == 1 && !methods.begin()->empty())
     first += fmt::format(" Method: {}.", *methods.begin());
   lines = wrapped(first);
