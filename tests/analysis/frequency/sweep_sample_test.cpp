@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 
+#include "tests/support/test_data.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 
 namespace vestige {
@@ -69,7 +70,8 @@ class SampledTrace : public ::testing::Test {
 
   static constexpr std::uint64_t kFrames = 400;
   const Avatar avatar_ = test::skeleton(test::kNodes);
-  const std::filesystem::path path_ = std::filesystem::path(::testing::TempDir()) / "sampled.mcap";
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "sampled.mcap";
 };
 
 /// Places that begin at the first frame, or end at the last, would see contacts always or never.
