@@ -1,7 +1,8 @@
 #include "cli/choices/law_choice.hpp"
 
+#include <fmt/format.h>
+
 #include <iterator>
-#include <vector>
 
 #include "cli/help/validators.hpp"
 
@@ -9,12 +10,12 @@ namespace vestige::cli {
 
 namespace {
 
-constexpr const char* kLawDescription =
-    "How strongly a contact drives the actuators:\n"
-    "  binary   the contact's actuator, fully (the published law)\n"
-    "  speed    the contact's actuator, by the speed of the impact\n"
-    "  phantom  the actuators around the contact share its strength, so that it is felt between them\n"
-    "  gaussian all actuators near the contact, by their distance along the skin";
+std::string describe_laws() {
+  std::string text = "How strongly a contact drives the actuators:";
+  for (const LawInfo& law : laws())
+    if (!law.summary.empty()) fmt::format_to(std::back_inserter(text), "\n  {:<8} {}", law.name, law.summary);
+  return text;
+}
 
 // `vestige plot paraview` explains --hold in the same words.
 constexpr const char* kHoldHelp =
@@ -23,11 +24,10 @@ constexpr const char* kHoldHelp =
 }  // namespace
 
 void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_remark) {
-  const std::vector<std::string> names(std::begin(kLawNames), std::end(kLawNames));
-  verb.add_option("--law", flags.law, kLawDescription)
+  verb.add_option("--law", flags.law, describe_laws())
       ->group(group)
       ->capture_default_str()
-      ->check(CLI::IsMember(names))
+      ->check(CLI::IsMember(law_names()))
       ->type_name("LAW");
   add_law_parameters(verb, flags, group, hold_remark);
 }

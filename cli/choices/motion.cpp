@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <string_view>
 #include <utility>
+#include <vector>
 
+#include "cli/help/suggest.hpp"
 #include "traces/base/error.hpp"
 #include "traces/motion/animation_choice.hpp"
 
@@ -73,7 +76,7 @@ void warn_of_names(const std::string& path, std::string_view what, const std::ve
 void add_motion_options(CLI::App& verb, MotionChoice& choice) {
   verb.add_option("--unit", choice.unit,
                   "How far the motion capture travels: auto scales it by the legs of both bodies, so that feet do not "
-                  "slide; a unit keeps true distances")
+                  "slide; a unit keeps true distances. Colliders have --collider-unit")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "mm", "cm", "inch", "m"}));
   verb.add_option("--up", choice.up,
@@ -81,6 +84,23 @@ void add_motion_options(CLI::App& verb, MotionChoice& choice) {
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "y", "z", "-y", "-z"}));
 }
+
+namespace {
+
+/// As `find_animation`, and a name that the avatar does not have gets what was probably meant.
+const Animation* find_named(const Avatar& avatar, const std::string& name_or_index) {
+  try {
+    return find_animation(avatar, name_or_index);
+  } catch (const UsageError& error) {
+    std::vector<std::string_view> names = {"none"};
+    names.reserve(avatar.animations.size() + 1);
+    for (const Animation& animation : avatar.animations) names.push_back(animation.name);
+    throw UsageError("--animation", fmt::format("there is no animation '{}'", name_or_index),
+                     help::did_you_mean(name_or_index, names) + std::string(error.remedy()));
+  }
+}
+
+}  // namespace
 
 CLI::Option* add_morph_option(CLI::App& verb, MorphChoice& choice) {
   return verb.add_flag(
@@ -91,7 +111,7 @@ CLI::Option* add_morph_option(CLI::App& verb, MorphChoice& choice) {
 
 const Animation* choose_animation(const Avatar& avatar, const std::string& name_or_index, const MorphChoice& morphs,
                                   Verbosity verbosity) {
-  const Animation* animation = find_animation(avatar, name_or_index);
+  const Animation* animation = find_named(avatar, name_or_index);
   if (animation == nullptr || !animation->morph) return animation;
   const std::string cause = describe_morph(*animation);
   if (!morphs.ignored)

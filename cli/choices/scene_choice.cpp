@@ -32,7 +32,8 @@ std::string describe_colliders() {
   for (const Scenario& scenario : scenarios()) longest = std::max(longest, scenario.name.size());
   for (const Scenario& scenario : scenarios())
     fmt::format_to(std::back_inserter(text), "\n  {:<{}} {}", scenario.name, longest, scenario.summary);
-  return text + "\nor a file of rows time_s,id,x,y,z, or the animated nodes of a glTF file";
+  return text +
+         "\nor a file of rows time_s,id,x,y,z, or the animated nodes of a glTF file. Its convention: " + kConvention;
 }
 
 /// Samples of a file that the scene does not reach are said, and when it reaches none it is refused.
@@ -42,12 +43,33 @@ void check_span(const TimeSpan& span, const SceneChoice& choice, double duration
   if (span.last_s < 0 || span.first_s > duration_s)
     throw Error(choice.colliders, "no sample lies within the scene: " + times,
                 "make the file's times begin at 0, or raise --duration");
-  if (std::isfinite(span.last_s) && (span.first_s < 0 || span.last_s > duration_s))
+  if (!std::isfinite(span.last_s)) return;
+  if (span.first_s < 0 || span.last_s > duration_s)
     warn(fmt::format("{}: {}; samples outside the scene are left out (--duration)", choice.colliders, times),
          verbosity);
+  if (const std::string doubt = describe_small_overlap(span, duration_s); !doubt.empty())
+    warn(fmt::format("{}: {}", choice.colliders, doubt), verbosity);
 }
 
 }  // namespace
+
+std::string describe_small_overlap(const TimeSpan& span, double duration_s) {
+  constexpr double kSmall = 0.1;
+  const double common_s = std::min(span.last_s, duration_s) - std::max(span.first_s, 0.0);
+  if (!std::isfinite(span.last_s) || common_s >= kSmall * duration_s) return "";
+  return fmt::format(
+      "colliders are there for {:.3g} s of {:g} s; if that is not meant, check the unit (--time-unit) and "
+      "the rate of their times",
+      std::max(common_s, 0.0), duration_s);
+}
+
+std::string describe_resampling(double step_s, double rate_hz) {
+  constexpr double kSame = 0.02;
+  if (step_s <= 0 || std::abs(step_s * rate_hz - 1) <= kSame) return "";
+  return fmt::format(
+      "samples at {:.4g} Hz become frames at {:.4g} Hz; between samples, colliders move along straight lines",
+      1 / step_s, rate_hz);
+}
 
 std::string describe_animations(std::string_view otherwise) {
   return fmt::format(
@@ -86,6 +108,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->capture_default_str()
       ->type_name("SCENARIO|FILE.csv|FILE.glb");
   verb.add_option("--nodes", choice.nodes, kNodesHelp)->type_name("PATTERN");
+  add_collider_convention(verb, choice.convention);
   verb.add_option("--count", choice.count, describe_count())->check(help::whole_number(1, 1000000));
 }
 
@@ -97,6 +120,7 @@ void check_scene_choice(const SceneChoice& choice) {
   if (!choice.nodes.empty() && !choice.from_gltf())
     throw UsageError("--nodes", "the colliders do not come from a glTF file",
                      "leave --nodes out, or name a .glb as --colliders");
+  check_collider_convention(choice.convention, choice.colliders, false);
   if (choice.count && choice.from_file())
     throw UsageError("--count", "the file sets the number of colliders", "leave --count out");
 }
@@ -108,8 +132,8 @@ void load_motion(const SceneChoice& choice, Avatar& avatar, const std::vector<st
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
                                                const Animation* animation, std::uint64_t seed) {
-  if (choice.from_gltf()) return read_collider_gltf(choice.colliders, choice.nodes);
-  if (choice.from_file()) return read_collider_csv(choice.colliders);
+  if (choice.from_gltf()) return read_collider_gltf(choice.colliders, choice.nodes, choice.convention.of_colliders());
+  if (choice.from_file()) return read_collider_csv(choice.colliders, choice.convention.of_colliders());
   return find_scenario(choice.colliders)->make(avatar, animation, {choice.collider_count(), seed});
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/choices/convention_choice.hpp"
 #include "cli/choices/motion.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/terminal.hpp"
@@ -27,6 +28,7 @@ struct SceneChoice {
   std::string map;
   std::string colliders = "swarm";
   std::string nodes;                   ///< of a glTF of colliders: a pattern of names
+  ConventionChoice convention;         ///< of a file of colliders
   std::optional<std::uint32_t> count;  ///< of a scenario; if empty, the scenario's default
 
   bool from_file() const { return colliders.ends_with(".csv") || from_gltf(); }
@@ -45,11 +47,13 @@ inline constexpr const char* kNodesHelp =
 /// Returns the help of --count, for the number of colliders of a scenario.
 std::string describe_count();
 
-/// Adds --avatar, --facing, --animation, --ignore-morphs, --unit, --up, --map, --colliders, --nodes and --count.
+/// Adds --avatar, --facing, --animation, --ignore-morphs, --unit, --up, --map, --colliders, --nodes, --count, and how a
+/// file of colliders measures.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
 /// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit and --up without motion
-/// capture, --count with colliders from a file, --nodes with colliders that come from no glTF.
+/// capture, --count with colliders from a file, --nodes with colliders that come from no glTF, units and axes of
+/// colliders that come from no file.
 void check_scene_choice(const SceneChoice& choice);
 
 /// If --animation names a motion file, adds the motion to the avatar's animations under that name, by
@@ -60,8 +64,15 @@ void load_motion(const SceneChoice& choice, Avatar& avatar, const std::vector<st
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
                                                const Animation* animation, std::uint64_t seed);
 
-/// Warns of unexpected colliders: the source's own warnings, and samples of a file outside the duration. Throws `Error`
-/// if all samples are outside.
+/// Returns a sentence if samples of colliders and a motion of `duration_s` hardly overlap in time; otherwise "".
+std::string describe_small_overlap(const TimeSpan& span, double duration_s);
+
+/// Returns a sentence if frames at `rate_hz` do not fall on samples that are `step_s` apart (0: there are none);
+/// otherwise "".
+std::string describe_resampling(double step_s, double rate_hz);
+
+/// Warns of unexpected colliders: the source's own warnings, and samples of a file outside the duration or hardly in
+/// it. Throws `Error` if all samples are outside.
 void check_colliders(const SceneChoice& choice, const ColliderSource& colliders, double duration_s,
                      Verbosity verbosity);
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "cli/choices/range_choice.hpp"
+#include "cli/files/range_choice.hpp"
 #include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"

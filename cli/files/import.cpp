@@ -8,10 +8,12 @@
 #include <optional>
 
 #include "analysis/base/provenance.hpp"
+#include "cli/choices/convention_choice.hpp"
 #include "cli/choices/motion.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/scene_choice.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
@@ -21,6 +23,8 @@
 #include "traces/exchange/pose_csv.hpp"
 #include "traces/exchange/trace_hdf5.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/questions/placement_question.hpp"
+#include "traces/questions/pose_question.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
@@ -39,6 +43,7 @@ struct ImportOptions {
   std::string map;
   std::string session;  ///< session.json of the folder; empty without one
   MotionChoice motion_choice;
+  ConventionChoice convention;
   FacingChoice facing;
   std::optional<double> rate_hz;
   std::string compression = "zstd";
@@ -56,7 +61,9 @@ struct Frames {
   std::function<bool(TraceFrame&)> next_pose;
   std::function<void(TraceFrame&)> add_colliders = [](TraceFrame&) {};
   std::function<void()> finish = [] {};
+  std::shared_ptr<const ColliderSource> sampled = {};  ///< colliders that are sampled at the times of the frames
   std::function<double()> share;
+  std::vector<bool> placed;  ///< for each node, whether a file of poses says where it is
 };
 
 bool is_hdf5(const std::string& path) {
@@ -73,6 +80,9 @@ void refuse_parts(const ImportOptions& options) {
                                                 {"--nodes", !options.nodes.empty()},
                                                 {"--rate", options.rate_hz.has_value()}};
   std::optional<std::string> named = options.motion_choice.given();
+  if (!named) named = options.convention.given_for_colliders();
+  if (!named) named = options.convention.given_for_poses();
+  if (!named && options.convention.has_time_unit()) named = "--time-unit";
   for (const auto& [flag, is_named] : parts)
     if (is_named) named = flag;
   if (named)
@@ -119,6 +129,11 @@ std::string recorded_facing(const std::string& session) {
 }
 
 void check_flags(const ImportOptions& options) {
+  if (options.motion.empty() && options.poses.empty() && !options.colliders.empty())
+    throw UsageError("import", "no motion and no poses are given",
+                     fmt::format("give --motion FILE.bvh or --poses FILE.csv; of colliders around a body that stands "
+                                 "still, 'vestige record --animation none --colliders {}' makes a trace",
+                                 options.colliders));
   if (options.motion.empty() == options.poses.empty())
     throw UsageError(
         "import",
@@ -127,8 +142,13 @@ void check_flags(const ImportOptions& options) {
   if (options.motion.empty() && options.rate_hz)
     throw UsageError("--rate", "the file of poses sets the frame times", "leave --rate out, or give a --motion");
   if (const auto flag = options.motion_choice.given(); flag && options.motion.empty())
-    throw UsageError(*flag, "a file of poses is in metres, with +Y up",
-                     fmt::format("leave {} out, or give a --motion", *flag));
+    throw UsageError(*flag, "it is about motion capture, and there is none",
+                     *flag == "--unit" ? "leave --unit out: --pose-unit and --collider-unit are about CSV files"
+                                       : "leave --up out: --pose-axes and --collider-axes are about CSV files");
+  if (const auto flag = options.convention.given_for_poses(); flag && options.poses.empty())
+    throw UsageError(*flag, "there is no file of poses",
+                     fmt::format("leave {} out: --unit and --up are about motion capture", *flag));
+  check_collider_convention(options.convention, options.colliders, !options.poses.empty());
   const bool from_gltf = options.colliders.ends_with(".glb") || options.colliders.ends_with(".gltf");
   if (!options.nodes.empty() && !from_gltf)
     throw UsageError("--nodes", "the colliders do not come from a glTF file",
@@ -147,18 +167,19 @@ void read_colliders(const ImportOptions& options, Frames& frames) {
   const auto sample_from = [&](std::shared_ptr<ColliderSource> source) {
     for (const std::string& warning : source->warnings())
       warn(fmt::format("--colliders {}: {}", path, warning), options.common.verbosity());
+    frames.sampled = source;
     frames.add_colliders = [source](TraceFrame& frame) {
       source->sample(seconds(frame), frame.colliders);
       frame.teleported = source->teleported();
     };
   };
   if (path.ends_with(".glb") || path.ends_with(".gltf")) {
-    sample_from(read_collider_gltf(path, options.nodes));
+    sample_from(read_collider_gltf(path, options.nodes, options.convention.of_colliders()));
     return;
   }
   if (!options.poses.empty()) {
     // Rows that say their frame go to it, and nothing is made up between them.
-    auto rows = std::make_shared<ColliderFrames>(path);
+    auto rows = std::make_shared<ColliderFrames>(path, options.convention.of_colliders());
     if (rows->columns() == ColliderColumns::kFrames) {
       frames.add_colliders = [rows](TraceFrame& frame) { rows->fill(frame); };
       frames.finish = [rows] { rows->expect_end(); };
@@ -168,7 +189,7 @@ void read_colliders(const ImportOptions& options, Frames& frames) {
       throw UsageError("--colliders -", "these rows have no frame numbers",
                        "put the rows into a file, which can be read twice");
   }
-  sample_from(read_collider_csv(path));
+  sample_from(read_collider_csv(path, options.convention.of_colliders()));
 }
 
 /// Each frame of the motion once, or at a rate of one's own.
@@ -213,11 +234,13 @@ Scene read_hdf5(const std::string& path, const FacingChoice& facing, Frames& fra
   return scene;
 }
 
-void read_poses(const std::string& path, const Avatar& avatar, Frames& frames, Verbosity verbosity) {
-  const auto reader = std::make_shared<PoseCsvReader>(path, avatar);
-  warn_of_names(path, "these nodes of the avatar keep their rest pose", reader->resting(), verbosity);
+void read_poses(const ImportOptions& options, const Avatar& avatar, Frames& frames) {
+  const auto reader = std::make_shared<PoseCsvReader>(options.poses, avatar, options.convention.of_poses());
+  warn_of_names(options.poses, "these nodes of the avatar keep their rest pose", reader->resting(),
+                options.common.verbosity());
   frames.next_pose = [reader](TraceFrame& frame) { return reader->next(frame); };
   frames.share = [reader] { return reader->share(); };
+  frames.placed = reader->placed();
 }
 
 TraceWriterOptions writing_of(const ImportOptions& options) {
@@ -229,8 +252,43 @@ TraceWriterOptions writing_of(const ImportOptions& options) {
   return writing;
 }
 
+/// What is asked about files of other programs once they are read.
+class Questions {
+ public:
+  Questions(const Avatar& avatar, const ConventionChoice& convention, const Frames& frames)
+      : placement_(avatar, convention.of_colliders()), pose_(avatar, convention.of_poses(), frames.placed) {}
+
+  void see(const TraceFrame& frame) {
+    placement_.see(frame);
+    pose_.see(frame);
+    any_collider_ = any_collider_ || !frame.colliders.empty();
+  }
+
+  void ask(const ImportOptions& options, const Frames& frames, std::uint64_t frame_count, double last_s) const {
+    const auto doubt_of = [&](const std::string& file, const std::string& doubt) {
+      if (!doubt.empty() && !file.empty()) warn(fmt::format("{}: {}", file, doubt), options.common.verbosity());
+    };
+    doubt_of(options.poses, pose_.ask().value_or(""));
+    doubt_of(options.colliders, placement_.ask().value_or(""));
+    if (!any_collider_)
+      doubt_of(options.colliders,
+               fmt::format("no frame has a collider; check that the file's times are those of the motion, 0 to {} s",
+                           last_s));
+    if (!frames.sampled || last_s <= 0) return;
+    if (any_collider_) doubt_of(options.colliders, describe_small_overlap(frames.sampled->span_s(), last_s));
+    const double rate_hz = static_cast<double>(frame_count - 1) / last_s;
+    doubt_of(options.colliders, describe_resampling(frames.sampled->median_step_s(), rate_hz));
+  }
+
+ private:
+  PlacementQuestion placement_;
+  PoseQuestion pose_;
+  bool any_collider_ = false;
+};
+
 void run_import(ImportOptions options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
+  check_trace_name(options.output);
   if (!options.from.empty()) refuse_parts(options);
   const bool from_hdf5 = is_hdf5(options.from);
   if (!options.from.empty() && !from_hdf5) expand_folder(options);
@@ -256,32 +314,31 @@ void run_import(ImportOptions options, Invocation& invocation) {
     session["animation"] = options.motion;
     session["rate_hz"] = fmt::format("{}", options.rate_hz.value_or(1 / motion->frame_time_s));
   } else if (!from_hdf5) {
-    read_poses(options.poses, scene.avatar, frames, verbosity);
+    read_poses(options, scene.avatar, frames);
     session["animation"] = options.poses;
+    note_pose_convention(options.convention, session);
   }
+  frames.placed.resize(scene.avatar.nodes.size());
   read_colliders(options, frames);
+  if (!options.colliders.empty()) note_collider_convention(options.convention, session);
 
   catch_interrupts();
   TraceFrame frame;
   // The first frame is read before a file is begun: most mistakes show there.
   bool more = frames.next(frame);
-  bool any_collider = false;
+  Questions questions(scene.avatar, options.convention, frames);
   TraceWriter trace(options.output, session, scene.avatar, scene.attachments(), writing_of(options));
   {
     Progress progress("Importing", verbosity);
     for (; more; more = frames.next(frame)) {
       trace.write(frame);
-      any_collider = any_collider || !frame.colliders.empty();
+      questions.see(frame);
       if (!progress.update(frames.share())) throw Error(options.output, "importing was stopped", "");
     }
   }
   frames.finish();
   trace.finish();
-  if (!options.colliders.empty() && options.from.empty() && !any_collider)
-    warn(fmt::format(
-             "--colliders {}: no frame has a collider; check that the file's times are those of the motion, 0 to {} s",
-             options.colliders, seconds(frame)),
-         verbosity);
+  if (options.from.empty()) questions.ask(options, frames, trace.frame_count(), seconds(frame));
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;
@@ -313,13 +370,18 @@ void add_import(CLI::App& program, Invocation& invocation) {
                        kLeanHelp)
       ->type_name("FILE.bvh");
   verb->add_option("--poses", options->poses,
-                   "Poses of the avatar's own nodes, in rows time_s, NODE.tx ... NODE.sz; '-' is standard input")
+                   std::string("Poses of the avatar's own nodes, in rows time_s, NODE.tx ... NODE.sz; '-' is standard "
+                               "input. Its convention: ") +
+                       kConvention)
       ->type_name("FILE.csv|-");
+  add_pose_convention(*verb, options->convention);
   verb->add_option(
           "--colliders", options->colliders,
-          "Colliders: rows time_s,id,x,y,z, a file that 'vestige export' wrote, or the animated nodes of a glTF "
-          "file [default: none]")
+          std::string("Colliders: rows time_s,id,x,y,z, a file that 'vestige export' wrote, or the animated nodes of a "
+                      "glTF file. Its convention: ") +
+              kConvention + " [default: none]")
       ->type_name("FILE.csv|FILE.glb");
+  add_collider_convention(*verb, options->convention);
   verb->add_option("--nodes", options->nodes, kNodesHelp)->type_name("PATTERN");
   verb->add_option("--avatar", options->avatar,
                    "The avatar that moves: the built-in one, or a glTF file (.glb, .gltf, .vrm) [default: builtin]")

@@ -9,15 +9,17 @@
 #include <vector>
 
 #include "analysis/base/provenance.hpp"
-#include "cli/choices/limits_choice.hpp"
 #include "cli/choices/live_choice.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/scene_choice.hpp"
 #include "cli/choices/snapshots.hpp"
+#include "cli/files/limits_choice.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/questions/placement_question.hpp"
 #include "traces/recording/recorder.hpp"
 #include "traces/recording/sampled_scene.hpp"
 #include "traces/scene/colliders.hpp"
@@ -67,6 +69,7 @@ Session session_of(const RecordOptions& options, const Animation* animation, con
   session["animation"] = animation == nullptr ? "" : animation->name;
   session["colliders"] = options.scene.colliders;
   session["seed"] = fmt::format("{}", options.common.seed);
+  if (options.scene.from_file()) note_collider_convention(options.scene.convention, session);
   return session;
 }
 
@@ -83,12 +86,18 @@ TraceWriterOptions writing_of(const RecordOptions& options) {
 
 void record_scene(const RecordOptions& options, const Scene& scene, const Animation* animation,
                   ColliderSource& colliders, const RecordingSettings& settings, Recorder& recorder) {
-  Progress progress("Recording", options.common.verbosity());
+  PlacementQuestion question(scene.avatar, options.scene.convention.of_colliders(), settings.origin_m);
   const auto write = [&](const TraceFrame& frame) {
     if (snapshot_wanted()) recorder.snapshot();
+    if (options.scene.from_file()) question.see(frame);
     return recorder.write(frame);
   };
-  record(write, scene.avatar, animation, colliders, settings, [&](double share) { return progress.update(share); });
+  {
+    Progress progress("Recording", options.common.verbosity());
+    record(write, scene.avatar, animation, colliders, settings, [&](double share) { return progress.update(share); });
+  }
+  if (const auto doubt = question.ask())
+    warn(fmt::format("--colliders {}: {}", options.scene.colliders, *doubt), options.common.verbosity());
 }
 
 std::string name_of(const std::vector<std::filesystem::path>& files) {
@@ -112,6 +121,7 @@ void refuse_part_name(const RecordOptions& options, const RecordingLimits& limit
 
 void run_record(const RecordOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
+  check_trace_name(options.output);
   const RecordingSettings settings = settings_of(options);
   const RecordingLimits limits = limits_of(options.limits, options.output);
   const std::vector<std::string> outputs = {limits.splits() ? part_path(options.output, 1).string() : options.output,
@@ -129,6 +139,8 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
     animation = choose_animation(scene.avatar, options.scene.animation, options.scene.morphs, verbosity);
     colliders = make_colliders(options.scene, scene.avatar, animation, options.common.seed);
     check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
+    if (const std::string how = describe_resampling(colliders->median_step_s(), settings.rate_hz); !how.empty())
+      warn(fmt::format("--colliders {}: {}", options.scene.colliders, how), verbosity);
   }
 
   const double frames = settings.rate_hz * settings.duration_s;

@@ -1,6 +1,6 @@
 #include <memory>
 
-#include "cli/choices/range_choice.hpp"
+#include "cli/files/range_choice.hpp"
 #include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"

@@ -23,6 +23,7 @@
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/questions/placement_question.hpp"
 
 namespace vestige::cli {
 
@@ -326,6 +327,17 @@ void warn_of_gaps(const ReplayResult& result, const std::vector<TimedMap>& timed
          verbosity);
 }
 
+/// Contacts that are fewer than the colliders are a reason to ask where the colliders were.
+void ask_about_placement(OpenTrace& trace, const ReplayResult& result, const Run& run, const ReplayOptions& options) {
+  if (result.interrupted || result.contacts >= run.colliders) return;
+  PlacementQuestion question(trace.avatar);
+  TraceFrame frame;
+  trace.reader.rewind();
+  while (trace.reader.next(frame)) question.see(frame);
+  if (const auto doubt = question.ask())
+    warn(fmt::format("{}: {} (record or import it again so)", options.trace, *doubt), options.common.verbosity());
+}
+
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
@@ -340,6 +352,9 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
 
   OpenTrace trace(options.trace, verbosity);
   require_surface(trace.avatar, options.trace + ", avatar.glb");
+  if (!options.timeline.empty() && trace.map.actuator_count == 0)
+    throw UsageError("--timeline", fmt::format("there is no actuator in {}, so nothing to write", options.trace),
+                     "give the trace an actuator map with 'vestige record --map', or leave --timeline out");
   const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
   PlaneSet planes = kHashedPlanes;
   if (!options.textures.empty()) planes = planes | texture_planes;
@@ -392,6 +407,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (texture_file) texture_file->commit();
   if (timeline) timeline->commit();
   warn_of_gaps(result, timed_maps, options);
+  ask_about_placement(trace, result, run, options);
 
   print_summary(summary(result, run), outputs, options.common);
   write_json(options.common.json, to_json(result, run, invocation), options.common);

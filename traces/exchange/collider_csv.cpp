@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <map>
 
@@ -31,7 +32,7 @@ Samples parse(ColliderRows& rows) {
     auto& of_collider = samples[row.sample.id];
     if (!of_collider.empty() && of_collider.back().time_s == row.time_s)
       throw rows.error(fmt::format("collider {} has two positions at {} s", row.sample.id, row.time_s),
-                       "remove one of them");
+                       "give each collider an id of its own, or remove one of the rows");
     Sample sample = {row.time_s, row.sample.position_m, Arrival::kMoved};
     if (rows.columns() == ColliderColumns::kFrames) {
       const auto [last, is_first] = last_frame.try_emplace(row.sample.id, row.frame);
@@ -45,9 +46,36 @@ Samples parse(ColliderRows& rows) {
   return samples;
 }
 
+/// A median step longer than this is likely one in milliseconds.
+constexpr double kLongStep_s = 0.5;
+/// In metres a second. Nothing that touches people is so fast.
+constexpr double kFastest = 100;
+
+/// How a file's samples follow each other.
+struct Steps {
+  double median_s = 0;    ///< 0 if no collider has two samples
+  double fast_share = 0;  ///< of the steps that are faster than `kFastest`
+};
+
+Steps steps_of(const Samples& samples) {
+  std::vector<double> steps_s;
+  std::size_t fast = 0;
+  for (const auto& [id, of_collider] : samples)
+    for (std::size_t i = 1; i < of_collider.size(); ++i) {
+      if (of_collider[i].arrival == Arrival::kApart) continue;
+      steps_s.push_back(of_collider[i].time_s - of_collider[i - 1].time_s);
+      if (glm::distance(of_collider[i].position_m, of_collider[i - 1].position_m) > kFastest * steps_s.back()) ++fast;
+    }
+  if (steps_s.empty()) return {};
+  const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
+  std::ranges::nth_element(steps_s, middle);
+  return {*middle, static_cast<double>(fast) / static_cast<double>(steps_s.size())};
+}
+
 class CsvColliders final : public ColliderSource {
  public:
-  explicit CsvColliders(const Samples& samples) {
+  CsvColliders(const Samples& samples, const Convention& convention)
+      : steps_(steps_of(samples)), convention_(convention) {
     span_s_ = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (const auto& [id, of_collider] : samples) {
       tracks_.push_back({id, of_collider, 0});
@@ -77,6 +105,22 @@ class CsvColliders final : public ColliderSource {
   }
 
   TimeSpan span_s() const override { return span_s_; }
+  double median_step_s() const override { return steps_.median_s; }
+
+  std::vector<std::string> warnings() const override {
+    std::vector<std::string> doubts;
+    if (steps_.median_s > kLongStep_s && convention_.seconds_per_unit == 1)
+      doubts.push_back(
+          fmt::format("the samples of a collider are {:.4g} s apart (median); if these are milliseconds: "
+                      "--time-unit ms",
+                      steps_.median_s));
+    if (steps_.fast_share > 0.5)
+      doubts.push_back(
+          fmt::format("{:.0f} % of all steps are faster than {:g} m/s; check the units (--collider-unit, "
+                      "--time-unit), and that each collider has its own id",
+                      100 * steps_.fast_share, kFastest));
+    return doubts;
+  }
 
  private:
   struct Track {
@@ -84,15 +128,17 @@ class CsvColliders final : public ColliderSource {
     std::vector<Sample> samples;
     std::size_t next;  // the first sample after the time of the last `sample`
   };
+  Steps steps_;
+  Convention convention_;
   std::vector<Track> tracks_;
   TimeSpan span_s_;
 };
 
 }  // namespace
 
-std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path) {
-  ColliderRows rows(path);
-  return std::make_unique<CsvColliders>(parse(rows));
+std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path, const Convention& convention) {
+  ColliderRows rows(path, convention);
+  return std::make_unique<CsvColliders>(parse(rows), convention);
 }
 
 }  // namespace vestige

@@ -94,7 +94,8 @@ std::vector<int> choose(const Scene& scene, const std::string& pattern, const st
 
 class GltfColliders final : public ColliderSource {
  public:
-  GltfColliders(Scene scene, const std::vector<int>& chosen) : scene_(std::move(scene)) {
+  GltfColliders(Scene scene, const std::vector<int>& chosen, const Convention& convention)
+      : scene_(std::move(scene)), convention_(convention) {
     std::set<std::uint32_t> numbers;
     for (const int node : chosen)
       if (const auto number = number_at_end(scene_.nodes.nodes[static_cast<Index>(node)].name)) numbers.insert(*number);
@@ -113,7 +114,7 @@ class GltfColliders final : public ColliderSource {
       const glm::dmat4& matrix = matrices_[static_cast<Index>(collider.node)];
       const bool is_hidden =
           glm::dvec3(matrix[0]) == glm::dvec3(0) && glm::dvec3(matrix[1]) == glm::dvec3(0) && matrix[2].z == 0;
-      if (!is_hidden) out.push_back({collider.id, glm::dvec3(matrix[3])});
+      if (!is_hidden) out.push_back({collider.id, convention_.position_m(glm::dvec3(matrix[3]))});
     }
   }
 
@@ -128,16 +129,18 @@ class GltfColliders final : public ColliderSource {
     int node;
   };
   Scene scene_;
+  Convention convention_;
   std::vector<Collider> colliders_;
   std::vector<glm::dmat4> matrices_;
 };
 
 }  // namespace
 
-std::unique_ptr<ColliderSource> read_collider_gltf(const std::filesystem::path& path, const std::string& pattern) {
+std::unique_ptr<ColliderSource> read_collider_gltf(const std::filesystem::path& path, const std::string& pattern,
+                                                   const Convention& convention) {
   Scene scene = load(path);
   const std::vector<int> chosen = choose(scene, pattern, path.string());
-  return std::make_unique<GltfColliders>(std::move(scene), chosen);
+  return std::make_unique<GltfColliders>(std::move(scene), chosen, convention);
 }
 
 }  // namespace vestige

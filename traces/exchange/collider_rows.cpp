@@ -56,7 +56,8 @@ std::unique_ptr<TraceExport> make_collider_csv(const std::filesystem::path& path
   return std::make_unique<ColliderCsv>(path, overwrite);
 }
 
-ColliderRows::ColliderRows(const std::filesystem::path& path) : reader_(path), lines_(reader_, kTimesRemedy) {
+ColliderRows::ColliderRows(const std::filesystem::path& path, const Convention& convention)
+    : reader_(path), lines_(reader_, kTimesRemedy), convention_(convention) {
   const std::string header = fmt::format("{}", fmt::join(lines_.take_header(), ","));
   if (header == kColliderFramesHeader) {
     columns_ = ColliderColumns::kFrames;
@@ -82,6 +83,10 @@ bool ColliderRows::next(ColliderRow& row) {
   if (!std::isfinite(row.time_s) || !std::isfinite(position.x) || !std::isfinite(position.y) ||
       !std::isfinite(position.z))
     throw lines_.error("a number is not finite");
+  if (!convention_.is_of_trace()) {
+    position = convention_.position_m(position);
+    row.time_s *= convention_.seconds_per_unit;
+  }
   if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) > trace_format::kFarthest_m)
     throw lines_.error("a coordinate is beyond 1e9 m");
   if (rows_ > 0 && row.time_s < last_time_s_)

@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "traces/base/csv.hpp"
+#include "traces/exchange/convention.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {
@@ -27,12 +28,13 @@ enum class ColliderColumns {
 inline constexpr std::string_view kColliderTimesHeader = "time_s,id,x,y,z";
 inline constexpr std::string_view kColliderFramesHeader = "frame,time_s,id,x,y,z,teleported";
 
-/// Reads a collider CSV with either header, one row at a time. Throws `Error` with file and line: another header, a
+/// Reads a collider CSV with either header, one row at a time, and changes its numbers from their `Convention` to
+/// metres, seconds and the trace's axes. Throws `Error` with file and line: another header, a
 /// wrong number of columns, a field that is not a number, not finite, farther than 1e9 m, frames or times that
 /// decrease.
 class ColliderRows {
  public:
-  explicit ColliderRows(const std::filesystem::path& path);
+  explicit ColliderRows(const std::filesystem::path& path, const Convention& convention = {});
   bool next(ColliderRow& row);
   /// The name that error messages use.
   const std::string& name() const { return reader_.name(); }
@@ -42,6 +44,7 @@ class ColliderRows {
  private:
   LineReader reader_;
   CsvLines lines_;
+  Convention convention_;
   ColliderColumns columns_ = ColliderColumns::kTimes;
   std::uint64_t rows_ = 0;
   std::uint64_t last_frame_ = 0;
@@ -51,7 +54,10 @@ class ColliderRows {
 /// Groups the rows of `frame,time_s,…` files by frame; holds one row.
 class ColliderFrames {
  public:
-  explicit ColliderFrames(const std::filesystem::path& path) : rows_(path) { advance(); }
+  explicit ColliderFrames(const std::filesystem::path& path, const Convention& convention = {})
+      : rows_(path, convention) {
+    advance();
+  }
   ColliderColumns columns() const { return rows_.columns(); }
 
   /// Fills in colliders and teleported ids of the frame with this index and time. Indices must increase from call to

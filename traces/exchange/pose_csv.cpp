@@ -113,9 +113,12 @@ std::unique_ptr<TraceExport> make_pose_csv(const std::filesystem::path& path, Ov
   return std::make_unique<PoseCsv>(path, overwrite, node_names);
 }
 
-PoseCsvReader::PoseCsvReader(const std::filesystem::path& path, const Avatar& avatar)
-    : reader_(path), lines_(reader_, kRemedy), avatar_(avatar), rest_(rest_pose(avatar)) {
+PoseCsvReader::PoseCsvReader(const std::filesystem::path& path, const Avatar& avatar, const Convention& convention)
+    : reader_(path), lines_(reader_, kRemedy), avatar_(avatar), convention_(convention), rest_(rest_pose(avatar)) {
   read_header();
+  if (convention_.is_of_trace()) return;
+  for (std::size_t node = 0; node < moves_.size(); ++node)
+    if (moves_[node]) rest_.nodes[node] = convention_.given_node(rest_.nodes[node]);
 }
 
 void PoseCsvReader::read_header() {
@@ -132,19 +135,27 @@ void PoseCsvReader::read_header() {
       known.try_emplace(fmt::format("{}.{}", nodes[node], kPoseCsvParts[part]), Target{Column::kNode, node, part});
   columns_ = lines_.take_header();
   std::set<std::string> seen;
-  std::vector<bool> moves(nodes.size());
+  moves_.resize(nodes.size());
   for (const std::string& column : columns_) {
     const auto target = known.find(column);
     if (target == known.end())
       throw lines_.error(fmt::format("the avatar has no node for the column '{}'", column), kAvatarRemedy);
     if (!seen.insert(column).second) throw lines_.error(fmt::format("the column '{}' appears twice", column));
     targets_.push_back(target->second);
-    if (target->second.column == Column::kNode) moves[target->second.node] = true;
+    if (target->second.column == Column::kNode) moves_[target->second.node] = true;
   }
   if (!seen.contains("time_s")) throw lines_.error("there is no column time_s");
   has_frames_ = seen.contains("frame");
   for (std::size_t node = 0; node < nodes.size(); ++node)
-    if (!moves[node]) resting_.push_back(nodes[node]);
+    if (!moves_[node]) resting_.push_back(nodes[node]);
+}
+
+std::vector<bool> PoseCsvReader::placed() const {
+  constexpr std::size_t kPlaceParts = 3;  // tx, ty, tz
+  std::vector<bool> placed(moves_.size());
+  for (const Target& target : targets_)
+    if (target.column == Column::kNode && target.part < kPlaceParts) placed[target.node] = true;
+  return placed;
 }
 
 void PoseCsvReader::take(const Target& target, TraceFrame& frame) {
@@ -160,6 +171,7 @@ void PoseCsvReader::take(const Target& target, TraceFrame& frame) {
       break;
     case Column::kTime:
       number(time_s_);
+      time_s_ *= convention_.seconds_per_unit;
       if (time_s_ < 0 || time_s_ > kLongest_s)
         throw lines_.error(fmt::format("the time {} s is not from 0 to 9e9 s", time_s_));
       frame.time_ns = nanoseconds_of(time_s_);
@@ -187,6 +199,12 @@ void PoseCsvReader::check(const TraceFrame& frame) {
   }
 }
 
+void PoseCsvReader::change_convention(TraceFrame& frame) const {
+  frame.pose.origin_m = convention_.position_m(frame.pose.origin_m);
+  for (std::size_t node = 0; node < moves_.size(); ++node)
+    if (moves_[node]) frame.pose.nodes[node] = convention_.node(frame.pose.nodes[node]);
+}
+
 bool PoseCsvReader::next(TraceFrame& frame) {
   if (!lines_.next()) {
     if (rows_ == 0) throw Error(reader_.name(), "holds no frame", kRemedy);
@@ -197,6 +215,7 @@ bool PoseCsvReader::next(TraceFrame& frame) {
   for (const Target& target : targets_) take(target, frame);
   if (!lines_.at_end()) throw lines_.error(fmt::format("has more than the header's {} fields", targets_.size()));
   check(frame);
+  if (!convention_.is_of_trace()) change_convention(frame);
   ++rows_;
   last_index_ = frame.index;
   last_time_ns_ = frame.time_ns;

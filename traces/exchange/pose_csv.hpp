@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "traces/base/csv.hpp"
+#include "traces/exchange/convention.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 
@@ -20,18 +21,21 @@ inline constexpr const char* kPoseCsvParts[] = {"tx", "ty", "tz", "rx", "ry", "r
 
 /// Reads `frame,time_s,origin_x,origin_y,origin_z,NODE.tx,…` as `make_pose_csv` writes it: one row for each frame, one
 /// row at a time. Columns may come in any order, and all but `time_s` may be missing. Without `frame`, frames are
-/// counted. A missing origin is 0. A missing part of a node keeps the avatar's rest value. Throws `Error` with file and
-/// line: an unknown node, a column twice, a wrong number of fields, a field that is not a number, not finite, frames or
-/// times that decrease, a rotation of length 0, no row.
+/// counted. A missing origin is 0. A missing part of a node keeps the avatar's rest value. Numbers are changed from
+/// their `Convention` to the trace's. Throws `Error` with file and line: an unknown node, a column twice, a wrong
+/// number of fields, a field that is not a number, not finite, frames or times that decrease, a rotation of length 0,
+/// no row.
 class PoseCsvReader {
  public:
-  PoseCsvReader(const std::filesystem::path& path, const Avatar& avatar);
+  PoseCsvReader(const std::filesystem::path& path, const Avatar& avatar, const Convention& convention = {});
 
   /// Reads index, time and pose of the next frame. Returns false at the end.
   bool next(TraceFrame& frame);
   double share() const { return reader_.share(); }
   /// Nodes without any column; they stay in the rest pose.
   const std::vector<std::string>& resting() const { return resting_; }
+  /// Returns whether each node has a column that says where it is.
+  std::vector<bool> placed() const;
 
  private:
   enum class Column { kFrame, kTime, kOrigin, kNode };
@@ -44,14 +48,17 @@ class PoseCsvReader {
   void read_header();
   void take(const Target& target, TraceFrame& frame);
   void check(const TraceFrame& frame);
+  void change_convention(TraceFrame& frame) const;
 
   LineReader reader_;
   CsvLines lines_;
   const Avatar& avatar_;
-  Pose rest_;
+  Convention convention_;
+  Pose rest_;  ///< nodes with a column are in the file's convention
   std::vector<std::string> columns_;
   std::vector<Target> targets_;
   std::vector<std::string> resting_;
+  std::vector<bool> moves_;  ///< for each node: whether it has a column
   double time_s_ = 0;
   bool has_frames_ = false;
   std::uint64_t rows_ = 0;

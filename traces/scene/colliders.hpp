@@ -33,6 +33,9 @@ class ColliderSource {
   /// First and last time of the samples. A scenario has no bounds.
   virtual TimeSpan span_s() const { return {}; }
 
+  /// The median time between two samples of a collider. 0 if the source has none.
+  virtual double median_step_s() const { return 0; }
+
   /// Reasons why fewer colliders or contacts than expected may appear, one sentence each.
   virtual std::vector<std::string> warnings() const { return {}; }
 

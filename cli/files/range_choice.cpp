@@ -1,4 +1,4 @@
-#include "cli/choices/range_choice.hpp"
+#include "cli/files/range_choice.hpp"
 
 #include <fmt/format.h>
 
