@@ -7,6 +7,7 @@
 #include "cli/help/help_text.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/plot/draw.hpp"
+#include "detector/actuators/intensity.hpp"
 
 namespace vestige::plot {
 
@@ -197,7 +198,7 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
   paraview
       .add_option("--law", options.law, "The intensity law, which says how strongly a contact drives the actuators")
       ->capture_default_str()
-      ->type_name("binary|speed|phantom|gaussian");
+      ->type_name(fmt::format("{}", fmt::join(law_names(), "|")));
   paraview
       .add_option(
           "--hold", options.hold_ms,

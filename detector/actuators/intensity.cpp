@@ -177,6 +177,40 @@ class Gaussian final : public IntensityLaw {
   static constexpr double kLogOfSteps = 6.24;  // a little more than -ln(kNothing)
 };
 
+using MadeLaw = std::unique_ptr<IntensityLaw>;
+
+constexpr std::array<LawInfo, 5> kLaws = {{
+    {"binary", "the contact's actuator, fully (the published law)",
+     "A contact switches the actuator of its skin fully on (Spanlang et al. 2010, HAVE).", false,
+     [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
+       return std::make_unique<Binary>(count, options);
+     }},
+    {"speed", "the contact's actuator, by the speed of the impact",
+     "The amplitude rises with the collider's speed along the skin's normal, up to a speed of full amplitude.", false,
+     [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
+       return std::make_unique<Speed>(count, options);
+     }},
+    {"phantom", "the actuators around the contact share its strength, so that it is felt between them",
+     "The actuators around a contact share its amplitude at constant energy: for two, A₁ = √(1−β) A and A₂ = √β A "
+     "(Israr & Poupyrev 2011, Tactile Brush).",
+     true,
+     [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
+       return std::make_unique<Phantom>(layout, options, Energy::kEven);
+     }},
+    {"gaussian", "all actuators near the contact, by their distance along the skin",
+     "Every actuator vibrates, with an amplitude that falls with its distance along the body: exp(−d²/2σ²).", true,
+     [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
+       return std::make_unique<Gaussian>(layout, options);
+     }},
+    {"linear", "",
+     "The actuators share the amplitude as with phantom, but linearly, so the energy drops between them; for "
+     "comparison.",
+     true,
+     [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
+       return std::make_unique<Phantom>(layout, options, Energy::kSagging);
+     }},
+}};
+
 }  // namespace
 
 double sigma_of(const ActuatorLayout& layout, const LawOptions& options) {
@@ -208,22 +242,33 @@ const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Con
   return held_.now();
 }
 
-bool needs_layout(std::string_view law) {
-  return law == "phantom" || law == "linear" || law == "gaussian";
+std::span<const LawInfo> laws() {
+  return kLaws;
+}
+
+std::vector<std::string> law_names() {
+  std::vector<std::string> names;
+  names.reserve(kLaws.size());
+  for (const LawInfo& law : kLaws)
+    if (!law.summary.empty()) names.emplace_back(law.name);
+  return names;
+}
+
+const LawInfo& law_named(std::string_view name) {
+  const auto found = std::ranges::find(kLaws, name, &LawInfo::name);
+  if (found == kLaws.end())
+    throw UsageError("--law", fmt::format("there is no intensity law '{}'", name),
+                     fmt::format("choose one of: {}", fmt::join(law_names(), ", ")));
+  return *found;
 }
 
 std::unique_ptr<IntensityLaw> make_law(std::string_view name, Layout layout, const LawOptions& options) {
-  if (name == "phantom") return std::make_unique<Phantom>(layout, options, Energy::kEven);
-  if (name == "linear") return std::make_unique<Phantom>(layout, options, Energy::kSagging);
-  if (name == "gaussian") return std::make_unique<Gaussian>(layout, options);
-  return make_law(name, layout->actuator_count(), options);
+  const std::size_t actuator_count = layout->actuator_count();
+  return law_named(name).make(std::move(layout), actuator_count, options);
 }
 
 std::unique_ptr<IntensityLaw> make_law(std::string_view name, std::size_t actuator_count, const LawOptions& options) {
-  if (name == "binary") return std::make_unique<Binary>(actuator_count, options);
-  if (name == "speed") return std::make_unique<Speed>(actuator_count, options);
-  throw UsageError("--law", fmt::format("there is no intensity law '{}'", name),
-                   fmt::format("choose one of: {}", fmt::join(kLawNames, ", ")));
+  return law_named(name).make(nullptr, actuator_count, options);
 }
 
 }  // namespace vestige

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -83,16 +84,28 @@ class IntensityLaw {
 /// touched.
 double sigma_of(const ActuatorLayout& layout, const LawOptions& options);
 
-/// The names that a user can choose from.
-inline constexpr const char* kLawNames[] = {"binary", "speed", "phantom", "gaussian"};
+/// What a law is called, and what is said of it.
+struct LawInfo {
+  std::string_view name;
+  std::string_view summary;      ///< for help, such as "the contact's actuator, fully"; empty: not offered to users
+  std::string_view explanation;  ///< for reports: a sentence with its formula and source
+  /// Whether it needs the place of a contact on the body. Otherwise the numbers of the actuators are enough.
+  bool needs_layout = false;
+  /// Precondition: `layout` is not null if the law needs one.
+  std::unique_ptr<IntensityLaw> (*make)(std::shared_ptr<const ActuatorLayout> layout, std::size_t actuator_count,
+                                        const LawOptions& options) = nullptr;
+};
 
-/// Returns whether a law needs the place of a contact on the body. Otherwise the numbers of the actuators are enough.
-bool needs_layout(std::string_view law);
+/// Returns all laws, in the order of the help.
+std::span<const LawInfo> laws();
+/// Returns the names that a user can choose from.
+std::vector<std::string> law_names();
+/// Returns the law of that name. Throws `UsageError` naming --law if there is none.
+const LawInfo& law_named(std::string_view name);
 
-/// Makes a law by its name: one of `kLawNames`, or "linear". Throws `UsageError` naming --law for any other name.
 std::unique_ptr<IntensityLaw> make_law(std::string_view name, std::shared_ptr<const ActuatorLayout> layout,
                                        const LawOptions& options);
-/// As above, for a law that does not need a layout.
+/// As above. Precondition: the law does not need a layout.
 std::unique_ptr<IntensityLaw> make_law(std::string_view name, std::size_t actuator_count, const LawOptions& options);
 
 }  // namespace vestige

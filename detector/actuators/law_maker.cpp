@@ -48,7 +48,7 @@ std::unique_ptr<ActuatorDrive> DriveMaker::make() const {
 }
 
 std::shared_ptr<const ActuatorLayout> DriveMaker::layout_of(const ActuatorMap& map) const {
-  return needs_layout(flags_.law) ? std::make_shared<ActuatorLayout>(avatar_, map) : nullptr;
+  return law_named(flags_.law).needs_layout ? std::make_shared<ActuatorLayout>(avatar_, map) : nullptr;
 }
 
 nlohmann::ordered_json DriveMaker::to_json() const {
