@@ -11,9 +11,6 @@ namespace {
 
 constexpr int kResamples = 1000;
 
-/// More resamples than for frequencies, since the levels for few units lie far out.
-constexpr std::size_t kPairedResamples = 4000;
-
 /// How the repetitions of a measurement differ from what their places cost.
 struct Residuals {
   std::vector<double> expected_s;  ///< for each repetition: its frames at the mean of its place
@@ -47,12 +44,12 @@ Residuals residuals(std::span<const Repetition> repetitions, std::size_t places)
 
 double quantile(std::span<const double> values, double p) {
   if (values.empty()) return kMissing;
-  std::vector<double> sorted(values.begin(), values.end());
-  std::ranges::sort(sorted);
-  const double place = p * static_cast<double>(sorted.size() - 1);
-  const auto below = static_cast<std::size_t>(place);
-  const std::size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - std::floor(place)) * (sorted[above] - sorted[below]);
+  std::vector<double> parted(values.begin(), values.end());
+  const double place = p * static_cast<double>(parted.size() - 1);
+  const auto below = parted.begin() + static_cast<std::ptrdiff_t>(place);
+  std::ranges::nth_element(parted, below);
+  const double above = below + 1 == parted.end() ? *below : *std::min_element(below + 1, parted.end());
+  return *below + (place - std::floor(place)) * (above - *below);
 }
 
 Interval wilson_interval(std::uint64_t errors, std::uint64_t cases) {
@@ -149,48 +146,6 @@ double expanded_level(std::size_t n) {
   if (n < std::size(kLevels)) return kLevels[n];
   const auto count = static_cast<double>(n);
   return 0.025 - 0.19607 / count + 0.26047 / (count * count);  // to 0.0001 of the formula
-}
-
-PairedBootstrap::PairedBootstrap(std::size_t units, std::uint64_t seed) : units_(units) {
-  if (units == 0) return;
-  std::mt19937_64 random(seed);
-  drawn_.resize(kPairedResamples * units);
-  for (std::uint32_t& unit : drawn_) unit = static_cast<std::uint32_t>(random() % units);
-}
-
-MeanInterval PairedBootstrap::mean(std::span<const double> values) const {
-  MeanInterval result = {kMissing, {kMissing, kMissing}, 0};
-  double sum = 0;
-  for (const double value : values) {
-    if (std::isnan(value)) continue;
-    sum += value;
-    ++result.n;
-  }
-  if (result.n == 0) return result;
-  result.mean = sum / static_cast<double>(result.n);
-  if (result.n < 2) return result;
-  std::vector<double> means;
-  means.reserve(kPairedResamples);
-  for (std::size_t begin = 0; begin < drawn_.size(); begin += units_) {
-    double drawn_sum = 0;
-    std::size_t count = 0;
-    for (std::size_t i = begin; i < begin + units_; ++i) {
-      const double value = values[drawn_[i]];
-      if (std::isnan(value)) continue;
-      drawn_sum += value;
-      ++count;
-    }
-    if (count != 0) means.push_back(drawn_sum / static_cast<double>(count));
-  }
-  const double level = expanded_level(result.n);
-  result.interval = {quantile(means, level), quantile(means, 1 - level)};
-  return result;
-}
-
-MeanInterval PairedBootstrap::difference(std::span<const double> values, std::span<const double> others) const {
-  std::vector<double> differences(values.begin(), values.end());
-  for (std::size_t i = 0; i < differences.size(); ++i) differences[i] -= others[i];
-  return mean(differences);
 }
 
 }  // namespace vestige

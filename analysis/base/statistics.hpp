@@ -65,33 +65,6 @@ Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t s
 /// if only one has it.
 double share_standard_error(std::span<const ClusterShare> clusters);
 
-/// A mean over units (traces, subjects, …) and its confidence interval.
-struct MeanInterval {
-  double mean = 0;    ///< NaN if no unit has a value
-  Interval interval;  ///< 95 %; NaN if fewer than two units have a value
-  std::size_t n = 0;  ///< number of units that have a value
-};
-
-/// Bootstrap of means over the same units for many candidates. Each resample draws whole units, and the same units for
-/// every candidate. So what makes a unit hard for all candidates cancels in differences (Efron & Tibshirani 1993, ch.
-/// 8). NaN values are missing. For few units, the plain percentile interval is too narrow, so the quantiles are moved
-/// outwards ("expanded percentile", Hesterberg 2015, The American Statistician 69:371, section 5.2). The same input and
-/// seed give the same bits.
-class PairedBootstrap {
- public:
-  PairedBootstrap(std::size_t units, std::uint64_t seed);
-
-  /// Returns the mean of `values` and its interval. `values` has one value for each unit.
-  MeanInterval mean(std::span<const double> values) const;
-
-  /// Returns the mean of `values` - `others` and its interval, over the units that have both.
-  MeanInterval difference(std::span<const double> values, std::span<const double> others) const;
-
- private:
-  std::size_t units_;
-  std::vector<std::uint32_t> drawn_;  // the units of each resample, `units_` a resample
-};
-
 /// Returns the quantile at which an expanded 95 % percentile interval of `n` values begins: Phi(-sqrt(n / (n-1))
 /// t(0.975, n-1)). The values come from a table, and from 20 on from an approximation to 0.0001, since the functions of
 /// that formula differ between machines in the last bit. Returns 0 for fewer than four values: the interval is then

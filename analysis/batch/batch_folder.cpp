@@ -27,7 +27,8 @@ constexpr const char* kFolders[] = {"items", "times", "contacts", "traces", "map
 constexpr const char* kLockName = ".lock";
 constexpr const char* kPage = "report.html";
 constexpr const char* kFigures = "figures";  // figures of the page
-constexpr const char* kResults[] = {"scores.csv", "scores.json", "ranking.csv", "ranking.json"};
+constexpr const char* kResults[] = {"scores.csv", "scores.json", "ranking.csv", "ranking.json",
+                                    "ranking_by_scenario.csv"};
 constexpr const char* kShards = "shards";  // shards of a Slurm run that is merged into this folder
 constexpr const char* kLogs = "logs";
 constexpr std::string_view kOtherFolder = "choose another -o, or add --force to replace it";

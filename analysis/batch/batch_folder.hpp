@@ -31,6 +31,7 @@ class FolderLock {
 ///   run.json                origin, inputs, failures and durations
 ///   scores.csv|json         map, trace, law, then each metric
 ///   ranking.csv|json        a row for each map and law
+///   ranking_by_scenario.csv a row for each scenario, map and law; with several scenarios
 ///   items/NAME.json         a trace's scores
 ///   times/NAME.json         where and when the scores were computed, and how long it took
 ///   contacts/NAME.csv       a trace's contacts

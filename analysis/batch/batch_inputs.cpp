@@ -159,10 +159,18 @@ std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar
   return failures;
 }
 
-std::vector<BatchTrace> name_traces(const std::vector<std::string>& given) {
-  const std::vector<std::string> names = unique_names(given);
+std::vector<BatchTrace> name_traces(const std::vector<std::string>& given, const std::vector<std::uint64_t>& seeds) {
   std::vector<BatchTrace> traces;
-  for (std::size_t i = 0; i < given.size(); ++i) traces.push_back({names[i], given[i], find_scenario(given[i])});
+  std::vector<std::string> words;  // of which names are made
+  for (const std::string& word : given) {
+    const Scenario* scenario = find_scenario(word);
+    for (const std::uint64_t seed : scenario == nullptr ? std::vector<std::uint64_t>{0} : seeds) {
+      words.push_back(scenario != nullptr && seeds.size() > 1 ? fmt::format("{}-{}", word, seed) : word);
+      traces.push_back({"", word, scenario, seed});
+    }
+  }
+  const std::vector<std::string> names = unique_names(words);
+  for (std::size_t i = 0; i < traces.size(); ++i) traces[i].name = names[i];
   return traces;
 }
 

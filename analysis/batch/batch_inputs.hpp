@@ -19,8 +19,8 @@ std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar
                                       const std::string& actuator, std::size_t jobs,
                                       const std::function<bool()>& go_on);
 
-/// Returns named traces from the command line's words. A word is a scenario's name, otherwise a file. The name of the
-/// trace is made of the word.
-std::vector<BatchTrace> name_traces(const std::vector<std::string>& given);
+/// Returns named traces from the command line's words. A word is a scenario's name, otherwise a file. Each scenario is
+/// there once for each of the seeds. The name of the trace is made of the word, and of the seed if there are several.
+std::vector<BatchTrace> name_traces(const std::vector<std::string>& given, const std::vector<std::uint64_t>& seeds);
 
 }  // namespace vestige

@@ -92,6 +92,8 @@ nlohmann::ordered_json to_json(const BatchPlan& plan) {
   options["full_speed_m_per_s"] = plan.law_options.full_speed_m_per_s;
   options["sigma_mm"] = nullptr;
   if (plan.law_options.sigma_m) options["sigma_mm"] = *plan.law_options.sigma_m * 1e3;
+  options["unfelt_mm"] = nullptr;
+  if (plan.unfelt_m) options["unfelt_mm"] = *plan.unfelt_m * 1e3;
   options["actuator"] = nullptr;
   if (plan.actuators.model) options["actuator"] = {{"given", plan.actuators.given}, {"sha256", plan.actuators.sha256}};
   options["detector"] = plan.detector;
@@ -107,7 +109,10 @@ nlohmann::ordered_json to_json(const BatchPlan& plan) {
     if (plan.recording.count) options["scenarios"]["count"] = *plan.recording.count;
   }
   json["traces"] = nlohmann::ordered_json::array();
-  for (const BatchTrace& trace : plan.traces) json["traces"].push_back({{"name", trace.name}, {"given", trace.given}});
+  for (const BatchTrace& trace : plan.traces) {
+    json["traces"].push_back({{"name", trace.name}, {"given", trace.given}});
+    if (trace.scenario != nullptr) json["traces"].back()["seed"] = trace.seed;
+  }
   return as_read_back(json);
 }
 
@@ -120,6 +125,7 @@ nlohmann::json command_of(const nlohmann::ordered_json& batch) {
   // A batch of an earlier version lacks these options. It ran as with the defaults.
   options.emplace("full_speed_m_per_s", LawOptions().full_speed_m_per_s);
   options.emplace("sigma_mm", nullptr);
+  options.emplace("unfelt_mm", nullptr);
   options.emplace("actuator", nullptr);
   if (nlohmann::json& actuator = options["actuator"]; !actuator.is_null()) actuator.erase("sha256");
   return command;

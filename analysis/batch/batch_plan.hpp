@@ -51,6 +51,7 @@ struct BatchTrace {
   std::string name;                    ///< unique, as for maps
   std::string given;                   ///< a file or a scenario's name
   const Scenario* scenario = nullptr;  ///< the scenario to record; null for a file
+  std::uint64_t seed = 1;              ///< of the scenario
 };
 
 /// How scenarios among the traces are recorded.
@@ -80,6 +81,7 @@ struct BatchPlan {
   std::vector<BatchTrace> traces;
   std::vector<std::string> laws;
   LawOptions law_options;
+  std::optional<double> unfelt_m;  ///< the error of a contact that is not felt, in `error_with_unfelt_mm`
   BatchActuators actuators;
   std::string detector;
   bool approximate = false;  ///< the detector puts simpler shapes in place of the skin

@@ -4,21 +4,25 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string_view>
 
 #include "analysis/scoring/scores.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige {
 
 namespace {
 
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
-constexpr std::string_view kShownBeside[] = {"coverage", "localisation_error_mm", "information_bits"};
 constexpr std::string_view kCoverage = "coverage";
+constexpr std::string_view kIntervals =
+    "95 %, bootstrap-t over seeds within each scenario, or over files; p: of the difference from the leader, who is "
+    "chosen anew in each of 10000 paired resamples; p_holm: corrected for the number of comparisons (Holm 1979)";
+constexpr std::string_view kErrorWithUnfelt = "error_with_unfelt_mm";
 
 nlohmann::ordered_json number(double value) {
   return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
@@ -27,11 +31,6 @@ nlohmann::ordered_json number(double value) {
 /// Empty where there is none.
 std::string field(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
-}
-
-/// Returns whether a candidate can be compared with the best at all. With one trace, it cannot.
-bool is_compared(const RankedCandidate& ranked) {
-  return std::isfinite(ranked.difference_from_best.interval.low);
 }
 
 nlohmann::ordered_json to_json(const MeanInterval& mean) {
@@ -64,6 +63,14 @@ nlohmann::ordered_json metrics_json() {
   return json;
 }
 
+/// A trace that was judged.
+struct JudgedTrace {
+  std::string name;
+  std::string scenario;               ///< empty for a file
+  std::optional<std::uint64_t> seed;  ///< of the scenario
+  std::uint64_t contacts = 0;
+};
+
 /// Scores of all items by map, law, metric and trace.
 class ScoreTable {
  public:
@@ -75,16 +82,22 @@ class ScoreTable {
     values_.resize(candidates_.size(),
                    CandidateValues(metrics().size(), std::vector<double>(items.size(), kNotANumber)));
     for (std::size_t i = 0; i < items.size(); ++i) add(items[i], i);
+    for (const nlohmann::ordered_json& planned : batch.at("traces")) {
+      const auto trace = std::ranges::find(traces_, planned.at("name").get<std::string>(), &JudgedTrace::name);
+      if (trace == traces_.end() || !planned.contains("seed")) continue;
+      trace->scenario = planned.at("given").get<std::string>();
+      trace->seed = planned.at("seed").get<std::uint64_t>();
+    }
   }
 
   const std::vector<BatchResults::Candidate>& candidates() const { return candidates_; }
   const std::vector<CandidateValues>& values() const { return values_; }
-  const std::vector<std::string>& traces() const { return traces_; }
+  const std::vector<JudgedTrace>& traces() const { return traces_; }
 
  private:
   void add(const nlohmann::ordered_json& item, std::size_t trace) {
     const auto name = item.at("trace").get<std::string>();
-    traces_.push_back(name);
+    traces_.push_back({name, "", std::nullopt, item.at("contacts").get<std::uint64_t>()});
     std::map<std::pair<std::string, std::string>, const nlohmann::ordered_json*> scores;
     for (const nlohmann::ordered_json& score : item.at("scores"))
       scores[{score.at("map").get<std::string>(), score.at("law").get<std::string>()}] = &score.at("values");
@@ -104,7 +117,7 @@ class ScoreTable {
 
   std::vector<BatchResults::Candidate> candidates_;
   std::vector<CandidateValues> values_;
-  std::vector<std::string> traces_;
+  std::vector<JudgedTrace> traces_;
 };
 
 /// Calls `row` for each map, trace and law, in this order.
@@ -116,31 +129,99 @@ void for_each_score(const ScoreTable& table, std::size_t laws, const Row& row) {
 }
 
 void write_scores(const BatchFolder& folder, const ScoreTable& table, std::size_t laws) {
-  std::string csv = "map,trace,law";
+  std::string csv = "map,trace,law,scenario,seed,contacts";
   for (const Metric& metric : metrics()) csv += fmt::format(",{}", metric.name);
   nlohmann::ordered_json json = {{"schema_version", 1}, {"metrics", metrics_json()}};
   nlohmann::ordered_json& scores = json["scores"] = nlohmann::ordered_json::array();
   for_each_score(table, laws, [&](std::size_t c, std::size_t trace) {
     const BatchResults::Candidate& candidate = table.candidates()[c];
-    csv += fmt::format("\n{},{},{}", candidate.map, table.traces()[trace], candidate.law);
+    const JudgedTrace& judged = table.traces()[trace];
+    csv += fmt::format("\n{},{},{},{},{},{}", candidate.map, judged.name, candidate.law, judged.scenario,
+                       judged.seed ? std::to_string(*judged.seed) : "", judged.contacts);
     nlohmann::ordered_json values;
     for (std::size_t m = 0; m < metrics().size(); ++m) {
       const double value = table.values()[c][m][trace];
       csv += fmt::format(",{}", field(value));
       values[std::string(metrics()[m].name)] = number(value);
     }
-    scores.push_back(
-        {{"map", candidate.map}, {"trace", table.traces()[trace]}, {"law", candidate.law}, {"values", values}});
+    nlohmann::ordered_json one = {{"map", candidate.map}, {"trace", judged.name}, {"law", candidate.law},
+                                  {"scenario", nullptr},  {"seed", nullptr},      {"contacts", judged.contacts},
+                                  {"values", values}};
+    if (judged.seed) {
+      one["scenario"] = judged.scenario;
+      one["seed"] = *judged.seed;
+    }
+    scores.push_back(one);
   });
   write_file(folder.top("scores.csv"), csv + "\n");
   write_json_file(folder.top("scores.json"), json);
+}
+
+/// How a candidate compares with the best.
+LeaderTest test_of(const RankedCandidate& ranked) {
+  return ranked.against_leader.value_or(LeaderTest{kNotANumber, {kNotANumber, kNotANumber}, kNotANumber, kNotANumber});
+}
+
+std::string comparison_fields(const RankedCandidate& ranked) {
+  const LeaderTest test = test_of(ranked);
+  const char* worse = ranked.is_worse() ? "yes" : "no";
+  return fmt::format("{},{},{},{},{},{}", field(test.difference), field(test.interval.low), field(test.interval.high),
+                     field(test.p), field(test.p_holm), ranked.is_compared() ? worse : "");
+}
+
+nlohmann::ordered_json comparison_json(const RankedCandidate& ranked, std::size_t traces) {
+  const LeaderTest test = test_of(ranked);
+  return {{"mean", number(test.difference)},
+          {"low", number(test.interval.low)},
+          {"high", number(test.interval.high)},
+          {"n", traces},
+          {"p", number(test.p)},
+          {"p_holm", number(test.p_holm)}};
+}
+
+void write_ranking_by_scenario(const BatchFolder& folder, const BatchResults& results) {
+  const std::string_view name = metrics()[results.headline].name;
+  std::string csv = fmt::format(
+      "scenario,rank,map,law,traces,{0},{0}_low,{0}_high,difference_from_best,difference_low,difference_high,p,p_holm,"
+      "distinguishable_from_best\n",
+      name);
+  for (const ScenarioRanking& scenario : results.by_scenario) {
+    for (const RankedCandidate& ranked : scenario.ranking) {
+      const auto& [map, law] = results.candidates[ranked.candidate];
+      const MeanInterval& mean = ranked.metrics.front();
+      csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", scenario.scenario,
+                         ranked.rank ? std::to_string(*ranked.rank) : "", map, law, mean.n, field(mean.mean),
+                         field(mean.interval.low), field(mean.interval.high), comparison_fields(ranked));
+    }
+  }
+  // With one scenario, ranking.csv says it all.
+  write_or_remove_file(folder.top("ranking_by_scenario.csv"), results.by_scenario.empty() ? "" : csv);
+}
+
+nlohmann::ordered_json by_scenario_json(const BatchResults& results) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const ScenarioRanking& scenario : results.by_scenario) {
+    nlohmann::ordered_json ranking = nlohmann::ordered_json::array();
+    for (const RankedCandidate& ranked : scenario.ranking) {
+      nlohmann::ordered_json one = {{"rank", nullptr},
+                                    {"map", results.candidates[ranked.candidate].map},
+                                    {"law", results.candidates[ranked.candidate].law}};
+      if (ranked.rank) one["rank"] = *ranked.rank;
+      one["headline"] = to_json(ranked.metrics.front());
+      one["difference_from_best"] = comparison_json(ranked, ranked.metrics.front().n);
+      one["distinguishable_from_best"] = ranked.is_worse();
+      ranking.push_back(one);
+    }
+    json.push_back({{"scenario", scenario.scenario}, {"traces", scenario.traces}, {"ranking", ranking}});
+  }
+  return json;
 }
 
 void write_ranking(const BatchFolder& folder, const BatchResults& results, std::uint64_t seed) {
   const Metric& headline = metrics()[results.headline];
   std::string csv = "rank,map,law,traces";
   for (const Metric& metric : metrics()) csv += fmt::format(",{0},{0}_low,{0}_high", metric.name);
-  csv += ",difference_from_best,difference_low,difference_high,distinguishable_from_best\n";
+  csv += ",difference_from_best,difference_low,difference_high,p,p_holm,distinguishable_from_best,why_no_interval\n";
   nlohmann::ordered_json json = {
       {"schema_version", 1},
       {"rank_by", headline.name},
@@ -148,9 +229,9 @@ void write_ranking(const BatchFolder& folder, const BatchResults& results, std::
       {"model_based", headline.model_based},
       {"traces", results.traces},
       {"seed", seed},
-      {"interval",
-       "95 %, paired bootstrap over the traces (expanded percentile: Hesterberg 2015); not corrected for "
-       "multiple comparisons"},
+      {"interval", results.has_intervals() ? nlohmann::ordered_json(kIntervals) : nullptr},
+      {"why_no_intervals", results.has_intervals() ? nullptr : nlohmann::ordered_json(results.why_no_intervals)},
+      {"over", results.over},
       {"metrics", metrics_json()},
       {"ranking", nlohmann::ordered_json::array()}};
   for (const RankedCandidate& ranked : results.ranking) {
@@ -163,21 +244,21 @@ void write_ranking(const BatchFolder& folder, const BatchResults& results, std::
       csv += fmt::format(",{},{},{}", field(mean.mean), field(mean.interval.low), field(mean.interval.high));
       means[std::string(metrics()[m].name)] = to_json(mean);
     }
-    const MeanInterval& difference = ranked.difference_from_best;
-    csv += fmt::format(",{},{},{},{}\n", field(difference.mean), field(difference.interval.low),
-                       field(difference.interval.high),
-                       !is_compared(ranked)               ? ""
-                       : ranked.distinguishable_from_best ? "yes"
-                                                          : "no");
+    const std::string why = ranked.against_leader     ? ""
+                            : results.has_intervals() ? "too few traces have a value"
+                                                      : results.why_no_intervals;
+    csv += fmt::format(",{},{}\n", comparison_fields(ranked), why);
     nlohmann::ordered_json one = {{"rank", nullptr}, {"map", candidate.map}, {"law", candidate.law}};
     if (ranked.rank) one["rank"] = *ranked.rank;
     one["traces"] = ranked.metrics[results.headline].n;
     one["headline"] = to_json(ranked.metrics[results.headline]);
-    one["difference_from_best"] = to_json(difference);
-    one["distinguishable_from_best"] = ranked.distinguishable_from_best;
+    one["difference_from_best"] = comparison_json(ranked, ranked.metrics[results.headline].n);
+    one["distinguishable_from_best"] = ranked.is_worse();
     one["metrics"] = means;
     json["ranking"].push_back(one);
   }
+  json["by_scenario"] = by_scenario_json(results);
+  json["reversals"] = results.reversals;
   write_file(folder.top("ranking.csv"), csv);
   write_json_file(folder.top("ranking.json"), json);
 }
@@ -207,7 +288,7 @@ void warn_of_gaps(BatchResults& results) {
         results.traces == 1 ? "trace" : "traces", least == 0 ? "" : " only", least == 0 ? "them" : "the others",
         least == 0 ? "" : "; their means may come from easier or harder traces"));
   const auto coverage = std::ranges::find(metrics(), kCoverage, &Metric::name);
-  if (coverage == metrics().end() || headline.name == kCoverage) return;
+  if (coverage == metrics().end() || headline.name == kCoverage || headline.name == kErrorWithUnfelt) return;
   const auto place = static_cast<std::size_t>(coverage - metrics().begin());
   double low = std::numeric_limits<double>::infinity();
   double high = 0;
@@ -216,10 +297,24 @@ void warn_of_gaps(BatchResults& results) {
     high = std::max(high, ranked.metrics[place].mean);
   }
   if (low < 0.9 * high)
-    results.warnings.push_back(
-        fmt::format("coverage ranges from {:.2g} to {:.2g}: contacts that fire nothing do not count in {}, so a small "
-                    "map has an advantage; read both",
-                    low, high, headline.name));
+    results.warnings.push_back(fmt::format(
+        "coverage ranges from {:.2g} to {:.2g}: contacts that are not felt do not count in {}, so a small "
+        "map has an advantage; common_error_mm compares on the same contacts, and with --unfelt-mm they count",
+        low, high, headline.name));
+}
+
+/// Returns what tells each candidate from the others: its map, its law, or both.
+std::vector<std::string> names_of(const std::vector<BatchResults::Candidate>& candidates) {
+  const auto all_have = [&](const auto& part) {
+    return std::ranges::all_of(candidates, [&](const auto& one) { return one.*part == candidates.front().*part; });
+  };
+  const bool one_map = all_have(&BatchResults::Candidate::map);
+  const bool one_law = all_have(&BatchResults::Candidate::law);
+  std::vector<std::string> names;
+  names.reserve(candidates.size());
+  for (const auto& [map, law] : candidates)
+    names.push_back(one_map && !one_law ? law : one_law ? map : fmt::format("{} with {}", map, law));
+  return names;
 }
 
 }  // namespace
@@ -233,12 +328,20 @@ BatchResults write_results(const BatchFolder& folder, const nlohmann::ordered_js
     results.headline = headline;
     results.traces = items.size();
     const auto seed = batch.at("options").at("seed").get<std::uint64_t>();
-    results.ranking = rank_candidates(
-        table.values(), headline,
-        metrics()[headline].better == Better::kHigher ? RankDirection::kHigherIsBetter : RankDirection::kLowerIsBetter,
-        seed);
+    const TraceGroups groups = group_traces(batch, items);
+    const RankDirection direction =
+        metrics()[headline].better == Better::kHigher ? RankDirection::kHigherIsBetter : RankDirection::kLowerIsBetter;
+    results.ranking = rank_candidates(table.values(), groups.strata, headline, direction, seed);
+    results.over = groups.over;
+    results.why_no_intervals = groups.why_no_intervals;
+    std::vector<std::vector<double>> headlines;
+    headlines.reserve(table.values().size());
+    for (const CandidateValues& values : table.values()) headlines.push_back(values[headline]);
+    results.by_scenario = rank_by_scenario(headlines, groups, direction, seed);
+    results.reversals = describe_reversals(results.by_scenario, results.ranking, names_of(results.candidates));
     write_scores(folder, table, batch.at("laws").size());
     write_ranking(folder, results, seed);
+    write_ranking_by_scenario(folder, results);
     warn_of_copies(items, results.warnings);
     warn_of_gaps(results);
     return results;
@@ -252,26 +355,26 @@ std::string describe(const BatchResults& results, std::size_t rows) {
   const Metric& headline = metrics()[results.headline];
   std::vector<std::size_t> beside;  // what a headline alone would hide
   for (std::size_t m = 0; m < metrics().size(); ++m)
-    if (m != results.headline && std::ranges::find(kShownBeside, metrics()[m].name) != std::end(kShownBeside))
-      beside.push_back(m);
+    if (m != results.headline && metrics()[m].shown == Shown::kBesideTheRank) beside.push_back(m);
   std::string text =
       fmt::format("{}{}{}, {} is better: {}{}\n", headline.name, *headline.unit == '\0' ? "" : ", ", headline.unit,
                   name_of(headline.better),
-                  results.traces == 1 ? "one trace: no intervals"
-                                      : fmt::format("mean over {} traces and its 95 % interval", results.traces),
+                  fmt::format("mean over {}{}", results.over, results.has_intervals() ? " and its 95 % interval" : ""),
                   headline.model_based ? "; FROM A MODEL, NOT FROM A USER STUDY" : "");
   std::size_t width = 3;
   for (const BatchResults::Candidate& candidate : results.candidates) width = std::max(width, candidate.map.size());
   text += fmt::format("  {:>4}  {:<{}}  {:<8}  {:>28}", "rank", "map", width, "law", headline.name);
-  for (const std::size_t m : beside)
-    text += fmt::format("  {:>12}", fmt::format("{}{}", metrics()[m].name, metrics()[m].model_based ? "*" : ""));
-  text += "\n";
+  const auto title_of = [](std::size_t m) {
+    return fmt::format("{}{}", metrics()[m].name, metrics()[m].model_based ? "*" : "");
+  };
+  for (const std::size_t m : beside) text += fmt::format("  {}", title_of(m));
+  text += results.has_intervals() ? "       p  p_holm\n" : "\n";
   bool marked = false;
   for (std::size_t i = 0; i < std::min(rows, results.ranking.size()); ++i) {
     const RankedCandidate& ranked = results.ranking[i];
     const BatchResults::Candidate& candidate = results.candidates[ranked.candidate];
     const MeanInterval& mean = ranked.metrics[results.headline];
-    const bool like_best = ranked.rank && *ranked.rank != 1 && is_compared(ranked) && !ranked.distinguishable_from_best;
+    const bool like_best = ranked.is_compared() && !ranked.is_worse();
     marked = marked || like_best;
     const std::string interval = std::isfinite(mean.interval.low) ? fmt::format("{:.4g} ({:.4g} to {:.4g})", mean.mean,
                                                                                 mean.interval.low, mean.interval.high)
@@ -282,17 +385,27 @@ std::string describe(const BatchResults& results, std::size_t rows) {
                     ranked.rank ? std::to_string(*ranked.rank) : "-", candidate.map, width, candidate.law, interval);
     for (const std::size_t m : beside) {
       const double value = ranked.metrics[m].mean;
-      text += fmt::format("  {:>12}", std::isfinite(value) ? fmt::format("{:.4g}", value) : "-");
+      text += fmt::format("  {:>{}}", std::isfinite(value) ? fmt::format("{:.4g}", value) : "-", title_of(m).size());
     }
+    if (ranked.is_compared())
+      text += fmt::format("  {:>6.4f}  {:>6.4f}", ranked.against_leader->p, ranked.against_leader->p_holm);
     text += "\n";
   }
   if (results.ranking.size() > rows)
     text += fmt::format("  ... {} more in ranking.csv\n", results.ranking.size() - rows);
-  if (marked)
-    text += "=: not distinguishable from rank 1 on these traces (the interval of the paired difference contains 0)\n";
-  if (results.traces > 1 && results.traces < kFewTraces)
-    text +=
-        fmt::format("{} traces are few: the intervals are rough and apply only to traces like these\n", results.traces);
+  if (marked) text += "=: not distinguishable from rank 1 (p_holm, which is p by Holm's correction, is 0.05 or more)\n";
+  if (!results.has_intervals())
+    text += fmt::format("no intervals, and no '=': {}; another recording may turn the ranking over\n",
+                        results.why_no_intervals);
+  if (const auto coverage = std::ranges::find(metrics(), kCoverage, &Metric::name);
+      headline.name != kCoverage && coverage != metrics().end() && !results.ranking.empty()) {
+    const RankedCandidate& first = results.ranking.front();
+    const auto& [map, law] = results.candidates[first.candidate];
+    const double felt = first.metrics[static_cast<std::size_t>(coverage - metrics().begin())].mean;
+    if (std::isfinite(felt))
+      text += fmt::format("{} with {} lets {:.0f} % of the contacts be felt (coverage)\n", map, law, 100 * felt);
+  }
+  if (!results.reversals.empty()) text += fmt::format("{} (ranking_by_scenario.csv)\n", results.reversals);
   if (std::ranges::any_of(beside, [](std::size_t m) { return metrics()[m].model_based; }))
     text += "*: from a model, not from a user study\n";
   return text;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/batch/batch_folder.hpp"
-#include "analysis/batch/ranking.hpp"
+#include "analysis/batch/scenario_ranking.hpp"
 
 namespace vestige {
 
@@ -22,10 +22,17 @@ struct BatchResults {
   std::vector<RankedCandidate> ranking;
   std::size_t headline = 0;  ///< index into `metrics()`
   std::size_t traces = 0;
+  std::string over;                   ///< as in `TraceGroups`
+  std::string why_no_intervals;       ///< as in `TraceGroups`
   std::vector<std::string> warnings;  ///< what makes the comparison unfair, one sentence each
+  std::vector<ScenarioRanking> by_scenario;
+  std::string reversals;  ///< as `describe_reversals` returns it
+
+  bool has_intervals() const { return why_no_intervals.empty(); }
 };
 
-/// Writes scores.csv, scores.json, ranking.csv and ranking.json. `items` are in the order of the batch's traces. Throws
+/// Writes scores.csv, scores.json, ranking.csv and ranking.json, and with several scenarios ranking_by_scenario.csv.
+/// `items` are in the order of the batch's traces. Throws
 /// `Error` if an item lacks a score.
 BatchResults write_results(const BatchFolder& folder, const nlohmann::ordered_json& batch,
                            std::span<const nlohmann::ordered_json> items, std::size_t headline);

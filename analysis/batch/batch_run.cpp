@@ -72,6 +72,7 @@ class BatchRun {
       laws_.emplace_back().name = law;
       laws_.back().options = plan.law_options;
       laws_.back().actuators = plan.actuators.model;
+      laws_.back().unfelt_m = plan.unfelt_m;
     }
   }
 
@@ -181,7 +182,7 @@ class BatchRun {
     const double begin_s = thread_cpu_s();
     const Animation* animation = find_animation(plan_.avatar, "");
     const std::uint32_t count = plan_.recording.count.value_or(trace.scenario->default_count);
-    const auto colliders = trace.scenario->make(plan_.avatar, animation, {count, plan_.seed});
+    const auto colliders = trace.scenario->make(plan_.avatar, animation, {count, trace.seed});
     TraceWriterOptions writing;
     writing.overwrite = Overwrite::kAllow;
     writing.chunk_s = std::numeric_limits<double>::infinity();  // gives the same bytes, however long recording takes
@@ -191,7 +192,7 @@ class BatchRun {
                          {{"program", program_version()},
                           {"colliders", std::string(trace.scenario->name)},
                           {"count", std::to_string(count)},
-                          {"seed", std::to_string(plan_.seed)},
+                          {"seed", std::to_string(trace.seed)},
                           {"rate_hz", fmt::format("{}", plan_.recording.rate_hz)}},
                          plan_.avatar, {plan_.avatar_glb}, writing);
       RecordingSettings settings;
@@ -275,17 +276,21 @@ class BatchRun {
   }
 
   nlohmann::ordered_json score_maps(const ContactRecording& recording) const {
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    std::vector<std::shared_ptr<const ActuatorLayout>> layouts;
+    std::vector<std::string> names;
     for (const BatchMap& map : plan_.maps) {
       if (map.layout == nullptr) continue;
-      const std::vector<Scores> scores = score_all(recording, *map.layout, laws_);
-      for (std::size_t l = 0; l < laws_.size(); ++l) {
-        nlohmann::ordered_json values;
-        for (std::size_t i = 0; i < metrics().size(); ++i)
-          values[metrics()[i].name] =
-              std::isfinite(scores[l][i]) ? nlohmann::ordered_json(scores[l][i]) : nlohmann::ordered_json(nullptr);
-        json.push_back({{"map", map.name}, {"law", laws_[l].name}, {"values", values}});
-      }
+      layouts.push_back(map.layout);
+      names.push_back(map.name);
+    }
+    const std::vector<Scores> scores = score_all(recording, layouts, laws_);
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < scores.size(); ++i) {
+      nlohmann::ordered_json values;
+      for (std::size_t k = 0; k < metrics().size(); ++k)
+        values[metrics()[k].name] =
+            std::isfinite(scores[i][k]) ? nlohmann::ordered_json(scores[i][k]) : nlohmann::ordered_json(nullptr);
+      json.push_back({{"map", names[i / laws_.size()]}, {"law", laws_[i % laws_.size()].name}, {"values", values}});
     }
     return json;
   }

@@ -7,11 +7,9 @@
 #include <vector>
 
 #include "analysis/base/statistics.hpp"
+#include "analysis/base/stratified_bootstrap.hpp"
 
 namespace vestige {
-
-/// With fewer traces than this, intervals are rough.
-constexpr std::size_t kFewTraces = 10;
 
 /// One candidate's values of each metric: [metric][trace]. NaN: the metric has no value on that trace (nothing was
 /// felt, …).
@@ -24,16 +22,19 @@ struct RankedCandidate {
   std::size_t candidate = 0;  ///< index in the given order
   /// From 1. Equal headlines share a rank. None: the candidate has no headline value on any trace.
   std::optional<std::size_t> rank;
-  std::vector<MeanInterval> metrics;       ///< mean over the traces, for each metric
-  MeanInterval difference_from_best;       ///< headline minus the headline of the first, over the traces that both have
-  bool distinguishable_from_best = false;  ///< the 95 % interval of that difference does not include 0
+  std::vector<MeanInterval> metrics;         ///< mean over the traces, for each metric
+  std::optional<LeaderTest> against_leader;  ///< of the headline; none where there are too few traces to tell
+
+  bool is_compared() const { return against_leader.has_value() && rank != 1; }
+  bool is_worse() const { return is_compared() && against_leader->p_holm < 0.05; }
 };
 
-/// Ranks candidates by the mean of metric `headline` over the traces, best first. Ties keep the given order. Intervals
-/// come from `PairedBootstrap` over the traces, since all candidates saw the same traces. Each comparison has 95 % by
-/// itself, without correction for the number of comparisons. With fewer than two common traces, no candidate is
-/// distinguishable.
-std::vector<RankedCandidate> rank_candidates(std::span<const CandidateValues> candidates, std::size_t headline,
+/// Ranks candidates by the mean of metric `headline` over the traces, best first. Ties keep the given order.
+/// `stratum_of_trace` says which traces belong together: those of one scenario with other seeds, or all files.
+/// Intervals and comparisons are those of `StratifiedBootstrap`: over other seeds of these scenarios, and over other
+/// files.
+std::vector<RankedCandidate> rank_candidates(std::span<const CandidateValues> candidates,
+                                             std::span<const std::size_t> stratum_of_trace, std::size_t headline,
                                              RankDirection direction, std::uint64_t seed);
 
 }  // namespace vestige

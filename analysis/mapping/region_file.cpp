@@ -160,7 +160,9 @@ RegionSpec parse_region(const json& item, const std::string& where) {
   region.parts = fields.texts("part", R"("torso")");
   region.joints = fields.texts("joints", R"(["spine*"])");
   region.below = fields.texts("below", R"(["upper_arm_left"])");
-  region.height = fields.interval("height", 0, 1, "[0.5, 1]");
+  region.height = fields.interval("height", 0, 1,
+                                  "[0.5, 1], which are shares of the height of the skin that 'part', 'joints' or "
+                                  "'below' choose: 0 is its lowest point, 1 its highest; 'height_m' takes metres");
   region.height_m = fields.interval("height_m", -1e9, 1e9, "[1.1, 1.3]");
   region.angle_degrees = fields.interval("angle", -360, 720, "[-45, 45]");
   if (region.angle_degrees && region.angle_degrees->high - region.angle_degrees->low > 360)

@@ -1,16 +1,10 @@
 #include "analysis/scoring/law_score.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <stdexcept>
-#include <string_view>
 
 #include "analysis/base/statistics.hpp"
-#include "analysis/scoring/balance.hpp"
 #include "analysis/scoring/localisation.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/actuators/portable_math.hpp"
@@ -18,9 +12,6 @@
 namespace vestige {
 
 namespace {
-
-constexpr double kMillimetres = 1e3;
-constexpr double kMilliseconds = 1e3;
 
 /// Returns a shared pointer for laws that does not own the layout. The caller keeps the layout alive.
 std::shared_ptr<const ActuatorLayout> borrow(const ActuatorLayout& layout) {
@@ -33,29 +24,6 @@ double crossing_s(const Motor& motor, double amplitude, double settled, double t
   return tau_s * portable_log2((amplitude - settled) / (threshold - settled)) * 0x1.62e42fefa39efp-1;
 }
 
-double ratio(double part, double whole) {
-  return whole > 0 ? part / whole : kMissing;
-}
-
-struct NamedScore {
-  std::string_view metric;
-  double value;
-};
-
-/// Throws `std::logic_error` unless each metric has exactly one score.
-Scores in_order_of_metrics(std::span<const NamedScore> named) {
-  if (named.size() != metrics().size())
-    throw std::logic_error(fmt::format("there are {} scores for {} metrics", named.size(), metrics().size()));
-  Scores scores;
-  scores.reserve(named.size());
-  for (const Metric& metric : metrics()) {
-    const auto found = std::ranges::find(named, std::string_view(metric.name), &NamedScore::metric);
-    if (found == named.end()) throw std::logic_error(fmt::format("the metric '{}' has no score", metric.name));
-    scores.push_back(found->value);
-  }
-  return scores;
-}
-
 }  // namespace
 
 LawScore::LawScore(const ActuatorLayout& layout, const LawChoice& choice, double frame_s)
@@ -66,10 +34,8 @@ LawScore::LawScore(const ActuatorLayout& layout, const LawChoice& choice, double
       held_(layout.actuator_count(), choice.options.hold_s, law_->hold_rule()),
       amplitude_(layout.actuator_count(), 0),
       duty_(layout.actuator_count(), 0),
-      use_(layout.actuator_count(), 0),
       observer_(layout.actuator_count()),
-      timing_(layout.actuator_count()),
-      link_(state_bytes(layout.actuator_count()), choice.line_bytes_per_s) {
+      all_(layout, choice.line_bytes_per_s, choice.unfelt_m) {
   if (!choice.actuators) return;
   for (const Motor& motor : choice.actuators->motors(layout.map())) responses_.push_back({.motor = motor});
 }
@@ -93,16 +59,16 @@ void LawScore::feel_shares(const LocatedContact& contact) {
 double LawScore::add(const JudgedContact& contact) {
   feel_shares(contact.located);
   held_.add(contact.column, shares_);
-  for (const Share& share : shares_) timing_.ask(share.actuator, contact.frame, contact.instant_s);
-  if (shares_.empty()) timing_.ask_nothing();
+  for (const Share& share : shares_) all_.timing.ask(share.actuator, contact.frame, contact.instant_s);
+  if (shares_.empty()) all_.timing.ask_nothing();
 
-  ++contacts_;
+  ++all_.contacts;
   const std::vector<Share>& felt = responses_.empty() ? shares_ : felt_;
   if (felt.empty()) {
     observer_.add_unfelt(contact.region);
     return kMissing;
   }
-  ++fired_;
+  ++all_.felt;
   double error_m = 0;
   double energy_error_m = 0;
   if (felt.size() == 1) {
@@ -114,10 +80,10 @@ double LawScore::add(const JudgedContact& contact) {
     energy_error_m = glm::length(offset.energy_m);
     observer_.add(contact.region, layout_, contact.located, offset.amplitude_m);
   }
-  squared_error_m2_ += error_m * error_m;
-  squared_energy_error_m2_ += energy_error_m * energy_error_m;
+  all_.squared_error_m2 += error_m * error_m;
+  all_.squared_energy_error_m2 += energy_error_m * energy_error_m;
   const double acuities = error_m / contact.acuity_m;
-  squared_acuities_ += acuities * acuities;
+  all_.squared_acuities += acuities * acuities;
   return error_m;
 }
 
@@ -140,7 +106,7 @@ void LawScore::add_to_slide(const JudgedContact& contact, const SlideFinder& sli
 
 void LawScore::end_chain(std::uint32_t column, const SlideFinder& slides) {
   if (column < smoothness_.size() && slides.is_slide(column))
-    slide_score_.add(smoothness_[column], slides.way_m(column));
+    all_.slides.add(smoothness_[column], slides.way_m(column));
 }
 
 void LawScore::advance_motors(std::uint64_t frame, double time_s) {
@@ -154,16 +120,16 @@ void LawScore::advance_motors(std::uint64_t frame, double time_s) {
     if (response.felt < 1e-6) response.felt = 0;
     const double threshold = motor.felt_threshold;
     const auto is_felt = [&](double amplitude) { return amplitude > 0 && amplitude >= threshold; };
-    if (is_felt(std::max(before, response.felt))) timing_.vibrates(i, frame);
+    if (is_felt(std::max(before, response.felt))) all_.timing.vibrates(i, frame);
     const bool is_on = is_felt(response.felt);
-    if (is_on == timing_.is_on(i)) continue;
+    if (is_on == all_.timing.is_on(i)) continue;
     const double settled = motor.settled(duty_[i]);
     const double at_s = last_time_s_ + std::clamp(crossing_s(motor, before, settled, threshold), 0.0, step_s);
     if (is_on) {
-      ++switches_;
-      timing_.begins(i, at_s);
+      ++all_.switches;
+      all_.timing.begins(i, at_s);
     } else {
-      timing_.ends(i, at_s);
+      all_.timing.ends(i, at_s);
     }
   }
 }
@@ -179,22 +145,22 @@ void LawScore::end_frame(std::uint64_t frame, double time_s) {
     if (!responses_.empty()) {
       Response& response = responses_[i];
       duty = drive(response.motor, amplitude, time_s, duty, response.kick_until_s);
-      if (amplitude == 0 && !timing_.is_on(i)) timing_.gives_up(i);
+      if (amplitude == 0 && !all_.timing.is_on(i)) all_.timing.gives_up(i);
       const double told = duty / 255.0;
-      use_[i] += told;
+      all_.use[i] += told;
       sum += told;
     } else {
       if (amplitude != amplitude_[i]) duty = static_cast<std::uint8_t>(std::lround(255 * amplitude));
-      if (duty != 0) timing_.vibrates(i, frame);
+      if (duty != 0) all_.timing.vibrates(i, frame);
       if (duty != 0 && duty_[i] == 0) {
-        ++switches_;
-        timing_.begins(i, time_s);
+        ++all_.switches;
+        all_.timing.begins(i, time_s);
       } else if (duty == 0 && duty_[i] != 0) {
-        timing_.ends(i, time_s);
+        all_.timing.ends(i, time_s);
       } else if (amplitude == 0) {
-        timing_.gives_up(i);
+        all_.timing.gives_up(i);
       }
-      use_[i] += amplitude;
+      all_.use[i] += amplitude;
       sum += amplitude;
     }
     amplitude_[i] = amplitude;
@@ -203,53 +169,29 @@ void LawScore::end_frame(std::uint64_t frame, double time_s) {
       changed = true;
     }
   }
-  peak_ = std::max(peak_, sum);
-  if (changed) link_.post(time_s);
+  all_.peak = std::max(all_.peak, sum);
+  if (changed) all_.link.post(time_s);
   started_ = true;
   last_time_s_ = time_s;
 }
 
-Scores LawScore::scores(double duration_s, std::size_t frames) {
-  if (started_) link_.finish(last_time_s_);
-  const auto actuators = static_cast<double>(layout_.actuator_count());
-  const auto fired = static_cast<double>(fired_);
-  double use = 0;
-  double least_area_m2 = std::numeric_limits<double>::infinity();
-  double most_area_m2 = 0;
-  for (std::size_t i = 0; i < use_.size(); ++i) {
-    use += use_[i];
-    least_area_m2 = std::min(least_area_m2, layout_.area_m2(i));
-    most_area_m2 = std::max(most_area_m2, layout_.area_m2(i));
+void LawScore::compare(std::span<const bool> felt_by_all, std::span<const float> errors_m) {
+  for (std::size_t i = 0; i < errors_m.size(); ++i) {
+    if (!felt_by_all[i]) continue;
+    ++all_.common;
+    all_.squared_common_error_m2 += static_cast<double>(errors_m[i]) * static_cast<double>(errors_m[i]);
   }
-  const double bits = observer_.bits(layout_);
-  const NamedScore named[] = {
-      {"coverage", ratio(fired, static_cast<double>(contacts_))},
-      {"mapped_area_m2", layout_.mapped_area_m2()},
-      {"mapped_share", ratio(layout_.mapped_area_m2(), layout_.skin_area_m2())},
-      {"area_ratio", ratio(most_area_m2, least_area_m2)},
-      {"localisation_error_mm", std::sqrt(ratio(squared_error_m2_, fired)) * kMillimetres},
-      {"localisation_error_acuities", std::sqrt(ratio(squared_acuities_, fired))},
-      {"energy_localisation_error_mm", std::sqrt(ratio(squared_energy_error_m2_, fired)) * kMillimetres},
-      {"slide_ripple", slide_score_.ripple()},
-      {"slide_jump_mm", slide_score_.largest_jump_m() * kMillimetres},
-      {"slide_reversals_per_m", slide_score_.reversals_per_m()},
-      {"timing_f1", timing_.f1()},
-      {"onset_error_ms", timing_.mean_onset_s() * kMilliseconds},
-      {"offset_error_ms", timing_.mean_offset_s() * kMilliseconds},
-      {"onset_over_15ms", timing_.late_share(0)},
-      {"onset_over_45ms", timing_.late_share(1)},
-      {"onset_over_50ms", timing_.late_share(2)},
-      {"information_bits", bits},
-      {"information_categories", portable_exp(bits * 0x1.62e42fefa39efp-1)},
-      {"use_evenness", use_evenness(use_)},
-      {"mean_duty", ratio(use, actuators * static_cast<double>(frames))},
-      {"peak_duty", ratio(peak_, actuators)},
-      {"switches_hz", ratio(static_cast<double>(switches_), actuators * duration_s)},
-      {"ambiguous_share", layout_.ambiguous_share()},
-      {"superseded", ratio(static_cast<double>(link_.superseded()), static_cast<double>(link_.changes()))},
-      {"line_load", ratio(link_.bytes_sent(), choice_.line_bytes_per_s * duration_s)},
-  };
-  return in_order_of_metrics(named);
+}
+
+Scores LawScore::scores(double duration_s, std::size_t frames) {
+  if (started_) all_.link.finish(last_time_s_);
+  all_.duration_s = duration_s;
+  all_.frames = frames;
+  all_.information_bits = observer_.bits(layout_);
+  Scores scores;
+  scores.reserve(metrics().size());
+  for (const Metric& metric : metrics()) scores.push_back(metric.value(all_));
+  return scores;
 }
 
 }  // namespace vestige

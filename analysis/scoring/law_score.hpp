@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "analysis/scoring/information.hpp"
-#include "analysis/scoring/link_load.hpp"
+#include "analysis/scoring/law_tally.hpp"
 #include "analysis/scoring/scores.hpp"
 #include "analysis/scoring/slide_score.hpp"
-#include "analysis/scoring/timing_score.hpp"
 
 namespace vestige {
 
@@ -39,6 +38,10 @@ class LawScore {
   void end_chain(std::uint32_t column, const SlideFinder& slides);
   void end_frame(std::uint64_t frame, double time_s);
 
+  /// Tells which contacts of the recording are felt under everything that is compared. `errors_m` has what `add`
+  /// returned for each contact.
+  void compare(std::span<const bool> felt_by_all, std::span<const float> errors_m);
+
   /// Returns the scores of the whole recording. Call it at the end.
   Scores scores(double duration_s, std::size_t frames);
 
@@ -63,22 +66,12 @@ class LawScore {
   std::vector<Share> felt_;          ///< shares that are felt of it
   std::vector<double> amplitude_;    ///< amplitudes of the previous frame
   std::vector<std::uint8_t> duty_;
-  std::vector<double> use_;
   double last_time_s_ = 0;
   bool started_ = false;
 
-  std::uint64_t contacts_ = 0;
-  std::uint64_t fired_ = 0;
-  double squared_error_m2_ = 0;
-  double squared_acuities_ = 0;
-  double squared_energy_error_m2_ = 0;
-  double peak_ = 0;
-  std::uint64_t switches_ = 0;
   RegionObserver observer_;
-  TimingScore timing_;
-  LinkLoad link_;
   std::vector<SlideSmoothness> smoothness_;  ///< by column: the smoothness of the current chain
-  SlideScore slide_score_;
+  LawTally all_;
 };
 
 }  // namespace vestige

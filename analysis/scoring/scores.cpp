@@ -1,6 +1,7 @@
 #include "analysis/scoring/scores.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <iterator>
 #include <limits>
@@ -13,55 +14,6 @@
 namespace vestige {
 
 namespace {
-
-/// In the order of listing. `LawScore::scores` names each of them.
-constexpr Metric kMetrics[] = {
-    {"coverage", "", Better::kHigher, false, "contacts that fire anything / contacts", "Vestige"},
-    {"mapped_area_m2", "m²", Better::kNeither, false, "area of the skin that fires anything, body at rest", "Vestige"},
-    {"mapped_share", "", Better::kNeither, false, "mapped area / area of the whole skin", "Vestige"},
-    {"area_ratio", "", Better::kLower, false, "largest / smallest area of an actuator", "Vestige"},
-    {"localisation_error_mm", "mm", Better::kLower, true,
-     "sqrt(mean |Σ A_i v_i / Σ A_i|²) over contacts that fire; v_i: path along the body from the contact to actuator i",
-     "amplitude centroid"},
-    {"localisation_error_acuities", "", Better::kLower, true,
-     "the same, with each contact's error in units of the torso's acuity: 25 mm, at the midline 10 mm", "van Erp 2005"},
-    {"energy_localisation_error_mm", "mm", Better::kLower, true,
-     "sqrt(mean |Σ A_i² v_i / Σ A_i²|²): phantom assumes this formula, so for phantom it is 0 between actuators by "
-     "construction",
-     "Israr & Poupyrev 2011"},
-    {"slide_ripple", "", Better::kLower, true, "(max - min) / mean of Σ A_i² along a slide, mean over felt slides",
-     "Israr & Poupyrev 2011"},
-    {"slide_jump_mm", "mm", Better::kLower, true,
-     "largest step of Σ A_i x_i / Σ A_i between a slide's contacts, mean over felt slides", "amplitude centroid"},
-    {"slide_reversals_per_m", "1/m", Better::kLower, true,
-     "steps of Σ A_i x_i / Σ A_i against the collider's, per metre of felt slide", "amplitude centroid"},
-    {"timing_f1", "", Better::kHigher, false,
-     "2 TP / (2 TP + FP + FN) over frames and actuators: actuators that vibrate, against those that a contact of the "
-     "frame asks for",
-     "Mesaros et al. 2016"},
-    {"onset_error_ms", "ms", Better::kLower, false, "mean time from a contact's instant to its actuator's vibration",
-     "Vestige"},
-    {"offset_error_ms", "ms", Better::kLower, false, "mean time from the last contact's instant to the vibration's end",
-     "Vestige"},
-    {"onset_over_15ms", "", Better::kLower, false, "share of onsets later than 15 ms", "Di Luca & Mahnan 2019"},
-    {"onset_over_45ms", "", Better::kLower, false, "share of onsets later than 45 ms", "Vogels 2004"},
-    {"onset_over_50ms", "", Better::kLower, false, "share of onsets later than 50 ms", "Di Luca & Mahnan 2019"},
-    {"information_bits", "bit", Better::kHigher, true,
-     "Σ p_ij log2(p_ij / (p_i p_j)): regions of contact, against those that a noisy observer names", "Tan et al. 2010"},
-    {"information_categories", "", Better::kHigher, true, "2^information_bits: regions told apart without error",
-     "Tan et al. 2010"},
-    {"use_evenness", "", Better::kHigher, false, "-Σ p_i log2 p_i / log2 n, p_i: actuator i's share of all duty",
-     "Shannon 1948; Pielou 1966"},
-    {"mean_duty", "", Better::kNeither, false, "mean of the duties 0 … 1 over frames and actuators", "Vestige"},
-    {"peak_duty", "", Better::kLower, false, "the largest frame's mean of the duties 0 … 1 over actuators", "Vestige"},
-    {"switches_hz", "Hz", Better::kLower, false, "times that an actuator begins to vibrate, per second and actuator",
-     "Vestige"},
-    {"ambiguous_share", "", Better::kLower, false,
-     "mapped skin that shares its texels with skin more than 50 mm away / mapped skin", "Vestige"},
-    {"superseded", "", Better::kLower, true,
-     "changed states that a newer state replaced before the line was free / all changed states", "Vestige"},
-    {"line_load", "", Better::kLower, true, "bytes sent / bytes that the line can carry in that time", "Vestige"},
-};
 
 /// Returns the median step between frames, or 0 for fewer than two frames.
 double usual_step_s(const ContactRecording& recording) {
@@ -117,21 +69,43 @@ void judge(const ContactRecording& recording, const ActuatorLayout& layout, std:
 
 }  // namespace
 
-std::span<const Metric> metrics() {
-  return kMetrics;
+std::vector<Scores> score_all(const ContactRecording& recording,
+                              std::span<const std::shared_ptr<const ActuatorLayout>> layouts,
+                              std::span<const LawChoice> choices) {
+  const double frame_s = usual_step_s(recording);
+  const std::size_t contacts = recording.contacts.size();
+  const auto felt_by_all = std::make_unique<bool[]>(contacts);
+  std::fill_n(felt_by_all.get(), contacts, true);
+  std::vector<std::deque<LawScore>> laws_of(layouts.size());
+  std::vector<std::vector<float>> errors_m;  // of each layout and law, by contact
+  errors_m.reserve(layouts.size() * choices.size());
+  for (std::size_t l = 0; l < layouts.size(); ++l) {
+    for (const LawChoice& choice : choices) laws_of[l].emplace_back(*layouts[l], choice, frame_s);
+    const std::size_t first = errors_m.size();
+    errors_m.resize(first + choices.size(), std::vector<float>(contacts, static_cast<float>(kMissing)));
+    if (layouts[l]->actuator_count() != 0)
+      judge(recording, *layouts[l], laws_of[l], [&](std::size_t law, std::size_t contact, double error_m) {
+        errors_m[first + law][contact] = static_cast<float>(error_m);
+      });
+    for (std::size_t law = first; law < errors_m.size(); ++law)
+      for (std::size_t i = 0; i < contacts; ++i) felt_by_all[i] = felt_by_all[i] && !std::isnan(errors_m[law][i]);
+  }
+
+  const double duration_s = recording.frames() == 0 ? 0 : recording.time_s.back() - recording.time_s.front() + frame_s;
+  std::vector<Scores> scores;
+  scores.reserve(errors_m.size());
+  for (std::deque<LawScore>& laws : laws_of)
+    for (LawScore& law : laws) {
+      law.compare({felt_by_all.get(), contacts}, errors_m[scores.size()]);
+      scores.push_back(law.scores(duration_s, recording.frames()));
+    }
+  return scores;
 }
 
 std::vector<Scores> score_all(const ContactRecording& recording, const ActuatorLayout& layout,
                               std::span<const LawChoice> choices) {
-  const double frame_s = usual_step_s(recording);
-  std::deque<LawScore> laws;
-  for (const LawChoice& choice : choices) laws.emplace_back(layout, choice, frame_s);
-  if (layout.actuator_count() != 0) judge(recording, layout, laws, [](std::size_t, std::size_t, double) {});
-  const double duration_s = recording.frames() == 0 ? 0 : recording.time_s.back() - recording.time_s.front() + frame_s;
-  std::vector<Scores> scores;
-  scores.reserve(laws.size());
-  for (LawScore& law : laws) scores.push_back(law.scores(duration_s, recording.frames()));
-  return scores;
+  const std::shared_ptr<const ActuatorLayout> borrowed(std::shared_ptr<const ActuatorLayout>(), &layout);
+  return score_all(recording, {&borrowed, 1}, choices);
 }
 
 Scores score(const ContactRecording& recording, const ActuatorLayout& layout, const LawChoice& choice) {

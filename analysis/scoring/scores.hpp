@@ -1,11 +1,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "analysis/scoring/contact_recording.hpp"
+#include "analysis/scoring/metrics.hpp"
 #include "detector/actuators/actuator_layout.hpp"
 #include "detector/actuators/actuator_model.hpp"
 #include "detector/actuators/intensity.hpp"
@@ -18,26 +20,21 @@ struct LawChoice {
   LawOptions options;
   std::shared_ptr<const ActuatorModel> actuators;  ///< null: ideal motors, which follow at once
   double line_bytes_per_s = 5760;                  ///< link to the vest: 57600 baud, ten bits a byte
+  /// The error in metres that a contact counts with which is not felt, in `error_with_unfelt_mm`; empty: that metric is
+  /// undefined.
+  std::optional<double> unfelt_m;
 };
-
-enum class Better { kHigher, kLower, kNeither };
-
-/// One number that a mapping is judged by. Names are columns of files. Their meaning never changes.
-struct Metric {
-  const char* name;
-  const char* unit;
-  Better better;
-  bool model_based;  ///< computed by a model of perception, motors or link, not measured in a user study
-  const char* formula;
-  const char* source;
-};
-
-std::span<const Metric> metrics();
 
 /// Scores in the order of `metrics()`. A score is NaN if it is undefined, for example without contacts or slides.
 using Scores = std::vector<double>;
 
-/// Returns the scores of a layout under each of the laws. Throws what `make_law` and `ActuatorModel::motors` throw.
+/// Returns the scores of each layout under each of the laws, layout by layout. They are compared with each other: what
+/// `common_error_mm` covers are the contacts that all of them let feel. Throws what `make_law` and
+/// `ActuatorModel::motors` throw.
+std::vector<Scores> score_all(const ContactRecording& recording,
+                              std::span<const std::shared_ptr<const ActuatorLayout>> layouts,
+                              std::span<const LawChoice> laws);
+/// As above, of one layout.
 std::vector<Scores> score_all(const ContactRecording& recording, const ActuatorLayout& layout,
                               std::span<const LawChoice> laws);
 Scores score(const ContactRecording& recording, const ActuatorLayout& layout, const LawChoice& law);

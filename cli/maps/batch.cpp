@@ -143,7 +143,7 @@ nlohmann::ordered_json begun_record(const nlohmann::ordered_json& identity, cons
   nlohmann::ordered_json run = provenance(invocation.argv);
   run["batch"] = identity;
   run["shard"] = {{"number", shard.number}, {"count", shard.count}};
-  run["rank_by"] = batch.rank_by;
+  run["rank_by"] = rank_by_of(batch);
   run["complete"] = false;
   run["jobs"] = jobs;
   return run;
@@ -167,7 +167,7 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   const Verbosity verbosity = batch.common.verbosity();
   BatchPlan plan = plan_of(batch);
   const Shard shard = parse_shard(options.shard, plan.traces.size());
-  const std::size_t headline = metric_to_rank_by(batch.rank_by);
+  const std::size_t headline = metric_to_rank_by(rank_by_of(batch));
   check_outputs({batch.common.json}, batch.traces, batch.common);
   if (plan.has_scenario())
     warn_of_frame_count(plan.recording.rate_hz * plan.recording.duration_s,
@@ -237,10 +237,10 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
 
 void add_batch(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<BatchRunOptions>();
-  CLI::App* verb = add_verb(
-      program, "batch", "Compare actuator maps and intensity laws over many traces",
-      "  vestige batch --maps paper6 torso16 torso40 body --traces swarm hug slide rain orbit punch -o compared\n"
-      "  vestige batch --maps builtin regions.png --traces man.mcap --laws binary,phantom -o judged\n");
+  CLI::App* verb =
+      add_verb(program, "batch", "Compare actuator maps and intensity laws over many traces",
+               "  vestige batch --maps paper6 torso16 torso40 body --traces swarm hug slide --seeds 1:20 -o compared\n"
+               "  vestige batch --maps builtin regions.png --traces man.mcap --laws binary,phantom -o judged\n");
   add_batch_options(*verb, options->batch);
   verb->add_option("--jobs", options->jobs,
                    "How many traces are processed at the same time, each on one core [default: all cores]")

@@ -21,11 +21,13 @@ namespace vestige::cli {
 
 namespace {
 
-const std::vector<std::string> kLaws(std::begin(kLawNames), std::end(kLawNames));
 constexpr const char* kScenarioGroup = "Scenarios among the traces";
+constexpr const char* kErrorWithUnfelt = "error_with_unfelt_mm";
 
 std::string describe_maps() {
-  std::string text = "The actuator maps: the built-in one, a layout laid onto the avatar, or a PNG file";
+  std::string text =
+      "The actuator maps, separated by commas or blanks: the built-in one, a layout laid onto the avatar, or a PNG "
+      "file";
   for (const std::string& name : layout_names())
     fmt::format_to(std::back_inserter(text), "\n  {:<8} {}", name, layout_summary(name));
   return text;
@@ -49,10 +51,39 @@ void refuse_misspelt(const std::vector<std::string>& given, const char* flag, co
   }
 }
 
+/// As other lists, but a path that exists keeps the commas in its name.
+std::vector<std::string> split_at_commas(const std::vector<std::string>& words, const char* flag) {
+  std::vector<std::string> list;
+  list.reserve(words.size());
+  for (const std::string& word : words) {
+    std::error_code ignored;
+    const bool is_path = std::filesystem::exists(word, ignored);
+    for (std::string& part : is_path ? std::vector{word} : parse_list(word)) {
+      if (part.empty())
+        throw UsageError(flag, fmt::format("'{}' has nothing on one side of a comma", word),
+                         "name it, or leave the comma out");
+      list.push_back(std::move(part));
+    }
+  }
+  return list;
+}
+
 void check_distinct(const std::vector<std::string>& given, const std::string& flag) {
   std::set<std::string> seen;
   for (const std::string& one : given)
     if (!seen.insert(one).second) throw UsageError(flag, fmt::format("'{}' is given twice", one), "name each once");
+}
+
+std::vector<std::uint64_t> seeds_of(const BatchOptions& options) {
+  if (options.seeds.empty()) return {options.common.seed};
+  constexpr std::size_t kMostSeeds = 1000;  // of each scenario
+  const std::vector<std::uint32_t> seeds = parse_counts(options.seeds, "--seeds");
+  if (seeds.size() > kMostSeeds)
+    throw UsageError(
+        "--seeds",
+        fmt::format("'{}' are {} seeds, and at most {} can be used", options.seeds, seeds.size(), kMostSeeds),
+        "give fewer: 1:20 tells most maps apart");
+  return {seeds.begin(), seeds.end()};
 }
 
 }  // namespace
@@ -62,18 +93,28 @@ CLI::Option* add_rank_by(CLI::App& verb, std::string& rank_by) {
 }
 
 void add_batch_options(CLI::App& verb, BatchOptions& options) {
-  verb.add_option("--maps", options.maps, describe_maps())->required()->type_name("builtin|LAYOUT|FILE.png");
-  verb.add_option("--traces", options.traces,
-                  fmt::format("The traces: files, or scenarios to record on the avatar ({})", scenario_names()))
-      ->required()
+  const auto add_list = [&](const char* flag, std::vector<std::string>& list, const std::string& description) {
+    const auto take = [flag, &list](const std::vector<std::string>& words) { list = split_at_commas(words, flag); };
+    return verb.add_option_function<std::vector<std::string>>(flag, take, description)->required();
+  };
+  add_list("--maps", options.maps, describe_maps())->type_name("builtin|LAYOUT|FILE.png");
+  add_list("--traces", options.traces,
+           fmt::format("The traces: files, or scenarios to record on the avatar ({})", scenario_names()))
       ->type_name("FILE|SCENARIO");
-  options.laws = fmt::format("{}", fmt::join(kLaws, ","));
+  options.laws = fmt::format("{}", fmt::join(law_names(), ","));
   verb.add_option("--laws", options.laws, "The laws that turn a contact into intensities")
       ->capture_default_str()
       ->type_name("LIST");
   add_law_parameters(verb, options.law_parameters, "Options");
-  options.rank_by = default_metric_to_rank_by();
-  add_rank_by(verb, options.rank_by)->capture_default_str();
+  add_rank_by(verb, options.rank_by)
+      ->description(fmt::format("The metric that ranks maps and laws [default: {}, or with --unfelt-mm {}]",
+                                default_metric_to_rank_by(), kErrorWithUnfelt));
+  verb.add_option("--unfelt-mm", options.unfelt_mm,
+                  fmt::format("Also gives each map and law an error in which a contact that is not felt counts as so "
+                              "many millimetres: {} [default: what is not felt has no error]",
+                              kErrorWithUnfelt))
+      ->type_name("MM")
+      ->check(help::kNotNegative);
   verb.add_option("-o,--output", options.output,
                   "Folder for the results; after a stop, the same command continues the batch")
       ->required()
@@ -90,11 +131,24 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
       ->check(help::between(help::kLeastRate_hz, help::kMostRate_hz));
   add_recording("--duration", options.duration_s, "How long the scene lasts, in seconds [default: 2]", "S")
       ->check(help::kPositive);
+  add_recording("--seeds", options.seeds,
+                "Records each scenario with each of these seeds, as 1:20 or 1,2,5. Intervals need several "
+                "[default: --seed alone]",
+                "LIST");
   add_morph_option(verb, options.morphs)->group(kScenarioGroup);
   add_recording("--count", options.count, describe_count(), "N")->check(help::whole_number(1, 1000000));
   add_detector_and_context(verb, options.choice);
   add_detector_options(verb, options.choice);
   add_common_options(verb, options.common);
+}
+
+std::string rank_by_of(const BatchOptions& options) {
+  if (options.rank_by == kErrorWithUnfelt && !options.unfelt_mm)
+    throw UsageError("--rank-by",
+                     fmt::format("'{}' needs to know what counts as its error where nothing is felt", kErrorWithUnfelt),
+                     "add --unfelt-mm, such as --unfelt-mm 150");
+  if (!options.rank_by.empty()) return options.rank_by;
+  return options.unfelt_mm ? kErrorWithUnfelt : default_metric_to_rank_by();
 }
 
 BatchPlan plan_of(const BatchOptions& options) {
@@ -103,10 +157,10 @@ BatchPlan plan_of(const BatchOptions& options) {
   if (options.choice.surface != "all")
     throw UsageError("--surface", "all maps share one detection, so colliders cannot pass through unmapped skin",
                      "leave it out; 'vestige replay --surface mapped' takes one map");
-  metric_to_rank_by(options.rank_by);
+  metric_to_rank_by(rank_by_of(options));
   if (options.output == "-") throw UsageError("-o -", "a batch is a folder of files", "name a folder");
   BatchPlan plan;
-  plan.traces = name_traces(options.traces);
+  plan.traces = name_traces(options.traces, seeds_of(options));
   std::vector<std::string_view> names;
   for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
   refuse_misspelt(options.traces, "--traces", "scenarios", names);
@@ -114,7 +168,7 @@ BatchPlan plan_of(const BatchOptions& options) {
   names.assign(layouts.begin(), layouts.end());
   names.emplace_back("builtin");
   refuse_misspelt(options.maps, "--maps", "layouts", names);
-  plan.laws = parse_names(options.laws, kLaws, "--laws");
+  plan.laws = parse_names(options.laws, law_names(), "--laws");
   const auto refuse_without = [&](bool given, const char* flag, const char* law) {
     if (given && std::ranges::find(plan.laws, law) == plan.laws.end())
       throw UsageError(flag, "no law in --laws uses this flag",
@@ -123,16 +177,18 @@ BatchPlan plan_of(const BatchOptions& options) {
   refuse_without(options.law_parameters.full_speed_m_per_s.has_value(), "--full-speed", "speed");
   refuse_without(options.law_parameters.sigma_mm.has_value(), "--sigma", "gaussian");
   plan.law_options = options.law_parameters.options();
+  if (options.unfelt_mm) plan.unfelt_m = *options.unfelt_mm / 1e3;
   plan.detector = options.choice.detector == "auto" ? "cpu" : options.choice.detector;
   plan.approximate = is_approximate(plan.detector);
   plan.keep = options.choice.keep;
   plan.method = options.choice.method;
   plan.skip = options.choice.skip;
   plan.seed = options.common.seed;
-  if ((options.rate_hz || options.duration_s || options.count) && !plan.has_scenario())
+  if ((options.rate_hz || options.duration_s || options.count || !options.seeds.empty()) && !plan.has_scenario())
     throw UsageError(options.rate_hz      ? "--rate"
                      : options.duration_s ? "--duration"
-                                          : "--count",
+                     : options.count      ? "--count"
+                                          : "--seeds",
                      "applies to scenarios only, and none of the traces is a scenario", "leave it out");
   plan.recording.rate_hz = options.rate_hz.value_or(plan.recording.rate_hz);
   plan.recording.duration_s = options.duration_s.value_or(plan.recording.duration_s);
@@ -166,12 +222,14 @@ std::vector<std::string> arguments_of(const BatchOptions& options) {
   if (parameters.sigma_mm) add("--sigma", fmt::format("{}", *parameters.sigma_mm));
   if (!parameters.actuator.empty()) add("--actuator", parameters.actuator);
   add("--hold", fmt::format("{}", parameters.hold_ms));
-  add("--rank-by", options.rank_by);
+  add("--rank-by", rank_by_of(options));
+  if (options.unfelt_mm) add("--unfelt-mm", fmt::format("{}", *options.unfelt_mm));
   if (!options.avatar.empty()) add("--avatar", options.avatar);
   if (options.morphs.ignored) words.emplace_back("--ignore-morphs");
   if (options.rate_hz) add("--rate", fmt::format("{}", *options.rate_hz));
   if (options.duration_s) add("--duration", fmt::format("{}", *options.duration_s));
   if (options.count) add("--count", fmt::format("{}", *options.count));
+  if (!options.seeds.empty()) add("--seeds", options.seeds);
   add("--detector", options.choice.detector);
   if (options.choice.context != "auto") add("--context", options.choice.context);
   if (options.choice.device >= 0) add("--device", fmt::format("{}", options.choice.device));

@@ -23,10 +23,12 @@ struct BatchOptions {
   LawFlags law_parameters;  ///< for all laws
   std::string avatar;
   MorphChoice morphs;
-  std::string rank_by;
+  std::string rank_by;  ///< empty: see `rank_by_of`
+  std::optional<double> unfelt_mm;
   std::optional<double> rate_hz;
   std::optional<double> duration_s;
   std::optional<std::uint32_t> count;
+  std::string seeds;  ///< empty: --seed alone
   std::string output;
 };
 
@@ -47,6 +49,10 @@ void add_batch_slurm(CLI::App& batch, Invocation& invocation);
 
 /// Prints the warnings about avatar and maps in run.json (`input_warnings`).
 void warn_of_inputs(const nlohmann::ordered_json& run, Verbosity verbosity);
+
+/// Returns the metric that ranks: that of --rank-by, otherwise the one that counts what is not felt if it is to count,
+/// otherwise the localisation error. Throws `UsageError` if it needs --unfelt-mm.
+std::string rank_by_of(const BatchOptions& options);
 
 /// Adds --rank-by.
 CLI::Option* add_rank_by(CLI::App& verb, std::string& rank_by);

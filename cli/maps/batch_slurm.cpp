@@ -37,7 +37,7 @@ void run_slurm(const BatchSlurmOptions& options) {
   batch.output = std::filesystem::absolute(options.batch.output).lexically_normal().string();
   batch.shards = options.shards;
   batch.jobs = options.jobs;
-  batch.merge_arguments = {"--rank-by", options.batch.rank_by};
+  batch.merge_arguments = {"--rank-by", rank_by_of(options.batch)};
   if (options.batch.common.force) batch.merge_arguments.emplace_back("--force");
   batch.sbatch = options.sbatch;
   fmt::print("{}", slurm_script(batch));

@@ -125,6 +125,9 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
   check_extension("-o", options.output, ".png", "a PNG");
   check_extension("--save-regions", options.regions_output, ".json", "JSON");
   const std::string sidecar = sidecar_path(options.output).string();
+  if (std::error_code missing; std::filesystem::equivalent(sidecar, options.regions, missing))
+    throw UsageError("-o", fmt::format("beside '{}' comes '{}', which the regions are in", options.output, sidecar),
+                     "choose another name for the map");
   check_outputs({options.output, sidecar, options.regions_output, options.common.json},
                 {options.avatar, options.regions}, options.common);
 

@@ -75,10 +75,31 @@ Candidate read_candidate(const JsonField& field, const std::vector<ReportMetric>
   candidate.law = file_name(field.at("law"));
   candidate.headline = read_estimate(field.at("headline"));
   candidate.difference_from_best = read_estimate(field.at("difference_from_best"));
+  candidate.p = number(field.at("difference_from_best"), "p");
+  candidate.p_holm = number(field.at("difference_from_best"), "p_holm");
   candidate.distinguishable_from_best = truth(field.at("distinguishable_from_best"));
+  if (metrics.empty()) return candidate;
   const JsonField values = field.at("metrics");
   for (const ReportMetric& metric : metrics) candidate.metrics.push_back(read_estimate(values.at(metric.name.c_str())));
   return candidate;
+}
+
+/// Reads what a batch of an earlier version lacks.
+void read_by_scenario(const JsonField& document, ReportData& data) {
+  if (document.has("why_no_intervals")) data.why_no_intervals = document.at("why_no_intervals").text();
+  if (document.has("reversals")) data.reversals = document.at("reversals").text();
+  if (!document.has("by_scenario")) return;
+  const JsonField scenarios = document.at("by_scenario");
+  for (std::size_t i = 0; i < length(scenarios); ++i) {
+    ReportScenario& scenario = data.by_scenario.emplace_back();
+    scenario.name = scenarios.at(i).at("scenario").text();
+    scenario.traces = whole(scenarios.at(i).at("traces"));
+    const JsonField ranking = scenarios.at(i).at("ranking");
+    for (std::size_t k = 0; k < ranking.count(); ++k) scenario.ranking.push_back(read_candidate(ranking.at(k), {}));
+    for (const Candidate& candidate : data.ranking)
+      if (scenario.find(candidate) == nullptr)
+        ranking.refuse(fmt::format("lacks {} with {}", candidate.map, candidate.law));
+  }
 }
 
 void read_ranking(const std::filesystem::path& file, ReportData& data) {
@@ -91,9 +112,34 @@ void read_ranking(const std::filesystem::path& file, ReportData& data) {
   if (headline == data.metrics.end())
     document.at("rank_by").refuse(fmt::format("is '{}', which is not a metric", rank_by));
   data.headline = static_cast<std::size_t>(headline - data.metrics.begin());
-  data.interval = document.at("interval").text();
+  data.has_intervals = document.has("interval");
+  if (data.has_intervals) data.interval = document.at("interval").text();
   const JsonField ranking = document.at("ranking");
   for (std::size_t i = 0; i < ranking.count(); ++i) data.ranking.push_back(read_candidate(ranking.at(i), data.metrics));
+  read_by_scenario(document, data);
+}
+
+/// Reads the headline of each trace. A folder need not have this file.
+void read_scores(const std::filesystem::path& file, ReportData& data) {
+  if (!std::filesystem::exists(file)) return;
+  const nlohmann::json json = read_json(file, kFileRemedy);
+  const JsonField scores = JsonField(json, file, kFileRemedy).at("scores");
+  const std::string& headline = data.metrics[data.headline].name;
+  std::map<std::string, std::size_t> trace_of;
+  for (std::size_t i = 0; i < data.traces.size(); ++i) trace_of[data.traces[i].name] = i;
+  std::map<std::pair<std::string, std::string>, Candidate*> candidate_of;
+  for (Candidate& candidate : data.ranking) {
+    candidate.by_trace.resize(data.traces.size());
+    candidate_of[{candidate.map, candidate.law}] = &candidate;
+  }
+  for (std::size_t i = 0; i < length(scores); ++i) {
+    const JsonField score = scores.at(i);
+    const auto trace = trace_of.find(score.at("trace").text());
+    if (trace == trace_of.end()) score.at("trace").refuse("is no trace of run.json");
+    const auto candidate = candidate_of.find({score.at("map").text(), score.at("law").text()});
+    if (candidate == candidate_of.end()) score.refuse("is of a map and law that ranking.json does not have");
+    candidate->second->by_trace[trace->second] = number(score.at("values"), headline.c_str());
+  }
 }
 
 /// Returns a word as a user could type it in a shell.
@@ -191,12 +237,18 @@ void read_run(const std::filesystem::path& file, ReportData& data) {
       for (std::size_t k = 0; k < length(warnings); ++k) of_map.push_back(warnings.at(k).text());
     }
   }
+  std::map<std::string, double> seed_of;
+  if (batch.has("traces"))
+    for (std::size_t i = 0; i < length(batch.at("traces")); ++i)
+      if (const JsonField trace = batch.at("traces").at(i); trace.has("seed"))
+        seed_of[trace.at("name").text()] = trace.at("seed").within(0, kMost);
   const JsonField traces = run.at("traces");
   for (std::size_t i = 0; i < length(traces); ++i) {
     const JsonField field = traces.at(i);
     ReportTrace trace;
     trace.name = file_name(field.at("name"));
     trace.given = field.at("given").text();
+    if (const auto seed = seed_of.find(trace.name); seed != seed_of.end()) trace.seed = seed->second;
     trace.frames = field.at("frames").within(0, kMost);
     trace.colliders = field.at("colliders").within(0, kMost);
     trace.contacts = field.at("contacts").within(0, kMost);
@@ -215,6 +267,12 @@ void read_run(const std::filesystem::path& file, ReportData& data) {
 
 }  // namespace
 
+const Candidate* ReportScenario::find(const Candidate& candidate) const {
+  const auto found = std::ranges::find_if(
+      ranking, [&](const Candidate& one) { return one.map == candidate.map && one.law == candidate.law; });
+  return found == ranking.end() ? nullptr : &*found;
+}
+
 std::vector<std::string> ReportData::maps() const {
   std::vector<std::string> names;
   for (const Candidate& candidate : ranking)
@@ -224,6 +282,12 @@ std::vector<std::string> ReportData::maps() const {
 
 const Candidate& ReportData::best_of(const std::string& map) const {
   return *std::ranges::find(ranking, map, &Candidate::map);
+}
+
+std::optional<double> ReportData::felt_share(const Candidate& candidate) const {
+  const auto coverage = std::ranges::find(metrics, "coverage", &ReportMetric::name);
+  if (coverage == metrics.end()) return std::nullopt;
+  return candidate.metrics[static_cast<std::size_t>(coverage - metrics.begin())].mean;
 }
 
 void require_judged(const std::string& file, const std::string& sha256, const std::string& judged) {
@@ -242,6 +306,7 @@ ReportData read_report(const std::filesystem::path& folder) {
   ReportData data;
   read_ranking(folder / "ranking.json", data);
   read_run(folder / "run.json", data);
+  read_scores(folder / "scores.json", data);
   if (!data.actuator.empty()) data.actuators = read_actuators((folder / "actuator.json").string(), data);
   return data;
 }

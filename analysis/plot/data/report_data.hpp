@@ -46,8 +46,21 @@ struct Candidate {
   std::string law;
   Estimate headline;
   Estimate difference_from_best;
+  std::optional<double> p;       ///< of the difference
+  std::optional<double> p_holm;  ///< the same by Holm's correction
   bool distinguishable_from_best = false;
-  std::vector<Estimate> metrics;  ///< in the order of `ReportData::metrics`
+  std::vector<Estimate> metrics;                ///< in the order of `ReportData::metrics`; empty for one scenario alone
+  std::vector<std::optional<double>> by_trace;  ///< headline, in the order of `ReportData::traces`; may be empty
+};
+
+/// The ranking by the traces of one scenario alone, or by the files alone.
+struct ReportScenario {
+  std::string name;
+  std::size_t traces = 0;
+  std::vector<Candidate> ranking;  ///< best first
+
+  /// Returns a candidate of the whole batch, as this scenario ranks it. In a folder that was read, there is one.
+  const Candidate* find(const Candidate& candidate) const;
 };
 
 struct ReportFailure {
@@ -61,6 +74,7 @@ struct ReportFailure {
 struct ReportTrace {
   std::string name;
   std::string given;
+  std::optional<double> seed;  ///< of a scenario; none for a file
   double frames = 0;
   double colliders = 0;
   double contacts = 0;
@@ -70,7 +84,11 @@ struct ReportTrace {
 /// What 'vestige batch -o DIR' wrote, except contacts, maps and avatar.
 struct ReportData {
   std::size_t headline = 0;  ///< index into `metrics`
-  std::string interval;      ///< how intervals were made, in the batch's words
+  bool has_intervals = false;
+  std::string interval;                     ///< how intervals were made, in the batch's words; empty without any
+  std::string why_no_intervals;             ///< in the batch's words; empty if there are any
+  std::string reversals;                    ///< one sentence on scenarios where another is first; may be empty
+  std::vector<ReportScenario> by_scenario;  ///< empty with one scenario
   std::vector<ReportMetric> metrics;
   std::vector<Candidate> ranking;  ///< best first
   std::vector<ReportTrace> traces;
@@ -92,6 +110,9 @@ struct ReportData {
   std::vector<std::string> maps() const;
   /// Returns the best candidate of a ranked map.
   const Candidate& best_of(const std::string& map) const;
+  /// Returns what share of a trace's contacts a candidate lets feel, mean over traces (the metric `coverage`); none if
+  /// no trace has contacts.
+  std::optional<double> felt_share(const Candidate& candidate) const;
 };
 
 /// Throws `Error` if `file` is not what was judged. `judged` is the SHA-256 in run.json, or empty if unknown.

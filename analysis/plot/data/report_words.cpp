@@ -39,6 +39,10 @@ std::string number_text(double value) {
   return value < 0 ? "\u2212" + text : text;
 }
 
+std::string p_text(double p) {
+  return p < 0.001 ? "&lt;\u00a00.001" : fmt::format("{:.2g}", p);
+}
+
 std::string estimate_text(const Estimate& estimate, const ReportMetric& metric) {
   if (!estimate.mean) return "no value";
   std::string text = number_text(*estimate.mean);

@@ -16,6 +16,9 @@ std::string sentence_case(std::string text);
 /// U+2212.
 std::string number_text(double value);
 
+/// Returns a probability as HTML: "0.012", "&lt; 0.001".
+std::string p_text(double p);
+
 /// Returns the estimate as text: "12.3 mm (95 % interval 11.0 to 13.9)", "12.3 mm (one trace)" or "no value".
 std::string estimate_text(const Estimate& estimate, const ReportMetric& metric);
 

@@ -114,10 +114,6 @@ std::vector<RecordedContact> MapPictures::unfelt_contacts(const ActuatorMap& map
   return unfelt;
 }
 
-std::size_t MapPictures::unfelt_count(const ActuatorMap& map) const {
-  return unfelt_contacts(map).size();
-}
-
 std::unique_ptr<Figure> MapPictures::regions(const ActuatorMap& map) const {
   const std::size_t count = map.actuator_count;
   std::vector<SidePicture> pictures;

@@ -26,8 +26,6 @@ class MapPictures {
   MapPictures& operator=(const MapPictures&) = delete;
 
   std::size_t contact_count() const { return contacts_.size(); }
-  /// Returns the number of contacts on skin that no actuator of `map` covers. No law makes these contacts felt.
-  std::size_t unfelt_count(const ActuatorMap& map) const;
 
   /// Draws the regions of a map, with their numbers.
   std::unique_ptr<Figure> regions(const ActuatorMap& map) const;

@@ -15,9 +15,9 @@ namespace vestige::plot {
 
 namespace {
 
-constexpr double kWidthPt = 396;
+constexpr double kWidthPt = 252;  // a paper's column, and a phone's width
 constexpr double kMarginPt = 6;
-constexpr double kMostLabelPt = 150;
+constexpr double kMostLabelPt = 90;
 constexpr double kRowPt = 13;
 constexpr double kAxisRoomPt = 34;
 constexpr double kTopPt = 8;
@@ -47,7 +47,7 @@ class RankingFigure : public Figure {
       widest_pt = std::max(widest_pt, text_width_pt(shortened(label(*one), kLabelStyle, kMostLabelPt), kLabelStyle));
     const Box plot = {kMarginPt + widest_pt + 8, kAxisRoomPt, kWidthPt - kRightPt, kAxisRoomPt + rows_pt()};
     const Axis x = x_axis(plot);
-    const std::vector<Tick> ticks = linear_ticks(x.low, x.high, 6);
+    const std::vector<Tick> ticks = linear_ticks(x.low, x.high, 4);
     for (const Tick& tick : ticks)
       canvas.line({x.place_pt(tick.value), plot.bottom_pt}, {x.place_pt(tick.value), plot.top_pt},
                   {kGrid, 0.4, Dash::kSolid});
@@ -62,7 +62,7 @@ class RankingFigure : public Figure {
   std::string axis_title() const {
     std::string title = sentence_case(words_of_name(metric().name));
     if (!metric().unit.empty()) title += fmt::format(" ({})", metric().unit);
-    return title + (metric().better == "higher" ? ", higher is better" : ", lower is better");
+    return title;
   }
 
   Axis x_axis(const Box& plot) const {

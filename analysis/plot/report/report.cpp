@@ -151,21 +151,18 @@ class Report {
     const std::size_t pictured = std::min(options_.top, maps.size());
     figures_expected_ = 1 + pictured * (4 + data.laws.size());
 
-    ReportPage page = {data, {}, {}, {}, contacts.shown_trace};
+    ReportPage page = {data, {}, {}, contacts.shown_trace};
     if (data.ranking.front().headline.mean) {
-      std::string caption =
-          "Each combination of map and law: mean over traces, and its 95\u00a0% interval. Filled: cannot be "
-          "distinguished from the first at 95\u00a0%.";
-      if (data.traces.size() < 2) caption = "Each combination of map and law, on the one trace.";
+      std::string caption = "Each combination of map and law: mean over traces";
+      caption += data.has_intervals ? ", and its 95\u00a0% interval. Filled: cannot be distinguished from the first."
+                                    : ", without an interval.";
       if (data.ranking.size() > kRankedShown) caption += fmt::format(" The best {} are drawn.", kRankedShown);
       page.ranking.push_back(draw("ranking", *ranking_figure(data, kRankedShown), caption));
     }
     const MapPictures pictures(avatar, contacts.all);
-    for (std::size_t i = 0; i < maps.size(); ++i) {
-      ActuatorMap map = read_batch_map(batch_, data, maps[i], avatar);
-      page.unfelt.push_back({maps[i], contacts.all.size(), pictures.unfelt_count(map)});
-      if (i < pictured) page.maps.push_back(section(data, maps[i], avatar, contacts, pictures, std::move(map)));
-    }
+    for (std::size_t i = 0; i < pictured; ++i)
+      page.maps.push_back(
+          section(data, maps[i], avatar, contacts, pictures, read_batch_map(batch_, data, maps[i], avatar)));
 
     const std::string html = report_html(page);
     folder_->commit([](const std::filesystem::path&) { return false; });
@@ -214,13 +211,14 @@ class Report {
       const std::uint16_t actuator =
           actuator_at(avatar, map, contact.triangle, contact.barycentric.x, contact.barycentric.y);
       if (actuator == 0)
-        ++section.unfelt;
+        ++section.unmapped;
       else
         ++section.actuators[actuator - 1U].contacts;
     }
     section.bodies.push_back(draw(name + "-regions", *pictures.regions(map), "Regions and their actuators' numbers."));
     section.bodies.push_back(draw(name + "-contacts", *pictures.contacts(map), "Where contacts are."));
-    section.bodies.push_back(draw(name + "-not-felt", *pictures.unfelt(map), "Where contacts are not felt."));
+    section.bodies.push_back(draw(name + "-not-felt", *pictures.unfelt(map),
+                                  "Where contacts are on skin without an actuator, which no law lets feel."));
     if (contacts.shown.contacts.empty() || map.actuator_count == 0) return section;
 
     const auto layout = std::make_shared<const ActuatorLayout>(avatar, std::move(map));

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <string_view>
@@ -12,31 +11,14 @@
 #include "analysis/batch/ranking.hpp"
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/data/report_words.hpp"
+#include "analysis/plot/report/findings.hpp"
 #include "analysis/plot/report/report_style.hpp"
+#include "detector/actuators/intensity.hpp"
 #include "traces/base/number_text.hpp"
 
 namespace vestige::plot {
 
 namespace {
-
-/// Laws that 'vestige batch' knows.
-struct LawWords {
-  std::string_view name;
-  std::string_view words;
-};
-constexpr std::array<LawWords, 5> kLaws = {{
-    {"binary", "A contact switches the actuator of its skin fully on (Spanlang et al. 2010, HAVE)."},
-    {"speed",
-     "The amplitude rises with the collider's speed along the skin's normal, up to a speed of full amplitude."},
-    {"phantom",
-     "The actuators around a contact share its amplitude at constant energy: for two, A₁ = √(1−β) A and "
-     "A₂ = √β A (Israr & Poupyrev 2011, Tactile Brush)."},
-    {"gaussian",
-     "Every actuator vibrates, with an amplitude that falls with its distance along the body: exp(−d²/2σ²)."},
-    {"linear",
-     "The actuators share the amplitude as with phantom, but linearly, so the energy drops between them; for "
-     "comparison."},
-}};
 
 template <typename... Arguments>
 void add(std::string& out, fmt::format_string<Arguments...> text, Arguments&&... arguments) {
@@ -57,6 +39,10 @@ constexpr std::string_view kModelLabel = "<span class=\"model\">model, not a use
 
 std::string value_cell(const std::optional<double>& value) {
   return fmt::format("<td class=\"n\">{}</td>", value ? number_text(*value) : "–");
+}
+
+std::string p_cell(const std::optional<double>& p) {
+  return fmt::format("<td class=\"n\">{}</td>", p ? p_text(*p) : "–");
 }
 
 std::string interval_words(const Estimate& estimate) {
@@ -91,9 +77,11 @@ class Page {
   std::string html() {
     head();
     ranking();
+    changes();
     maps();
     all_metrics();
     definitions();
+    per_trace();
     inputs();
     provenance();
     out_ +=
@@ -128,8 +116,9 @@ class Page {
         html_text(title), kReportStyle);
     lead();
     out_ += "</header>\n<nav aria-label=\"Contents\"><ol>\n";
-    for (const auto& [id, name] : {std::pair("ranking", "Ranking"), std::pair("maps", "Maps on the body"),
-                                   std::pair("metrics", "All metrics"), std::pair("definitions", "Definitions"),
+    for (const auto& [id, name] : {std::pair("ranking", "Ranking"), std::pair("changes", "What would change this"),
+                                   std::pair("maps", "Maps on the body"), std::pair("metrics", "All metrics"),
+                                   std::pair("definitions", "Definitions"), std::pair("by-trace", "Trace by trace"),
                                    std::pair("inputs", "Traces and failures"), std::pair("provenance", "Provenance")})
       add(out_, "<li><a href=\"#{}\">{}</a></li>\n", id, name);
     out_ += "</ol></nav>\n<main id=\"report\">\n";
@@ -138,15 +127,8 @@ class Page {
   void lead() {
     const ReportMetric& metric = headline();
     const std::string words = html_text(words_of_name(metric.name));
-    if (!best().headline.mean) {
-      add(out_,
-          "<p class=\"lead\">No combination of map and law has a value of {} on any trace, so nothing is ranked.</p>\n",
-          words);
-    } else {
-      add(out_, "<p class=\"lead\"><strong>{}</strong> has the {} {}: {}. ", name_of(best()),
-          metric.better == "higher" ? "highest" : "lowest", words, html_text(estimate_text(best().headline, metric)));
-      out_ += others_in_words() + "</p>\n";
-    }
+    add(out_, "<p class=\"lead\">{}</p>\n", quotable_sentence(data_));
+    if (best().headline.mean) add(out_, "<p>{}</p>\n", others_in_words());
     double contacts = 0;
     double frames = 0;
     for (const ReportTrace& trace : data_.traces) {
@@ -164,13 +146,14 @@ class Page {
   std::string others_in_words() const {
     const std::size_t others = data_.ranking.size() - 1;
     if (others == 0) return "There is nothing else to compare it with.";
-    if (data_.traces.size() < 2)
-      return fmt::format("One trace cannot show whether this holds on another trace: the {} have no interval either.",
+    if (!data_.has_intervals)
+      return fmt::format("Whether the {} of map and law are worse on other recordings, these traces cannot show.",
                          counted(others, "other combination"));
     const std::size_t level = level_with_best();
     if (level == 0)
-      return others == 1 ? "The other combination of map and law is worse on these traces."
-                         : fmt::format("All {} other combinations of map and law are worse on these traces.", others);
+      return fmt::format("{} worse (p by Holm's correction under 0.05).",
+                         others == 1 ? "The other combination of map and law is"
+                                     : fmt::format("All {} other combinations of map and law are", others));
     return fmt::format("Of the {} of map and law, {} cannot be distinguished from it.",
                        counted(others, "other combination"), level);
   }
@@ -191,14 +174,9 @@ class Page {
       cautions.push_back(fmt::format("{} damaged; only the part of {} that could be read counts.",
                                      damaged == 1 ? "One trace is" : fmt::format("{} traces are", damaged),
                                      damaged == 1 ? "it" : "them"));
-    if (data_.traces.size() < 2)
-      cautions.emplace_back("One trace gives no interval: this page cannot say how the maps compare on another trace.");
-    else if (data_.traces.size() < kFewTraces)
-      cautions.push_back(fmt::format("{} are few: the intervals are rough and apply only to traces like these.",
-                                     sentence_case(counted(data_.traces.size(), "trace"))));
-    if (data_.ranking.size() > 2 && data_.traces.size() > 1)
-      cautions.emplace_back(
-          "Each comparison with the first has its own level of 95\u00a0%: of many comparisons, some are wrong.");
+    if (!data_.has_intervals)
+      cautions.push_back(fmt::format("There are no intervals{}. Another recording may turn the ranking over.",
+                                     data_.why_no_intervals.empty() ? "" : ": " + html_text(data_.why_no_intervals)));
     if (const auto more = more_coverage(); !more.empty()) cautions.push_back(more);
     if (headline().model_based)
       cautions.push_back(
@@ -211,25 +189,19 @@ class Page {
 
   /// What an error alone would hide: it counts only contacts that are felt.
   std::string more_coverage() const {
-    const auto coverage = std::ranges::find(data_.metrics, "coverage", &ReportMetric::name);
-    const auto index = static_cast<std::size_t>(coverage - data_.metrics.begin());
-    if (coverage == data_.metrics.end() || index == data_.headline || !best().metrics[index].mean) return {};
-    const double felt = *best().metrics[index].mean;
+    const auto felt = data_.felt_share(best());
+    if (!felt || headline().name == "coverage" || headline().name == "error_with_unfelt_mm") return {};
     const Candidate* most = &best();
     for (const Candidate& one : data_.ranking)
-      if (one.metrics[index].mean.value_or(0) > most->metrics[index].mean.value_or(0)) most = &one;
+      if (data_.felt_share(one).value_or(0) > data_.felt_share(*most).value_or(0)) most = &one;
     constexpr double kWorthSaying = 0.005;
-    const double felt_most = *most->metrics[index].mean;
-    if (felt_most < felt + kWorthSaying) return {};
+    const double felt_most = *data_.felt_share(*most);
+    if (felt_most < *felt + kWorthSaying) return {};
     return fmt::format(
         "{} lets {:.1f}\u00a0% of a trace's contacts be felt on average, {} lets {:.1f}\u00a0%; {} says nothing about "
-        "the contacts that are not felt.",
-        name_of(best()), 100 * felt, name_of(*most), 100 * felt_most, html_text(words_of_name(headline().name)));
-  }
-
-  const UnfeltShare* unfelt_of(const std::string& map) const {
-    const auto found = std::ranges::find(page_.unfelt, map, &UnfeltShare::map);
-    return found == page_.unfelt.end() ? nullptr : &*found;
+        "the contacts that are not felt. Common error compares all on the same contacts, and <code>--unfelt-mm</code> "
+        "counts what is not felt.",
+        name_of(best()), 100 * *felt, name_of(*most), 100 * felt_most, html_text(words_of_name(headline().name)));
   }
 
   void ranking() {
@@ -238,32 +210,96 @@ class Page {
     std::string table = "<table>\n";
     add(table,
         "<caption><span>{}, mean over traces. Highlighted rows cannot be distinguished from the first at 95\u00a0%. "
-        "Not felt: contacts of all traces on skin without an actuator, with every law.</span></caption>\n"
+        "Felt: share of a trace's contacts for which an actuator vibrates, mean over traces.</span></caption>\n"
         "<thead><tr><th scope=\"col\" class=\"n\">Rank</th><th scope=\"col\">Map</th><th scope=\"col\">Law</th>"
         "<th scope=\"col\" class=\"n\">{}</th><th scope=\"col\">95\u00a0% interval</th><th scope=\"col\">Against the "
-        "first</th><th scope=\"col\" class=\"n\">Traces</th><th scope=\"col\" class=\"n\">Not "
-        "felt</th></tr></thead>\n<tbody>\n",
+        "first</th><th scope=\"col\" class=\"n\">p</th><th scope=\"col\" class=\"n\">p, Holm</th><th scope=\"col\" "
+        "class=\"n\">Traces</th><th scope=\"col\" class=\"n\">Felt</th></tr></thead>\n<tbody>\n",
         title_of(headline()), title_of(headline()));
     for (std::size_t i = 0; i < data_.ranking.size(); ++i) {
       const Candidate& one = data_.ranking[i];
-      const UnfeltShare* unfelt = unfelt_of(one.map);
+      const auto felt = data_.felt_share(one);
       add(table,
           "<tr{}><td class=\"n\">{}</td><th scope=\"row\" class=\"name\">{}</th><td>{}</td>{}<td "
-          "class=\"interval\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-          is_level(one) && data_.traces.size() > 1 ? " class=\"level\"" : "",
-          one.rank ? fmt::format("{}", *one.rank) : "–", html_text(one.map), html_text(one.law),
-          value_cell(one.headline.mean), interval_words(one.headline), against_first(one, i == 0), one.headline.traces,
-          unfelt == nullptr ? "–" : percent(unfelt->unfelt, unfelt->contacts));
+          "class=\"interval\">{}</td><td>{}</td>{}{}<td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
+          is_level(one) && data_.has_intervals ? " class=\"level\"" : "", one.rank ? fmt::format("{}", *one.rank) : "–",
+          html_text(one.map), html_text(one.law), value_cell(one.headline.mean), interval_words(one.headline),
+          against_first(one, i == 0), p_cell(i == 0 ? std::nullopt : one.p), p_cell(i == 0 ? std::nullopt : one.p_holm),
+          one.headline.traces, felt ? fmt::format("{:.1f}\u00a0%", 100 * *felt) : "–");
     }
     out_ += scrolling("Ranking", table + "</tbody>\n</table>\n", "tall");
-    add(out_, "<p class=\"soft\">Intervals: {}.</p>\n</section>\n", html_text(data_.interval));
+    if (data_.has_intervals) add(out_, "<p class=\"soft\">Intervals: {}.</p>\n", html_text(data_.interval));
+    by_scenario();
+    out_ += "</section>\n";
+  }
+
+  /// Who is first on each scenario alone, and how far behind the first of all is there.
+  void by_scenario() {
+    if (data_.by_scenario.empty()) return;
+    std::string table = fmt::format(
+        "<table>\n<caption><span>The first on each kind of trace alone, and where {} is there. All of it is in "
+        "<code>ranking_by_scenario.csv</code>.</span></caption>\n<thead><tr><th scope=\"col\">Traces</th><th "
+        "scope=\"col\" class=\"n\">Count</th><th scope=\"col\">First</th><th scope=\"col\" class=\"n\">{}</th><th "
+        "scope=\"col\" class=\"n\">Rank of {}</th><th scope=\"col\" class=\"n\">{}</th><th scope=\"col\">Against the "
+        "first</th></tr></thead>\n<tbody>\n",
+        name_of(best()), title_of(headline()), name_of(best()), title_of(headline()));
+    for (const ReportScenario& scenario : data_.by_scenario) {
+      const Candidate& first = scenario.ranking.front();
+      const Candidate& ours = *scenario.find(best());
+      add(table,
+          "<tr><th scope=\"row\" class=\"name\">{}</th><td class=\"n\">{}</td><td class=\"name\">{}</td>{}<td "
+          "class=\"n\">{}</td>{}<td>{}</td></tr>\n",
+          html_text(scenario.name), scenario.traces, name_of(first), value_cell(first.headline.mean),
+          ours.rank ? fmt::format("{}", *ours.rank) : "–", value_cell(ours.headline.mean),
+          against_first(ours, ours.rank == 1U));
+    }
+    out_ += "<h3>Scenario by scenario</h3>\n";
+    if (!data_.reversals.empty()) add(out_, "<p>{}.</p>\n", html_text(sentence_case(data_.reversals)));
+    out_ += scrolling("Scenario by scenario", table + "</tbody>\n</table>\n");
+  }
+
+  void changes() {
+    const std::vector<std::string> paragraphs = what_would_change(data_);
+    out_ += "<section aria-labelledby=\"changes\">\n<h2 id=\"changes\">What would change this result?</h2>\n";
+    if (paragraphs.empty()) out_ += "<p>Traces with contacts that are felt.</p>\n";
+    for (const std::string& paragraph : paragraphs) add(out_, "<p>{}</p>\n", paragraph);
+    out_ += "</section>\n";
+  }
+
+  /// The headline of each trace, for the best.
+  void per_trace() {
+    constexpr std::size_t kMostColumns = 16;
+    constexpr std::size_t kMostRows = 300;
+    const std::size_t columns = std::min(kMostColumns, data_.ranking.size());
+    const std::size_t rows = std::min(kMostRows, data_.traces.size());
+    out_ += "<section aria-labelledby=\"by-trace\">\n<h2 id=\"by-trace\">Trace by trace</h2>\n";
+    if (best().by_trace.size() != data_.traces.size()) {
+      out_ += "<p>The folder has no <code>scores.json</code>, which holds the results of each trace.</p>\n</section>\n";
+      return;
+    }
+    std::string table = fmt::format(
+        "<table class=\"all\">\n<caption><span>{} of {} on {}, best first. <code>scores.csv</code> has every metric, "
+        "map, "
+        "law and trace.</span></caption>\n<thead><tr><th scope=\"col\">Trace</th>",
+        title_of(headline()),
+        columns == data_.ranking.size() ? "each map and law" : fmt::format("the best {} maps and laws", columns),
+        rows == data_.traces.size() ? "each trace" : fmt::format("the first {} traces", rows));
+    for (std::size_t c = 0; c < columns; ++c)
+      add(table, "<th scope=\"col\" class=\"n\">{}</th>", name_of(data_.ranking[c]));
+    table += "</tr></thead>\n<tbody>\n";
+    for (std::size_t trace = 0; trace < rows; ++trace) {
+      add(table, "<tr><th scope=\"row\" class=\"name\">{}</th>", html_text(data_.traces[trace].name));
+      for (std::size_t c = 0; c < columns; ++c) table += value_cell(data_.ranking[c].by_trace[trace]);
+      table += "</tr>\n";
+    }
+    out_ += scrolling("Results of each trace", table + "</tbody>\n</table>\n", "tall") + "</section>\n";
   }
 
   std::string against_first(const Candidate& one, bool is_first) const {
     if (!one.rank) return "no value";
     if (is_first) return "first";
     const Estimate& difference = one.difference_from_best;
-    if (!difference.has_interval()) return "unknown: too few traces";
+    if (!difference.has_interval()) return data_.has_intervals ? "unknown: too few traces" : "unknown: no interval";
     const std::string interval = fmt::format(" <span class=\"interval\">({}{})</span>",
                                              html_text(difference_text(difference)), unit_of(headline()));
     return (one.distinguishable_from_best ? "worse" : "not distinguishable") + interval;
@@ -294,9 +330,12 @@ class Page {
   void map_section(const MapSection& map, std::size_t index) {
     const Candidate& best = data_.best_of(map.map);
     add(out_, "<section aria-labelledby=\"map-{0}\">\n<h3 id=\"map-{0}\">{1}</h3>\n", index + 1, html_text(map.map));
-    add(out_, "<p>{}; best law {}: {}. Felt: {} of {}.</p>\n", counted(map.actuators.size(), "actuator"),
-        html_text(best.law), html_text(estimate_text(best.headline, headline())),
-        percent(map.contacts - map.unfelt, map.contacts), counted_contacts(map.contacts));
+    add(out_,
+        "<p>{}; best law {}: {}. On skin with an actuator: {} of {}, all traces "
+        "together.</p>\n",
+        counted(map.actuators.size(), "actuator"), html_text(best.law),
+        html_text(estimate_text(best.headline, headline())), percent(map.contacts - map.unmapped, map.contacts),
+        counted_contacts(map.contacts));
     for (const std::string& warning : map.warnings) add(out_, "<p class=\"caution\">{}</p>\n", html_text(warning));
     out_ += "<div class=\"figures\">\n";
     for (const PageFigure& one : map.bodies) out_ += figure(one, "pair");
@@ -375,8 +414,8 @@ class Page {
     out_ += scrolling("Definitions of the metrics", table + "</tbody>\n</table>\n");
     out_ += "<h3>Intensity laws</h3>\n<dl>\n";
     for (const std::string& law : data_.laws) {
-      const auto known = std::ranges::find(kLaws, law, &LawWords::name);
-      if (known != kLaws.end()) add(out_, "<dt>{}</dt><dd>{}</dd>\n", html_text(law), html_text(known->words));
+      const auto known = std::ranges::find(laws(), law, &LawInfo::name);
+      if (known != laws().end()) add(out_, "<dt>{}</dt><dd>{}</dd>\n", html_text(law), html_text(known->explanation));
     }
     add(out_, "</dl>\n<p>A contact is held for {:g} ms. {}</p>\n</section>\n", 1e3 * data_.law_options.hold_s,
         data_.actuator.empty()

@@ -26,25 +26,17 @@ struct MapSection {
   std::string map;
   std::vector<PageActuator> actuators;
   std::size_t contacts = 0;
-  std::size_t unfelt = 0;  ///< contacts on skin without an actuator
+  std::size_t unmapped = 0;  ///< contacts on skin without an actuator
   std::vector<std::string> warnings;
   std::vector<PageFigure> bodies;     ///< pairs of front and back views
   std::vector<PageFigure> errors;     ///< errors over time, laws side by side
   std::vector<PageFigure> timelines;  ///< the map's best law first
 };
 
-/// The share of contacts that a map leaves unfelt. Maps without pictures have it too.
-struct UnfeltShare {
-  std::string map;
-  std::size_t contacts = 0;
-  std::size_t unfelt = 0;
-};
-
 struct ReportPage {
   const ReportData& data;
   std::vector<PageFigure> ranking;
   std::vector<MapSection> maps;  ///< best first
-  std::vector<UnfeltShare> unfelt;
   /// The trace whose timelines and errors are drawn. Empty: no trace has contacts.
   std::string shown_trace;
 };

@@ -62,7 +62,7 @@ figure { margin: .75rem 0; max-width: 100%; }
 .sheet { background: #fff; border: 1px solid var(--line); border-radius: .35rem; padding: .4rem; overflow-x: auto; width: fit-content; max-width: 100%; }
 .sheet svg { display: block; max-width: 100%; height: auto; }
 .wide svg { width: 52rem; min-width: 34rem; }
-.ranking svg { width: 46rem; min-width: 21rem; }
+.ranking svg { width: 33rem; }
 figcaption { font-size: .88rem; color: var(--soft); margin-top: .35rem; max-width: 40rem; overflow-wrap: anywhere; }
 .pair { flex: 0 1 auto; }
 .pair figcaption { max-width: 22rem; }

@@ -123,37 +123,8 @@ TEST(Noise, IsHalfTheInterquartileRangeOfTheTimes) {
   EXPECT_DOUBLE_EQ(relative_noise({repetitions.data(), 1}, 1), 0);
 }
 
-TEST(PairedBootstrap, OfTheSameValuesHasNoWidth) {
-  const std::vector<double> values(7, 3.5);
-  const MeanInterval mean = PairedBootstrap(7, 1).mean(values);
-  EXPECT_EQ(mean.mean, 3.5);
-  EXPECT_EQ(mean.n, 7U);
-  EXPECT_EQ(mean.interval.low, 3.5);
-  EXPECT_EQ(mean.interval.high, 3.5);
-}
-
-/// Student's interval is right for normal values: mean ± t s / sqrt(n). The bootstrap must come near it even for eight,
-/// where a plain percentile interval is a fifth too narrow.
-TEST(PairedBootstrap, OfFewNormalValuesIsAsWideAsStudents) {
-  const std::vector<double> values = {-1.42, -0.89, -0.49, -0.16, 0.16, 0.49, 0.89, 1.42};  // normal scores
-  const MeanInterval mean = PairedBootstrap(values.size(), 1).mean(values);
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  const double student = 2.365 * std::sqrt(squares / 7 / 8);
-  EXPECT_NEAR(mean.interval.high, student, 0.12 * student);
-  EXPECT_NEAR(mean.interval.low, -student, 0.12 * student);
-}
-
-TEST(PairedBootstrap, GivesTheSameBitsForTheSameSeedAndOthersForAnother) {
-  const std::vector<double> values = {1, 2, 4, 8, 16};
-  const MeanInterval one = PairedBootstrap(5, 1).mean(values);
-  const MeanInterval again = PairedBootstrap(5, 1).mean(values);
-  EXPECT_EQ(one.interval.low, again.interval.low);
-  EXPECT_EQ(one.interval.high, again.interval.high);
-}
-
 /// Values of the formula, worked out with other software.
-TEST(PairedBootstrap, LevelsOfFewUnitsLieFurtherOut) {
+TEST(ExpandedLevel, OfFewUnitsLiesFurtherOut) {
   EXPECT_EQ(expanded_level(2), 0);
   EXPECT_NEAR(expanded_level(6), 0.00243, 1e-5);
   EXPECT_NEAR(expanded_level(20), 0.0159, 1e-4);

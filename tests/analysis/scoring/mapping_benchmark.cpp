@@ -47,7 +47,7 @@ void measure(const char* scenario, int frames) {
     std::vector<LawChoice> laws(4);
     std::string alone;
     for (std::size_t i = 0; i < 4; ++i) {
-      laws[i].name = kLawNames[i];
+      laws[i].name = law_names()[i];
       alone += fmt::format(", {} {:.2f}", laws[i].name, cost_us({laws[i]}));
     }
     const double together_us = cost_us(laws);

@@ -131,6 +131,12 @@ TEST_F(Map, SaysWhatIsWrongWithWhatItIsGiven) {
   expect_failure("vestige map make --regions mine.json -o a.png", 1, {"did you mean 'height'?"}, "a.json");
   write("mine.json", R"({"regions": [{"name": "a"}, {"name": "b", "part": "head"}]})");
   expect_failure("vestige map make --regions mine.json -o a.png", 1, {"'b'", "no skin belongs to it"}, "a.png");
+  // The sidecar must not take the place of the regions, whatever --force allows.
+  expect_failure("vestige map make --regions mine.json --force -o mine.png", 2,
+                 {"beside 'mine.png' comes 'mine.json', which the regions are in"}, "mine.png");
+  // A height is a share of the skin of the region, not of the body.
+  write("mine.json", R"({"regions": [{"name": "arm", "height": [0, 1.7]}]})");
+  expect_failure("vestige map make --regions mine.json -o a.png", 1, {"0 is its lowest point", "'height_m'"}, "a.png");
   ASSERT_EQ(run("touch a.json").exit_code, 0);
   expect_failure("vestige map make --layout torso16 -o a.png", 1, {"a.json", "--force"}, "a.png");
   expect_failure("vestige map check missing.png", 1, {"missing.png"});

@@ -1,0 +1,239 @@
+#include "analysis/plot/report/findings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "analysis/base/html.hpp"
+#include "analysis/plot/canvas/axis.hpp"
+#include "analysis/plot/data/report_words.hpp"
+#include "traces/base/number_text.hpp"
+
+namespace vestige::plot {
+
+namespace {
+
+constexpr std::size_t kMostNamed = 12;
+
+/// "a, b and c"
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += fmt::format("{}{}", i == 0 ? "" : i + 1 == words.size() ? " and " : ", ", words[i]);
+  return html_text(text);
+}
+
+/// The same in brackets. Nothing if there are too many to read.
+std::string in_brackets(const std::vector<std::string>& words) {
+  return words.size() > kMostNamed ? "" : fmt::format(" ({})", listed(words));
+}
+
+std::string with_unit(double value, const ReportMetric& metric) {
+  return html_text(number_text(value) + (metric.unit.empty() ? "" : "\u00a0" + metric.unit));
+}
+
+std::string name_of(const Candidate& candidate) {
+  return fmt::format("{} with {}", candidate.map, candidate.law);
+}
+
+/// Returns those of rank 1.
+std::vector<std::string> firsts(const std::vector<Candidate>& ranking) {
+  std::vector<std::string> names;
+  for (const Candidate& one : ranking)
+    if (one.rank == 1U) names.push_back(name_of(one));
+  return names;
+}
+
+/// "seeds 1 to 20 of each", "seed 1", "19 or 20 seeds of each"
+std::string seeds_in_words(const std::map<std::string, std::set<double>>& seeds_of) {
+  const std::set<double>& seeds = seeds_of.begin()->second;
+  const bool same = std::ranges::all_of(seeds_of, [&](const auto& one) { return one.second == seeds; });
+  const std::string each = seeds_of.size() > 1 ? " of each" : "";
+  if (!same) {
+    std::set<std::size_t> counts;
+    for (const auto& one : seeds_of) counts.insert(one.second.size());
+    return *counts.begin() == *counts.rbegin()
+               ? fmt::format("{}{}", counted(*counts.begin(), "seed"), each)
+               : fmt::format("{} to {} seeds{}", *counts.begin(), *counts.rbegin(), each);
+  }
+  if (seeds.size() == 1) return fmt::format("seed {:.0f}{}", *seeds.begin(), each);
+  const bool in_a_row = *seeds.rbegin() - *seeds.begin() + 1 == static_cast<double>(seeds.size());
+  if (in_a_row && seeds.size() > 2)
+    return fmt::format("seeds {:.0f} to {:.0f}{}", *seeds.begin(), *seeds.rbegin(), each);
+  if (seeds.size() > kMostNamed) return fmt::format("{} seeds{}", seeds.size(), each);
+  std::vector<std::string> numbers;
+  numbers.reserve(seeds.size());
+  for (const double seed : seeds) numbers.push_back(fmt::format("{:.0f}", seed));
+  return fmt::format("seeds {}{}", listed(numbers), each);
+}
+
+/// Which traces, and how to call them afterwards.
+struct TraceWords {
+  std::string all;    ///< "6 scenarios (swarm and hug; seeds 1 to 20 of each)"
+  std::string these;  ///< "these scenarios"
+};
+
+TraceWords traces_in_words(const ReportData& data) {
+  std::map<std::string, std::set<double>> seeds_of;
+  std::vector<std::string> scenarios;
+  std::vector<std::string> files;
+  for (const ReportTrace& trace : data.traces) {
+    if (!trace.seed) {
+      files.push_back(trace.name);
+      continue;
+    }
+    if (!seeds_of.contains(trace.given)) scenarios.push_back(trace.given);
+    seeds_of[trace.given].insert(*trace.seed);
+  }
+  const std::string recorded = counted(files.size(), "recorded file") + in_brackets(files);
+  if (scenarios.empty()) return {recorded, files.size() == 1 ? "this file" : "these files"};
+  const std::string made =
+      fmt::format("{} ({}; {})", counted(scenarios.size(), "scenario"), listed(scenarios), seeds_in_words(seeds_of));
+  if (files.empty()) return {made, scenarios.size() == 1 ? "this scenario" : "these scenarios"};
+  return {fmt::format("{} and {}", made, recorded), "these scenarios and files"};
+}
+
+/// "; it let 54.2 % of a trace's contacts be felt"
+std::string felt_in_words(const ReportData& data, const Candidate& candidate) {
+  const auto felt = data.felt_share(candidate);
+  return felt ? fmt::format("; it let {:.1f}\u00a0% of a trace's contacts be felt", 100 * *felt) : "";
+}
+
+/// Returns by how much the seeds must be more so that a difference of this size would show; none if there is none.
+std::optional<double> seeds_factor(const Estimate& difference) {
+  if (!difference.has_interval() || *difference.mean == 0) return std::nullopt;
+  const double size = std::abs(*difference.mean);
+  const double width = std::max(std::abs(*difference.high), std::abs(*difference.low)) - size;
+  return std::max(1.0, width * width / (size * size));
+}
+
+/// What the p of a difference are: "p 0.0003, by Holm's correction 0.001".
+std::string p_in_words(const Candidate& one) {
+  if (!one.p || !one.p_holm) return "";
+  return fmt::format("; p {}, by Holm's correction {}", p_text(*one.p), p_text(*one.p_holm));
+}
+
+std::string of_more_traces(const ReportData& data) {
+  const ReportMetric& metric = data.metrics[data.headline];
+  const auto next = std::ranges::find_if(data.ranking, [](const Candidate& one) { return one.rank && *one.rank > 1; });
+  if (!data.has_intervals)
+    return fmt::format(
+        "<strong>More traces.</strong> Whether more seeds or files would change the order cannot be "
+        "said{}. Intervals need eight files, or five seeds of each scenario and more "
+        "(<code>vestige batch --seeds 1:20</code>).",
+        data.why_no_intervals.empty() ? "" : ": " + html_text(data.why_no_intervals));
+  if (next == data.ranking.end()) return "";
+  const Estimate& difference = next->difference_from_best;
+  if (!difference.has_interval()) return "";
+  std::string text = fmt::format(
+      "<strong>More seeds or files.</strong> The next, {}, is {} behind (95\u00a0% interval {} "
+      "to {}{}). ",
+      html_text(name_of(*next)), with_unit(std::abs(*difference.mean), metric),
+      number_text(std::min(std::abs(*difference.low), std::abs(*difference.high))),
+      number_text(std::max(std::abs(*difference.low), std::abs(*difference.high))), p_in_words(*next));
+  if (next->distinguishable_from_best) return text + "More of the same kind would hardly change who is first.";
+  text += "The two cannot be told apart, so more of the same kind may put another first.";
+  constexpr double kMostTimes = 100;
+  if (const auto factor = seeds_factor(difference); factor && *factor <= kMostTimes)
+    text += fmt::format(" If the difference is as large as it looks, about {:.0f} times as many would show it.",
+                        std::max(2.0, std::ceil(*factor)));
+  return text;
+}
+
+std::string of_other_scenarios(const ReportData& data) {
+  std::string text = "<strong>Other scenarios.</strong> ";
+  if (data.by_scenario.empty())
+    return text + "The order holds for these traces; scenarios of another kind may change it.";
+  const Candidate& first = data.ranking.front();
+  std::size_t others = 0;
+  std::size_t clear = 0;
+  for (const ReportScenario& scenario : data.by_scenario) {
+    const Candidate* alone = scenario.find(first);
+    if (alone->rank == 1U || !scenario.ranking.front().rank) continue;
+    ++others;
+    if (alone->distinguishable_from_best) ++clear;
+  }
+  const std::string kinds = counted(data.by_scenario.size(), "scenario");
+  if (others == 0)
+    text += fmt::format("{} is first on each of the {} alone.", html_text(name_of(first)), kinds);
+  else
+    text += fmt::format("{} is first over all, but not on {} of the {} alone; {}.", html_text(name_of(first)), others,
+                        kinds,
+                        clear == 0 ? "on none of them is it distinguishably behind"
+                                   : fmt::format("it is distinguishably behind on {} of them", clear));
+  if (!data.reversals.empty()) text += fmt::format(" In detail: {}.", html_text(data.reversals));
+  return text + " A batch of other scenarios may have another first: the intervals do not cover that.";
+}
+
+std::string of_other_metrics(const ReportData& data) {
+  const Candidate& first = data.ranking.front();
+  std::vector<std::string> others;
+  std::size_t judged = 0;
+  for (std::size_t m = 0; m < data.metrics.size(); ++m) {
+    const ReportMetric& metric = data.metrics[m];
+    if (m == data.headline || metric.better == "neither" || !first.metrics[m].mean) continue;
+    const double sign = metric.better == "higher" ? -1 : 1;
+    ++judged;
+    if (std::ranges::any_of(data.ranking, [&](const Candidate& one) {
+          return one.metrics[m].mean && sign * *one.metrics[m].mean < sign * *first.metrics[m].mean;
+        }))
+      others.push_back(words_of_name(metric.name));
+  }
+  if (judged == 0) return "";
+  if (others.empty())
+    return fmt::format("<strong>Another metric.</strong> {} has the best mean by every other metric ({}) too.",
+                       html_text(name_of(first)), judged);
+  return fmt::format("<strong>Another metric.</strong> By {} of {} other metrics, another has a better mean: {}.",
+                     others.size(), judged, listed(others));
+}
+
+std::string of_motors(const ReportData& data) {
+  if (data.actuator.empty())
+    return "<strong>Motors.</strong> Here they follow their commands at once. Real ones start late and are weaker: "
+           "<code>--actuator FILE.json</code> judges with them, and whether the order stays is not known before.";
+  return fmt::format("<strong>Motors.</strong> They are as {} describes them; others may change the result.",
+                     html_text(data.actuator));
+}
+
+}  // namespace
+
+std::string quotable_sentence(const ReportData& data) {
+  const ReportMetric& metric = data.metrics[data.headline];
+  const Candidate& first = data.ranking.front();
+  const std::string words = html_text(words_of_name(metric.name));
+  if (!first.headline.mean)
+    return fmt::format("No combination of map and law has a value of {} on any trace, so nothing is ranked.", words);
+  const TraceWords traces = traces_in_words(data);
+  const std::vector<std::string> best = firsts(data.ranking);
+  const std::vector<std::string> maps = data.maps();
+  std::string text =
+      fmt::format("Over {}, <strong>{}</strong> had the {} {}{}", traces.all,
+                  best.empty() ? html_text(name_of(first)) : listed(best),
+                  metric.better == "higher" ? "highest" : "lowest", metric.model_based ? "modelled " : "", words);
+  if (data.ranking.size() > 1)
+    text += fmt::format(" of {} combinations of {}{} and {}{}", data.ranking.size(), counted(maps.size(), "map"),
+                        in_brackets(maps), counted(data.laws.size(), "intensity law"), in_brackets(data.laws));
+  text += fmt::format(": {} on average", with_unit(*first.headline.mean, metric));
+  if (first.headline.has_interval())
+    text += fmt::format(" over {} (95\u00a0% interval {} to {})", traces.these, number_text(*first.headline.low),
+                        with_unit(*first.headline.high, metric));
+  else if (data.traces.size() > 1)
+    text += fmt::format(" over {} (without an interval)", traces.these);
+  if (first.headline.traces < data.traces.size())
+    text += fmt::format(", on the {} of {} traces where it has a value", first.headline.traces, data.traces.size());
+  return text + felt_in_words(data, first) + ".";
+}
+
+std::vector<std::string> what_would_change(const ReportData& data) {
+  std::vector<std::string> paragraphs;
+  if (!data.ranking.front().headline.mean) return paragraphs;
+  for (std::string& one :
+       std::vector{of_more_traces(data), of_other_scenarios(data), of_other_metrics(data), of_motors(data)})
+    if (!one.empty()) paragraphs.push_back(std::move(one));
+  return paragraphs;
+}
+
+}  // namespace vestige::plot
