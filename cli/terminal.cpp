@@ -59,23 +59,30 @@ void warn(std::string_view text, Verbosity verbosity) {
   if (verbosity != Verbosity::kQuiet) print_message(fmt::format("vestige: warning: {}\n", printable(text)));
 }
 
-Progress::Progress(std::string label, Verbosity verbosity)
+Progress::Progress(std::string label, Verbosity verbosity, std::chrono::milliseconds line_every)
     : label_(std::move(label)),
-      shown_(verbosity != Verbosity::kQuiet && ::isatty(STDERR_FILENO) != 0),
+      shown_(verbosity != Verbosity::kQuiet),
+      on_terminal_(::isatty(STDERR_FILENO) != 0),
       colour_(std::getenv("NO_COLOR") == nullptr),
+      every_(on_terminal_ ? std::chrono::milliseconds(100) : line_every),
       start_(std::chrono::steady_clock::now()),
       last_(start_) {}
 
 Progress::~Progress() {
-  if (shown_) std::fputs("\r\033[K", stderr);  // does not throw when the terminal has gone
+  if (shown_ && on_terminal_) std::fputs("\r\033[K", stderr);  // does not throw when the terminal has gone
 }
 
 bool Progress::update(double share) {
   const auto now = std::chrono::steady_clock::now();
-  if (shown_ && now - last_ >= std::chrono::milliseconds(100)) {
+  if (shown_ && now - last_ >= every_) {
     last_ = now;
     const double spent_s = std::chrono::duration<double>(now - start_).count();
     const double left_s = share > 0 ? spent_s * (1 - share) / share : 0;
+    if (!on_terminal_) {
+      const std::string left = share > 0 ? fmt::format(", about {:.0f} s left", left_s) : "";
+      print_message(fmt::format("vestige: {}: {:.0f} %{}\n", label_, 100 * share, left));
+      return !interrupted();
+    }
     const int full = std::clamp(static_cast<int>(share * kBarCells), 0, kBarCells);
     const std::string bar = std::string(static_cast<std::size_t>(full), '#');
     const std::string rest = std::string(static_cast<std::size_t>(kBarCells - full), '.');

@@ -25,11 +25,11 @@ enum class Verbosity { kQuiet, kNormal, kVerbose };
 /// Prints "vestige: warning: …" to standard error; with kQuiet, prints nothing.
 void warn(std::string_view text, Verbosity verbosity);
 
-/// A progress bar with the remaining time on standard error. It is shown only if standard error is a terminal, and
-/// never with kQuiet. Colour follows NO_COLOR (https://no-color.org).
+/// Progress on standard error, with the remaining time: a bar on a terminal, otherwise, for logs, a line each
+/// `line_every`. With kQuiet, nothing is shown. Colour follows NO_COLOR (https://no-color.org).
 class Progress {
  public:
-  Progress(std::string label, Verbosity verbosity);
+  Progress(std::string label, Verbosity verbosity, std::chrono::milliseconds line_every = std::chrono::seconds(30));
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -41,7 +41,9 @@ class Progress {
  private:
   std::string label_;
   bool shown_;
+  bool on_terminal_;
   bool colour_;
+  std::chrono::milliseconds every_;  ///< between two that are shown
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;
 };

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <numeric>
 #include <vector>
 
@@ -12,20 +13,35 @@ namespace vestige::help {
 
 namespace {
 
-/// Levenshtein's distance: letters put in, left out or exchanged.
+bool is_same_letter(char a, char b) {
+  return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+}
+
+/// The distance of Damerau and Levenshtein: letters put in, left out or replaced, and neighbours that changed places.
+/// Capitals count as small letters.
 std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before(b.size() + 1);  // the row before `last`
+  std::vector<std::size_t> last(b.size() + 1);
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t k = 0; k < b.size(); ++k) {
-      const std::size_t exchanged = diagonal + (a[i] == b[k] ? 0 : 1);
-      diagonal = row[k + 1];
-      row[k + 1] = std::min({exchanged, row[k] + 1, diagonal + 1});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    before.swap(last);
+    last.swap(row);
+    row[0] = i;
+    for (std::size_t k = 1; k <= b.size(); ++k) {
+      row[k] = std::min({last[k - 1] + (is_same_letter(a[i - 1], b[k - 1]) ? 0 : 1), row[k - 1] + 1, last[k] + 1});
+      if (i > 1 && k > 1 && is_same_letter(a[i - 1], b[k - 2]) && is_same_letter(a[i - 2], b[k - 1]))
+        row[k] = std::min(row[k], before[k - 2] + 1);
     }
   }
   return row.back();
+}
+
+/// How many changed letters still leave a name recognisable: fewer than half of its letters, at most two; of a name of
+/// two letters, one.
+std::size_t most_changes(std::string_view name) {
+  if (name.size() < 3) return name.size() / 2;
+  return std::min((name.size() - 1) / 2, std::size_t{2});
 }
 
 /// Returns the first flag of the command line that the named verb does not have, without its =VALUE; empty if there is
@@ -43,7 +59,7 @@ struct ValueFault {
 };
 
 /// Reads it from CLI11's words: "--rate: At Most 1 required but received 2", "--rate: 1 required FLOAT missing".
-std::optional<ValueFault> value_fault(const CLI::ParseError& error) {
+std::optional<ValueFault> read_value_fault(const CLI::ParseError& error) {
   constexpr std::string_view kSeveral = ": At Most 1 required but received ";
   const std::string text = error.what();
   if (const std::size_t at = text.find(kSeveral); at != std::string::npos)
@@ -57,10 +73,16 @@ std::optional<ValueFault> value_fault(const CLI::ParseError& error) {
 /// many, which is the value of that flag.
 bool is_about_unknown(const CLI::App& program, const CLI::ParseError& error) {
   if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ExtrasError)) return true;
-  if (const auto fault = value_fault(error); fault && !fault->flag.starts_with('-') && !unknown_flag(program).empty())
+  if (const auto fault = read_value_fault(error);
+      fault && !fault->flag.starts_with('-') && !unknown_flag(program).empty())
     return true;
   const bool is_missing = error.get_name() == "RequiredError" || error.get_name() == "RequiresError";
   return is_missing && program.remaining_size(true) > 0;
+}
+
+/// As `read_value_fault`, but an input too many that is the value of an unknown flag is no such fault.
+std::optional<ValueFault> value_fault(const CLI::App& program, const CLI::ParseError& error) {
+  return is_about_unknown(program, error) ? std::nullopt : read_value_fault(error);
 }
 
 /// Returns what a value that is none of a flag's values probably means. Reads it from CLI11's words: "--skip: no not in
@@ -103,7 +125,7 @@ std::string_view nearest_name(std::string_view word, std::span<const std::string
   std::size_t fewest = 3;
   for (const std::string_view name : names) {
     const std::size_t changes = distance(word, name);
-    if (changes >= fewest || 2 * changes >= name.size()) continue;
+    if (changes >= fewest || changes > most_changes(name)) continue;
     fewest = changes;
     nearest = name;
   }
@@ -129,7 +151,7 @@ std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
   constexpr std::string_view kOverride = " was given a disallowed flag override";  // CLI11's words
   if (const std::string cause = error.what(); cause.ends_with(kOverride))
     return fmt::format("--{} takes no value", cause.substr(0, cause.size() - kOverride.size()));
-  if (const auto fault = value_fault(error); fault && !is_about_unknown(program, error))
+  if (const auto fault = value_fault(program, error))
     return fault->times.empty() ? fmt::format("{}: its value is missing", fault->flag)
                                 : fmt::format("{}: is given {} times", fault->flag, fault->times);
   if (!is_about_unknown(program, error)) return error.what();
@@ -140,7 +162,7 @@ std::string cause_of(const CLI::App& program, const CLI::ParseError& error) {
 std::string remedy_of(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& verb = named_verb(program);
   const CommandTable table = command_table(verb);
-  if (const auto fault = value_fault(error); fault && !is_about_unknown(program, error)) {
+  if (const auto fault = value_fault(program, error)) {
     if (!fault->times.empty()) return "name it once";
     for (const FlagTable& flag : table.flags)
       if (std::ranges::find(flag.names, fault->flag) != flag.names.end())

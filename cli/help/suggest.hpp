@@ -9,7 +9,8 @@
 namespace vestige::help {
 
 /// Returns the name in `names` that `word` probably means: the first name with the fewest changed letters, at most two
-/// and fewer than half of the name's letters. Returns an empty text if there is none.
+/// and fewer than half of the name's letters (of two letters, one). Neighbours that changed places are one change, and
+/// capitals are none. Returns an empty text if there is none.
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> names);
 
 /// As above, in the form "did you mean 'NAME'? ", or an empty text; for the beginning of a remedy.

@@ -9,6 +9,7 @@
 
 #include "cli/help/validators.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 #include "traces/files/output_file.hpp"
 #include "transport/sinks/osc_sink.hpp"
 #include "transport/sinks/serial_sink.hpp"
@@ -144,6 +145,7 @@ OpenSink::OpenSink(const SinkChoice& choice, const std::vector<std::string>& act
     auto sink = std::make_unique<OscSink>(osc, actuator_names);
     if (sink->is_refused())
       warn(fmt::format("{}: no program listens there now; frames are sent anyway", sink->name()), verbosity);
+    osc_ = sink.get();
     sink_ = std::move(sink);
     return;
   }
@@ -213,7 +215,10 @@ double OpenSink::line_time_s() const {
 
 nlohmann::ordered_json OpenSink::link_json() const {
   nlohmann::ordered_json json = {{"port", choice_.port}};
-  if (choice_.is_osc()) return json;
+  if (osc_ != nullptr) {
+    json["datagrams"] = osc_->datagrams_sent();
+    return json;
+  }
   json["frame_bytes"] = frame_bytes_;
   if (choice_.is_file()) return json;
   json["baud"] = choice_.baud;
@@ -225,7 +230,9 @@ nlohmann::ordered_json OpenSink::link_json() const {
 }
 
 std::string OpenSink::describe_link(std::uint64_t bytes) const {
-  if (choice_.is_osc() || choice_.is_file()) return fmt::format("{}: {} bytes\n", sink_->name(), bytes);
+  if (osc_ != nullptr)
+    return fmt::format("{}: {} bytes in {}\n", sink_->name(), bytes, counted(osc_->datagrams_sent(), "datagram"));
+  if (choice_.is_file()) return fmt::format("{}: {} bytes\n", sink_->name(), bytes);
   const std::string board =
       greeting_ ? fmt::format("board version {}, {} actuators", greeting_->version, greeting_->actuator_count)
                 : "no board answered";

@@ -14,8 +14,9 @@
 #include "transport/wire/vest_frame.hpp"
 
 namespace vestige {
-class WireFileSink;
+class OscSink;
 class SerialSink;
+class WireFileSink;
 }  // namespace vestige
 
 namespace vestige::cli {
@@ -81,6 +82,7 @@ class OpenSink {
 
   SinkChoice choice_;
   std::unique_ptr<ActuatorSink> sink_;
+  OscSink* osc_ = nullptr;
   WireFileSink* file_ = nullptr;
   SerialSink* serial_ = nullptr;
   std::optional<Greeting> greeting_;

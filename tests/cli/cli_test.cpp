@@ -278,11 +278,21 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige record -o x.mcap --seed -1", 2, {"--seed"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --origin 1e300,0,0", 2, {"--origin"}, "x.mcap");
   expect_failure("vestige record", 2, {"--output"});
+  for (const char* verb : {"record", "import --poses a.csv"})
+    expect_failure(std::string("vestige ") + verb + " -o x.csv", 2,
+                   {"'x.csv' ends in .csv, and a trace is an MCAP file", "vestige export"}, "x.csv");
+  expect_failure("vestige import --colliders a.csv -o x.mcap", 2,
+                 {"no motion and no poses", "vestige record --animation none --colliders a.csv"}, "x.mcap");
   expect_failure("vestige record --ouput x.mcap", 2, {"no flag '--ouput'", "did you mean '--output'?"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --cuont=5", 2, {"no flag '--cuont'", "did you mean '--count'?"}, "x.mcap");
   expect_failure("vestige map make --layuot paper6 -o a.png", 2, {"did you mean '--layout'?"}, "a.png");
   expect_failure("vestige replay x.mcap --detector geometri", 2, {"geometri not in", "did you mean 'geometry'?"});
   expect_failure("vestige sweep --detector cpu,embre -o s", 2, {"there is no 'embre'", "did you mean 'embree'?"}, "s");
+  expect_failure("vestige replay x.mcap --detector GEOMETRY", 2, {"did you mean 'geometry'?"});
+  expect_failure("vestige record -o x.mcap --compression l4z", 2, {"did you mean 'lz4'?"}, "x.mcap");
+  expect_failure("vestige record -o x.mcap --animation Spni", 2, {"no animation 'Spni'", "did you mean 'spin'?"},
+                 "x.mcap");
+  expect_failure("vestige import --motion a.bvh --unit mn -o x.mcap", 2, {"did you mean 'mm'?"}, "x.mcap");
   expect_failure("vestige inspect small.mcap one two", 2, {"not expected: 'one', 'two'"});
   expect_failure("vestige replay small.mcap --planes t --texture t.exr", 2,
                  {"there is no flag '--texture'", "did you mean '--textures'?"}, "t.exr");

@@ -6,7 +6,7 @@
 3. Every command in a fenced block, a line that begins with "$ ", runs with its exit code and with the output below it.
 
 Commands of a page run one after the other in a temporary folder of the page. Output is standard output and standard
-error together. In it, any number matches any other, and so do hashes, OpenGL contexts and white space. "…" matches anything, and
+error together. In it, any number matches any other, and so do hashes, OpenGL contexts and white space. Lines of progress do not count. "…" matches anything, and
 alone on a line any lines. A command without output below it may print what it likes.
 
 HTML comments directly above a block say how it is tested:
@@ -37,6 +37,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 MOST_README_LINES = 150
 PATIENCE_S = 120
+PROGRESS = re.compile(r"vestige: [^:]+: \d+ %(, about \d+ s left)?")  # which only a slow machine prints
 
 Block = collections.namedtuple("Block", "line lines notes")  # line: of the first of `lines`
 Command = collections.namedtuple("Command", "line text output")
@@ -136,7 +137,8 @@ def loosen(line):
 
 
 def tidy(lines, exact):
-    """Lines to compare: without ends and runs of white space, and unless `exact` without numbers and hashes."""
+    """Lines to compare: without progress, ends and runs of white space, and unless `exact` without numbers and hashes."""
+    lines = [line for line in lines if not PROGRESS.fullmatch(line)]
     lines = [re.sub(r"\s+", " ", line if exact else loosen(line)).strip() for line in lines]
     return lines[: len(lines) - next((i for i, line in enumerate(reversed(lines)) if line), len(lines))]
 

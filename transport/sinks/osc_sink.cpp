@@ -6,7 +6,6 @@
 #include <poll.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <cstring>
@@ -96,24 +95,28 @@ void OscSink::send_off(std::uint8_t) {
 }
 
 void OscSink::send_levels(std::span<const std::uint8_t> level) {
+  for (const std::vector<std::byte>& datagram : datagrams_of(level)) send_datagram(datagram);
+}
+
+std::vector<std::vector<std::byte>> OscSink::datagrams_of(std::span<const std::uint8_t> level) const {
+  std::vector<std::vector<std::byte>> datagrams;
   Bundle bundle = new_bundle();
-  const auto send_bundle = [&] {
+  const auto end_bundle = [&] {
     std::size_t size = lo_bundle_length(bundle.get());
-    std::vector<std::byte> bytes(size);
-    lo_bundle_serialise(bundle.get(), bytes.data(), &size);
-    send_datagram(bytes);
+    lo_bundle_serialise(bundle.get(), datagrams.emplace_back(size).data(), &size);
   };
   for (std::size_t i = 0; i < addresses_.size(); ++i) {
     const char* const address = addresses_[i].c_str();
     const lo_message message = new_message(options_.value, i < level.size() ? level[i] : std::uint8_t{0});
     const std::size_t more = sizeof(std::uint32_t) + lo_message_length(message, address);
     if (lo_bundle_count(bundle.get()) > 0 && lo_bundle_length(bundle.get()) + more > kMostDatagramBytes) {
-      send_bundle();
+      end_bundle();
       bundle = new_bundle();
     }
     lo_bundle_add_message(bundle.get(), address, message);
   }
-  if (lo_bundle_count(bundle.get()) > 0) send_bundle();
+  if (lo_bundle_count(bundle.get()) > 0) end_bundle();
+  return datagrams;
 }
 
 void OscSink::send_datagram(std::span<const std::byte> bytes) {
@@ -126,19 +129,26 @@ void OscSink::send_datagram(std::span<const std::byte> bytes) {
     if (is_passing(error)) throw LinkLost(name(), cause, "check the network");
     throw Error(name(), cause, "check the address, and that no firewall blocks it");
   }
-  bytes_sent_ += bytes.size();
+  count(bytes);
+}
+
+void OscSink::count(std::span<const std::byte> datagram) {
+  bytes_sent_ += datagram.size();
+  ++datagrams_sent_;
 }
 
 bool OscSink::reconnect() {
   return Descriptor(connected_socket()).value() >= 0;
 }
 
-bool OscSink::is_refused() const {
+bool OscSink::is_refused() {
   constexpr int kPatience_ms = 50;
-  constexpr std::array<char, 16> kEmptyBundle = {'#', 'b', 'u', 'n', 'd', 'l', 'e', 0, 0, 0, 0, 0, 0, 0, 0, 1};
   const Descriptor probe(connected_socket());
-  if (probe.value() < 0 || ::send(probe.value(), kEmptyBundle.data(), kEmptyBundle.size(), MSG_NOSIGNAL) < 0)
-    return false;
+  if (probe.value() < 0) return false;
+  for (const std::vector<std::byte>& datagram : datagrams_of({})) {
+    if (::send(probe.value(), datagram.data(), datagram.size(), MSG_NOSIGNAL) < 0) return false;
+    count(datagram);
+  }
   pollfd answer{.fd = probe.value(), .events = POLLIN, .revents = 0};
   if (::poll(&answer, 1, kPatience_ms) <= 0) return false;
   char ignored = 0;

@@ -31,17 +31,21 @@ class OscSink final : public ActuatorSink {
   void send(const ActuatorFrame& frame, std::uint8_t sequence) override;
   void send_off(std::uint8_t sequence) override;
   bool reconnect() override;
-  /// Sends an empty bundle and waits 50 ms for the host's report that no program listens at this port. Most hosts send
-  /// such a report; a firewall may block it.
-  bool is_refused() const;
+  /// Switches everything off, and waits 50 ms for the host's report that no program listens at this port. Most hosts
+  /// send such a report; a firewall may block it.
+  bool is_refused();
   std::uint64_t bytes_sent() const override { return bytes_sent_; }
+  /// What a receiver gets if none is lost: states, and the datagrams that switch everything off first and last.
+  std::uint64_t datagrams_sent() const { return datagrams_sent_; }
 
  private:
   /// Returns a connected socket, on which the host's errors arrive. Returns a negative number, with errno set, if there
   /// is no route to the host.
   int connected_socket() const;
   void send_levels(std::span<const std::uint8_t> level);
+  std::vector<std::vector<std::byte>> datagrams_of(std::span<const std::uint8_t> level) const;
   void send_datagram(std::span<const std::byte> bytes);
+  void count(std::span<const std::byte> datagram);
 
   OscOptions options_;
   std::vector<std::string> addresses_;  // addresses of the actuators
@@ -49,6 +53,7 @@ class OscSink final : public ActuatorSink {
   socklen_t host_bytes_ = 0;
   int socket_ = -1;
   std::uint64_t bytes_sent_ = 0;
+  std::uint64_t datagrams_sent_ = 0;
 };
 
 }  // namespace vestige

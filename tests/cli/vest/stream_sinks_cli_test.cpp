@@ -100,6 +100,14 @@ TEST_F(StreamToOtherSinks, ParametersGoByOscToWhoeverListens) {
   EXPECT_THAT(heard, HasSubstr(std::string(",f\0\0\0\0\0\0", 8)));
   EXPECT_GT(json_in("stream.json")["sent"], 0);
   EXPECT_THAT(outcome.standard_error, Not(HasSubstr("no program listens")));
+  // Both ends count the same, and no bundle is empty.
+  EXPECT_EQ(heard.size(), json_in("stream.json")["link"]["bytes"]);
+  std::size_t bundles = 0;
+  for (std::size_t at = heard.find("#bundle"); at != std::string::npos; at = heard.find("#bundle", at + 16)) {
+    EXPECT_NE(heard.substr(at + 16, 7), "#bundle");
+    ++bundles;
+  }
+  EXPECT_EQ(bundles, json_in("stream.json")["link"]["datagrams"]);
   // That listener has gone.
   const test::Outcome alone = run("vestige stream trace.mcap --port OSC://127.0.0.1:$(cat port)");
   EXPECT_EQ(alone.exit_code, 0) << alone.standard_error;
