@@ -50,12 +50,14 @@ class Comparison {
  public:
   using Strata = std::vector<std::vector<std::uint32_t>>;
 
-  explicit Comparison(const Strata& units_of) : units_of_(units_of) {}
+  /// `count` candidates are then added.
+  Comparison(const Strata& units_of, std::size_t units, std::size_t count)
+      : units_of_(units_of), count_(count), parts_(units * count) {}
 
-  void add(std::size_t index, std::span<const double> values, double sign) {
+  void add(std::span<const double> values, double sign) {
+    const std::size_t k = means_.size();
     double sum = 0;
     double count = 0;
-    std::vector<double> parts(values.size());
     for (const auto& units : units_of_) {
       double sum_here = 0;
       double count_here = 0;
@@ -67,54 +69,43 @@ class Comparison {
       // Values drawn from few scatter less than those few.
       const double widening = std::sqrt(static_cast<double>(units.size()) / static_cast<double>(units.size() - 1));
       for (const std::uint32_t unit : units)
-        if (!std::isnan(values[unit])) parts[unit] = widening * (sign * values[unit] - sum_here / count_here);
+        if (!std::isnan(values[unit]))
+          parts_[unit * count_ + k] = widening * (sign * values[unit] - sum_here / count_here);
       sum += sum_here;
       count += count_here;
     }
-    for (double& part : parts) part /= count;
-    index_.push_back(index);
+    for (std::size_t unit = 0; unit < values.size(); ++unit) parts_[unit * count_ + k] /= count;
     means_.push_back(sum / count);
-    parts_of_.push_back(std::move(parts));
   }
 
-  /// To be called after the last `add`.
-  void arrange() {
-    const std::size_t units = parts_of_.empty() ? 0 : parts_of_.front().size();
-    parts_.resize(units * count());
-    for (std::size_t k = 0; k < count(); ++k)
-      for (std::size_t unit = 0; unit < units; ++unit) parts_[unit * count() + k] = parts_of_[k][unit];
-  }
-
-  std::size_t count() const { return index_.size(); }
-  std::size_t index(std::size_t k) const { return index_[k]; }
   const std::vector<double>& means() const { return means_; }
 
   /// Adds up the parts of drawn units for each candidate.
   void sum_up(std::span<const std::uint32_t> drawn, std::vector<double>& sums) const {
-    sums.assign(count(), 0);
+    sums.assign(count_, 0);
     for (const std::uint32_t unit : drawn)
-      for (std::size_t k = 0; k < count(); ++k) sums[k] += parts_[unit * count() + k];
+      for (std::size_t k = 0; k < count_; ++k) sums[k] += parts_[unit * count_ + k];
   }
 
   /// Returns the standard error of the difference between each candidate and the best of the others.
   void errors(std::span<const std::uint32_t> drawn, const BestTwo& two, std::vector<double>& errors) const {
-    errors.assign(count(), 0);
+    errors.assign(count_, 0);
     std::vector<double>& sums = sums_;
     std::vector<double>& squares = squares_;
     for (std::size_t s = 0, at = 0; s < units_of_.size(); ++s) {
       const auto units = static_cast<double>(units_of_[s].size());
-      sums.assign(count(), 0);
-      squares.assign(count(), 0);
+      sums.assign(count_, 0);
+      squares.assign(count_, 0);
       for (const std::size_t end = at + units_of_[s].size(); at < end; ++at) {
-        const double* parts = &parts_[drawn[at] * count()];
+        const double* parts = &parts_[drawn[at] * count_];
         const double best = parts[two.best];
-        for (std::size_t k = 0; k < count(); ++k) {
+        for (std::size_t k = 0; k < count_; ++k) {
           const double difference = parts[k] - best;
           sums[k] += difference;
           squares[k] += difference * difference;
         }
       }
-      for (std::size_t k = 0; k < count(); ++k)
+      for (std::size_t k = 0; k < count_; ++k)
         errors[k] += std::max(0.0, squares[k] - sums[k] * sums[k] / units);  // the widening makes up for units - 1
     }
     for (double& error : errors) error = std::sqrt(error);
@@ -123,9 +114,8 @@ class Comparison {
 
  private:
   const Strata& units_of_;
-  std::vector<std::size_t> index_;
+  std::size_t count_;
   std::vector<double> means_;
-  std::vector<std::vector<double>> parts_of_;
   std::vector<double> parts_;  ///< by unit, then by candidate
   mutable std::vector<double> sums_;
   mutable std::vector<double> squares_;
@@ -147,6 +137,8 @@ StratifiedBootstrap::StratifiedBootstrap(std::span<const std::size_t> stratum_of
   units_of_.resize(strata);
   for (std::uint32_t unit = 0; unit < stratum_of_unit_.size(); ++unit)
     units_of_[stratum_of_unit_[unit]].push_back(unit);
+  all_units_.reserve(stratum_of_unit_.size());
+  for (const auto& of_stratum : units_of_) all_units_.insert(all_units_.end(), of_stratum.begin(), of_stratum.end());
   if (std::ranges::any_of(units_of_, [](const auto& of_stratum) { return of_stratum.size() < kLeastUnits; })) return;
   if (stratum_of_unit_.size() < strata + kLeastFreedom) return;
   std::mt19937_64 random(seed);
@@ -203,10 +195,7 @@ MeanInterval StratifiedBootstrap::mean(std::span<const double> values) const {
   const double middle = *some;
   std::vector<double> centred(values.begin(), values.end());
   for (double& value : centred) value -= middle;
-  std::vector<std::uint32_t> all;
-  all.reserve(values.size());
-  for (const auto& of_stratum : units_of_) all.insert(all.end(), of_stratum.begin(), of_stratum.end());
-  const Estimate found = estimate(centred, all);
+  const Estimate found = estimate(centred, all_units_);
   result.n = static_cast<std::size_t>(std::ranges::count_if(values, [](double value) { return !std::isnan(value); }));
   result.mean = middle + found.mean;
   if (!has_interval(values)) return result;
@@ -229,23 +218,21 @@ std::vector<std::optional<LeaderTest>> StratifiedBootstrap::against_leader(
     std::span<const std::vector<double>> candidates, double sign) const {
   std::vector<std::optional<LeaderTest>> tests(candidates.size());
   if (!has_intervals()) return tests;
-  Comparison compared(units_of_);
+  std::vector<std::size_t> index;  // of those that can be compared
   for (std::size_t c = 0; c < candidates.size(); ++c)
-    if (has_interval(candidates[c])) compared.add(c, candidates[c], sign);
-  if (compared.count() == 0) return tests;
-  if (compared.count() == 1) {
-    tests[compared.index(0)].emplace();
+    if (has_interval(candidates[c])) index.push_back(c);
+  const std::size_t count = index.size();
+  if (count == 0) return tests;
+  if (count == 1) {
+    tests[index.front()].emplace();
     return tests;
   }
-  compared.arrange();
-  const std::size_t count = compared.count();
+  Comparison compared(units_of_, stratum_of_unit_.size(), count);
+  for (const std::size_t c : index) compared.add(candidates[c], sign);
   const std::vector<double>& means = compared.means();
   const BestTwo found = best_two(means);
-  std::vector<std::uint32_t> all;
-  all.reserve(stratum_of_unit_.size());
-  for (const auto& of_stratum : units_of_) all.insert(all.end(), of_stratum.begin(), of_stratum.end());
   std::vector<double> found_errors;
-  compared.errors(all, found, found_errors);
+  compared.errors(all_units_, found, found_errors);
 
   std::vector<Studentized> studentized(count);
   std::vector<double> chance;
@@ -273,7 +260,7 @@ std::vector<std::optional<LeaderTest>> StratifiedBootstrap::against_leader(
     }
   }
   for (std::size_t k = 0; k < count; ++k) {
-    LeaderTest& test = tests[compared.index(k)].emplace();
+    LeaderTest& test = tests[index[k]].emplace();
     if (k == found.best) continue;
     const double behind = means[k] - means[found.best];
     const std::vector<double>& spread = studentized[k].differences;
@@ -285,7 +272,7 @@ std::vector<std::optional<LeaderTest>> StratifiedBootstrap::against_leader(
     test.interval = sign > 0 ? interval : Interval{-interval.high, -interval.low};
     test.p = std::min(1.0, (1 + studentized[k].as_far) / (1 + studentized[k].behind));
   }
-  correct(tests, compared.index(found.best));
+  correct(tests, index[found.best]);
   return tests;
 }
 

@@ -67,6 +67,7 @@ class StratifiedBootstrap {
 
   std::vector<std::size_t> stratum_of_unit_;
   std::vector<std::vector<std::uint32_t>> units_of_;  ///< the units of each stratum
+  std::vector<std::uint32_t> all_units_;              ///< stratum by stratum
   std::vector<std::uint32_t> drawn_;                  ///< the units of each resample, stratum by stratum
 };
 

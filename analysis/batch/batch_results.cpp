@@ -33,6 +33,11 @@ std::string field(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
+/// Mean and interval as three fields.
+std::string fields(const MeanInterval& mean) {
+  return fmt::format("{},{},{}", field(mean.mean), field(mean.interval.low), field(mean.interval.high));
+}
+
 nlohmann::ordered_json to_json(const MeanInterval& mean) {
   return {{"mean", number(mean.mean)},
           {"low", number(mean.interval.low)},
@@ -82,11 +87,14 @@ class ScoreTable {
     values_.resize(candidates_.size(),
                    CandidateValues(metrics().size(), std::vector<double>(items.size(), kNotANumber)));
     for (std::size_t i = 0; i < items.size(); ++i) add(items[i], i);
-    for (const nlohmann::ordered_json& planned : batch.at("traces")) {
-      const auto trace = std::ranges::find(traces_, planned.at("name").get<std::string>(), &JudgedTrace::name);
-      if (trace == traces_.end() || !planned.contains("seed")) continue;
-      trace->scenario = planned.at("given").get<std::string>();
-      trace->seed = planned.at("seed").get<std::uint64_t>();
+    std::map<std::string, const nlohmann::ordered_json*> plan_of;
+    for (const nlohmann::ordered_json& planned : batch.at("traces"))
+      if (planned.contains("seed")) plan_of[planned.at("name").get<std::string>()] = &planned;
+    for (JudgedTrace& trace : traces_) {
+      const auto planned = plan_of.find(trace.name);
+      if (planned == plan_of.end()) continue;
+      trace.scenario = planned->second->at("given").get<std::string>();
+      trace.seed = planned->second->at("seed").get<std::uint64_t>();
     }
   }
 
@@ -169,14 +177,20 @@ std::string comparison_fields(const RankedCandidate& ranked) {
                      field(test.p), field(test.p_holm), ranked.is_compared() ? worse : "");
 }
 
-nlohmann::ordered_json comparison_json(const RankedCandidate& ranked, std::size_t traces) {
+nlohmann::ordered_json name_and_rank(const BatchResults& results, const RankedCandidate& ranked) {
+  const auto& [map, law] = results.candidates[ranked.candidate];
+  nlohmann::ordered_json one = {{"rank", nullptr}, {"map", map}, {"law", law}};
+  if (ranked.rank) one["rank"] = *ranked.rank;
+  return one;
+}
+
+void add_comparison(nlohmann::ordered_json& one, const RankedCandidate& ranked, const MeanInterval& headline) {
   const LeaderTest test = test_of(ranked);
-  return {{"mean", number(test.difference)},
-          {"low", number(test.interval.low)},
-          {"high", number(test.interval.high)},
-          {"n", traces},
-          {"p", number(test.p)},
-          {"p_holm", number(test.p_holm)}};
+  one["headline"] = to_json(headline);
+  one["difference_from_best"] = to_json(MeanInterval{test.difference, test.interval, headline.n});
+  one["difference_from_best"]["p"] = number(test.p);
+  one["difference_from_best"]["p_holm"] = number(test.p_holm);
+  one["distinguishable_from_best"] = ranked.is_worse();
 }
 
 void write_ranking_by_scenario(const BatchFolder& folder, const BatchResults& results) {
@@ -189,9 +203,8 @@ void write_ranking_by_scenario(const BatchFolder& folder, const BatchResults& re
     for (const RankedCandidate& ranked : scenario.ranking) {
       const auto& [map, law] = results.candidates[ranked.candidate];
       const MeanInterval& mean = ranked.metrics.front();
-      csv += fmt::format("{},{},{},{},{},{},{},{},{}\n", scenario.scenario,
-                         ranked.rank ? std::to_string(*ranked.rank) : "", map, law, mean.n, field(mean.mean),
-                         field(mean.interval.low), field(mean.interval.high), comparison_fields(ranked));
+      csv += fmt::format("{},{},{},{},{},{},{}\n", scenario.scenario, ranked.rank ? std::to_string(*ranked.rank) : "",
+                         map, law, mean.n, fields(mean), comparison_fields(ranked));
     }
   }
   // With one scenario, ranking.csv says it all.
@@ -203,13 +216,8 @@ nlohmann::ordered_json by_scenario_json(const BatchResults& results) {
   for (const ScenarioRanking& scenario : results.by_scenario) {
     nlohmann::ordered_json ranking = nlohmann::ordered_json::array();
     for (const RankedCandidate& ranked : scenario.ranking) {
-      nlohmann::ordered_json one = {{"rank", nullptr},
-                                    {"map", results.candidates[ranked.candidate].map},
-                                    {"law", results.candidates[ranked.candidate].law}};
-      if (ranked.rank) one["rank"] = *ranked.rank;
-      one["headline"] = to_json(ranked.metrics.front());
-      one["difference_from_best"] = comparison_json(ranked, ranked.metrics.front().n);
-      one["distinguishable_from_best"] = ranked.is_worse();
+      nlohmann::ordered_json one = name_and_rank(results, ranked);
+      add_comparison(one, ranked, ranked.metrics.front());
       ranking.push_back(one);
     }
     json.push_back({{"scenario", scenario.scenario}, {"traces", scenario.traces}, {"ranking", ranking}});
@@ -241,19 +249,16 @@ void write_ranking(const BatchFolder& folder, const BatchResults& results, std::
     nlohmann::ordered_json means;
     for (std::size_t m = 0; m < metrics().size(); ++m) {
       const MeanInterval& mean = ranked.metrics[m];
-      csv += fmt::format(",{},{},{}", field(mean.mean), field(mean.interval.low), field(mean.interval.high));
+      csv += "," + fields(mean);
       means[std::string(metrics()[m].name)] = to_json(mean);
     }
     const std::string why = ranked.against_leader     ? ""
                             : results.has_intervals() ? "too few traces have a value"
                                                       : results.why_no_intervals;
     csv += fmt::format(",{},{}\n", comparison_fields(ranked), why);
-    nlohmann::ordered_json one = {{"rank", nullptr}, {"map", candidate.map}, {"law", candidate.law}};
-    if (ranked.rank) one["rank"] = *ranked.rank;
+    nlohmann::ordered_json one = name_and_rank(results, ranked);
     one["traces"] = ranked.metrics[results.headline].n;
-    one["headline"] = to_json(ranked.metrics[results.headline]);
-    one["difference_from_best"] = comparison_json(ranked, ranked.metrics[results.headline].n);
-    one["distinguishable_from_best"] = ranked.is_worse();
+    add_comparison(one, ranked, ranked.metrics[results.headline]);
     one["metrics"] = means;
     json["ranking"].push_back(one);
   }
@@ -275,6 +280,12 @@ void warn_of_copies(std::span<const nlohmann::ordered_json> items, std::vector<s
   }
 }
 
+/// What share of a trace's contacts is felt, mean over the traces.
+double coverage_of(const RankedCandidate& ranked) {
+  const auto coverage = std::ranges::find(metrics(), kCoverage, &Metric::name);
+  return ranked.metrics[static_cast<std::size_t>(coverage - metrics().begin())].mean;
+}
+
 /// Where the headline's means are not of the same traces, or only of what was felt.
 void warn_of_gaps(BatchResults& results) {
   const Metric& headline = metrics()[results.headline];
@@ -287,14 +298,12 @@ void warn_of_gaps(BatchResults& results) {
         headline.name, least == 0 ? "none" : std::to_string(least), results.traces,
         results.traces == 1 ? "trace" : "traces", least == 0 ? "" : " only", least == 0 ? "them" : "the others",
         least == 0 ? "" : "; their means may come from easier or harder traces"));
-  const auto coverage = std::ranges::find(metrics(), kCoverage, &Metric::name);
-  if (coverage == metrics().end() || headline.name == kCoverage || headline.name == kErrorWithUnfelt) return;
-  const auto place = static_cast<std::size_t>(coverage - metrics().begin());
+  if (headline.name == kCoverage || headline.name == kErrorWithUnfelt) return;
   double low = std::numeric_limits<double>::infinity();
   double high = 0;
   for (const RankedCandidate& ranked : results.ranking) {
-    low = std::min(low, ranked.metrics[place].mean);
-    high = std::max(high, ranked.metrics[place].mean);
+    low = std::min(low, coverage_of(ranked));
+    high = std::max(high, coverage_of(ranked));
   }
   if (low < 0.9 * high)
     results.warnings.push_back(fmt::format(
@@ -397,11 +406,10 @@ std::string describe(const BatchResults& results, std::size_t rows) {
   if (!results.has_intervals())
     text += fmt::format("no intervals, and no '=': {}; another recording may turn the ranking over\n",
                         results.why_no_intervals);
-  if (const auto coverage = std::ranges::find(metrics(), kCoverage, &Metric::name);
-      headline.name != kCoverage && coverage != metrics().end() && !results.ranking.empty()) {
+  if (headline.name != kCoverage && !results.ranking.empty()) {
     const RankedCandidate& first = results.ranking.front();
     const auto& [map, law] = results.candidates[first.candidate];
-    const double felt = first.metrics[static_cast<std::size_t>(coverage - metrics().begin())].mean;
+    const double felt = coverage_of(first);
     if (std::isfinite(felt))
       text += fmt::format("{} with {} lets {:.0f} % of the contacts be felt (coverage)\n", map, law, 100 * felt);
   }

@@ -32,8 +32,7 @@ struct BatchResults {
 };
 
 /// Writes scores.csv, scores.json, ranking.csv and ranking.json, and with several scenarios ranking_by_scenario.csv.
-/// `items` are in the order of the batch's traces. Throws
-/// `Error` if an item lacks a score.
+/// `items` are in the order of the batch's traces. Throws `Error` if an item lacks a score.
 BatchResults write_results(const BatchFolder& folder, const nlohmann::ordered_json& batch,
                            std::span<const nlohmann::ordered_json> items, std::size_t headline);
 

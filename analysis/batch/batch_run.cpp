@@ -276,11 +276,11 @@ class BatchRun {
   }
 
   nlohmann::ordered_json score_maps(const ContactRecording& recording) const {
-    std::vector<std::shared_ptr<const ActuatorLayout>> layouts;
+    std::vector<const ActuatorLayout*> layouts;
     std::vector<std::string> names;
     for (const BatchMap& map : plan_.maps) {
       if (map.layout == nullptr) continue;
-      layouts.push_back(map.layout);
+      layouts.push_back(map.layout.get());
       names.push_back(map.name);
     }
     const std::vector<Scores> scores = score_all(recording, layouts, laws_);

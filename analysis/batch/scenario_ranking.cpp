@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "traces/base/number_text.hpp"
+
 namespace vestige {
 
 namespace {
@@ -15,14 +17,6 @@ std::vector<std::size_t> firsts(std::span<const RankedCandidate> ranking) {
   for (const RankedCandidate& ranked : ranking)
     if (ranked.rank == 1U) candidates.push_back(ranked.candidate);
   return candidates;
-}
-
-/// "a, b and c"
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += fmt::format("{}{}", i == 0 ? "" : i + 1 == words.size() ? " and " : ", ", words[i]);
-  return text;
 }
 
 }  // namespace

@@ -29,15 +29,6 @@ std::string duration(double microseconds) {
   return fmt::format("{:.{}f} {}", value, decimals, unit);
 }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string list;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) list += i + 1 == words.size() ? " and " : ", ";
-    list += words[i];
-  }
-  return list;
-}
-
 std::string on_renderer(const nlohmann::json& gl, ContextName context) {
   if (!gl.is_object() || gl.at("renderer").get<std::string>().empty()) return "";
   const auto name = gl["renderer"].get<std::string>();

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "traces/base/number_text.hpp"
+
 namespace vestige {
 
 /// Returns "14 million" for 14000000, and other numbers as they are.
@@ -13,9 +15,6 @@ std::string in_words(std::uint64_t count);
 
 /// Returns a duration with three digits: "9.80 µs", "113 µs", "5.52 ms", "4.89 s".
 std::string duration(double microseconds);
-
-/// Returns "a", "a and b", "a, b and c".
-std::string listed(const std::vector<std::string>& words);
 
 enum class ContextName { kSaid, kLeftOut };
 

@@ -69,8 +69,7 @@ void judge(const ContactRecording& recording, const ActuatorLayout& layout, std:
 
 }  // namespace
 
-std::vector<Scores> score_all(const ContactRecording& recording,
-                              std::span<const std::shared_ptr<const ActuatorLayout>> layouts,
+std::vector<Scores> score_all(const ContactRecording& recording, std::span<const ActuatorLayout* const> layouts,
                               std::span<const LawChoice> choices) {
   const double frame_s = usual_step_s(recording);
   const std::size_t contacts = recording.contacts.size();
@@ -104,8 +103,8 @@ std::vector<Scores> score_all(const ContactRecording& recording,
 
 std::vector<Scores> score_all(const ContactRecording& recording, const ActuatorLayout& layout,
                               std::span<const LawChoice> choices) {
-  const std::shared_ptr<const ActuatorLayout> borrowed(std::shared_ptr<const ActuatorLayout>(), &layout);
-  return score_all(recording, {&borrowed, 1}, choices);
+  const ActuatorLayout* const one = &layout;
+  return score_all(recording, {&one, 1}, choices);
 }
 
 Scores score(const ContactRecording& recording, const ActuatorLayout& layout, const LawChoice& choice) {

@@ -31,8 +31,7 @@ using Scores = std::vector<double>;
 /// Returns the scores of each layout under each of the laws, layout by layout. They are compared with each other: what
 /// `common_error_mm` covers are the contacts that all of them let feel. Throws what `make_law` and
 /// `ActuatorModel::motors` throw.
-std::vector<Scores> score_all(const ContactRecording& recording,
-                              std::span<const std::shared_ptr<const ActuatorLayout>> layouts,
+std::vector<Scores> score_all(const ContactRecording& recording, std::span<const ActuatorLayout* const> layouts,
                               std::span<const LawChoice> laws);
 /// As above, of one layout.
 std::vector<Scores> score_all(const ContactRecording& recording, const ActuatorLayout& layout,

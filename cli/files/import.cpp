@@ -255,11 +255,13 @@ TraceWriterOptions writing_of(const ImportOptions& options) {
 /// What is asked about files of other programs once they are read.
 class Questions {
  public:
-  Questions(const Avatar& avatar, const ConventionChoice& convention, const Frames& frames)
-      : placement_(avatar, convention.of_colliders()), pose_(avatar, convention.of_poses(), frames.placed) {}
+  Questions(const Avatar& avatar, const ImportOptions& options, const Frames& frames)
+      : pose_(avatar, options.convention.of_poses(), frames.placed) {
+    if (!options.colliders.empty()) placement_.emplace(avatar, options.convention.of_colliders());
+  }
 
   void see(const TraceFrame& frame) {
-    placement_.see(frame);
+    if (placement_) placement_->see(frame);
     pose_.see(frame);
     any_collider_ = any_collider_ || !frame.colliders.empty();
   }
@@ -269,7 +271,7 @@ class Questions {
       if (!doubt.empty() && !file.empty()) warn(fmt::format("{}: {}", file, doubt), options.common.verbosity());
     };
     doubt_of(options.poses, pose_.ask().value_or(""));
-    doubt_of(options.colliders, placement_.ask().value_or(""));
+    if (placement_) doubt_of(options.colliders, placement_->ask().value_or(""));
     if (!any_collider_)
       doubt_of(options.colliders,
                fmt::format("no frame has a collider; check that the file's times are those of the motion, 0 to {} s",
@@ -281,7 +283,7 @@ class Questions {
   }
 
  private:
-  PlacementQuestion placement_;
+  std::optional<PlacementQuestion> placement_;  ///< none without colliders
   PoseQuestion pose_;
   bool any_collider_ = false;
 };
@@ -326,19 +328,20 @@ void run_import(ImportOptions options, Invocation& invocation) {
   TraceFrame frame;
   // The first frame is read before a file is begun: most mistakes show there.
   bool more = frames.next(frame);
-  Questions questions(scene.avatar, options.convention, frames);
+  std::optional<Questions> questions;  // what 'vestige export' wrote is not in doubt
+  if (options.from.empty()) questions.emplace(scene.avatar, options, frames);
   TraceWriter trace(options.output, session, scene.avatar, scene.attachments(), writing_of(options));
   {
     Progress progress("Importing", verbosity);
     for (; more; more = frames.next(frame)) {
       trace.write(frame);
-      questions.see(frame);
+      if (questions) questions->see(frame);
       if (!progress.update(frames.share())) throw Error(options.output, "importing was stopped", "");
     }
   }
   frames.finish();
   trace.finish();
-  if (options.from.empty()) questions.ask(options, frames, trace.frame_count(), seconds(frame));
+  if (questions) questions->ask(options, frames, trace.frame_count(), seconds(frame));
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;

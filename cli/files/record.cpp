@@ -86,17 +86,20 @@ TraceWriterOptions writing_of(const RecordOptions& options) {
 
 void record_scene(const RecordOptions& options, const Scene& scene, const Animation* animation,
                   ColliderSource& colliders, const RecordingSettings& settings, Recorder& recorder) {
-  PlacementQuestion question(scene.avatar, options.scene.convention.of_colliders(), settings.origin_m);
+  std::optional<PlacementQuestion> question;
+  if (options.scene.from_file())
+    question.emplace(scene.avatar, options.scene.convention.of_colliders(), settings.origin_m);
   const auto write = [&](const TraceFrame& frame) {
     if (snapshot_wanted()) recorder.snapshot();
-    if (options.scene.from_file()) question.see(frame);
+    if (question) question->see(frame);
     return recorder.write(frame);
   };
   {
     Progress progress("Recording", options.common.verbosity());
     record(write, scene.avatar, animation, colliders, settings, [&](double share) { return progress.update(share); });
   }
-  if (const auto doubt = question.ask())
+  if (!question) return;
+  if (const auto doubt = question->ask())
     warn(fmt::format("--colliders {}: {}", options.scene.colliders, *doubt), options.common.verbosity());
 }
 

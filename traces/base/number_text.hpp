@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -27,5 +28,8 @@ std::string percent_text(double share);
 
 /// "1 trace", "4 traces"
 std::string counted(std::uint64_t count, std::string_view thing);
+
+/// "a, b and c"
+std::string listed(std::span<const std::string> words);
 
 }  // namespace vestige

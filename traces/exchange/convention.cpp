@@ -38,6 +38,10 @@ const std::array<AxisPreset, 5> kAxisPresets = {{
     {"optitrack", "right-handed, +Y up: as in a trace", "m", {kX, kY, kZ}},
 }};
 
+glm::dvec3 Convention::given_position(const glm::dvec3& position_m) const {
+  return glm::transpose(axes) * ((position_m - offset_m) / metres_per_unit);
+}
+
 NodeLocal Convention::node(const NodeLocal& given) const {
   return turned(given, axes, metres_per_unit);
 }

@@ -43,6 +43,8 @@ struct Convention {
 
   /// Returns a position in the world. The offset is added last.
   glm::dvec3 position_m(const glm::dvec3& given) const { return metres_per_unit * (axes * given) + offset_m; }
+  /// Undoes `position_m`, up to rounding.
+  glm::dvec3 given_position(const glm::dvec3& position_m) const;
 
   /// Changes a node's transform, which is relative to its parent, from the file's convention to the trace's. Holds
   /// where each node's own axes are given in the program's axes, too, as Unity's importers of glTF do it.

@@ -57,10 +57,6 @@ bool is_finite(const Pose& pose) {
          });
 }
 
-glm::dvec3 given_position(const Convention& convention, const glm::dvec3& position_m) {
-  return glm::transpose(convention.axes) * ((position_m - convention.offset_m) / convention.metres_per_unit);
-}
-
 /// How well colliders fit the body, by one reading.
 struct Fit {
   std::size_t ids = 0;  ///< colliders that come near the skin
@@ -93,6 +89,15 @@ Fit fit_of(const std::vector<Moment>& moments, const Convention& convention) {
   return {near_ids.size(), static_cast<double>(near) / static_cast<double>(places.size()),
           static_cast<double>(std::ranges::count(slices, true)) / kSlices,
           box_around(places).longest_side() >= kLeastExtent_m};
+}
+
+/// Takes long where colliders are near, since every point of the skin is looked at.
+double nearest_m(const std::vector<Moment>& moments, const Convention& convention) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const Moment& moment : moments)
+    for (const glm::dvec3& given : moment.given)
+      least_m = moment.skin.distance_m(convention.position_m(given), least_m);
+  return least_m;
 }
 
 std::string_view unit_word(std::string_view unit) {
@@ -175,15 +180,13 @@ void PlacementQuestion::see(const TraceFrame& frame) {
 
 std::optional<std::string> PlacementQuestion::ask() const {
   std::vector<Moment> moments;
-  double nearest_m = std::numeric_limits<double>::infinity();
   for (const TraceFrame& frame : kept_) {
     if (frame.colliders.empty() || !is_finite(frame.pose)) continue;
     Moment moment = {NearPoints(sampler_.points_m(frame.pose)), {}, {}};
     for (const ColliderSample& collider : frame.colliders) {
       if (!is_finite(collider.position_m)) continue;
       moment.ids.push_back(collider.id);
-      moment.given.push_back(given_position(convention_, collider.position_m));
-      nearest_m = moment.skin.distance_m(collider.position_m, nearest_m);
+      moment.given.push_back(convention_.given_position(collider.position_m));
     }
     if (!moment.ids.empty()) moments.push_back(std::move(moment));
   }
@@ -217,10 +220,11 @@ std::optional<std::string> PlacementQuestion::ask() const {
   }
 
   const std::string total = counted(ids_.size(), "collider");
-  const std::string stays = now.ids == 0
-                                ? fmt::format("the nearest of {} stays {:.3g} m away from the skin", total, nearest_m)
-                                : fmt::format("{} of {} come within {:g} cm of the skin, in {:.1f} % of all samples",
-                                              now.ids, total, NearPoints::kNear_m * 100, 100 * now.share);
+  const std::string stays =
+      now.ids == 0
+          ? fmt::format("the nearest of {} stays {:.3g} m away from the skin", total, nearest_m(moments, convention_))
+          : fmt::format("{} of {} come within {:g} cm of the skin, in {:.1f} % of all samples", now.ids, total,
+                        NearPoints::kNear_m * 100, 100 * now.share);
   if (best == 0) return few ? std::optional(stays) : std::nullopt;
   const auto found = std::ranges::find_if(fits, [&](const Fit& one) { return one.score() >= kAlmostAsGood * best; });
   const Reading& reading = tried[static_cast<std::size_t>(found - fits.begin())];

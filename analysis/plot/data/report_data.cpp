@@ -112,8 +112,7 @@ void read_ranking(const std::filesystem::path& file, ReportData& data) {
   if (headline == data.metrics.end())
     document.at("rank_by").refuse(fmt::format("is '{}', which is not a metric", rank_by));
   data.headline = static_cast<std::size_t>(headline - data.metrics.begin());
-  data.has_intervals = document.has("interval");
-  if (data.has_intervals) data.interval = document.at("interval").text();
+  if (document.has("interval")) data.interval = document.at("interval").text();
   const JsonField ranking = document.at("ranking");
   for (std::size_t i = 0; i < ranking.count(); ++i) data.ranking.push_back(read_candidate(ranking.at(i), data.metrics));
   read_by_scenario(document, data);

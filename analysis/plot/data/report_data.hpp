@@ -83,8 +83,7 @@ struct ReportTrace {
 
 /// What 'vestige batch -o DIR' wrote, except contacts, maps and avatar.
 struct ReportData {
-  std::size_t headline = 0;  ///< index into `metrics`
-  bool has_intervals = false;
+  std::size_t headline = 0;                 ///< index into `metrics`
   std::string interval;                     ///< how intervals were made, in the batch's words; empty without any
   std::string why_no_intervals;             ///< in the batch's words; empty if there are any
   std::string reversals;                    ///< one sentence on scenarios where another is first; may be empty
@@ -108,6 +107,7 @@ struct ReportData {
 
   /// Returns the names of the ranked maps, best first.
   std::vector<std::string> maps() const;
+  bool has_intervals() const { return !interval.empty(); }
   /// Returns the best candidate of a ranked map.
   const Candidate& best_of(const std::string& map) const;
   /// Returns what share of a trace's contacts a candidate lets feel, mean over traces (the metric `coverage`); none if

@@ -18,17 +18,13 @@ namespace {
 
 constexpr std::size_t kMostNamed = 12;
 
-/// "a, b and c"
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (std::size_t i = 0; i < words.size(); ++i)
-    text += fmt::format("{}{}", i == 0 ? "" : i + 1 == words.size() ? " and " : ", ", words[i]);
-  return html_text(text);
+std::string listed_html(const std::vector<std::string>& words) {
+  return html_text(listed(words));
 }
 
 /// The same in brackets. Nothing if there are too many to read.
 std::string in_brackets(const std::vector<std::string>& words) {
-  return words.size() > kMostNamed ? "" : fmt::format(" ({})", listed(words));
+  return words.size() > kMostNamed ? "" : fmt::format(" ({})", listed_html(words));
 }
 
 std::string with_unit(double value, const ReportMetric& metric) {
@@ -67,7 +63,7 @@ std::string seeds_in_words(const std::map<std::string, std::set<double>>& seeds_
   std::vector<std::string> numbers;
   numbers.reserve(seeds.size());
   for (const double seed : seeds) numbers.push_back(fmt::format("{:.0f}", seed));
-  return fmt::format("seeds {}{}", listed(numbers), each);
+  return fmt::format("seeds {}{}", listed_html(numbers), each);
 }
 
 /// Which traces, and how to call them afterwards.
@@ -90,8 +86,8 @@ TraceWords traces_in_words(const ReportData& data) {
   }
   const std::string recorded = counted(files.size(), "recorded file") + in_brackets(files);
   if (scenarios.empty()) return {recorded, files.size() == 1 ? "this file" : "these files"};
-  const std::string made =
-      fmt::format("{} ({}; {})", counted(scenarios.size(), "scenario"), listed(scenarios), seeds_in_words(seeds_of));
+  const std::string made = fmt::format("{} ({}; {})", counted(scenarios.size(), "scenario"), listed_html(scenarios),
+                                       seeds_in_words(seeds_of));
   if (files.empty()) return {made, scenarios.size() == 1 ? "this scenario" : "these scenarios"};
   return {fmt::format("{} and {}", made, recorded), "these scenarios and files"};
 }
@@ -119,7 +115,7 @@ std::string p_in_words(const Candidate& one) {
 std::string of_more_traces(const ReportData& data) {
   const ReportMetric& metric = data.metrics[data.headline];
   const auto next = std::ranges::find_if(data.ranking, [](const Candidate& one) { return one.rank && *one.rank > 1; });
-  if (!data.has_intervals)
+  if (!data.has_intervals())
     return fmt::format(
         "<strong>More traces.</strong> Whether more seeds or files would change the order cannot be "
         "said{}. Intervals need eight files, or five seeds of each scenario and more "
@@ -187,7 +183,7 @@ std::string of_other_metrics(const ReportData& data) {
     return fmt::format("<strong>Another metric.</strong> {} has the best mean by every other metric ({}) too.",
                        html_text(name_of(first)), judged);
   return fmt::format("<strong>Another metric.</strong> By {} of {} other metrics, another has a better mean: {}.",
-                     others.size(), judged, listed(others));
+                     others.size(), judged, listed_html(others));
 }
 
 std::string of_motors(const ReportData& data) {
@@ -211,7 +207,7 @@ std::string quotable_sentence(const ReportData& data) {
   const std::vector<std::string> maps = data.maps();
   std::string text =
       fmt::format("Over {}, <strong>{}</strong> had the {} {}{}", traces.all,
-                  best.empty() ? html_text(name_of(first)) : listed(best),
+                  best.empty() ? html_text(name_of(first)) : listed_html(best),
                   metric.better == "higher" ? "highest" : "lowest", metric.model_based ? "modelled " : "", words);
   if (data.ranking.size() > 1)
     text += fmt::format(" of {} combinations of {}{} and {}{}", data.ranking.size(), counted(maps.size(), "map"),

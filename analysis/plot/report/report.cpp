@@ -154,8 +154,8 @@ class Report {
     ReportPage page = {data, {}, {}, contacts.shown_trace};
     if (data.ranking.front().headline.mean) {
       std::string caption = "Each combination of map and law: mean over traces";
-      caption += data.has_intervals ? ", and its 95\u00a0% interval. Filled: cannot be distinguished from the first."
-                                    : ", without an interval.";
+      caption += data.has_intervals() ? ", and its 95\u00a0% interval. Filled: cannot be distinguished from the first."
+                                      : ", without an interval.";
       if (data.ranking.size() > kRankedShown) caption += fmt::format(" The best {} are drawn.", kRankedShown);
       page.ranking.push_back(draw("ranking", *ranking_figure(data, kRankedShown), caption));
     }

@@ -146,7 +146,7 @@ class Page {
   std::string others_in_words() const {
     const std::size_t others = data_.ranking.size() - 1;
     if (others == 0) return "There is nothing else to compare it with.";
-    if (!data_.has_intervals)
+    if (!data_.has_intervals())
       return fmt::format("Whether the {} of map and law are worse on other recordings, these traces cannot show.",
                          counted(others, "other combination"));
     const std::size_t level = level_with_best();
@@ -174,7 +174,7 @@ class Page {
       cautions.push_back(fmt::format("{} damaged; only the part of {} that could be read counts.",
                                      damaged == 1 ? "One trace is" : fmt::format("{} traces are", damaged),
                                      damaged == 1 ? "it" : "them"));
-    if (!data_.has_intervals)
+    if (!data_.has_intervals())
       cautions.push_back(fmt::format("There are no intervals{}. Another recording may turn the ranking over.",
                                      data_.why_no_intervals.empty() ? "" : ": " + html_text(data_.why_no_intervals)));
     if (const auto more = more_coverage(); !more.empty()) cautions.push_back(more);
@@ -222,13 +222,14 @@ class Page {
       add(table,
           "<tr{}><td class=\"n\">{}</td><th scope=\"row\" class=\"name\">{}</th><td>{}</td>{}<td "
           "class=\"interval\">{}</td><td>{}</td>{}{}<td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-          is_level(one) && data_.has_intervals ? " class=\"level\"" : "", one.rank ? fmt::format("{}", *one.rank) : "–",
-          html_text(one.map), html_text(one.law), value_cell(one.headline.mean), interval_words(one.headline),
-          against_first(one, i == 0), p_cell(i == 0 ? std::nullopt : one.p), p_cell(i == 0 ? std::nullopt : one.p_holm),
-          one.headline.traces, felt ? fmt::format("{:.1f}\u00a0%", 100 * *felt) : "–");
+          is_level(one) && data_.has_intervals() ? " class=\"level\"" : "",
+          one.rank ? fmt::format("{}", *one.rank) : "–", html_text(one.map), html_text(one.law),
+          value_cell(one.headline.mean), interval_words(one.headline), against_first(one, i == 0),
+          p_cell(i == 0 ? std::nullopt : one.p), p_cell(i == 0 ? std::nullopt : one.p_holm), one.headline.traces,
+          felt ? fmt::format("{:.1f}\u00a0%", 100 * *felt) : "–");
     }
     out_ += scrolling("Ranking", table + "</tbody>\n</table>\n", "tall");
-    if (data_.has_intervals) add(out_, "<p class=\"soft\">Intervals: {}.</p>\n", html_text(data_.interval));
+    if (data_.has_intervals()) add(out_, "<p class=\"soft\">Intervals: {}.</p>\n", html_text(data_.interval));
     by_scenario();
     out_ += "</section>\n";
   }
@@ -299,7 +300,7 @@ class Page {
     if (!one.rank) return "no value";
     if (is_first) return "first";
     const Estimate& difference = one.difference_from_best;
-    if (!difference.has_interval()) return data_.has_intervals ? "unknown: too few traces" : "unknown: no interval";
+    if (!difference.has_interval()) return data_.has_intervals() ? "unknown: too few traces" : "unknown: no interval";
     const std::string interval = fmt::format(" <span class=\"interval\">({}{})</span>",
                                              html_text(difference_text(difference)), unit_of(headline()));
     return (one.distinguishable_from_best ? "worse" : "not distinguishable") + interval;

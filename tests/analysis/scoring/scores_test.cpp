@@ -136,7 +136,7 @@ TEST(Scores, CompareErrorsOverTheContactsThatAllLetFeel) {
     recording.add(0.1 * k, ContactRow{test::contact_at(k % 2 == 0 ? 0.3 : 0.5, 0.5, kCells)});
   LawChoice binary;
   binary.unfelt_m = 0.5;
-  const std::vector<std::shared_ptr<const ActuatorLayout>> layouts = {wide, narrow};
+  const std::vector<const ActuatorLayout*> layouts = {wide.get(), narrow.get()};
   const std::vector<Scores> scores = score_all(recording, layouts, {&binary, 1});
   EXPECT_NEAR(metric(scores[0], "localisation_error_mm"), std::sqrt((50.0 * 50 + 250 * 250) / 2), 0.1);
   EXPECT_NEAR(metric(scores[1], "localisation_error_mm"), 50, 0.01);
