@@ -261,8 +261,8 @@ std::vector<std::optional<LeaderTest>> StratifiedBootstrap::against_leader(
   }
   for (std::size_t k = 0; k < count; ++k) {
     LeaderTest& test = tests[index[k]].emplace();
-    if (k == found.best) continue;
     const double behind = means[k] - means[found.best];
+    if (behind == 0) continue;  // a leader, maybe one of several
     const std::vector<double>& spread = studentized[k].differences;
     test.difference = sign * behind;
     const double error = found_errors[k];

@@ -71,5 +71,23 @@ TEST(StratifiedBootstrap, TellsAClearLoserFromTheLeaderAndNotATie) {
   EXPECT_DOUBLE_EQ(higher[2]->p, tests[2]->p);
 }
 
+TEST(StratifiedBootstrap, LeadersThatAreTheSameAreNotTold) {
+  std::vector<std::vector<double>> candidates(3);
+  for (int unit = 0; unit < 12; ++unit) {
+    candidates[0].push_back(10 + unit % 5);
+    candidates[1].push_back(10 + unit % 5);
+    candidates[2].push_back(20 + unit % 3);
+  }
+  const auto tests = StratifiedBootstrap(in_strata(1, 12), 1).against_leader(candidates, -1);
+  EXPECT_LT(tests[0]->p_holm, 0.05);  // now the highest is the best
+  const auto lowest = StratifiedBootstrap(in_strata(1, 12), 1).against_leader(candidates, 1);
+  for (const std::size_t leader : {0U, 1U}) {
+    EXPECT_EQ(lowest[leader]->p, 1);
+    EXPECT_EQ(lowest[leader]->p_holm, 1);
+    EXPECT_EQ(lowest[leader]->difference, 0);
+  }
+  EXPECT_LT(lowest[2]->p_holm, 0.05);
+}
+
 }  // namespace
 }  // namespace vestige
