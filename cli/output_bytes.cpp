@@ -36,12 +36,4 @@ void check_extension(const char* flag, const std::string& path, std::string_view
                    fmt::format("the output is {}: end the name in {}", what, extension));
 }
 
-void check_trace_name(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  for (const char* other : {".bvh", ".csv", ".exr", ".glb", ".gltf", ".h5", ".hdf5", ".json", ".png", ".txt", ".zip"})
-    if (extension == other)
-      throw UsageError("-o", fmt::format("'{}' ends in {}, and a trace is an MCAP file", path, extension),
-                       "end the name in .mcap; 'vestige export' turns a trace into CSV or HDF5");
-}
-
 }  // namespace vestige::cli

@@ -22,7 +22,4 @@ void write_together(std::initializer_list<std::pair<std::string, std::span<const
 /// and describes the output as `what`.
 void check_extension(const char* flag, const std::string& path, std::string_view extension, std::string_view what);
 
-/// Throws `UsageError` if the name of the trace to be written ends as files of another kind do: .csv, .json, ….
-void check_trace_name(const std::string& path);
-
 }  // namespace vestige::cli

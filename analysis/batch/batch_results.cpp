@@ -291,11 +291,13 @@ void warn_of_gaps(BatchResults& results) {
   const Metric& headline = metrics()[results.headline];
   std::size_t least = results.traces;
   for (const RankedCandidate& ranked : results.ranking) least = std::min(least, ranked.metrics[results.headline].n);
+  const bool is_all = std::ranges::all_of(
+      results.ranking, [&](const RankedCandidate& ranked) { return ranked.metrics[results.headline].n == least; });
   if (least < results.traces)
     results.warnings.push_back(fmt::format(
-        "some maps and laws have a {} on {} of {} {}{}: on {}, nothing was felt, or nothing that this metric "
+        "{} maps and laws have a {} on {} of {} {}{}: on {}, nothing was felt, or nothing that this metric "
         "measures{}",
-        headline.name, least == 0 ? "none" : std::to_string(least), results.traces,
+        is_all ? "all" : "some", headline.name, least == 0 ? "none" : std::to_string(least), results.traces,
         results.traces == 1 ? "trace" : "traces", least == 0 ? "" : " only", least == 0 ? "them" : "the others",
         least == 0 ? "" : "; their means may come from easier or harder traces"));
   if (headline.name == kCoverage || headline.name == kErrorWithUnfelt) return;
@@ -365,11 +367,11 @@ std::string describe(const BatchResults& results, std::size_t rows) {
   std::vector<std::size_t> beside;  // what a headline alone would hide
   for (std::size_t m = 0; m < metrics().size(); ++m)
     if (m != results.headline && metrics()[m].shown == Shown::kBesideTheRank) beside.push_back(m);
-  std::string text =
-      fmt::format("{}{}{}, {} is better: {}{}\n", headline.name, *headline.unit == '\0' ? "" : ", ", headline.unit,
-                  name_of(headline.better),
-                  fmt::format("mean over {}{}", results.over, results.has_intervals() ? " and its 95 % interval" : ""),
-                  headline.model_based ? "; FROM A MODEL, NOT FROM A USER STUDY" : "");
+  std::string text = fmt::format("{}{}{}, {} is better: {}{}\n", headline.name, *headline.unit == '\0' ? "" : ", ",
+                                 headline.unit, name_of(headline.better),
+                                 fmt::format("mean over the traces of {}{}", results.over,
+                                             results.has_intervals() ? " and its 95 % interval" : ""),
+                                 headline.model_based ? "; FROM A MODEL, NOT FROM A USER STUDY" : "");
   std::size_t width = 3;
   for (const BatchResults::Candidate& candidate : results.candidates) width = std::max(width, candidate.map.size());
   text += fmt::format("  {:>4}  {:<{}}  {:<8}  {:>28}", "rank", "map", width, "law", headline.name);
@@ -411,7 +413,7 @@ std::string describe(const BatchResults& results, std::size_t rows) {
     const auto& [map, law] = results.candidates[first.candidate];
     const double felt = coverage_of(first);
     if (std::isfinite(felt))
-      text += fmt::format("{} with {} lets {:.0f} % of the contacts be felt (coverage)\n", map, law, 100 * felt);
+      text += fmt::format("{} with {} lets {:.0f} % of a trace's contacts be felt (coverage)\n", map, law, 100 * felt);
   }
   if (!results.reversals.empty()) text += fmt::format("{} (ranking_by_scenario.csv)\n", results.reversals);
   if (std::ranges::any_of(beside, [](std::size_t m) { return metrics()[m].model_based; }))

@@ -1,11 +1,8 @@
 #include "analysis/batch/rank_by.hpp"
 
-#include <fmt/format.h>
-
-#include <vector>
+#include <algorithm>
 
 #include "analysis/scoring/scores.hpp"
-#include "traces/base/error.hpp"
 
 namespace vestige {
 
@@ -13,15 +10,15 @@ const char* default_metric_to_rank_by() {
   return "localisation_error_mm";
 }
 
-std::size_t metric_to_rank_by(const std::string& name) {
+std::vector<std::string> names_to_rank_by() {
   std::vector<std::string> names;
-  for (std::size_t m = 0; m < metrics().size(); ++m) {
-    if (metrics()[m].better == Better::kNeither) continue;
-    if (metrics()[m].name == name) return m;
-    names.emplace_back(metrics()[m].name);
-  }
-  throw UsageError("--rank-by", fmt::format("there is no metric '{}' that can rank maps", name),
-                   fmt::format("choose one of: {}", fmt::join(names, ", ")));
+  for (const Metric& metric : metrics())
+    if (metric.better != Better::kNeither) names.emplace_back(metric.name);
+  return names;
+}
+
+std::size_t metric_to_rank_by(const std::string& name) {
+  return static_cast<std::size_t>(std::ranges::find(metrics(), name, &Metric::name) - metrics().begin());
 }
 
 }  // namespace vestige

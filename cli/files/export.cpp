@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "cli/choices/scene.hpp"
+#include "cli/files/export_formats.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
@@ -31,28 +32,14 @@ struct ExportOptions {
   std::optional<double> rate_hz;
 };
 
-struct Format {
-  const char* name;
-  std::vector<std::string> ends;
-};
-
-const std::vector<Format>& formats() {
-  static const std::vector<Format> all = {{"csv", {".csv"}},
-                                          {"ndjson", {".ndjson", ".jsonl"}},
-                                          {"hdf5", {".h5", ".hdf5"}},
-                                          {"gltf", {".glb"}},
-                                          {"paraview", {".pvd"}}};
-  return all;
-}
-
 /// By --format, or by the name's end; a name without one is a folder of CSV files.
 std::string format_of(const ExportOptions& options) {
   if (!options.format.empty()) return options.format;
   if (options.output == "-")
     throw UsageError("-o -", "the format is not given", "add --format ndjson, or --format csv --what poses");
-  for (const Format& format : formats())
-    for (const std::string& end : format.ends)
-      if (options.output.ends_with(end)) return format.name;
+  for (const ExportFormat& format : export_formats())
+    for (const std::string_view end : format.ends)
+      if (options.output.ends_with(end)) return std::string(format.name);
   if (!std::filesystem::path(options.output).has_extension() || std::filesystem::is_directory(options.output))
     return "csv";
   throw UsageError("-o", fmt::format("'{}' has no known extension", options.output),

@@ -12,8 +12,8 @@
 #include "cli/choices/motion.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/scene_choice.hpp"
+#include "cli/files/export_formats.hpp"
 #include "cli/help/validators.hpp"
-#include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
@@ -132,8 +132,8 @@ void check_flags(const ImportOptions& options) {
   if (options.motion.empty() && options.poses.empty() && !options.colliders.empty())
     throw UsageError("import", "no motion and no poses are given",
                      fmt::format("give --motion FILE.bvh or --poses FILE.csv; of colliders around a body that stands "
-                                 "still, 'vestige record --animation none --colliders {}' makes a trace",
-                                 options.colliders));
+                                 "still, 'vestige record --animation none --colliders {}{} -o {}' makes a trace",
+                                 options.colliders, options.convention.words_for_colliders(), options.output));
   if (options.motion.empty() == options.poses.empty())
     throw UsageError(
         "import",
@@ -270,8 +270,10 @@ class Questions {
     const auto doubt_of = [&](const std::string& file, const std::string& doubt) {
       if (!doubt.empty() && !file.empty()) warn(fmt::format("{}: {}", file, doubt), options.common.verbosity());
     };
-    doubt_of(options.poses, pose_.ask().value_or(""));
-    if (placement_) doubt_of(options.colliders, placement_->ask().value_or(""));
+    const std::vector<std::string> doubts = options.poses.empty() ? std::vector<std::string>() : pose_.ask();
+    for (const std::string& doubt : doubts) doubt_of(options.poses, doubt);
+    // Around a body that is wrong, colliders that are right look wrong.
+    if (placement_ && doubts.empty()) doubt_of(options.colliders, placement_->ask().value_or(""));
     if (!any_collider_)
       doubt_of(options.colliders,
                fmt::format("no frame has a collider; check that the file's times are those of the motion, 0 to {} s",

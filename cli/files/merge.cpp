@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "cli/files/export_formats.hpp"
 #include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/number_text.hpp"
@@ -21,6 +22,7 @@ struct MergeOptions {
 void run_merge(const MergeOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   check_outputs({options.output, options.common.json}, options.files, options.common);
+  check_trace_name(options.output);
   if (options.output == "-") refuse_terminal("-o -");
   check_inputs(options.files);
   std::vector<std::unique_ptr<mcap::ByteSource>> sources;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/choices/scene.hpp"
+#include "cli/files/export_formats.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
@@ -114,6 +115,7 @@ void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
 void run_recover(const RecoverOptions& options, Invocation& invocation) {
   check_outputs({options.output, options.common.json},
                 {options.file, options.avatar, options.map, sidecar_path(options.map).string()}, options.common);
+  check_trace_name(options.output);
   if (options.map == "none")
     throw UsageError("--map", "'none' puts nothing in the place of a map", "name a map, or leave --map out");
   if (options.output == "-") refuse_terminal("-o -");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cli/files/export_formats.hpp"
 #include "traces/base/nanoseconds.hpp"
 #include "traces/mcap/byte_source.hpp"
 #include "traces/trace_file/trace_index.hpp"
@@ -21,6 +22,7 @@ void warn_of_damage(const std::string& file, const mcap::DamageList& damages, Ve
 void run_rewrite(const std::string& file, const std::string& output, const RewriteOptions& how,
                  const std::string& doing, const CommonOptions& common, Invocation& invocation) {
   check_outputs({output, common.json}, {file}, common);
+  check_trace_name(output);
   if (output == "-") refuse_terminal("-o -");
   const mcap::FileSource source(file);
   catch_interrupts();

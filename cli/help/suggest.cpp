@@ -111,6 +111,24 @@ const CLI::App& named_verb(const CLI::App& program) {
   return *verb;
 }
 
+/// Adds the names of all verbs under `verb` that have this flag.
+void add_verbs_with(const std::string& flag, const CLI::App& verb, const std::string& name,
+                    std::vector<std::string>& verbs) {
+  if (verb.get_option_no_throw(flag) != nullptr) verbs.push_back(name);
+  for (const CLI::App* part : verb.get_subcommands([](const CLI::App*) { return true; }))
+    add_verbs_with(flag, *part, name.empty() ? part->get_name() : fmt::format("{} {}", name, part->get_name()), verbs);
+}
+
+/// "'record' and 'import' have it; " or an empty text.
+std::string verbs_with(const std::string& flag, const CLI::App& program) {
+  constexpr std::size_t kMostNamed = 4;
+  std::vector<std::string> verbs;
+  if (!flag.empty()) add_verbs_with(flag, program, "", verbs);
+  if (verbs.empty() || verbs.size() > kMostNamed) return {};
+  for (std::string& verb : verbs) verb = fmt::format("'{}'", verb);
+  return fmt::format("{} {} it; ", fmt::join(verbs, ", "), verbs.size() == 1 ? "has" : "have");
+}
+
 std::vector<std::string> flags_of(const CLI::App& verb) {
   std::vector<std::string> flags;
   for (const CLI::Option* option : verb.get_options())
@@ -170,9 +188,9 @@ std::string remedy_of(const CLI::App& program, const CLI::ParseError& error) {
   }
   const std::string word = is_about_unknown(program, error) ? unknown_flag(program) : "";
   const std::vector<std::string> flags = flags_of(verb);
-  return fmt::format("{}{}'{} --help' {}", value_hint(error),
-                     did_you_mean(word, std::vector<std::string_view>(flags.begin(), flags.end())), table.name,
-                     &verb == &program ? "lists the verbs" : "explains the verb");
+  const std::string meant = did_you_mean(word, std::vector<std::string_view>(flags.begin(), flags.end()));
+  return fmt::format("{}{}'{} --help' {}", value_hint(error), meant.empty() ? verbs_with(word, program) : meant,
+                     table.name, &verb == &program ? "lists the verbs" : "explains the verb");
 }
 
 }  // namespace vestige::help

@@ -167,7 +167,7 @@ void run_batch_verb(const BatchRunOptions& options, Invocation& invocation) {
   const Verbosity verbosity = batch.common.verbosity();
   BatchPlan plan = plan_of(batch);
   const Shard shard = parse_shard(options.shard, plan.traces.size());
-  const std::size_t headline = metric_to_rank_by(rank_by_of(batch));
+  const std::size_t headline = headline_of(rank_by_of(batch));
   check_outputs({batch.common.json}, batch.traces, batch.common);
   if (plan.has_scenario())
     warn_of_frame_count(plan.recording.rate_hz * plan.recording.duration_s,

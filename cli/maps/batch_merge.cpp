@@ -101,7 +101,7 @@ void run_merge_shards(const BatchMergeOptions& options, Invocation& invocation) 
   if (shards.items.empty())
     throw Error("merge", "none of the traces could be used", "read the causes in the shards' run.json");
   const std::string rank_by = options.rank_by.empty() ? shards.rank_by : options.rank_by;
-  const std::size_t headline = metric_to_rank_by(rank_by);
+  const std::size_t headline = headline_of(rank_by);
   const BatchFolder folder(options.output, shards.batch, {1, 1},
                            options.common.force ? OtherBatch::kReplace : OtherBatch::kRefuse);
   nlohmann::ordered_json run = run_of(shards, invocation, rank_by);

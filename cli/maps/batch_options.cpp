@@ -45,7 +45,9 @@ void refuse_misspelt(const std::vector<std::string>& given, const char* flag, co
   for (const std::string& word : given) {
     std::error_code ignored;
     if (std::ranges::find(names, word) != names.end() || std::filesystem::exists(word, ignored)) continue;
-    if (const std::string meant = help::did_you_mean(word, names); !meant.empty())
+    const std::string meant = help::did_you_mean(word, names);
+    const bool is_a_path = word.find_first_of("./") != std::string::npos;
+    if (!meant.empty() || !is_a_path)
       throw UsageError(flag, fmt::format("{}: there is no such file", word),
                        fmt::format("{}the {} are: {}", meant, what, fmt::join(names, ", ")));
   }
@@ -102,8 +104,13 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
            fmt::format("The traces: files, or scenarios to record on the avatar ({})", scenario_names()))
       ->type_name("FILE|SCENARIO");
   options.laws = fmt::format("{}", fmt::join(law_names(), ","));
-  verb.add_option("--laws", options.laws, "The laws that turn a contact into intensities")
-      ->capture_default_str()
+  verb.add_option_function<std::vector<std::string>>(
+          "--laws",
+          [&options](const std::vector<std::string>& words) {
+            options.laws = fmt::format("{}", fmt::join(words, ","));
+          },
+          "The laws that turn a contact into intensities, separated by commas or blanks")
+      ->default_str(options.laws)
       ->type_name("LIST");
   add_law_parameters(verb, options.law_parameters, "Options");
   add_rank_by(verb, options.rank_by)
@@ -151,16 +158,24 @@ std::string rank_by_of(const BatchOptions& options) {
   return options.unfelt_mm ? kErrorWithUnfelt : default_metric_to_rank_by();
 }
 
+std::size_t headline_of(const std::string& rank_by) {
+  const std::vector<std::string> names = names_to_rank_by();
+  if (std::ranges::find(names, rank_by) == names.end())
+    throw UsageError("--rank-by", fmt::format("there is no metric '{}' that can rank maps", rank_by),
+                     fmt::format("{}choose one of: {}",
+                                 help::did_you_mean(rank_by, std::vector<std::string_view>(names.begin(), names.end())),
+                                 fmt::join(names, ", ")));
+  return metric_to_rank_by(rank_by);
+}
+
 BatchPlan plan_of(const BatchOptions& options) {
   check_distinct(options.maps, "--maps");
   check_distinct(options.traces, "--traces");
   if (options.choice.surface != "all")
     throw UsageError("--surface", "all maps share one detection, so colliders cannot pass through unmapped skin",
                      "leave it out; 'vestige replay --surface mapped' takes one map");
-  metric_to_rank_by(rank_by_of(options));
+  headline_of(rank_by_of(options));
   if (options.output == "-") throw UsageError("-o -", "a batch is a folder of files", "name a folder");
-  BatchPlan plan;
-  plan.traces = name_traces(options.traces, seeds_of(options));
   std::vector<std::string_view> names;
   for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
   refuse_misspelt(options.traces, "--traces", "scenarios", names);
@@ -168,6 +183,8 @@ BatchPlan plan_of(const BatchOptions& options) {
   names.assign(layouts.begin(), layouts.end());
   names.emplace_back("builtin");
   refuse_misspelt(options.maps, "--maps", "layouts", names);
+  BatchPlan plan;
+  plan.traces = name_traces(options.traces, seeds_of(options));
   plan.laws = parse_names(options.laws, law_names(), "--laws");
   const auto refuse_without = [&](bool given, const char* flag, const char* law) {
     if (given && std::ranges::find(plan.laws, law) == plan.laws.end())

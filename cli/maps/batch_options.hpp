@@ -54,6 +54,9 @@ void warn_of_inputs(const nlohmann::ordered_json& run, Verbosity verbosity);
 /// otherwise the localisation error. Throws `UsageError` if it needs --unfelt-mm.
 std::string rank_by_of(const BatchOptions& options);
 
+/// Returns the index of the metric with this name. Throws `UsageError` if there is none that can rank.
+std::size_t headline_of(const std::string& rank_by);
+
 /// Adds --rank-by.
 CLI::Option* add_rank_by(CLI::App& verb, std::string& rank_by);
 

@@ -6,9 +6,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <span>
 
 #include "traces/base/number_text.hpp"
 #include "traces/questions/near_skin.hpp"
+#include "traces/questions/readings.hpp"
 
 namespace vestige {
 
@@ -19,30 +22,28 @@ constexpr std::size_t kMostKept = 128;
 constexpr std::size_t kFew = 100;
 /// What is named must bring so many times as many near.
 constexpr std::size_t kTimesMore = 10;
-/// Where colliders do come near, what is named must fit so many times better; and so must an offset, which can be of
-/// any size, than what needs no number.
+/// Where colliders do come near, what is named must fit so many times better.
 constexpr double kTimesBetter = 4;
-/// A simpler explanation is preferred if it brings this share of what the best one brings.
+/// A simpler explanation is preferred if it fits this well in comparison to the best one for its simplicity.
 constexpr double kAlmostAsGood = 0.8;
-/// Where another unit brings this share of it, which of the two is meant cannot be told.
+/// Where another one fits this well in comparison to the best, which of them is meant cannot be told.
 constexpr double kAsGood = 0.5;
+/// So many explanations are named.
+constexpr std::size_t kMostNamed = 4;
+/// A fit below this explains little. Half of all samples that are near, at a tenth of the body's height, have it.
+constexpr double kLikely = 0.0005;
 /// Colliders that a wrong unit draws together into one point are not where they were meant to be.
 constexpr double kLeastExtent_m = 0.1;
+/// Colliders that stay within less of the body's height than this may be meant in a larger unit.
+constexpr double kSmallScene = 0.5;
+/// Colliders that all stay within this are in one point.
+constexpr double kPoint_m = 0.001;
 
 /// The colliders of one frame as the file gave them, and the skin of that frame.
 struct Moment {
   NearPoints skin;
   std::vector<std::uint32_t> ids;
   std::vector<glm::dvec3> given;
-};
-
-/// A way to understand the file.
-struct Reading {
-  Convention convention;
-  std::string words;  ///< "in centimetres"
-  std::string remedy;
-  std::size_t changes = 1;  ///< the fewer, the simpler
-  bool turns_only = false;  ///< axes or columns, not the unit
 };
 
 bool is_finite(const glm::dvec3& v) {
@@ -57,20 +58,21 @@ bool is_finite(const Pose& pose) {
          });
 }
 
+using Moments = std::vector<Moment>;
+
 /// How well colliders fit the body, by one reading.
 struct Fit {
   std::size_t ids = 0;  ///< colliders that come near the skin
   double share = 0;     ///< of all samples that are near
   double height = 0;    ///< share of the body's height at which samples are near
 
-  bool spreads = false;  ///< whether the colliders take more room than a point
-  double weight = 1;     ///< less for what changes more
+  Box around = {};  ///< all samples
 
   /// A unit that makes the scene smaller packs samples more densely, by the third power, at so much less of the height.
-  double score() const { return spreads ? weight * share * height * height * height : 0; }
+  double score() const { return around.longest_side() >= kLeastExtent_m ? share * height * height * height : 0; }
 };
 
-Fit fit_of(const std::vector<Moment>& moments, const Convention& convention) {
+Fit fit_of(const Moments& moments, const Convention& convention) {
   constexpr std::size_t kSlices = 10;
   std::set<std::uint32_t> near_ids;
   std::array<bool, kSlices> slices = {};
@@ -87,60 +89,16 @@ Fit fit_of(const std::vector<Moment>& moments, const Convention& convention) {
       slices[static_cast<std::size_t>(std::clamp(up, 0.0, 0.999) * kSlices)] = true;
     }
   return {near_ids.size(), static_cast<double>(near) / static_cast<double>(places.size()),
-          static_cast<double>(std::ranges::count(slices, true)) / kSlices,
-          box_around(places).longest_side() >= kLeastExtent_m};
+          static_cast<double>(std::ranges::count(slices, true)) / kSlices, box_around(places)};
 }
 
 /// Takes long where colliders are near, since every point of the skin is looked at.
-double nearest_m(const std::vector<Moment>& moments, const Convention& convention) {
+double nearest_m(const Moments& moments, const Convention& convention) {
   double least_m = std::numeric_limits<double>::infinity();
   for (const Moment& moment : moments)
     for (const glm::dvec3& given : moment.given)
       least_m = moment.skin.distance_m(convention.position_m(given), least_m);
   return least_m;
-}
-
-std::string_view unit_word(std::string_view unit) {
-  if (unit == "cm") return "centimetres";
-  if (unit == "mm") return "millimetres";
-  return unit == "in" ? "inches" : "metres";
-}
-
-/// Every unit with every program's axes, and every order of columns.
-std::vector<Reading> readings(const Convention& convention) {
-  std::vector<Reading> found;
-  std::vector<glm::dmat3> tried;
-  for (const AxisPreset& preset : kAxisPresets) {
-    const glm::dmat3 axes = axes_named(preset.name);
-    if (std::ranges::find(tried, axes) != tried.end()) continue;
-    tried.push_back(axes);
-    for (const Unit& unit : kLengthUnits) {
-      Convention other = convention;
-      other.metres_per_unit = unit.size;
-      other.axes = axes;
-      if (other == convention) continue;
-      const bool has_axes = axes != convention.axes;
-      const bool has_unit = unit.size != convention.metres_per_unit;
-      std::vector<std::string> words;
-      if (has_unit) words.push_back(fmt::format("in {}", unit_word(unit.name)));
-      if (has_axes) words.push_back(fmt::format("with the axes of {}", preset.name));
-      std::vector<std::string> flags;
-      if (has_axes) flags.push_back(fmt::format("--collider-axes {}", preset.name));
-      if (has_axes ? unit.name != preset.unit : has_unit) flags.push_back(fmt::format("--collider-unit {}", unit.name));
-      found.push_back({other, fmt::format("{}", fmt::join(words, " and ")), fmt::format("{}", fmt::join(flags, " ")),
-                       flags.size(), !has_unit});
-    }
-  }
-  std::array<int, 3> order = {0, 1, 2};
-  while (std::ranges::next_permutation(order).found) {
-    Convention other = convention;
-    for (int column = 0; column < 3; ++column)
-      other.axes[column] = convention.axes[order[static_cast<std::size_t>(column)]];
-    const auto name = [&](std::size_t column) { return static_cast<char>('x' + order[column]); };
-    found.push_back({other, fmt::format("with columns in the order {},{},{}", name(0), name(1), name(2)),
-                     "put the columns in the order x,y,z", 2, true});
-  }
-  return found;
 }
 
 double middle_of(std::vector<double> values) {
@@ -149,22 +107,121 @@ double middle_of(std::vector<double> values) {
   return *middle;
 }
 
+struct Candidate {
+  Reading reading;
+  Fit fit;
+};
+
+double best_score(std::span<const Candidate> candidates) {
+  double best = 0;
+  for (const Candidate& one : candidates) best = std::max(best, one.fit.score());
+  return best;
+}
+
+/// What changes twice as much must fit twice as well. Precondition: there is one.
+const Candidate& simplest(std::span<const Candidate> candidates) {
+  const auto worth = [](const Candidate& one) { return one.fit.score() / static_cast<double>(one.reading.changes); };
+  const double best = worth(*std::ranges::max_element(candidates, {}, worth));
+  return *std::ranges::find_if(candidates, [&](const Candidate& one) { return worth(one) >= kAlmostAsGood * best; });
+}
+
+/// A body is about its own mirror image.
+bool is_mirror_image(const glm::dmat3& a, const glm::dmat3& b) {
+  return glm::dmat3(glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)) * a == b;
+}
+
+std::vector<Candidate> as_good_as_best(std::span<const Candidate> candidates) {
+  if (candidates.empty()) return {};
+  const double best = best_score(candidates);
+  std::vector<Candidate> result = {simplest(candidates)};
+  const Reading named = result.front().reading;
+  for (const Candidate& one : candidates) {
+    const Convention& other = one.reading.convention;
+    const bool is_same = other == named.convention || is_mirror_image(other.axes, named.convention.axes);
+    if (!is_same && one.fit.score() >= kAsGood * best) result.push_back(one);
+  }
+  if (result.size() > kMostNamed) result.resize(kMostNamed);
+  return result;
+}
+
 /// Moves the colliders' middle into that of the body, to a tenth of a metre.
-Reading moved(const std::vector<Moment>& moments, const Convention& convention, const glm::dvec3& origin_m) {
+Reading moved(const Moments& moments, const Reading& reading, const glm::dvec3& origin_m) {
+  const Convention& convention = reading.convention;
   std::array<std::vector<double>, 3> away;
   for (const Moment& moment : moments)
     for (const glm::dvec3& given : moment.given) {
       const glm::dvec3 distance = (moment.skin.box().low + moment.skin.box().high) * 0.5 - convention.position_m(given);
       for (int axis = 0; axis < 3; ++axis) away[static_cast<std::size_t>(axis)].push_back(distance[axis]);
     }
-  Convention other = convention;
+  Reading other = reading;
+  glm::dvec3& offset_m = other.convention.offset_m;
   for (int axis = 0; axis < 3; ++axis)
-    other.offset_m[axis] += std::round(middle_of(std::move(away[static_cast<std::size_t>(axis)])) * 10) / 10;
-  const glm::dvec3 by = other.offset_m - convention.offset_m;
-  const glm::dvec3 offset = other.offset_m - origin_m;
-  return {other, fmt::format("moved by {:.2g}, {:.2g}, {:.2g} m", by.x, by.y, by.z),
-          fmt::format("--collider-offset={:.6g},{:.6g},{:.6g}", offset.x, offset.y, offset.z), 1};
+    offset_m[axis] += std::round(middle_of(std::move(away[static_cast<std::size_t>(axis)])) * 10) / 10;
+  const glm::dvec3 by = offset_m - convention.offset_m;
+  const glm::dvec3 total = offset_m - origin_m;
+  other.words += fmt::format("{}moved by about {:.6g}, {:.6g}, {:.6g} m (a guess: measure it)",
+                             reading.words.empty() ? "" : " and ", by.x, by.y, by.z);
+  ++other.changes;
+  other.flags += fmt::format("{}--collider-offset={:.6g},{:.6g},{:.6g}", reading.flags.empty() ? "" : " ", total.x,
+                             total.y, total.z);
+  return other;
 }
+
+/// What the colliders would fit better by, the simplest first.
+class Candidates {
+ public:
+  /// `few`: hardly any of them is near as it is.
+  Candidates(const Moments& moments, const Convention& convention, const glm::dvec3& origin_m, const Fit& now, bool few)
+      : moments_(moments), now_(now), few_(few) {
+    const std::vector<Reading> others = other_readings(convention);
+    const double height_m = moments.front().skin.box().extent().y;
+    const bool is_small = now.around.longest_side() < kSmallScene * height_m;
+    for (const Reading& reading : others) {
+      // Where colliders do come near, only wrong axes explain that others would do so more, or a unit that makes the
+      // whole scene small.
+      const bool is_larger = reading.convention.metres_per_unit > convention.metres_per_unit;
+      if (few || !reading.has_other_unit || (is_small && is_larger)) add(reading);
+    }
+    plain_ = found_.size();
+    if (!few) return;
+    add(moved(moments, {convention, "", ""}, origin_m));
+    offset_ = found_.size();
+    for (const Reading& reading : others)
+      if (!reading.has_other_columns) add(moved(moments, reading, origin_m));
+  }
+
+  /// Returns the one to name, and then others that may be meant as well; nothing if none is better than what is. An
+  /// offset, which can be of any size, is named only where nothing without a number is likely.
+  std::vector<Candidate> best() const {
+    const std::span<const Candidate> all = found_;
+    const auto plain = all.first(plain_);
+    const auto offset = all.subspan(plain_, offset_ - plain_);
+    const auto both = all.subspan(offset_);
+    if (best_score(plain) >= kLikely) return as_good_as_best(plain);
+    if (best_score(offset) < kLikely && best_score(both) >= kLikely) return {simplest(both)};
+    if (best_score(offset) < kTimesBetter * best_score(plain)) return as_good_as_best(plain);
+    if (offset.empty()) return {};
+    std::vector<Candidate> result = {offset.front()};
+    if (best_score(both) > kTimesBetter * best_score(offset)) result.push_back(simplest(both));
+    return result;
+  }
+
+ private:
+  void add(const Reading& reading) {
+    const Fit fit = fit_of(moments_, reading.convention);
+    const bool is_better =
+        few_ ? fit.ids >= std::max<std::size_t>(1, kTimesMore * now_.ids)
+             : fit.score() >= kTimesBetter * now_.score() && (reading.has_other_unit ? 2 : 1) * fit.ids >= now_.ids;
+    if (is_better && fit.score() > 0) found_.push_back({reading, fit});
+  }
+
+  const Moments& moments_;
+  const Fit& now_;
+  bool few_ = false;
+  std::vector<Candidate> found_;  ///< without an offset; with one alone; with one and more
+  std::size_t plain_ = 0;         ///< end of the first part
+  std::size_t offset_ = 0;        ///< end of the second part
+};
 
 }  // namespace
 
@@ -179,7 +236,7 @@ void PlacementQuestion::see(const TraceFrame& frame) {
 }
 
 std::optional<std::string> PlacementQuestion::ask() const {
-  std::vector<Moment> moments;
+  Moments moments;
   for (const TraceFrame& frame : kept_) {
     if (frame.colliders.empty() || !is_finite(frame.pose)) continue;
     Moment moment = {NearPoints(sampler_.points_m(frame.pose)), {}, {}};
@@ -194,48 +251,28 @@ std::optional<std::string> PlacementQuestion::ask() const {
 
   const Fit now = fit_of(moments, convention_);
   const bool few = now.ids * kFew < ids_.size();
-  std::vector<Reading> tried = readings(convention_);
-  // Where colliders do come near, nothing but wrong axes explains that others would do so more.
-  if (!few) std::erase_if(tried, [&](const Reading& one) { return !one.turns_only; });
-  // A body is about its own mirror image, so that only simplicity tells which of the two is meant.
-  std::ranges::stable_sort(
-      tried, {}, [](const Reading& one) { return std::pair(one.changes, glm::determinant(one.convention.axes) < 0); });
-  std::vector<Fit> fits;
-  fits.reserve(tried.size() + 1);
-  double best = 0;
-  const auto fit = [&](const Reading& reading) {
-    const Fit& found = fits.emplace_back(fit_of(moments, reading.convention));
-    const bool is_better = few ? found.ids >= std::max<std::size_t>(1, kTimesMore * now.ids)
-                               : found.score() >= kTimesBetter * now.score() && found.ids >= now.ids;
-    if (!is_better) fits.back() = {};
-  };
-  for (const Reading& reading : tried) {
-    fit(reading);
-    fits.back().weight = 1 / static_cast<double>(reading.changes);
-    best = std::max(best, fits.back().score());
-  }
-  if (few) {
-    fit(tried.emplace_back(moved(moments, convention_, origin_m_)));
-    if (fits.back().score() > kTimesBetter * best) best = fits.back().score();
-  }
-
   const std::string total = counted(ids_.size(), "collider");
+  if (ids_.size() > 1 && now.around.longest_side() < kPoint_m) {
+    const glm::dvec3& place_m = now.around.low;
+    return fmt::format("all {} stay in one point, {:.3g}, {:.3g}, {:.3g} m; check what the columns x, y, z hold", total,
+                       place_m.x, place_m.y, place_m.z);
+  }
+  const std::string near = fmt::format("come within {:g} cm", NearPoints::kNear_m * 100);
   const std::string stays =
       now.ids == 0
           ? fmt::format("the nearest of {} stays {:.3g} m away from the skin", total, nearest_m(moments, convention_))
-          : fmt::format("{} of {} come within {:g} cm of the skin, in {:.1f} % of all samples", now.ids, total,
-                        NearPoints::kNear_m * 100, 100 * now.share);
-  if (best == 0) return few ? std::optional(stays) : std::nullopt;
-  const auto found = std::ranges::find_if(fits, [&](const Fit& one) { return one.score() >= kAlmostAsGood * best; });
-  const Reading& reading = tried[static_cast<std::size_t>(found - fits.begin())];
-  const std::string would = now.ids == 0 ? fmt::format("would come within {:g} cm", NearPoints::kNear_m * 100)
-                                         : fmt::format("would, in {:.1f} %", 100 * found->share);
-  std::string question = fmt::format("{}; {}, {} {}: {}", stays, reading.words, found->ids, would, reading.remedy);
-  for (std::size_t i = 0; i < tried.size(); ++i) {
-    const bool has_another_unit = tried[i].convention.metres_per_unit != reading.convention.metres_per_unit;
-    if (has_another_unit && tried[i].changes == reading.changes && fits[i].score() >= kAsGood * found->score())
-      question += fmt::format(" (or {}: {})", tried[i].words, tried[i].remedy);
-  }
+          : fmt::format("{} of {} {} of the skin, in {:.1f} % of all samples", now.ids, total, near, 100 * now.share);
+  const std::vector<Candidate> best = Candidates(moments, convention_, origin_m_, now, few).best();
+  if (best.empty()) return few ? std::optional(stays) : std::nullopt;
+  const auto& [reading, fit] = best.front();
+  const std::string would = now.ids == 0 ? fmt::format("would {}", near) : "would";
+  std::string question = fmt::format("{}; {}, {} {}, in {:.1f} %: {}", stays, reading.words, fit.ids, would,
+                                     100 * fit.share, reading.flags);
+  std::vector<std::string> others;
+  for (const auto& [other, its_fit] : std::span(best).subspan(1))
+    others.push_back(
+        fmt::format("or {}: {:.1f} %", other.has_other_columns ? other.words : other.flags, 100 * its_fit.share));
+  if (!others.empty()) question += fmt::format(" ({})", fmt::join(others, ", "));
   return question;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,9 +10,10 @@
 
 namespace vestige {
 
-/// Asks whether a file of poses has the axes and the unit by which it was read. Bones keep their length while a body
+/// Asks whether a file of poses has the axes and the units by which it was read. Bones keep their length while a body
 /// moves, so almost every joint stands in its parent as it does at rest. Where joints do not, but would with the axes
-/// of a program or in another unit, these are named.
+/// of a program or in another unit, these are named. Likewise, few joints are ever turned by far more than a right
+/// angle: where almost all are, and would not be had their quaternions been written w,x,y,z, this is asked.
 ///
 /// It cannot tell where a file places only joints in the body's middle, or none.
 class PoseQuestion {
@@ -24,11 +24,15 @@ class PoseQuestion {
 
   void see(const TraceFrame& frame);
 
-  /// Returns one sentence, such as "14 of 20 joints do not stand in their parents as at rest; with the axes of unity,
-  /// all of them would: --pose-axes unity". Returns nothing if there is nothing to ask.
-  std::optional<std::string> ask() const;
+  /// Returns sentences such as "14 of 20 joints do not stand in their parents as at rest; 20 of them would with
+  /// --pose-axes unity". Returns nothing if there is nothing to ask.
+  std::vector<std::string> ask() const;
 
  private:
+  std::string doubt_of_joints() const;
+  std::string doubt_of_quaternions() const;
+  std::string doubt_of_times() const;
+
   struct Reading {
     Convention convention;
     std::string flags;
@@ -39,6 +43,11 @@ class PoseQuestion {
   std::vector<int> joints_;        ///< placed nodes with a parent, away from it at rest
   std::vector<Reading> readings_;  ///< the first is `convention_`
   std::uint64_t frames_ = 0;
+
+  std::vector<std::uint64_t> turned_;       ///< for each node: the frames in which it is not turned as at rest
+  std::vector<std::uint64_t> wrong_order_;  ///< for each node: the frames in which its numbers look like w,x,y,z
+  std::int64_t first_ns_ = 0;
+  std::int64_t last_ns_ = 0;
 };
 
 }  // namespace vestige

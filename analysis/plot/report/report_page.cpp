@@ -98,9 +98,15 @@ class Page {
     return fmt::format("{} with {}", html_text(candidate.map), html_text(candidate.law));
   }
 
+  /// How many have the same value as the best, beside it.
+  std::size_t equal_to_best() const {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(data_.ranking, [](const Candidate& one) { return one.rank == 1U; }) - 1);
+  }
+  /// How many are worse than the best, and not to be told from it.
   std::size_t level_with_best() const {
     return static_cast<std::size_t>(
-        std::ranges::count_if(data_.ranking, [](const Candidate& one) { return is_level(one); }) - 1);
+        std::ranges::count_if(data_.ranking, [](const Candidate& one) { return is_level(one) && one.rank != 1U; }));
   }
   /// Ranked, and not to be told from the first.
   static bool is_level(const Candidate& one) { return one.rank && !one.distinguishable_from_best; }
@@ -144,18 +150,31 @@ class Page {
   }
 
   std::string others_in_words() const {
-    const std::size_t others = data_.ranking.size() - 1;
-    if (others == 0) return "There is nothing else to compare it with.";
+    if (data_.ranking.size() == 1) return "There is nothing else to compare it with.";
+    const std::size_t equal = equal_to_best();
+    const auto ranked = static_cast<std::size_t>(
+        std::ranges::count_if(data_.ranking, [](const Candidate& one) { return one.rank.has_value(); }));
+    const std::size_t worse = ranked - 1 - equal;
+    std::vector<std::string> sentences;
+    const auto combinations = [&](std::size_t count, const char* which) {
+      return fmt::format("{}combination{} of map and law", which, count == 1 ? "" : "s");
+    };
+    if (equal > 0) sentences.push_back(fmt::format("{} other {} the same value.", equal, equal == 1 ? "has" : "have"));
+    if (worse > 0) sentences.push_back(worse_in_words(worse, combinations(worse, equal > 0 ? "remaining " : "other ")));
+    if (const std::size_t without = data_.ranking.size() - ranked; without > 0)
+      sentences.push_back(fmt::format("{} {} no value.", without, without == 1 ? "has" : "have"));
+    return fmt::format("{}", fmt::join(sentences, " "));
+  }
+
+  std::string worse_in_words(std::size_t worse, const std::string& combinations) const {
     if (!data_.has_intervals())
-      return fmt::format("Whether the {} of map and law are worse on other recordings, these traces cannot show.",
-                         counted(others, "other combination"));
-    const std::size_t level = level_with_best();
-    if (level == 0)
-      return fmt::format("{} worse (p by Holm's correction under 0.05).",
-                         others == 1 ? "The other combination of map and law is"
-                                     : fmt::format("All {} other combinations of map and law are", others));
-    return fmt::format("Of the {} of map and law, {} cannot be distinguished from it.",
-                       counted(others, "other combination"), level);
+      return fmt::format("Whether the {} {} {} worse on other recordings, these traces cannot show.", worse,
+                         combinations, worse == 1 ? "is" : "are");
+    if (const std::size_t level = level_with_best(); level > 0)
+      return fmt::format("Of the {} {}, {} cannot be distinguished from it.", worse, combinations, level);
+    const std::string all =
+        worse == 1 ? fmt::format("The {} is", combinations) : fmt::format("All {} {} are", worse, combinations);
+    return fmt::format("{} worse (p by Holm's correction under 0.05).", all);
   }
 
   void cautions() {
@@ -299,6 +318,7 @@ class Page {
   std::string against_first(const Candidate& one, bool is_first) const {
     if (!one.rank) return "no value";
     if (is_first) return "first";
+    if (one.rank == 1U) return "the same";
     const Estimate& difference = one.difference_from_best;
     if (!difference.has_interval()) return data_.has_intervals() ? "unknown: too few traces" : "unknown: no interval";
     const std::string interval = fmt::format(" <span class=\"interval\">({}{})</span>",

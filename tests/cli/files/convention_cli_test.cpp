@@ -77,9 +77,32 @@ TEST_F(ConventionCommandLine, PrefersWhatNeedsNoNumber) {
   ASSERT_EQ(run("vestige record --animation walk --colliders punch --rate 250 --duration 1 -o punch.mcap").exit_code,
             0);
   ASSERT_EQ(run("vestige export punch.mcap -o punch").exit_code, 0);
-  EXPECT_THAT(recorded(colliders("z_up.csv", "t,i,x,-z,y", "punch")), HasSubstr(": --collider-axes blender\n"));
-  EXPECT_THAT(recorded(colliders("in.csv", "t,i,x/0.0254,y/0.0254,z/0.0254", "punch")),
-              HasSubstr("--collider-unit cm (or in inches: --collider-unit in)\n"));
+  EXPECT_THAT(recorded(colliders("z_up.csv", "t,i,x,-z,y", "punch")), HasSubstr(": --collider-axes blender"));
+  const std::string inches = recorded(colliders("in.csv", "t,i,x/0.0254,y/0.0254,z/0.0254", "punch"));
+  EXPECT_THAT(inches, HasSubstr("--collider-unit cm (or --collider-unit in: "));
+  EXPECT_THAT(inches, Not(HasSubstr("--collider-offset")));
+}
+
+TEST_F(ConventionCommandLine, NamesEachThatMayBeMeant) {
+  // A quarter turn about the vertical: points on all sides of the body fit about as well.
+  EXPECT_THAT(recorded(colliders("unreal_m.csv", "t,i,z,-x,y")), HasSubstr("--collider-axes unreal --collider-unit m"));
+  EXPECT_THAT(recorded(colliders("turned.csv", "t,i,z,x,y")), HasSubstr("columns in the order z,x,y"));
+}
+
+TEST_F(ConventionCommandLine, NamesTheUnitOfASmallScene) {
+  colliders("cm.csv", "t,i,100*x,100*y,100*z");
+  EXPECT_THAT(recorded("cm.csv", "--collider-unit mm"), HasSubstr("--collider-unit cm"));
+  colliders("unreal_m.csv", "t,i,z,-x,y");
+  EXPECT_THAT(recorded("unreal_m.csv", "--collider-axes unreal"), HasSubstr("--collider-unit m"));
+}
+
+TEST_F(ConventionCommandLine, SaysThatAllCollidersAreInOnePoint) {
+  EXPECT_THAT(recorded(colliders("zero.csv", "t,i,0,0,0")), HasSubstr("all 100 colliders stay in one point, 0, 0, 0"));
+}
+
+TEST_F(ConventionCommandLine, NamesAUnitAndAnOffset) {
+  EXPECT_THAT(recorded(colliders("cm_away.csv", "t,i,100*x+300,100*y,100*z")),
+              HasSubstr("--collider-unit cm --collider-offset=-3,"));
 }
 
 TEST_F(ConventionCommandLine, NamesAnOffset) {
@@ -120,6 +143,34 @@ TEST_F(ConventionCommandLine, AsksAboutPosesOfUnity) {
   const test::Outcome mended = run(import + "--pose-axes unity --collider-axes unity");
   EXPECT_THAT(mended.standard_error, IsEmpty());
   EXPECT_NEAR(contacts("x.mcap"), right_contacts_, right_contacts_ / 50 + 1);
+}
+
+TEST_F(ConventionCommandLine, PosesAreAskedAboutBeforeColliders) {
+  const test::Outcome made =
+      run("awk -F, 'NR==1{for(i=1;i<=NF;i++){n[i]=$i;gsub(/\"/,\"\",n[i])};print;next}{OFS=\",\";for(i=3;i<=NF;i++)"
+          "if(n[i]~/(origin_|\\.t)[xyz]$/)$i=100*$i;print}' right/poses.csv > cm.csv");
+  ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+  const std::string import = "vestige import --poses cm.csv --colliders right/colliders.csv --force -o x.mcap ";
+  const std::string question = run(import).standard_error;
+  EXPECT_THAT(question, HasSubstr("--pose-unit cm"));
+  EXPECT_THAT(question, Not(HasSubstr("away from the skin")));
+  EXPECT_THAT(run(import + "--pose-unit cm").standard_error, IsEmpty());
+}
+
+TEST_F(ConventionCommandLine, AsksAboutTimesOfPoses) {
+  const test::Outcome made = run("awk -F, 'NR==1{print;next}{OFS=\",\";$2=1000*$2;print}' right/poses.csv > ms.csv");
+  ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+  EXPECT_THAT(run("vestige import --poses ms.csv --force -o x.mcap").standard_error, HasSubstr("--time-unit ms"));
+  EXPECT_THAT(run("vestige import --poses ms.csv --time-unit ms --force -o x.mcap").standard_error, IsEmpty());
+}
+
+TEST_F(ConventionCommandLine, AsksAboutQuaternionsInAnotherOrder) {
+  const test::Outcome made =
+      run("sed '1{s/\\.rx/.r0/g;s/\\.ry/.r1/g;s/\\.rz/.r2/g;s/\\.rw/.rx/g;s/\\.r0/.ry/g;"
+          "s/\\.r1/.rz/g;s/\\.r2/.rw/g}' right/poses.csv > wxyz.csv");
+  ASSERT_EQ(made.exit_code, 0) << made.standard_error;
+  EXPECT_THAT(run("vestige import --poses wxyz.csv --force -o x.mcap").standard_error,
+              HasSubstr("are turned by more than 120 degrees; if their quaternions are written w,x,y,z"));
 }
 
 TEST_F(ConventionCommandLine, AsksAboutAFewJoints) {

@@ -183,8 +183,9 @@ TEST_F(BatchCommandLine, RecordsEachScenarioWithEachSeedAndTellsMapsApart) {
       "vestige batch --maps paper6 torso40 --traces slide punch --laws binary,phantom --rate 100 --duration 0.5 ";
   const test::Outcome batch = run(command + "--seeds 1:8 -o out");
   ASSERT_EQ(batch.exit_code, 0) << batch.standard_error;
-  EXPECT_THAT(batch.standard_output, AllOf(HasSubstr("mean over 2 scenarios x 8 seeds and its 95 % interval"),
-                                           HasSubstr("p_holm"), Not(HasSubstr("no intervals"))));
+  EXPECT_THAT(batch.standard_output,
+              AllOf(HasSubstr("mean over the traces of 2 scenarios x 8 seeds and its 95 % interval"),
+                    HasSubstr("p_holm"), Not(HasSubstr("no intervals"))));
   // Each is what record makes of that seed.
   ASSERT_EQ(run("vestige record --colliders punch --seed 3 --rate 100 --duration 0.5 -q -o punch.mcap && "
                 "vestige replay punch.mcap -q --contacts replay.csv && cut -d, -f1-9 replay.csv >expected")
