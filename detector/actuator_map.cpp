@@ -158,6 +158,7 @@ struct Sidecar {
   std::vector<std::uint16_t> grey;
   std::vector<std::string> names;
   std::vector<std::optional<glm::dvec3>> position_m;
+  Firing firing;
 };
 
 /// Returns three finite numbers, or nothing if the entry has no position.
@@ -208,7 +209,8 @@ Sidecar parse_sidecar(std::string_view json, std::string_view name, std::vector<
   const nlohmann::json document = parse_strict_json(json, fmt::format("{}, sidecar", name), kRemedy);
   if (!document.is_object() || !document.contains("actuators") || !document["actuators"].is_array())
     throw Error(fmt::format("{}, sidecar", name), "has no list 'actuators'", kRemedy);
-  warn_of_fields(document, {"actuators", "triangles", "skin", "facing"}, fmt::format("{}, sidecar", name), warnings);
+  warn_of_fields(document, {"actuators", "triangles", "skin", "facing", "fires"}, fmt::format("{}, sidecar", name),
+                 warnings);
   Sidecar sidecar;
   if (document.contains("triangles")) {
     const auto& triangles = document["triangles"];
@@ -240,6 +242,8 @@ Sidecar parse_sidecar(std::string_view json, std::string_view name, std::vector<
     sidecar.position_m.push_back(parse_position(entry, where));
   }
   warn_of_names(sidecar, name, warnings);
+  if (document.contains("fires"))
+    sidecar.firing = Firing(document["fires"], sidecar.names, fmt::format("{}, sidecar", name));
   return sidecar;
 }
 
@@ -328,6 +332,7 @@ ActuatorMap parse_actuator_map(std::span<const std::byte> png, std::string_view 
   map.names = std::move(listed.names);
   map.position_m = std::move(listed.position_m);
   map.facing = listed.facing;
+  map.firing = std::move(listed.firing);
   return map;
 }
 

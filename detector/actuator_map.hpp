@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "detector/firing.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
@@ -32,6 +33,7 @@ struct ActuatorMap {
   /// One for each actuator: the middle of its region on the skin in the bind pose, in metres. Empty if the sidecar does
   /// not give it.
   std::vector<std::optional<glm::dvec3>> position_m;
+  Firing firing;                      ///< what the regions make vibrate: each its own actuator, as a rule
   std::optional<Facing> facing;       ///< of the avatar at rest when the map was made; empty if the sidecar is silent
   std::string skin_digest;            ///< `skin_digest` of the avatar that owns the triangles; may be empty
   std::vector<std::string> warnings;  ///< one sentence each
@@ -54,6 +56,8 @@ inline constexpr std::string_view kTriangleMap = "by triangle";
 /// order. `sidecar_json` (may be empty) assigns the greys to actuators, in the order of the actuator numbers:
 /// {"actuators": [{"grey": 40, "name": "chest left", "position_m": [0.08, 1.3, 0.12]}, …]}. A grey that the image uses
 /// and the sidecar does not list is an error. Name and position (three finite numbers) are optional.
+///
+/// "fires" lets regions fire other actuators than their own (`Firing`).
 ///
 /// "facing" ("+z", "+x", "-z" or "-x") tells which way the avatar looked when the map was made.
 ///

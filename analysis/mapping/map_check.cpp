@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "analysis/mapping/map_raster.hpp"
 #include "analysis/mapping/skin_pieces.hpp"
@@ -101,12 +102,27 @@ class Checker {
     if (map_.actuator_count == 0)
       add(Severity::kProblem, "never_fires", 0, "the map is black everywhere, so no actuator can fire",
           "paint regions in grey levels, or make the map with 'vestige map make'");
-    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator)
-      if (of(actuator).texels == 0 || (map_.triangle_count != 0 && !(of(actuator).area_m2 > 0)))
+    std::set<std::uint32_t> fired;  // by other regions than their own
+    for (std::uint32_t region = 0; region < map_.actuator_count; ++region)
+      map_.firing.for_each(region, [&](const Fired& one) {
+        if (one.actuator != region) fired.insert(one.actuator + 1);
+      });
+    for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
+      if (fired.contains(actuator)) continue;
+      const bool is_absent = of(actuator).texels == 0 || (map_.triangle_count != 0 && !(of(actuator).area_m2 > 0));
+      if (is_absent)
         add(Severity::kProblem, "never_fires", actuator,
             fmt::format("actuator {} can never fire: {}", quoted(actuator),
                         of(actuator).texels == 0 ? "the image has no texel of its grey" : "its triangles have no area"),
             "paint its region, or take it out of the sidecar");
+      if (is_absent || map_.firing.is_own(actuator - 1U)) continue;
+      bool fires_itself = false;
+      map_.firing.for_each(actuator - 1U, [&](const Fired& one) { fires_itself |= one.actuator + 1 == actuator; });
+      if (!fires_itself)
+        add(Severity::kNote, "never_fires", actuator,
+            fmt::format("actuator {} never fires: its region fires others, and no region fires it", quoted(actuator)),
+            "if it should, name it in the sidecar's 'fires'");
+    }
   }
 
   void find_unreached() {

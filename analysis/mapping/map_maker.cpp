@@ -148,7 +148,9 @@ double rounded(double metres) {
 }
 
 /// `by_triangle` tells whether the texels are the avatar's triangles.
-std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar& avatar, bool by_triangle) {
+/// `fires` is JSON, or empty.
+std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar& avatar, bool by_triangle,
+                       const std::string& fires) {
   std::string text = "{\n";
   if (by_triangle)
     text += fmt::format("  \"triangles\": {},\n  \"skin\": \"{}\",\n", avatar.triangles.size(), skin_digest(avatar));
@@ -160,7 +162,13 @@ std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar&
         {"grey", actuators[i].grey}, {"name", actuators[i].name}, {"position_m", {p.x, p.y, p.z}}};
     text += fmt::format("    {}{}\n", entry.dump(), i + 1 < actuators.size() ? "," : "");
   }
-  return text + "  ]\n}\n";
+  return text + (fires.empty() ? "  ]\n}\n" : fmt::format("  ],\n  \"fires\": {}\n}}\n", fires));
+}
+
+void check_fires(const std::string& fires, const std::vector<MadeActuator>& actuators, std::string_view name) {
+  std::vector<std::string> names;
+  for (const MadeActuator& actuator : actuators) names.push_back(actuator.name);
+  Firing(nlohmann::json::parse(fires), names, std::string(name));
 }
 
 std::vector<std::byte> png_of(const MadeMap& map) {
@@ -249,7 +257,8 @@ MadeMap make_map(const Body& body, const RegionPlan& plan, const MapSettings& se
         rasterise(body.surface(), numbered, settings.side, settings.padding, part_of(settings.progress, 1, parts));
     map.misplaced_share = misplaced_share(cut, map.raster, numbered, part_of(settings.progress, 2, parts));
   }
-  map.files = {png_of(map), sidecar_of(map.actuators, body.avatar(), map.triangle_count != 0)};
+  map.files = {png_of(map), sidecar_of(map.actuators, body.avatar(), map.triangle_count != 0, settings.fires)};
+  if (!settings.fires.empty()) check_fires(settings.fires, map.actuators, name);
   warn_of(map.raster, avatar_name, map);
   return map;
 }

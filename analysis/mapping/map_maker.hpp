@@ -22,6 +22,7 @@ struct MapSettings {
   EmptyRegions empty = EmptyRegions::kRefuse;
   /// One texel for each triangle, instead of the avatar's UV space. `side` and `padding` are then ignored.
   bool per_triangle = false;
+  std::string fires;      ///< JSON for the sidecar (`Firing`); empty: every region fires its own actuator
   WorkProgress progress;  ///< may be empty
 };
 

@@ -207,11 +207,16 @@ std::vector<RegionSpec> parse_region_file(std::string_view json_text, std::strin
       document["regions"].empty())
     throw Error(name, "has no list 'regions'", kRemedy);
   for (const auto& [key, value] : document.items())
-    if (key != "regions") throw UnknownName(name, "field", key, {"regions"});
+    if (key != "regions" && key != "fires") throw UnknownName(name, "field", key, {"regions", "fires"});
   std::vector<RegionSpec> regions;
   for (const json& item : document["regions"])
     regions.push_back(parse_region(item, fmt::format("{}, regions[{}]", name, regions.size())));
   return regions;
+}
+
+std::string fires_of_region_file(std::string_view json_text) {
+  const nlohmann::ordered_json document = nlohmann::ordered_json::parse(json_text);
+  return document.contains("fires") ? document["fires"].dump() : std::string();
 }
 
 }  // namespace vestige

@@ -87,8 +87,14 @@ struct RegionSpec {
 ///                                      each has the skin that is nearest to it along the surface
 ///     "radius_m": 0.06                 …, and at most this far away
 ///
+/// Beside "regions", "fires" says which regions fire other actuators than their own (`Firing`).
+///
 /// Throws `Error` if the text is not JSON, has a word that does not exist, or has a value that is not possible. The
 /// error says which region and which of its words is wrong. `name` appears in it.
 std::vector<RegionSpec> parse_region_file(std::string_view json, std::string_view name);
+
+/// Returns the JSON of "fires" beside the regions, which goes into the map's sidecar (`Firing`); empty without one.
+/// Precondition: `parse_region_file` has taken the text.
+std::string fires_of_region_file(std::string_view json);
 
 }  // namespace vestige

@@ -186,7 +186,7 @@ class Replay {
       const MapChange& change = plan_.changes[result_.map_changes];
       if (change.time_s > time_s) return;
       changed_map_ = &change.map;
-      if (plan_.outputs.drive != nullptr) plan_.outputs.drive->law().change_layout(change.layout);
+      if (plan_.outputs.drive != nullptr) plan_.outputs.drive->law().change_map(change.map.firing, change.layout);
     }
   }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 
 #include "detector/actuators/portable_math.hpp"
 
@@ -28,6 +29,19 @@ std::vector<double> confusions(const ActuatorLayout& layout) {
     for (std::size_t j = 0; j < n; ++j) named[i * n + j] /= sum;
   }
   return named;
+}
+
+/// Adds the counts of responses that feel the same up, in the first of their columns.
+void merge_alike(const Firing& firing, std::size_t actuators, std::vector<double>& counts) {
+  std::map<std::vector<Fired>, std::size_t> first;
+  for (std::size_t j = 0; j < actuators; ++j) {
+    const std::size_t same = first.try_emplace(firing.of(static_cast<std::uint32_t>(j)), j).first->second;
+    if (same == j) continue;
+    for (std::size_t row = 0; row < counts.size(); row += actuators + 1) {
+      counts[row + same] += counts[row + j];
+      counts[row + j] = 0;
+    }
+  }
 }
 
 }  // namespace
@@ -101,6 +115,7 @@ double RegionObserver::bits(const ActuatorLayout& layout) const {
       for (std::size_t j = 0; j < actuators_; ++j) counts[region * columns + j] += felt * named[i * actuators_ + j];
     }
   }
+  if (!layout.map().firing.is_own()) merge_alike(layout.map().firing, actuators_, counts);
   return transmitted_bits(counts, columns);
 }
 

@@ -47,35 +47,55 @@ void LawScore::begin_frame(std::uint64_t frame, double time_s) {
 
 void LawScore::feel_shares(const LocatedContact& contact) {
   law_->spread(contact, shares_);
-  if (responses_.empty()) return;
+  fired_.clear();
   felt_.clear();
   for (const Share& share : shares_) {
-    const Motor& motor = responses_[share.actuator].motor;
-    const double reached = motor.after(0, motor.duty(share.amplitude), contact_lasts_s_);
-    if (reached >= motor.felt_threshold && reached > 0) felt_.push_back({share.actuator, reached});
+    double most = 0;
+    layout_.map().firing.for_each(share.actuator, [&](const Fired& one) {
+      const double amplitude = one.gain * share.amplitude;
+      add_fired({one.actuator, amplitude});
+      most = std::max(most, reached_by(one.actuator, amplitude));
+    });
+    if (most > 0) felt_.push_back({share.actuator, most});
   }
+}
+
+/// Regions that fire the same actuator ask for it once, the strongest.
+void LawScore::add_fired(const Share& share) {
+  if (!layout_.map().firing.is_own())
+    if (const auto found = std::ranges::find(fired_, share.actuator, &Share::actuator); found != fired_.end()) {
+      found->amplitude = std::max(found->amplitude, share.amplitude);
+      return;
+    }
+  fired_.push_back(share);
+}
+
+double LawScore::reached_by(std::uint32_t actuator, double amplitude) const {
+  if (responses_.empty()) return amplitude;
+  const Motor& motor = responses_[actuator].motor;
+  const double reached = motor.after(0, motor.duty(amplitude), contact_lasts_s_);
+  return reached >= motor.felt_threshold ? reached : 0;
 }
 
 double LawScore::add(const JudgedContact& contact) {
   feel_shares(contact.located);
   held_.add(contact.column, shares_);
-  for (const Share& share : shares_) all_.timing.ask(share.actuator, contact.frame, contact.instant_s);
-  if (shares_.empty()) all_.timing.ask_nothing();
+  for (const Share& share : fired_) all_.timing.ask(share.actuator, contact.frame, contact.instant_s);
+  if (fired_.empty()) all_.timing.ask_nothing();
 
   ++all_.contacts;
-  const std::vector<Share>& felt = responses_.empty() ? shares_ : felt_;
-  if (felt.empty()) {
+  if (felt_.empty()) {
     observer_.add_unfelt(contact.region);
     return kMissing;
   }
   ++all_.felt;
   double error_m = 0;
   double energy_error_m = 0;
-  if (felt.size() == 1) {
-    error_m = energy_error_m = static_cast<double>(contact.located.distance_m()[felt.front().actuator]);
-    observer_.add_single(contact.region, felt.front().actuator);
+  if (felt_.size() == 1) {
+    error_m = energy_error_m = static_cast<double>(contact.located.distance_m()[felt_.front().actuator]);
+    observer_.add_single(contact.region, felt_.front().actuator);
   } else {
-    const FeltOffset offset = felt_offset(layout_, contact.located, felt);
+    const FeltOffset offset = felt_offset(layout_, contact.located, felt_);
     error_m = glm::length(offset.amplitude_m);
     energy_error_m = glm::length(offset.energy_m);
     observer_.add(contact.region, layout_, contact.located, offset.amplitude_m);
@@ -91,11 +111,10 @@ void LawScore::add_to_slide(const JudgedContact& contact, const SlideFinder& sli
   if (contact.column >= smoothness_.size()) smoothness_.resize(contact.column + 1);
   SlideSmoothness& smoothness = smoothness_[contact.column];
   if (step == SlideFinder::Step::kBegins) smoothness = SlideSmoothness();
-  const std::vector<Share>& felt = responses_.empty() ? shares_ : felt_;
   double energy = 0;
   double weights = 0;
   glm::dvec3 middle_m(0);
-  for (const Share& share : felt) {
+  for (const Share& share : felt_) {
     energy += share.amplitude * share.amplitude;
     weights += share.amplitude;
     middle_m += share.amplitude * layout_.position_m(share.actuator);
@@ -134,8 +153,15 @@ void LawScore::advance_motors(std::uint64_t frame, double time_s) {
   }
 }
 
+const std::vector<double>& LawScore::fired_now() {
+  const std::vector<double>& asked = held_.now();
+  if (layout_.map().firing.is_own()) return asked;
+  layout_.map().firing.apply(asked, fired_amplitude_);
+  return fired_amplitude_;
+}
+
 void LawScore::end_frame(std::uint64_t frame, double time_s) {
-  const std::vector<double>& now = held_.now();
+  const std::vector<double>& now = fired_now();
   bool changed = !started_;
   double sum = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {

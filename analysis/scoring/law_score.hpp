@@ -54,6 +54,10 @@ class LawScore {
   };
 
   void feel_shares(const LocatedContact& contact);
+  void add_fired(const Share& share);
+  /// Returns the amplitude of an actuator that a contact alone drives; 0 if it is not felt.
+  double reached_by(std::uint32_t actuator, double amplitude) const;
+  const std::vector<double>& fired_now();
   void advance_motors(std::uint64_t frame, double time_s);
 
   const ActuatorLayout& layout_;
@@ -62,9 +66,11 @@ class LawScore {
   std::unique_ptr<IntensityLaw> law_;
   HeldAmplitudes held_;
   std::vector<Response> responses_;  ///< empty: motors are ideal
-  std::vector<Share> shares_;        ///< shares that the last contact asks for
-  std::vector<Share> felt_;          ///< shares that are felt of it
+  std::vector<Share> shares_;        ///< what the last contact asks for, by region
+  std::vector<Share> fired_;         ///< what fires for it, by actuator
+  std::vector<Share> felt_;          ///< what is felt of it, by region: where it is meant to be felt
   std::vector<double> amplitude_;    ///< amplitudes of the previous frame
+  std::vector<double> fired_amplitude_;
   std::vector<std::uint8_t> duty_;
   double last_time_s_ = 0;
   bool started_ = false;

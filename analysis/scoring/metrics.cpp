@@ -97,7 +97,7 @@ constexpr Metric kMetrics[] = {
      .shown = Shown::kBesideTheRank,
      .formula =
          "sqrt(mean |Σ A_i v_i / Σ A_i|²) over contacts that are felt; v_i: path along the body from the contact to "
-         "actuator i",
+         "actuator i. Where the map's \"fires\" lets a region drive others, A_i is felt at the place that is meant",
      .source = "amplitude centroid",
      .value = [](const LawTally& all) { return root_mean(all.squared_error_m2, all.felt) * kMillimetres; }},
     {.name = "common_error_mm",

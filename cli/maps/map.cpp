@@ -147,6 +147,7 @@ void run_make(const MakeOptions& options, Invocation& invocation) {
     if (!options.layout.empty() && !options.is_given_texels)
       return make_layout_map(avatar, options.layout, settings.progress);
     const RegionPlan plan(body, parse_region_file(regions, name), name);
+    settings.fires = fires_of_region_file(regions);
     return make_map(body, plan, settings, name, options.avatar);
   });
   say_how_understood(body, options.avatar, options.common);
@@ -234,7 +235,7 @@ struct CheckOptions {
   std::string avatar = "builtin";
 };
 
-std::string checked_text(const CheckOptions& options, const MapCheck& check) {
+std::string checked_text(const CheckOptions& options, const ActuatorMap& map, const MapCheck& check) {
   double mapped_m2 = 0;
   for (const CheckedActuator& actuator : check.actuators) mapped_m2 += actuator.area_m2;
   std::string text =
@@ -248,6 +249,9 @@ std::string checked_text(const CheckOptions& options, const MapCheck& check) {
                           actuator.area_m2 * kSquareCentimetres, actuator.pieces, actuator.pieces == 1 ? "" : "s",
                           actuator.name);
     }
+  for (std::uint32_t i = 0; i < map.actuator_count; ++i)
+    if (!map.firing.is_own(i))
+      text += fmt::format("'{}' fires {}\n", map.names[i], vestige::describe(map.firing.of(i), map.names));
   for (const MapFinding& finding : check.findings)
     text += fmt::format("{}: {}\n  {}\n", finding.severity == Severity::kProblem ? "problem" : "note", finding.cause,
                         finding.remedy);
@@ -291,7 +295,7 @@ void run_check(const CheckOptions& options, Invocation& invocation) {
     for (const std::string& warning : settle_facing(avatar.facing, options.facing.axis, map.facing, options.avatar))
       warn(warning, options.common.verbosity());
   const MapCheck check = check_map(Body(avatar), map, options.avatar);
-  print_summary(checked_text(options, check), {options.common.json}, options.common);
+  print_summary(checked_text(options, map, check), {options.common.json}, options.common);
   nlohmann::ordered_json json = provenance(invocation.argv);
   json.update(checked_json(options, check));
   write_json(options.common.json, json, options.common);

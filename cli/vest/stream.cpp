@@ -208,7 +208,7 @@ void choose_map(OpenTrace& trace, const StreamOptions& options) {
 LawMaker make_laws(const StreamOptions& options, const OpenTrace& trace) {
   const double rate = options.playback.rate;
   if (options.sink.quantity() == Quantity::kPressure)
-    return {trace.map.actuator_count, options.law.options(rate).hold_s};
+    return {trace.map, options.law.options(rate).hold_s};
   return LawMaker(DriveMaker(options.law, trace.avatar, trace.map, rate));
 }
 
@@ -253,7 +253,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
     calls.go_on = [&](double share) {
       if (auto taken = watch ? watch->take() : std::nullopt) {
         trace.map = std::move(taken->map);
-        laws.use(taken->layout);
+        laws.use(trace.map, taken->layout);
         ++streamed.maps_reloaded;
         for (const std::string& warning : map_warnings(trace, options)) tell(warning);
       }

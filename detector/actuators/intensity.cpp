@@ -239,7 +239,10 @@ const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Con
     spread(located_, shares_);
     held_.add(column, shares_);
   }
-  return held_.now();
+  const std::vector<double>& asked = held_.now();
+  if (firing_.is_own()) return asked;
+  firing_.apply(asked, fired_);
+  return fired_;
 }
 
 std::span<const LawInfo> laws() {
@@ -263,12 +266,15 @@ const LawInfo& law_named(std::string_view name) {
 }
 
 std::unique_ptr<IntensityLaw> make_law(std::string_view name, Layout layout, const LawOptions& options) {
-  const std::size_t actuator_count = layout->actuator_count();
-  return law_named(name).make(std::move(layout), actuator_count, options);
+  auto law = law_named(name).make(layout, layout->actuator_count(), options);
+  law->change_map(layout->map().firing, layout);
+  return law;
 }
 
-std::unique_ptr<IntensityLaw> make_law(std::string_view name, std::size_t actuator_count, const LawOptions& options) {
-  return law_named(name).make(nullptr, actuator_count, options);
+std::unique_ptr<IntensityLaw> make_law(std::string_view name, const ActuatorMap& map, const LawOptions& options) {
+  auto law = law_named(name).make(nullptr, map.actuator_count, options);
+  law->change_map(map.firing, nullptr);
+  return law;
 }
 
 }  // namespace vestige

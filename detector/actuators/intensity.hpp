@@ -39,6 +39,8 @@ struct LawOptions {
 ///   gaussian  Every actuator at exp(-d² / 2σ²), where d is the distance along the surface. Less than half a step of
 ///             the duty counts as nothing.
 ///
+/// Shares are those of the regions' own actuators. What these make vibrate, the map says (`Firing`).
+///
 /// `binary` and `speed` hold every contact. Under the other laws, a collider's next contact replaces the held one.
 /// Otherwise the energy would grow along the collider's way.
 class IntensityLaw {
@@ -50,16 +52,19 @@ class IntensityLaw {
   virtual const char* name() const = 0;
   /// The planes that the contacts of a row must carry.
   virtual PlaneSet planes() const = 0;
-  /// Replaces `out` by the request of one contact, independent of all other contacts. Each actuator occurs at most
-  /// once.
+  /// Replaces `out` by the request of one contact, independent of all other contacts. Each region occurs at most once.
   virtual void spread(const LocatedContact& contact, std::vector<Share>& out) const = 0;
 
   /// Returns the amplitudes at `time_s`, one for each actuator. `row` has a contact for each collider, from a detector
   /// that uses the layout's map. Times must not decrease. The reference is valid until the next call.
   const std::vector<double>& next(double time_s, std::span<const Contact> row);
 
-  /// Continues with another layout of equally many actuators; the held amplitudes stay.
-  void change_layout(std::shared_ptr<const ActuatorLayout> layout) { layout_ = std::move(layout); }
+  /// Continues with another map of equally many actuators; the held amplitudes stay. `layout` is the map's, or null for
+  /// a law that does not need one.
+  void change_map(Firing firing, std::shared_ptr<const ActuatorLayout> layout) {
+    firing_ = std::move(firing);
+    layout_ = std::move(layout);
+  }
   std::size_t actuator_count() const { return actuator_count_; }
   const LawOptions& options() const { return options_; }
   HeldAmplitudes::Rule hold_rule() const { return hold_rule_; }
@@ -78,6 +83,8 @@ class IntensityLaw {
   HeldAmplitudes held_;
   LocatedContact located_;
   std::vector<Share> shares_;
+  Firing firing_;
+  std::vector<double> fired_;
 };
 
 /// Returns the σ that `gaussian` uses; +inf for a layout of one actuator, which is then fully on wherever it is
@@ -106,6 +113,6 @@ const LawInfo& law_named(std::string_view name);
 std::unique_ptr<IntensityLaw> make_law(std::string_view name, std::shared_ptr<const ActuatorLayout> layout,
                                        const LawOptions& options);
 /// As above. Precondition: the law does not need a layout.
-std::unique_ptr<IntensityLaw> make_law(std::string_view name, std::size_t actuator_count, const LawOptions& options);
+std::unique_ptr<IntensityLaw> make_law(std::string_view name, const ActuatorMap& map, const LawOptions& options);
 
 }  // namespace vestige

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "detector/actuators/pressure.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige {
@@ -34,7 +33,11 @@ void LawFlags::check() const {
 }
 
 DriveMaker::DriveMaker(const LawFlags& flags, const Avatar& avatar, const ActuatorMap& map, double hold_rate)
-    : flags_(flags), options_(flags.options(hold_rate)), avatar_(avatar), actuator_count_(map.actuator_count) {
+    : flags_(flags),
+      options_(flags.options(hold_rate)),
+      avatar_(avatar),
+      actuator_count_(map.actuator_count),
+      firing_(map.firing) {
   flags.check();
   if (!flags.actuator.empty()) motors_ = read_actuator_model(flags.actuator).motors(map);
   for (Motor& motor : motors_) motor.kick_s *= hold_rate;
@@ -43,7 +46,8 @@ DriveMaker::DriveMaker(const LawFlags& flags, const Avatar& avatar, const Actuat
 }
 
 std::unique_ptr<ActuatorDrive> DriveMaker::make() const {
-  auto law = layout_ ? make_law(flags_.law, layout_, options_) : make_law(flags_.law, actuator_count_, options_);
+  auto law = law_named(flags_.law).make(layout_, actuator_count_, options_);
+  law->change_map(firing_, layout_);
   return std::make_unique<ActuatorDrive>(std::move(law), motors_);
 }
 
@@ -61,19 +65,24 @@ nlohmann::ordered_json DriveMaker::to_json() const {
 }
 
 LawMaker::Law LawMaker::make() {
-  if (!drives_)
-    return [law = std::make_shared<PressureLaw>(actuator_count_, hold_s_)](
-               double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
+  if (!drives_) {
+    pressure_ = std::make_shared<PressureLaw>(actuator_count_, hold_s_);
+    pressure_->change_map(firing_);
+    return [law = pressure_](double time_s, const ContactRow& row) -> const ActuatorFrame& {
+      return law->next(time_s, row);
+    };
+  }
   drive_ = drives_->make();
   return [drive = drive_](double time_s, const ContactRow& row) -> const ActuatorFrame& {
     return drive->next(time_s, row);
   };
 }
 
-void LawMaker::use(const std::shared_ptr<const ActuatorLayout>& layout) {
-  if (!layout) return;
-  drives_->use(layout);
-  if (drive_) drive_->law().change_layout(layout);
+void LawMaker::use(const ActuatorMap& map, const std::shared_ptr<const ActuatorLayout>& layout) {
+  firing_ = map.firing;
+  if (pressure_) pressure_->change_map(firing_);
+  if (drives_) drives_->use(map, layout);
+  if (drive_) drive_->law().change_map(firing_, layout);
 }
 
 }  // namespace vestige

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "detector/actuators/actuator_drive.hpp"
+#include "detector/actuators/pressure.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
@@ -42,8 +43,11 @@ class DriveMaker {
   std::unique_ptr<ActuatorDrive> make() const;
   /// Returns the layout for another map with equally many actuators; null if the law needs no layout.
   std::shared_ptr<const ActuatorLayout> layout_of(const ActuatorMap& map) const;
-  /// Sets the layout for the drives made from now on.
-  void use(std::shared_ptr<const ActuatorLayout> layout) { layout_ = std::move(layout); }
+  /// Sets the map, with as many actuators and with its layout, for the drives made from now on.
+  void use(const ActuatorMap& map, std::shared_ptr<const ActuatorLayout> layout) {
+    firing_ = map.firing;
+    layout_ = std::move(layout);
+  }
   nlohmann::ordered_json to_json() const;
 
  private:
@@ -51,6 +55,7 @@ class DriveMaker {
   LawOptions options_;
   const Avatar& avatar_;
   std::size_t actuator_count_;
+  Firing firing_;
   std::vector<Motor> motors_;
   std::shared_ptr<const ActuatorLayout> layout_;
   PlaneSet planes_;
@@ -64,20 +69,24 @@ class LawMaker {
 
   explicit LawMaker(DriveMaker drives) : drives_(std::move(drives)) {}
   /// For pressures, each held for `hold_s`.
-  LawMaker(std::size_t actuator_count, double hold_s) : actuator_count_(actuator_count), hold_s_(hold_s) {}
+  LawMaker(const ActuatorMap& map, double hold_s)
+      : actuator_count_(map.actuator_count), firing_(map.firing), hold_s_(hold_s) {}
 
   PlaneSet planes() const { return drives_ ? drives_->planes() : kHashedPlanes | Plane::kPressure; }
   bool needs_layout() const { return drives_ && drives_->has_layout(); }
   nlohmann::ordered_json to_json() const { return drives_ ? drives_->to_json() : nlohmann::ordered_json("pressure"); }
   Law make();
-  /// Uses another map's layout from now on, in this run and those that follow.
-  void use(const std::shared_ptr<const ActuatorLayout>& layout);
+  /// Uses another map from now on, in this run and those that follow. `layout` is the map's, or null for a law that
+  /// does not need one.
+  void use(const ActuatorMap& map, const std::shared_ptr<const ActuatorLayout>& layout);
 
  private:
   std::optional<DriveMaker> drives_;
   std::size_t actuator_count_ = 0;
+  Firing firing_;
   double hold_s_ = 0;
-  std::shared_ptr<ActuatorDrive> drive_;  ///< of the run that goes on
+  std::shared_ptr<ActuatorDrive> drive_;   ///< of the run that goes on
+  std::shared_ptr<PressureLaw> pressure_;  ///< likewise
 };
 
 }  // namespace vestige

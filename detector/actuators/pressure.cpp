@@ -10,7 +10,8 @@ double pressure_of(const Contact& contact) {
   return share > 0 ? std::min(share, 1.0) : 0.0;  // not a number: 0
 }
 
-PressureLaw::PressureLaw(std::size_t actuator_count, double hold_s) : hold_s_(hold_s), held_(actuator_count) {
+PressureLaw::PressureLaw(std::size_t actuator_count, double hold_s)
+    : hold_s_(hold_s), held_(actuator_count), asked_(actuator_count) {
   frame_.duty.resize(actuator_count);
 }
 
@@ -25,8 +26,9 @@ const ActuatorFrame& PressureLaw::next(double time_s, const ContactRow& row) {
     held.push_back({time_s + hold_s_, pressure});
   }
   frame_.time_s = time_s;
-  for (std::size_t i = 0; i < held_.size(); ++i)
-    frame_.duty[i] = held_[i].empty() ? std::uint8_t{0} : held_[i].front().pressure;
+  for (std::size_t i = 0; i < held_.size(); ++i) asked_[i] = held_[i].empty() ? 0.0 : held_[i].front().pressure;
+  firing_.apply(asked_, fired_);
+  for (std::size_t i = 0; i < held_.size(); ++i) frame_.duty[i] = static_cast<std::uint8_t>(std::lround(fired_[i]));
   return frame_;
 }
 

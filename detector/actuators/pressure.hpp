@@ -3,9 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <utility>
 #include <vector>
 
 #include "detector/contact.hpp"
+#include "detector/firing.hpp"
 #include "traces/timeline/timeline.hpp"
 
 namespace vestige {
@@ -24,6 +26,9 @@ class PressureLaw {
  public:
   PressureLaw(std::size_t actuator_count, double hold_s);
 
+  /// Continues with another map of equally many actuators; the held pressures stay.
+  void change_map(Firing firing) { firing_ = std::move(firing); }
+
   /// Returns the actuators at `time_s`. `row` has this frame's contacts and must carry `Plane::kPressure`. Times must
   /// not decrease. The reference is valid until the next call.
   const ActuatorFrame& next(double time_s, const ContactRow& row);
@@ -36,6 +41,9 @@ class PressureLaw {
 
   double hold_s_;
   std::vector<std::deque<Held>> held_;  // for each actuator: the strongest first, then the weaker ones that outlast it
+  std::vector<double> asked_;
+  std::vector<double> fired_;
+  Firing firing_;
   ActuatorFrame frame_;
 };
 

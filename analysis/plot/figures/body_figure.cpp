@@ -216,8 +216,10 @@ class BodyFigure : public Figure {
   }
 
   std::string name_of(std::size_t actuator) const {
-    const std::string& name = body_.subject.map.names[actuator - 1];
-    return name.empty() ? fmt::format("actuator {}", actuator) : name;
+    const ActuatorMap& map = body_.subject.map;
+    const auto region = static_cast<std::uint32_t>(actuator - 1);
+    if (map.firing.is_own(region)) return map.names[region];
+    return fmt::format("{} → {}", map.names[region], vestige::describe(map.firing.of(region), map.names));
   }
 
   Body body_;

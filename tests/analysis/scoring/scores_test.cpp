@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 
@@ -69,6 +70,34 @@ TEST(Scores, OfASlideBetweenTwoActuatorsAreTheAnalyticOnes) {
     EXPECT_NEAR(metric(scores, "mapped_area_m2"), 1, 1e-6);
     EXPECT_NEAR(metric(scores, "area_ratio"), 1, 1e-6);
   }
+}
+
+TEST(Scores, MeasureTheErrorAgainstWhereAMapMeansAContactToBeFelt) {
+  const auto fires = [](const char* json) {
+    ActuatorMap map = test::nearest_map({{0.25, 0.5}, {0.75, 0.5}}, 256);
+    map.firing = Firing(nlohmann::json::parse(json), map.names, "map");
+    return ActuatorLayout(test::flat_body(kCells), std::move(map));
+  };
+  const ContactRecording recording = slide(1000);
+  const ActuatorLayout crossed = fires(R"({"1": {"2": 1}, "2": {"1": 1}})");
+  for (const char* law : {"binary", "phantom", "gaussian"}) {
+    const Scores own = score_of(recording, two(), law);
+    const Scores elsewhere = score_of(recording, crossed, law);
+    // Each actuator stands for the other's place, so that nothing is lost.
+    for (const char* name : {"coverage", "localisation_error_mm", "information_bits", "use_evenness", "peak_duty"})
+      EXPECT_NEAR(metric(elsewhere, name), metric(own, name), 1e-12) << law << ", " << name;
+  }
+  // Both fire the same: the error stays, but nobody can tell the two apart.
+  const Scores together = score_of(recording, fires(R"({"1": {"2": 1}})"), "binary");
+  EXPECT_NEAR(metric(together, "localisation_error_mm"),
+              metric(score_of(recording, two(), "binary"), "localisation_error_mm"), 1e-12);
+  EXPECT_EQ(metric(together, "information_bits"), 0);
+  EXPECT_EQ(metric(together, "use_evenness"), 0);
+  // One region fires nothing: half of the contacts are not felt.
+  const Scores half = score_of(recording, fires(R"({"1": {}})"), "binary");
+  EXPECT_NEAR(metric(half, "coverage"), 0.5, 1e-3);
+  EXPECT_NEAR(metric(score_of(recording, fires(R"({"1": {"1": 0.5}, "2": {"2": 0.5}})"), "binary", 0), "peak_duty"),
+              0.25, 1e-12);
 }
 
 TEST(Scores, AreTheSameWhicheverWayTheBodyFaces) {

@@ -167,5 +167,32 @@ TEST_F(Map, PreviewDrawsIt) {
   EXPECT_THAT(read_text_file(folder_ / "picture.svg"), HasSubstr("upper torso, right"));
 }
 
+TEST_F(Map, MayFireElsewhere) {
+  write("regions.json", R"({"regions": [{"name": "belly", "part": "vest", "side": "front"},
+                                        {"name": "back", "part": "vest", "side": "back"}],
+                            "fires": {"belly": {"back": 0.5}}})");
+  ASSERT_EQ(run("vestige map make --regions regions.json -o vest.png").exit_code, 0);
+  EXPECT_THAT(run("vestige map check vest.png").standard_output,
+              AllOf(HasSubstr("'belly' fires back (0.5)"), HasSubstr("actuator 1 'belly' never fires")));
+  // A punch from the front is felt at the back, half as strong.
+  ASSERT_EQ(run("vestige record --colliders punch --rate 100 --duration 1 --map vest.png -o punch.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige replay punch.mcap --timeline timeline.csv --contacts contacts.csv -q").exit_code, 0);
+  std::ifstream timeline(folder_ / "timeline.csv");
+  std::string line;
+  int most = 0;
+  std::getline(timeline, line);
+  while (std::getline(timeline, line)) {
+    EXPECT_THAT(line, HasSubstr(",0,")) << "the belly's actuator fires";
+    most = std::max(most, std::stoi(line.substr(line.rfind(',') + 1)));
+  }
+  EXPECT_EQ(most, 128);
+  ASSERT_EQ(run("vestige batch --maps vest.png --traces punch.mcap --laws binary -o batch -q").exit_code, 0);
+  write("regions.json", R"({"regions": [{"name": "belly", "part": "vest"}], "fires": {"belly": {"head": 1}}})");
+  expect_failure("vestige map make --regions regions.json -o bad.png", 1, {"there is no actuator 'head'"}, "bad.png");
+  if (run("vestige plot --help").exit_code != 0) GTEST_SKIP() << "BUILT WITHOUT VTK: NO PREVIEW WAS DRAWN";
+  ASSERT_EQ(run("vestige map preview vest.png -o picture -q").exit_code, 0);
+  EXPECT_THAT(read_text_file(folder_ / "picture.svg"), HasSubstr("belly → back (0.5)"));
+}
+
 }  // namespace
 }  // namespace vestige

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/output/texture_hash.hpp"
@@ -15,6 +16,7 @@ namespace {
 
 using ::testing::DoubleNear;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 constexpr int kCells = 16;
 
@@ -33,6 +35,13 @@ std::shared_ptr<const ActuatorLayout> layout_of(const std::vector<glm::dvec2>& p
 const std::vector<glm::dvec2> kTwo = {{0.25, 0.5}, {0.75, 0.5}};
 const std::vector<glm::dvec2> kThree = {{0.25, 0.25}, {0.75, 0.25}, {0.5, 0.75}};
 
+ActuatorMap map_of(std::size_t actuators) {
+  ActuatorMap map;
+  map.actuator_count = actuators;
+  for (std::size_t i = 1; i <= actuators; ++i) map.names.push_back("actuator " + std::to_string(i));
+  return map;
+}
+
 Contact contact_on(const std::shared_ptr<const ActuatorLayout>& layout, double x, double y) {
   Contact contact = test::contact_at(x, y, kCells);
   contact.actuator = layout->map().at(contact.texture_coordinate);
@@ -45,8 +54,52 @@ std::vector<double> amplitudes(std::string_view law, const std::vector<glm::dvec
   return make_law(law, layout, options)->next(0, ContactRow{contact_on(layout, x, y)});
 }
 
+ActuatorMap map_that_fires(const char* fires, std::size_t actuators = 3) {
+  ActuatorMap map = map_of(actuators);
+  map.firing = Firing(nlohmann::json::parse(fires), map.names, "map");
+  return map;
+}
+
+TEST(Firing, LetsARegionFireOthersThanItsOwn) {
+  const ActuatorMap map = map_that_fires(R"({"actuator 1": {"actuator 2": 1, "3": 0.5}, "2": {}})");
+  const auto law = make_law("binary", map, {.hold_s = 0});
+  EXPECT_THAT(law->next(0, ContactRow{contact_on(1)}), ElementsAre(0, 1, 0.5));
+  EXPECT_THAT(law->next(1, ContactRow{contact_on(2)}), ElementsAre(0, 0, 0));
+  EXPECT_THAT(law->next(2, ContactRow{contact_on(3)}), ElementsAre(0, 0, 1));
+  EXPECT_THAT(law->next(3, ContactRow{contact_on(1), contact_on(3)}), ElementsAre(0, 1, 1));  // the strongest
+  EXPECT_EQ(describe(map.firing.of(0), map.names), "actuator 2, actuator 3 (0.5)");
+  EXPECT_EQ(describe(map.firing.of(1), map.names), "nothing");
+}
+
+TEST(Firing, FollowsAnotherMap) {
+  const auto law = make_law("binary", map_of(3), {.hold_s = 0});
+  EXPECT_THAT(law->next(0, ContactRow{contact_on(1)}), ElementsAre(1, 0, 0));
+  law->change_map(map_that_fires(R"({"1": {"3": 1}})").firing, nullptr);
+  EXPECT_THAT(law->next(1, ContactRow{contact_on(1)}), ElementsAre(0, 0, 1));
+}
+
+TEST(Firing, RefusesWhatIsNotThere) {
+  const auto message = [](const char* fires) -> std::string {
+    try {
+      map_that_fires(fires);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message(R"([])"), HasSubstr("'fires' is not an object"));
+  EXPECT_THAT(message(R"({"back": {"1": 1}})"), HasSubstr("there is no actuator 'back'"));
+  EXPECT_THAT(message(R"({"1": {"4": 1}})"), HasSubstr("there is no actuator '4'"));
+  EXPECT_THAT(message(R"({"1": {"2": 0}})"), HasSubstr("the gain of '2' is 0"));
+  EXPECT_THAT(message(R"({"1": {"2": 1.5}})"), HasSubstr("the gain of '2' is 1.5"));
+  EXPECT_THAT(message(R"({"1": {"2": "much"}})"), HasSubstr("the gain of '2'"));
+  EXPECT_THAT(message(R"({"1": ["2"]})"), HasSubstr("is not an object of actuators and gains"));
+  EXPECT_THAT(message(R"({"1": {}, "actuator 1": {}})"), HasSubstr("is listed twice"));
+  EXPECT_THAT(message(R"({"1": {"2": 1, "actuator 2": 1}})"), HasSubstr("actuator 2 is listed twice"));
+}
+
 TEST(BinaryLaw, SwitchesTheActuatorOfAContactOnAndHoldsIt) {
-  ActuatorDrive law(make_law("binary", 2, {}));
+  ActuatorDrive law(make_law("binary", map_of(2), {}));
   EXPECT_THAT(law.next(0, ContactRow{contact_on(2), Contact()}).duty, ElementsAre(0, 255));
   EXPECT_THAT(law.next(0.059, {}).duty, ElementsAre(0, 255));
   EXPECT_THAT(law.next(0.060, {}).duty, ElementsAre(0, 0));
@@ -54,13 +107,13 @@ TEST(BinaryLaw, SwitchesTheActuatorOfAContactOnAndHoldsIt) {
 }
 
 TEST(BinaryLaw, WithoutHoldGivesTheRawFrames) {
-  ActuatorDrive law(make_law("binary", 1, {.hold_s = 0}));
+  ActuatorDrive law(make_law("binary", map_of(1), {.hold_s = 0}));
   EXPECT_THAT(law.next(0, ContactRow{contact_on(1)}).duty, ElementsAre(255));
   EXPECT_THAT(law.next(0, {}).duty, ElementsAre(0));
 }
 
 TEST(SpeedLaw, IsAsStrongAsTheImpactIsFastAndHoldsTheStrongest) {
-  const auto law = make_law("speed", 1, {.full_speed_m_per_s = 2});
+  const auto law = make_law("speed", map_of(1), {.full_speed_m_per_s = 2});
   const auto at = [&](double time_s, double speed_m_per_s) {
     Contact contact = contact_on(1);
     contact.speed_m_per_s = speed_m_per_s;
@@ -159,7 +212,7 @@ TEST(IntensityLaws, TakeTheStrongestOfSeveralContacts) {
 
 TEST(IntensityLaws, AreRefusedByOtherNamesNamingTheRealOnes) {
   try {
-    make_law("sine", 1, {});
+    make_law("sine", map_of(1), {});
     FAIL();
   } catch (const UsageError& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("phantom"));
