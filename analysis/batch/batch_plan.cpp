@@ -52,6 +52,13 @@ std::string name_of(const std::string& given) {
   return name;
 }
 
+/// Returns null if the option is empty.
+nlohmann::ordered_json in_flags_unit(const LawParameter& known, const LawOptions& options) {
+  const std::optional<double>& value = options.*known.option;
+  if (!value) return nullptr;
+  return *value * known.per_unit;
+}
+
 }  // namespace
 
 BatchFailure failure_of(std::string_view what, std::string_view name, std::string_view given, const Error& error) {
@@ -89,9 +96,7 @@ nlohmann::ordered_json to_json(const BatchPlan& plan) {
   json["laws"] = plan.laws;
   nlohmann::ordered_json& options = json["options"];
   options["hold_ms"] = plan.law_options.hold_s * 1e3;
-  options["full_speed_m_per_s"] = plan.law_options.full_speed_m_per_s;
-  options["sigma_mm"] = nullptr;
-  if (plan.law_options.sigma_m) options["sigma_mm"] = *plan.law_options.sigma_m * 1e3;
+  for (const LawParameter& known : law_parameters()) options[known.field] = in_flags_unit(known, plan.law_options);
   options["unfelt_mm"] = nullptr;
   if (plan.unfelt_m) options["unfelt_mm"] = *plan.unfelt_m * 1e3;
   options["actuator"] = nullptr;
@@ -123,8 +128,7 @@ nlohmann::json command_of(const nlohmann::ordered_json& batch) {
   for (nlohmann::json& map : command["maps"]) map.erase("sha256");
   nlohmann::json& options = command["options"];
   // A batch of an earlier version lacks these options. It ran as with the defaults.
-  options.emplace("full_speed_m_per_s", LawOptions().full_speed_m_per_s);
-  options.emplace("sigma_mm", nullptr);
+  for (const LawParameter& known : law_parameters()) options.emplace(known.field, in_flags_unit(known, LawOptions()));
   options.emplace("unfelt_mm", nullptr);
   options.emplace("actuator", nullptr);
   if (nlohmann::json& actuator = options["actuator"]; !actuator.is_null()) actuator.erase("sha256");

@@ -33,20 +33,13 @@ void add_law_options(CLI::App& verb, LawFlags& flags, const std::string& group, 
 }
 
 void add_law_parameters(CLI::App& verb, LawFlags& flags, const std::string& group, const std::string& hold_remark) {
-  verb.add_option(
-          "--full-speed", flags.full_speed_m_per_s,
-          "With the law speed: the speed along the skin's normal that drives an actuator fully, in metres per second "
-          "[default: 1]")
-      ->group(group)
-      ->check(help::kPositive)
-      ->type_name("SPEED");
-  verb.add_option(
-          "--sigma", flags.sigma_mm,
-          "With the law gaussian: the width (standard deviation) of a contact, in mm along the skin [default: half "
-          "the median distance between neighbouring actuators]")
-      ->group(group)
-      ->check(help::kPositive)
-      ->type_name("MM");
+  for (std::size_t i = 0; i < flags.parameters.size(); ++i) {
+    const LawParameter& known = law_parameters()[i];
+    verb.add_option(known.flag, flags.parameters[i], known.help)
+        ->group(group)
+        ->check(help::kPositive)
+        ->type_name(known.type_name);
+  }
   verb.add_option("--actuator", flags.actuator,
                   "A description of the motors in JSON: the duty for each amplitude, and a kick that starts them")
       ->group(group)

@@ -88,6 +88,15 @@ std::vector<std::uint64_t> seeds_of(const BatchOptions& options) {
   return {seeds.begin(), seeds.end()};
 }
 
+void refuse_unused_parameters(const LawFlags& flags, const std::vector<std::string>& laws) {
+  for (std::size_t i = 0; i < flags.parameters.size(); ++i) {
+    const LawParameter& known = law_parameters()[i];
+    if (flags.parameters[i] && std::ranges::find(laws, known.law) == laws.end())
+      throw UsageError(known.flag, "no law in --laws uses this flag",
+                       fmt::format("add {} to --laws, or leave the flag out", known.law));
+  }
+}
+
 }  // namespace
 
 CLI::Option* add_rank_by(CLI::App& verb, std::string& rank_by) {
@@ -186,13 +195,7 @@ BatchPlan plan_of(const BatchOptions& options) {
   BatchPlan plan;
   plan.traces = name_traces(options.traces, seeds_of(options));
   plan.laws = parse_names(options.laws, law_names(), "--laws");
-  const auto refuse_without = [&](bool given, const char* flag, const char* law) {
-    if (given && std::ranges::find(plan.laws, law) == plan.laws.end())
-      throw UsageError(flag, "no law in --laws uses this flag",
-                       fmt::format("add {} to --laws, or leave the flag out", law));
-  };
-  refuse_without(options.law_parameters.full_speed_m_per_s.has_value(), "--full-speed", "speed");
-  refuse_without(options.law_parameters.sigma_mm.has_value(), "--sigma", "gaussian");
+  refuse_unused_parameters(options.law_parameters, plan.laws);
   plan.law_options = options.law_parameters.options();
   if (options.unfelt_mm) plan.unfelt_m = *options.unfelt_mm / 1e3;
   plan.detector = options.choice.detector == "auto" ? "cpu" : options.choice.detector;
@@ -234,11 +237,11 @@ std::vector<std::string> arguments_of(const BatchOptions& options) {
   words.insert(words.end(), options.traces.begin(), options.traces.end());
   const auto add = [&](const char* flag, const std::string& value) { words.insert(words.end(), {flag, value}); };
   add("--laws", options.laws);
-  const LawFlags& parameters = options.law_parameters;
-  if (parameters.full_speed_m_per_s) add("--full-speed", fmt::format("{}", *parameters.full_speed_m_per_s));
-  if (parameters.sigma_mm) add("--sigma", fmt::format("{}", *parameters.sigma_mm));
-  if (!parameters.actuator.empty()) add("--actuator", parameters.actuator);
-  add("--hold", fmt::format("{}", parameters.hold_ms));
+  const LawFlags& law = options.law_parameters;
+  for (std::size_t i = 0; i < law.parameters.size(); ++i)
+    if (law.parameters[i]) add(law_parameters()[i].flag, fmt::format("{}", *law.parameters[i]));
+  if (!law.actuator.empty()) add("--actuator", law.actuator);
+  add("--hold", fmt::format("{}", law.hold_ms));
   add("--rank-by", rank_by_of(options));
   if (options.unfelt_mm) add("--unfelt-mm", fmt::format("{}", *options.unfelt_mm));
   if (!options.avatar.empty()) add("--avatar", options.avatar);

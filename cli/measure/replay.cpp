@@ -29,6 +29,8 @@ namespace vestige::cli {
 
 namespace {
 
+constexpr const char* kIntensityGroup = "Intensity";
+
 struct ReplayOptions {
   CommonOptions common;
   DetectorChoice choice;
@@ -462,12 +464,12 @@ void add_replay(CLI::App& program, Invocation& invocation) {
                   "exit 4 if contacts differ by more than their times",
                   fmt::join(detector_names(), ", ")))
       ->type_name("DETECTOR|FILE");
-  add_law_options(*verb, options->law, "Intensity");
+  add_law_options(*verb, options->law, kIntensityGroup);
   add_common_options(*verb, options->common);
   // Flags that would do nothing are refused.
   verb->get_option("--planes")->needs(verb->get_option("--textures"));
-  for (const char* flag : {"--hold", "--law", "--full-speed", "--sigma", "--actuator"})
-    verb->get_option(flag)->needs(verb->get_option("--timeline"));
+  for (CLI::Option* option : verb->get_options())
+    if (option->get_group() == kIntensityGroup) option->needs(verb->get_option("--timeline"));
   verb->callback([options, &invocation] { run_replay(*options, invocation); });
 }
 

@@ -47,7 +47,7 @@ class Speed final : public IntensityLaw {
   PlaneSet planes() const override { return kOwnActuator | Plane::kSpeed; }
   void spread(const LocatedContact& contact, std::vector<Share>& out) const override {
     out.clear();
-    const double share = contact.speed_m_per_s / options().full_speed_m_per_s;
+    const double share = contact.speed_m_per_s / options().full_speed_m_per_s.value();
     if (contact.actuator != 0 && share > 0) out.push_back({contact.actuator - 1U, std::min(share, 1.0)});
   }
 };
@@ -211,6 +211,27 @@ constexpr std::array<LawInfo, 5> kLaws = {{
      }},
 }};
 
+constexpr LawParameter kParameters[] = {
+    {.law = "speed",
+     .flag = "--full-speed",
+     .field = "full_speed_m_per_s",
+     .type_name = "SPEED",
+     .help = "With the law speed: the speed along the skin's normal that drives an actuator fully, in metres per "
+             "second [default: 1]",
+     .per_unit = 1,
+     .option = &LawOptions::full_speed_m_per_s,
+     .used = [](const LawOptions& options, const ActuatorLayout*) { return options.full_speed_m_per_s.value(); }},
+    {.law = "gaussian",
+     .flag = "--sigma",
+     .field = "sigma_mm",
+     .type_name = "MM",
+     .help = "With the law gaussian: the width (standard deviation) of a contact, in mm along the skin [default: half "
+             "the median distance between neighbouring actuators]",
+     .per_unit = 1e3,
+     .option = &LawOptions::sigma_m,
+     .used = [](const LawOptions& options, const ActuatorLayout* layout) { return sigma_of(*layout, options); }},
+};
+
 }  // namespace
 
 double sigma_of(const ActuatorLayout& layout, const LawOptions& options) {
@@ -243,6 +264,10 @@ const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Con
   if (firing_.is_own()) return asked;
   firing_.apply(asked, fired_);
   return fired_;
+}
+
+std::span<const LawParameter> law_parameters() {
+  return kParameters;
 }
 
 std::span<const LawInfo> laws() {

@@ -18,7 +18,7 @@ namespace vestige {
 
 struct LawOptions {
   double hold_s = 0.060;  ///< how long a contact is felt, since a coin motor cannot react within an instant; 0: raw
-  double full_speed_m_per_s = 1;                 ///< `speed`: the speed of full amplitude
+  std::optional<double> full_speed_m_per_s = 1;  ///< `speed`: the speed of full amplitude; never empty
   std::optional<double> sigma_m = std::nullopt;  ///< `gaussian`: if empty, half the layout's spacing
 };
 
@@ -90,6 +90,22 @@ class IntensityLaw {
 /// Returns the σ that `gaussian` uses; +inf for a layout of one actuator, which is then fully on wherever it is
 /// touched.
 double sigma_of(const ActuatorLayout& layout, const LawOptions& options);
+
+/// A number that one law takes, with its flag. Verbs, files and reports take all parameters from `law_parameters`.
+struct LawParameter {
+  const char* law;
+  const char* flag;       ///< such as "--sigma"
+  const char* field;      ///< its name in JSON, in the flag's unit
+  const char* type_name;  ///< for help
+  const char* help;
+  double per_unit;  ///< how many of the flag's unit are one of the option's: 1000 if the flag is in mm
+  std::optional<double> LawOptions::*option;  ///< greater than 0
+  /// Returns the value that the law uses, in the option's unit. `layout` is null if the law needs none.
+  double (*used)(const LawOptions& options, const ActuatorLayout* layout);
+};
+
+/// Returns the parameters of all laws, in the order of the help.
+std::span<const LawParameter> law_parameters();
 
 /// What a law is called, and what is said of it.
 struct LawInfo {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -9,27 +10,28 @@
 
 namespace vestige {
 
-namespace {
-
-void refuse_unless(bool is_right, const char* flag, const std::string& law, const char* knower) {
-  if (!is_right)
-    throw UsageError(flag, fmt::format("has no effect with the law '{}'", law),
-                     fmt::format("add --law {}, or leave this flag out", knower));
-}
-
-}  // namespace
-
 LawOptions LawFlags::options(double hold_rate) const {
   LawOptions options;
   options.hold_s = hold_ms / 1e3 * hold_rate;
-  if (full_speed_m_per_s) options.full_speed_m_per_s = *full_speed_m_per_s;
-  if (sigma_mm) options.sigma_m = *sigma_mm / 1e3;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const LawParameter& known = law_parameters()[i];
+    if (parameters[i]) options.*known.option = *parameters[i] / known.per_unit;
+  }
   return options;
 }
 
 void LawFlags::check() const {
-  refuse_unless(!full_speed_m_per_s || law == "speed", "--full-speed", law, "speed");
-  refuse_unless(!sigma_mm || law == "gaussian", "--sigma", law, "gaussian");
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const LawParameter& known = law_parameters()[i];
+    if (parameters[i] && law != known.law)
+      throw UsageError(known.flag, fmt::format("has no effect with the law '{}'", law),
+                       fmt::format("add --law {}, or leave this flag out", known.law));
+  }
+}
+
+bool LawFlags::any() const {
+  return law != "binary" || !actuator.empty() ||
+         std::ranges::any_of(parameters, [](const std::optional<double>& given) { return given.has_value(); });
 }
 
 DriveMaker::DriveMaker(const LawFlags& flags, const Avatar& avatar, const ActuatorMap& map, double hold_rate)
@@ -57,9 +59,11 @@ std::shared_ptr<const ActuatorLayout> DriveMaker::layout_of(const ActuatorMap& m
 
 nlohmann::ordered_json DriveMaker::to_json() const {
   nlohmann::ordered_json json = {{"name", flags_.law}, {"hold_ms", flags_.hold_ms}};
-  if (flags_.law == "speed") json["full_speed_m_per_s"] = options_.full_speed_m_per_s;
-  if (flags_.law == "gaussian" && std::isfinite(sigma_of(*layout_, options_)))
-    json["sigma_mm"] = 1e3 * sigma_of(*layout_, options_);
+  for (const LawParameter& known : law_parameters()) {
+    if (flags_.law != known.law) continue;
+    const double value = known.used(options_, layout_.get());
+    if (std::isfinite(value)) json[known.field] = known.per_unit * value;
+  }
   if (!flags_.actuator.empty()) json["actuator"] = flags_.actuator;
   return json;
 }

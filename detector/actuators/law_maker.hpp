@@ -18,8 +18,8 @@ namespace vestige {
 /// The flags for what contacts mean to the actuators. They mean the same in every verb that drives actuators.
 struct LawFlags {
   std::string law = "binary";
-  std::optional<double> full_speed_m_per_s;
-  std::optional<double> sigma_mm;
+  /// What is given for each of `law_parameters`, in the unit of its flag.
+  std::vector<std::optional<double>> parameters = std::vector<std::optional<double>>(law_parameters().size());
   std::string actuator;  ///< file of an `ActuatorModel`; empty for ideal motors
   double hold_ms = 60;
 
@@ -28,7 +28,7 @@ struct LawFlags {
   /// Throws `UsageError` for a flag that the law does not use.
   void check() const;
   /// Returns whether any flag, except --hold, differs from its default.
-  bool any() const { return law != "binary" || !actuator.empty() || full_speed_m_per_s || sigma_mm; }
+  bool any() const;
 };
 
 /// Makes `ActuatorDrive`s: a law over a map, and the motors.

@@ -191,9 +191,9 @@ void read_provenance(const JsonField& run, ReportData& data) {
 /// A folder of an earlier version lacks these fields. Their values are then as they were in that version.
 void read_law_options(const JsonField& options, ReportData& data) {
   if (options.has("hold_ms")) data.law_options.hold_s = options.at("hold_ms").within(0, kMost) / 1e3;
-  if (options.has("full_speed_m_per_s"))
-    data.law_options.full_speed_m_per_s = options.at("full_speed_m_per_s").within(kLeast, kMost);
-  if (options.has("sigma_mm")) data.law_options.sigma_m = options.at("sigma_mm").within(kLeast, kMost) / 1e3;
+  for (const LawParameter& known : law_parameters())
+    if (options.has(known.field))
+      data.law_options.*known.option = options.at(known.field).within(kLeast, kMost) / known.per_unit;
   if (!options.has("actuator")) return;
   const JsonField actuator = options.at("actuator");
   data.actuator = actuator.at("given").text();

@@ -232,15 +232,16 @@ TEST(Scores, DoNotDependOnTheFrameRateOfMotors) {
 
 TEST(Scores, AreTheSameTogetherAsOneByOne) {
   const ContactRecording recording = slide(300);
-  std::vector<LawChoice> laws(4);
-  for (std::size_t i = 0; i < 4; ++i) laws[i].name = law_names()[i];
+  const std::vector<std::string> names = law_names();
+  std::vector<LawChoice> laws(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) laws[i].name = names[i];
   const std::vector<Scores> together = score_all(recording, two(), laws);
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     const Scores alone = score(recording, two(), laws[i]);
     for (std::size_t k = 0; k < alone.size(); ++k) {
       if (metrics()[k].name == std::string_view("common_error_mm")) continue;  // depends on what is compared
       EXPECT_TRUE(alone[k] == together[i][k] || (std::isnan(alone[k]) && std::isnan(together[i][k])))
-          << law_names()[i] << ' ' << metrics()[k].name;
+          << names[i] << ' ' << metrics()[k].name;
     }
   }
 }
