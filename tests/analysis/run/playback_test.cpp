@@ -60,7 +60,9 @@ class PlaybackTest : public ::testing::Test {
     PlaybackCalls::Clock::time_point first;
     PlaybackCalls calls;
     calls.make_law = [] {
-      return [law = std::make_shared<ActuatorDrive>(make_law("binary", 1, {}))](
+      ActuatorMap map;
+      map.actuator_count = 1;
+      return [law = std::make_shared<ActuatorDrive>(make_law("binary", map, {}))](
                  double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
     };
     calls.go_on = [&](double) { return taken.size() < frames; };
