@@ -207,8 +207,7 @@ void choose_map(OpenTrace& trace, const StreamOptions& options) {
 /// Returns laws for pressures if the sink asks for them, else those of --law.
 LawMaker make_laws(const StreamOptions& options, const OpenTrace& trace) {
   const double rate = options.playback.rate;
-  if (options.sink.quantity() == Quantity::kPressure)
-    return {trace.map, options.law.options(rate).hold_s};
+  if (options.sink.quantity() == Quantity::kPressure) return {trace.map, options.law.options(rate).hold_s};
   return LawMaker(DriveMaker(options.law, trace.avatar, trace.map, rate));
 }
 
