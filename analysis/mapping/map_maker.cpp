@@ -167,6 +167,7 @@ std::string sidecar_of(const std::vector<MadeActuator>& actuators, const Avatar&
 
 void check_fires(const std::string& fires, const std::vector<MadeActuator>& actuators, std::string_view name) {
   std::vector<std::string> names;
+  names.reserve(actuators.size());
   for (const MadeActuator& actuator : actuators) names.push_back(actuator.name);
   Firing(nlohmann::json::parse(fires), names, std::string(name));
 }
