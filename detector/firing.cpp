@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "traces/base/error.hpp"
 
@@ -58,6 +57,17 @@ Firing::Firing(const nlohmann::json& fires, std::span<const std::string> names, 
   }
 }
 
+std::vector<std::uint32_t> Firing::first_alike(std::size_t regions) const {
+  std::map<std::vector<std::uint32_t>, std::uint32_t> first;
+  std::vector<std::uint32_t> alike(regions);
+  for (std::uint32_t region = 0; region < regions; ++region) {
+    std::vector<std::uint32_t> actuators;
+    for_each(region, [&](const Fired& fired) { actuators.push_back(fired.actuator); });
+    alike[region] = first.try_emplace(std::move(actuators), region).first->second;
+  }
+  return alike;
+}
+
 std::vector<Fired> Firing::of(std::uint32_t region) const {
   const auto found = elsewhere_.find(region);
   return found == elsewhere_.end() ? std::vector<Fired>{{region, 1}} : found->second;
@@ -72,10 +82,12 @@ void Firing::apply(std::span<const double> asked, std::vector<double>& fired) co
 
 std::string describe(std::span<const Fired> fired, std::span<const std::string> names) {
   if (fired.empty()) return "nothing";
+  constexpr std::size_t kMostDescribed = 6;
   std::string text;
-  for (const auto& [actuator, gain] : fired)
+  for (const auto& [actuator, gain] : fired.first(std::min(fired.size(), kMostDescribed)))
     text +=
         fmt::format("{}{}{}", text.empty() ? "" : ", ", names[actuator], gain == 1 ? "" : fmt::format(" ({})", gain));
+  if (fired.size() > kMostDescribed) text += fmt::format(" and {} more", fired.size() - kMostDescribed);
   return text;
 }
 

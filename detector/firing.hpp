@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
@@ -15,7 +14,7 @@ struct Fired {
   std::uint32_t actuator = 0;  ///< from 0
   double gain = 1;             ///< of the amplitude that the region's own actuator would have: above 0, at most 1
 
-  friend auto operator<=>(const Fired&, const Fired&) = default;
+  friend bool operator==(const Fired&, const Fired&) = default;
 };
 
 /// Which actuators vibrate for a region: its own, unless the map says otherwise (HAVE 2010 §III.B: "one can easily
@@ -26,8 +25,9 @@ class Firing {
   Firing() = default;
 
   /// Reads "fires" of a map's sidecar: {"chest left": {"back left": 1, "back right": 0.5}}. Actuators are named, or
-  /// numbered from 1. A region that is not listed fires its own actuator, and one with {} fires none. Throws `Error`,
-  /// which quotes `where`, for unknown or ambiguous names, and gains that are not above 0 and at most 1.
+  /// numbered from 1; a name wins over a number. A region that is not listed fires its own actuator, and one with {}
+  /// fires none. Throws `Error`, which quotes `where`, for unknown or ambiguous names, and gains that are not above 0
+  /// and at most 1.
   Firing(const nlohmann::json& fires, std::span<const std::string> names, const std::string& where);
 
   bool is_own() const { return elsewhere_.empty(); }
@@ -41,6 +41,8 @@ class Firing {
     if (found == elsewhere_.end()) return take(Fired{region, 1});
     for (const Fired& fired : found->second) take(fired);
   }
+  /// Returns, for each region, the first one that fires the same actuators, whatever the gains: they feel alike.
+  std::vector<std::uint32_t> first_alike(std::size_t regions) const;
   /// Replaces `fired` by the amplitudes of the actuators. `asked` has one for each region. Where several regions fire
   /// an actuator, the strongest counts.
   void apply(std::span<const double> asked, std::vector<double>& fired) const;
@@ -51,7 +53,7 @@ class Firing {
   std::map<std::uint32_t, std::vector<Fired>> elsewhere_;  ///< by region
 };
 
-/// "back left, back right (0.5)"; "nothing" if there is none.
+/// "back left, back right (0.5)"; "nothing" if there is none. Of many, the first six.
 std::string describe(std::span<const Fired> fired, std::span<const std::string> names);
 
 }  // namespace vestige

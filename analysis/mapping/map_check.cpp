@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
-#include <set>
 
 #include "analysis/mapping/map_raster.hpp"
 #include "analysis/mapping/skin_pieces.hpp"
@@ -102,27 +101,27 @@ class Checker {
     if (map_.actuator_count == 0)
       add(Severity::kProblem, "never_fires", 0, "the map is black everywhere, so no actuator can fire",
           "paint regions in grey levels, or make the map with 'vestige map make'");
-    std::set<std::uint32_t> fired;  // by other regions than their own
-    for (std::uint32_t region = 0; region < map_.actuator_count; ++region)
-      map_.firing.for_each(region, [&](const Fired& one) {
-        if (one.actuator != region) fired.insert(one.actuator + 1);
-      });
+    const auto is_absent = [&](std::uint16_t actuator) {
+      return of(actuator).texels == 0 || (map_.triangle_count != 0 && !(of(actuator).area_m2 > 0));
+    };
+    for (std::uint16_t region = 1; region <= map_.actuator_count; ++region)
+      if (!is_absent(region)) map_.firing.for_each(region - 1U, [&](const Fired& one) { ++fired_[one.actuator + 1]; });
     for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
-      if (fired.contains(actuator)) continue;
-      const bool is_absent = of(actuator).texels == 0 || (map_.triangle_count != 0 && !(of(actuator).area_m2 > 0));
-      if (is_absent)
+      if (fired_.contains(actuator)) continue;
+      if (is_absent(actuator)) {
         add(Severity::kProblem, "never_fires", actuator,
             fmt::format("actuator {} can never fire: {}", quoted(actuator),
                         of(actuator).texels == 0 ? "the image has no texel of its grey" : "its triangles have no area"),
             "paint its region, or take it out of the sidecar");
-      if (is_absent || map_.firing.is_own(actuator - 1U)) continue;
-      bool fires_itself = false;
-      map_.firing.for_each(actuator - 1U, [&](const Fired& one) { fires_itself |= one.actuator + 1 == actuator; });
-      if (!fires_itself)
+      } else {
         add(Severity::kNote, "never_fires", actuator,
-            fmt::format("actuator {} never fires: its region fires others, and no region fires it", quoted(actuator)),
-            "if it should, name it in the sidecar's 'fires'");
+            fmt::format("actuator {} never fires: by the sidecar's 'fires', no region that can be touched fires it",
+                        quoted(actuator)),
+            "if it should vibrate, name it there");
+      }
     }
+    if (map_.actuator_count > 0 && fired_.empty())
+      add(Severity::kProblem, "never_fires", 0, "no actuator can fire", "let a region fire one");
   }
 
   void find_unreached() {
@@ -149,7 +148,8 @@ class Checker {
                       unfit),
           "give each triangle a separate place in the texture, and export the avatar again");
     for (std::uint16_t actuator = 1; actuator <= map_.actuator_count; ++actuator) {
-      if (of(actuator).texels > 0 && !reached[actuator] && unfit == 0)
+      const bool is_only_by_itself = map_.firing.is_own(actuator - 1U) && fired_[actuator] == 1;
+      if (of(actuator).texels > 0 && !reached[actuator] && unfit == 0 && is_only_by_itself)
         add(Severity::kProblem, "never_fires", actuator,
             fmt::format("actuator {} can never fire: no skin reaches its {} texels", quoted(actuator),
                         of(actuator).texels),
@@ -338,6 +338,7 @@ class Checker {
   double far_m_;
   std::vector<SkinPatch> patches_;
   std::map<std::pair<std::uint16_t, std::uint32_t>, Piece> pieces_;
+  std::map<std::uint32_t, std::size_t> fired_;  ///< for each actuator: how many regions with texels fire it
   MapCheck result_;
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <map>
 
 #include "detector/actuators/portable_math.hpp"
 
@@ -33,9 +32,9 @@ std::vector<double> confusions(const ActuatorLayout& layout) {
 
 /// Adds the counts of responses that feel the same up, in the first of their columns.
 void merge_alike(const Firing& firing, std::size_t actuators, std::vector<double>& counts) {
-  std::map<std::vector<Fired>, std::size_t> first;
+  const std::vector<std::uint32_t> alike = firing.first_alike(actuators);
   for (std::size_t j = 0; j < actuators; ++j) {
-    const std::size_t same = first.try_emplace(firing.of(static_cast<std::uint32_t>(j)), j).first->second;
+    const std::size_t same = alike[j];
     if (same == j) continue;
     for (std::size_t row = 0; row < counts.size(); row += actuators + 1) {
       counts[row + same] += counts[row + j];

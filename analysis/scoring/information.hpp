@@ -22,7 +22,8 @@ double transmitted_bits(std::span<const double> counts, std::size_t columns);
 /// the contact at the middle of the actuators that fire (`FeltOffset::amplitude_m`), with Gaussian noise of half the
 /// torso's acuity (σ = 12.5 mm, van Erp 2005). The observer names actuator j with probability ∝ exp(-D_j² / 2σ²), where
 /// D_j is the way along the surface from that middle to the actuator. If no actuator fires, the answer is "nothing".
-/// Where the map lets several regions fire the same (`Firing`), the observer cannot tell them apart.
+/// Where the map lets several regions fire the same actuators, however strongly (`Firing`), the observer cannot tell
+/// them apart.
 class RegionObserver {
  public:
   explicit RegionObserver(std::size_t actuator_count);

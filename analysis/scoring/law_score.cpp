@@ -13,6 +13,9 @@ namespace vestige {
 
 namespace {
 
+/// Half a step of the duty: less is no vibration.
+constexpr double kLeastAmplitude = 0.5 / 255;
+
 /// Returns a shared pointer for laws that does not own the layout. The caller keeps the layout alive.
 std::shared_ptr<const ActuatorLayout> borrow(const ActuatorLayout& layout) {
   return {std::shared_ptr<const ActuatorLayout>(), &layout};
@@ -36,6 +39,7 @@ LawScore::LawScore(const ActuatorLayout& layout, const LawChoice& choice, double
       duty_(layout.actuator_count(), 0),
       observer_(layout.actuator_count()),
       all_(layout, choice.line_bytes_per_s, choice.unfelt_m) {
+  if (!layout.map().firing.is_own()) alike_ = layout.map().firing.first_alike(layout.actuator_count());
   if (!choice.actuators) return;
   for (const Motor& motor : choice.actuators->motors(layout.map())) responses_.push_back({.motor = motor});
 }
@@ -56,13 +60,28 @@ void LawScore::feel_shares(const LocatedContact& contact) {
       add_fired({one.actuator, amplitude});
       most = std::max(most, reached_by(one.actuator, amplitude));
     });
-    if (most > 0) felt_.push_back({share.actuator, most});
+    if (most > 0) add_felt({share.actuator, most});
   }
+  const auto vibrates = [](const Share& share) { return share.amplitude >= kLeastAmplitude; };
+  if (std::ranges::any_of(fired_, vibrates)) return;
+  fired_.clear();
+  felt_.clear();
+}
+
+/// Where regions fire the same actuators, nothing is felt between them: the strongest counts.
+void LawScore::add_felt(const Share& share) {
+  if (!alike_.empty())
+    for (Share& other : felt_) {
+      if (alike_[other.actuator] != alike_[share.actuator]) continue;
+      if (share.amplitude > other.amplitude) other = share;
+      return;
+    }
+  felt_.push_back(share);
 }
 
 /// Regions that fire the same actuator ask for it once, the strongest.
 void LawScore::add_fired(const Share& share) {
-  if (!layout_.map().firing.is_own())
+  if (!alike_.empty())
     if (const auto found = std::ranges::find(fired_, share.actuator, &Share::actuator); found != fired_.end()) {
       found->amplitude = std::max(found->amplitude, share.amplitude);
       return;

@@ -55,6 +55,7 @@ class LawScore {
 
   void feel_shares(const LocatedContact& contact);
   void add_fired(const Share& share);
+  void add_felt(const Share& share);
   /// Returns the amplitude of an actuator that a contact alone drives; 0 if it is not felt.
   double reached_by(std::uint32_t actuator, double amplitude) const;
   const std::vector<double>& fired_now();
@@ -64,6 +65,7 @@ class LawScore {
   LawChoice choice_;
   double contact_lasts_s_;  ///< how long a contact alone drives a motor
   std::unique_ptr<IntensityLaw> law_;
+  std::vector<std::uint32_t> alike_;  ///< `Firing::first_alike`; empty if each region fires its own actuator
   HeldAmplitudes held_;
   std::vector<Response> responses_;  ///< empty: motors are ideal
   std::vector<Share> shares_;        ///< what the last contact asks for, by region

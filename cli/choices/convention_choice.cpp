@@ -84,19 +84,6 @@ std::optional<std::string> ConventionChoice::given_for_colliders() const {
   return collider_offset != "0,0,0" ? std::optional<std::string>("--collider-offset") : std::nullopt;
 }
 
-std::string ConventionChoice::words_for_colliders() const {
-  const ConventionChoice none;
-  std::string words;
-  const auto add = [&](const char* flag, const std::string& value, const std::string& unless) {
-    if (value != unless) words += fmt::format(" {}={}", flag, value);
-  };
-  add("--collider-unit", collider_unit, none.collider_unit);
-  add("--collider-axes", collider_axes, none.collider_axes);
-  add("--collider-offset", collider_offset, none.collider_offset);
-  add("--time-unit", time_unit, none.time_unit);
-  return words;
-}
-
 std::optional<std::string> ConventionChoice::given_for_poses() const {
   if (!pose_unit.empty()) return "--pose-unit";
   return pose_axes != "gltf" ? std::optional<std::string>("--pose-axes") : std::nullopt;

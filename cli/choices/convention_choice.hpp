@@ -28,8 +28,6 @@ struct ConventionChoice {
   /// Returns the first flag about colliders that is given.
   std::optional<std::string> given_for_colliders() const;
   std::optional<std::string> given_for_poses() const;
-  /// Returns the flags that would give this choice for colliders, each after a blank.
-  std::string words_for_colliders() const;
   bool has_time_unit() const { return time_unit != "s"; }
 };
 

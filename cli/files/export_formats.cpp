@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <filesystem>
 
 #include "traces/base/error.hpp"
@@ -21,7 +22,8 @@ void check_trace_name(const std::string& path) {
   std::vector<std::string_view> others = {".bvh", ".exr", ".gltf", ".html", ".json", ".png", ".svg", ".txt", ".zip"};
   for (const ExportFormat& format : export_formats())
     others.insert(others.end(), format.ends.begin(), format.ends.end());
-  const std::string extension = std::filesystem::path(path).extension().string();
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& letter : extension) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
   for (const std::string_view other : others)
     if (extension == other)
       throw UsageError("-o", fmt::format("'{}' ends in {}, and a trace is an MCAP file", path, extension),

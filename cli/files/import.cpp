@@ -131,9 +131,8 @@ std::string recorded_facing(const std::string& session) {
 void check_flags(const ImportOptions& options) {
   if (options.motion.empty() && options.poses.empty() && !options.colliders.empty())
     throw UsageError("import", "no motion and no poses are given",
-                     fmt::format("give --motion FILE.bvh or --poses FILE.csv; of colliders around a body that stands "
-                                 "still, 'vestige record --animation none --colliders {}{} -o {}' makes a trace",
-                                 options.colliders, options.convention.words_for_colliders(), options.output));
+                     "give --motion FILE.bvh or --poses FILE.csv; of colliders around a body that stands still, "
+                     "'vestige record --animation none' with the same flags makes a trace");
   if (options.motion.empty() == options.poses.empty())
     throw UsageError(
         "import",

@@ -25,9 +25,13 @@ constexpr std::size_t kTimesMore = 10;
 /// Where colliders do come near, what is named must fit so many times better.
 constexpr double kTimesBetter = 4;
 /// A simpler explanation is preferred if it fits this well in comparison to the best one for its simplicity.
-constexpr double kAlmostAsGood = 0.8;
+constexpr double kAlmostAsGood = 0.9;
 /// Where another one fits this well in comparison to the best, which of them is meant cannot be told.
 constexpr double kAsGood = 0.5;
+/// The mirror image of what is named is named, too, if it fits so much better.
+constexpr double kMirrorIsBetter = 1.1;
+/// Where so many of all samples are near the skin, nothing is wrong with the axes.
+constexpr double kManySamples = 0.05;
 /// So many explanations are named.
 constexpr std::size_t kMostNamed = 4;
 /// A fit below this explains little. Half of all samples that are near, at a tenth of the body's height, have it.
@@ -62,9 +66,10 @@ using Moments = std::vector<Moment>;
 
 /// How well colliders fit the body, by one reading.
 struct Fit {
-  std::size_t ids = 0;  ///< colliders that come near the skin
-  double share = 0;     ///< of all samples that are near
-  double height = 0;    ///< share of the body's height at which samples are near
+  std::size_t ids = 0;    ///< colliders that come near the skin
+  std::size_t total = 0;  ///< colliders
+  double share = 0;       ///< of all samples that are near
+  double height = 0;      ///< share of the body's height at which samples are near
 
   Box around = {};  ///< all samples
 
@@ -75,11 +80,13 @@ struct Fit {
 Fit fit_of(const Moments& moments, const Convention& convention) {
   constexpr std::size_t kSlices = 10;
   std::set<std::uint32_t> near_ids;
+  std::set<std::uint32_t> ids;
   std::array<bool, kSlices> slices = {};
   std::size_t near = 0;
   std::vector<glm::dvec3> places;
   for (const Moment& moment : moments)
     for (std::size_t i = 0; i < moment.ids.size(); ++i) {
+      ids.insert(moment.ids[i]);
       const glm::dvec3& place_m = places.emplace_back(convention.position_m(moment.given[i]));
       if (!moment.skin.is_near(place_m)) continue;
       near_ids.insert(moment.ids[i]);
@@ -88,7 +95,7 @@ Fit fit_of(const Moments& moments, const Convention& convention) {
       const double up = (place_m.y - box.low.y) / std::max(box.extent().y, kLeastExtent_m);
       slices[static_cast<std::size_t>(std::clamp(up, 0.0, 0.999) * kSlices)] = true;
     }
-  return {near_ids.size(), static_cast<double>(near) / static_cast<double>(places.size()),
+  return {near_ids.size(), ids.size(), static_cast<double>(near) / static_cast<double>(places.size()),
           static_cast<double>(std::ranges::count(slices, true)) / kSlices, box_around(places)};
 }
 
@@ -118,9 +125,9 @@ double best_score(std::span<const Candidate> candidates) {
   return best;
 }
 
-/// What changes twice as much must fit twice as well. Precondition: there is one.
+/// What changes more must fit as much better. Precondition: there is one.
 const Candidate& simplest(std::span<const Candidate> candidates) {
-  const auto worth = [](const Candidate& one) { return one.fit.score() / static_cast<double>(one.reading.changes); };
+  const auto worth = [](const Candidate& one) { return one.fit.score() / one.reading.changes; };
   const double best = worth(*std::ranges::max_element(candidates, {}, worth));
   return *std::ranges::find_if(candidates, [&](const Candidate& one) { return worth(one) >= kAlmostAsGood * best; });
 }
@@ -135,10 +142,13 @@ std::vector<Candidate> as_good_as_best(std::span<const Candidate> candidates) {
   const double best = best_score(candidates);
   std::vector<Candidate> result = {simplest(candidates)};
   const Reading named = result.front().reading;
+  const double named_score = result.front().fit.score();
   for (const Candidate& one : candidates) {
     const Convention& other = one.reading.convention;
-    const bool is_same = other == named.convention || is_mirror_image(other.axes, named.convention.axes);
-    if (!is_same && one.fit.score() >= kAsGood * best) result.push_back(one);
+    if (other == named.convention) continue;
+    const double least =
+        is_mirror_image(other.axes, named.convention.axes) ? kMirrorIsBetter * named_score : kAsGood * best;
+    if (one.fit.score() >= least) result.push_back(one);
   }
   if (result.size() > kMostNamed) result.resize(kMostNamed);
   return result;
@@ -161,13 +171,13 @@ Reading moved(const Moments& moments, const Reading& reading, const glm::dvec3& 
   const glm::dvec3 total = offset_m - origin_m;
   other.words += fmt::format("{}moved by about {:.6g}, {:.6g}, {:.6g} m (a guess: measure it)",
                              reading.words.empty() ? "" : " and ", by.x, by.y, by.z);
-  ++other.changes;
+  other.changes += 1;
   other.flags += fmt::format("{}--collider-offset={:.6g},{:.6g},{:.6g}", reading.flags.empty() ? "" : " ", total.x,
                              total.y, total.z);
   return other;
 }
 
-/// What the colliders would fit better by, the simplest first.
+/// What the colliders would fit better by, each list with the simplest first.
 class Candidates {
  public:
   /// `few`: hardly any of them is near as it is.
@@ -180,47 +190,53 @@ class Candidates {
       // Where colliders do come near, only wrong axes explain that others would do so more, or a unit that makes the
       // whole scene small.
       const bool is_larger = reading.convention.metres_per_unit > convention.metres_per_unit;
-      if (few || !reading.has_other_unit || (is_small && is_larger)) add(reading);
+      if (few || !reading.has_other_unit || (is_small && is_larger)) add(reading, plain_);
     }
-    plain_ = found_.size();
     if (!few) return;
-    add(moved(moments, {convention, "", ""}, origin_m));
-    offset_ = found_.size();
+    add(moved(moments, {convention, "", ""}, origin_m), moved_);
     for (const Reading& reading : others)
-      if (!reading.has_other_columns) add(moved(moments, reading, origin_m));
+      if (!reading.has_other_columns) add(moved(moments, reading, origin_m), both_);
   }
 
   /// Returns the one to name, and then others that may be meant as well; nothing if none is better than what is. An
-  /// offset, which can be of any size, is named only where nothing without a number is likely.
+  /// offset, which can be of any size, is named first only where nothing without a number is likely, or brings half as
+  /// many.
   std::vector<Candidate> best() const {
-    const std::span<const Candidate> all = found_;
-    const auto plain = all.first(plain_);
-    const auto offset = all.subspan(plain_, offset_ - plain_);
-    const auto both = all.subspan(offset_);
-    if (best_score(plain) >= kLikely) return as_good_as_best(plain);
-    if (best_score(offset) < kLikely && best_score(both) >= kLikely) return {simplest(both)};
-    if (best_score(offset) < kTimesBetter * best_score(plain)) return as_good_as_best(plain);
-    if (offset.empty()) return {};
-    std::vector<Candidate> result = {offset.front()};
-    if (best_score(both) > kTimesBetter * best_score(offset)) result.push_back(simplest(both));
+    const bool is_moved = !moved_.empty() && best_score(moved_) > kTimesBetter * best_score(plain_);
+    if (best_score(plain_) >= kLikely || !(is_moved || best_score(both_) >= kLikely)) {
+      std::vector<Candidate> result = as_good_as_best(plain_);
+      if (is_moved && moved_.front().fit.ids > 2 * result.front().fit.ids)
+        result.insert(result.begin(), moved_.front());
+      return result;
+    }
+    if (best_score(moved_) < kLikely && best_score(both_) >= kLikely) return as_good_as_best(both_);
+    std::vector<Candidate> result = {moved_.front()};
+    if (best_score(both_) > kTimesBetter * best_score(moved_)) result.push_back(simplest(both_));
     return result;
   }
 
  private:
-  void add(const Reading& reading) {
+  void add(const Reading& reading, std::vector<Candidate>& candidates) {
     const Fit fit = fit_of(moments_, reading.convention);
-    const bool is_better =
-        few_ ? fit.ids >= std::max<std::size_t>(1, kTimesMore * now_.ids)
-             : fit.score() >= kTimesBetter * now_.score() && (reading.has_other_unit ? 2 : 1) * fit.ids >= now_.ids;
-    if (is_better && fit.score() > 0) found_.push_back({reading, fit});
+    if (fit.score() > 0 && (few_ ? brings_more(fit) : fits_better(fit, reading))) candidates.push_back({reading, fit});
+  }
+
+  bool brings_more(const Fit& fit) const { return fit.ids >= std::max<std::size_t>(1, kTimesMore * now_.ids); }
+
+  /// Colliders near the floor fit better if they are stood upright, however right they are: so many of them must come
+  /// near that do not do so now.
+  bool fits_better(const Fit& fit, const Reading& reading) const {
+    if (fit.score() < kTimesBetter * now_.score() || 2 * fit.ids < now_.total) return false;
+    if (reading.has_other_unit) return 2 * fit.ids >= now_.ids;
+    return fit.ids > now_.ids && now_.share < kManySamples;
   }
 
   const Moments& moments_;
   const Fit& now_;
   bool few_ = false;
-  std::vector<Candidate> found_;  ///< without an offset; with one alone; with one and more
-  std::size_t plain_ = 0;         ///< end of the first part
-  std::size_t offset_ = 0;        ///< end of the second part
+  std::vector<Candidate> plain_;  ///< without an offset
+  std::vector<Candidate> moved_;  ///< with one alone: at most one
+  std::vector<Candidate> both_;   ///< with an offset and more
 };
 
 }  // namespace
@@ -252,20 +268,21 @@ std::optional<std::string> PlacementQuestion::ask() const {
   const Fit now = fit_of(moments, convention_);
   const bool few = now.ids * kFew < ids_.size();
   const std::string total = counted(ids_.size(), "collider");
-  if (ids_.size() > 1 && now.around.longest_side() < kPoint_m) {
+  const std::string near = fmt::format("within {:g} cm", NearPoints::kNear_m * 100);
+  const std::string stays =
+      now.ids == 0
+          ? fmt::format("the nearest of {} stays {:.3g} m away from the skin", total, nearest_m(moments, convention_))
+          : fmt::format("{} of {} {} {} of the skin, in {:.1f} % of all samples", now.ids, total,
+                        now.ids == 1 ? "comes" : "come", near, 100 * now.share);
+  const std::vector<Candidate> best = Candidates(moments, convention_, origin_m_, now, few).best();
+  if (best.empty() && ids_.size() > 1 && now.around.longest_side() < kPoint_m) {
     const glm::dvec3& place_m = now.around.low;
     return fmt::format("all {} stay in one point, {:.3g}, {:.3g}, {:.3g} m; check what the columns x, y, z hold", total,
                        place_m.x, place_m.y, place_m.z);
   }
-  const std::string near = fmt::format("come within {:g} cm", NearPoints::kNear_m * 100);
-  const std::string stays =
-      now.ids == 0
-          ? fmt::format("the nearest of {} stays {:.3g} m away from the skin", total, nearest_m(moments, convention_))
-          : fmt::format("{} of {} {} of the skin, in {:.1f} % of all samples", now.ids, total, near, 100 * now.share);
-  const std::vector<Candidate> best = Candidates(moments, convention_, origin_m_, now, few).best();
   if (best.empty()) return few ? std::optional(stays) : std::nullopt;
   const auto& [reading, fit] = best.front();
-  const std::string would = now.ids == 0 ? fmt::format("would {}", near) : "would";
+  const std::string would = now.ids == 0 ? fmt::format("would come {}", near) : "would";
   std::string question = fmt::format("{}; {}, {} {}, in {:.1f} %: {}", stays, reading.words, fit.ids, would,
                                      100 * fit.share, reading.flags);
   std::vector<std::string> others;

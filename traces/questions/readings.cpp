@@ -10,6 +10,10 @@ namespace vestige {
 
 namespace {
 
+constexpr double kFurtherFlag = 0.3;
+/// Columns are put into a wrong order less often than axes are those of another program.
+constexpr double kOrderOfColumns = 2.5;
+
 std::string_view unit_word(std::string_view unit) {
   if (unit == "cm") return "centimetres";
   if (unit == "mm") return "millimetres";
@@ -33,15 +37,12 @@ Reading with(const Convention& convention, const AxisPreset& preset, const Unit&
   found.flags = fmt::format("{}", fmt::join(flags, " "));
   // The axes of a program explain another unit only if the program has one of its own.
   const bool is_explained = preset.unit != kLengthUnits.front().name;
-  found.changes = found.has_other_unit && has_other_axes && !is_explained ? 2 : flags.size();
+  const bool are_two = flags.size() > 1 || (found.has_other_unit && has_other_axes && !is_explained);
+  found.changes = are_two ? 1 + kFurtherFlag : 1;
   return found;
 }
 
 }  // namespace
-
-bool Reading::is_mirrored_from(const Convention& other) const {
-  return glm::determinant(convention.axes) * glm::determinant(other.axes) < 0;
-}
 
 std::vector<Reading> other_readings(const Convention& convention) {
   std::vector<Reading> found;
@@ -60,14 +61,15 @@ std::vector<Reading> other_readings(const Convention& convention) {
     Reading other = {
         convention,
         fmt::format("with columns in the order {},{},{}", kNames[order[0]], kNames[order[1]], kNames[order[2]]),
-        "put the columns in the order x,y,z", 2};
+        "put the columns in the order x,y,z", kOrderOfColumns};
     other.has_other_columns = true;
     for (std::size_t column = 0; column < 3; ++column)
       other.convention.axes[static_cast<int>(column)] = convention.axes[static_cast<int>(order[column])];
     found.push_back(std::move(other));
   }
   std::ranges::stable_sort(found, {}, [&](const Reading& reading) {
-    return std::pair(reading.changes, reading.is_mirrored_from(convention));
+    const double told = reading.has_other_columns ? glm::determinant(convention.axes) : 1;
+    return std::pair(reading.changes, told * glm::determinant(reading.convention.axes) < 0);
   });
   return found;
 }

@@ -104,6 +104,15 @@ ActuatorMap read_batch_map(const std::filesystem::path& folder, const ReportData
   return parse_actuator_map(files, avatar, file);
 }
 
+/// " belly fires back 1-1, back 2-1 (0.5)."; empty where every region fires its own actuator.
+std::string fires_in_words(const ActuatorMap& map) {
+  std::string text;
+  for (std::uint32_t region = 0; region < map.actuator_count; ++region)
+    if (!map.firing.is_own(region))
+      text += fmt::format(" {} fires {}.", map.names[region], vestige::describe(map.firing.of(region), map.names));
+  return text;
+}
+
 /// What the actuators are told over the trace.
 Timeline timeline_of(const ContactRecording& recording, const ActuatorMap& map, IntensityLaw& law) {
   Timeline timeline;
@@ -215,7 +224,8 @@ class Report {
       else
         ++section.actuators[actuator - 1U].contacts;
     }
-    section.bodies.push_back(draw(name + "-regions", *pictures.regions(map), "Regions and their actuators' numbers."));
+    section.bodies.push_back(
+        draw(name + "-regions", *pictures.regions(map), "Regions and their actuators' numbers." + fires_in_words(map)));
     section.bodies.push_back(draw(name + "-contacts", *pictures.contacts(map), "Where contacts are."));
     section.bodies.push_back(draw(name + "-not-felt", *pictures.unfelt(map),
                                   "Where contacts are on skin without an actuator, which no law lets feel."));

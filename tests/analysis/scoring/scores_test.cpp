@@ -92,6 +92,12 @@ TEST(Scores, MeasureTheErrorAgainstWhereAMapMeansAContactToBeFelt) {
   EXPECT_NEAR(metric(together, "localisation_error_mm"),
               metric(score_of(recording, two(), "binary"), "localisation_error_mm"), 1e-12);
   EXPECT_EQ(metric(together, "information_bits"), 0);
+  EXPECT_EQ(metric(score_of(recording, fires(R"({"1": {"2": 0.9}})"), "binary"), "information_bits"), 0);
+  // Where both regions share one actuator, phantom has nothing to put between them.
+  EXPECT_NEAR(metric(score_of(recording, fires(R"({"1": {"2": 1}})"), "phantom"), "localisation_error_mm"),
+              metric(together, "localisation_error_mm"), 1e-9);
+  // Less than half a step of the duty does not vibrate.
+  EXPECT_EQ(metric(score_of(recording, fires(R"({"1": {"1": 0.001}, "2": {"2": 0.001}})"), "binary"), "coverage"), 0);
   EXPECT_EQ(metric(together, "use_evenness"), 0);
   // One region fires nothing: half of the contacts are not felt.
   const Scores half = score_of(recording, fires(R"({"1": {}})"), "binary");

@@ -96,6 +96,30 @@ TEST_F(ConventionCommandLine, NamesTheUnitOfASmallScene) {
   EXPECT_THAT(recorded("unreal_m.csv", "--collider-axes unreal"), HasSubstr("--collider-unit m"));
 }
 
+TEST_F(ConventionCommandLine, FindsBackToTheAxesOfATrace) {
+  colliders("right.csv", "t,i,x,y,z");
+  EXPECT_THAT(recorded("right.csv", "--collider-axes unreal"), HasSubstr("--collider-axes gltf"));
+}
+
+TEST_F(ConventionCommandLine, NamesAnOffsetBeforeAxesThatBringFew) {
+  ASSERT_EQ(run("vestige record --animation walk --colliders hug --rate 100 --duration 1 -o hug.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige export hug.mcap -o hug").exit_code, 0);
+  EXPECT_THAT(recorded(colliders("away.csv", "t,i,x+1,y,z", "hug")), HasSubstr("%: --collider-offset=-1,"));
+  // Its mirror image fits better than the recording in centimetres alone.
+  EXPECT_THAT(recorded(colliders("unity_cm.csv", "t,i,-100*x,100*y,100*z", "hug")),
+              HasSubstr("--collider-axes unity --collider-unit cm"));
+}
+
+TEST_F(ConventionCommandLine, LeavesWhatMovesOnTheFloorAlone) {
+  std::string rows = "time_s,id,x,y,z\n";
+  for (int k = 0; k <= 100; ++k)
+    for (int id = 0; id < 5; ++id)
+      rows += std::to_string(0.01 * k) + "," + std::to_string(id) + "," + std::to_string(0.05 + 0.02 * id) + ",0.05," +
+              std::to_string(0.9 - 0.008 * k) + "\n";
+  write("shoe.csv", rows);
+  EXPECT_THAT(recorded("shoe.csv"), Not(HasSubstr("axes")));
+}
+
 TEST_F(ConventionCommandLine, SaysThatAllCollidersAreInOnePoint) {
   EXPECT_THAT(recorded(colliders("zero.csv", "t,i,0,0,0")), HasSubstr("all 100 colliders stay in one point, 0, 0, 0"));
 }
