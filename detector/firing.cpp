@@ -73,11 +73,13 @@ std::vector<Fired> Firing::of(std::uint32_t region) const {
   return found == elsewhere_.end() ? std::vector<Fired>{{region, 1}} : found->second;
 }
 
-void Firing::apply(std::span<const double> asked, std::vector<double>& fired) const {
-  fired.assign(asked.begin(), asked.end());
-  for (const auto& [region, list] : elsewhere_) fired[region] = 0;
+const std::vector<double>& Firing::apply(const std::vector<double>& asked, std::vector<double>& room) const {
+  if (is_own()) return asked;
+  room = asked;
+  for (const auto& [region, list] : elsewhere_) room[region] = 0;
   for (const auto& [region, list] : elsewhere_)
-    for (const auto& [actuator, gain] : list) fired[actuator] = std::max(fired[actuator], gain * asked[region]);
+    for (const auto& [actuator, gain] : list) room[actuator] = std::max(room[actuator], gain * asked[region]);
+  return room;
 }
 
 std::string describe(std::span<const Fired> fired, std::span<const std::string> names) {

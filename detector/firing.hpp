@@ -43,9 +43,9 @@ class Firing {
   }
   /// Returns, for each region, the first one that fires the same actuators, whatever the gains: they feel alike.
   std::vector<std::uint32_t> first_alike(std::size_t regions) const;
-  /// Replaces `fired` by the amplitudes of the actuators. `asked` has one for each region. Where several regions fire
-  /// an actuator, the strongest counts.
-  void apply(std::span<const double> asked, std::vector<double>& fired) const;
+  /// Returns the amplitudes of the actuators. `asked` has one for each region. Where several regions fire an actuator,
+  /// the strongest counts. Returns `asked` itself if every region fires its own actuator, otherwise `room`.
+  const std::vector<double>& apply(const std::vector<double>& asked, std::vector<double>& room) const;
 
   friend bool operator==(const Firing&, const Firing&) = default;
 

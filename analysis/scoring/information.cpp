@@ -114,7 +114,7 @@ double RegionObserver::bits(const ActuatorLayout& layout) const {
       for (std::size_t j = 0; j < actuators_; ++j) counts[region * columns + j] += felt * named[i * actuators_ + j];
     }
   }
-  if (!layout.map().firing.is_own()) merge_alike(layout.map().firing, actuators_, counts);
+  merge_alike(layout.map().firing, actuators_, counts);
   return transmitted_bits(counts, columns);
 }
 

@@ -13,9 +13,6 @@ namespace vestige {
 
 namespace {
 
-/// Half a step of the duty: less is no vibration.
-constexpr double kLeastAmplitude = 0.5 / 255;
-
 /// Returns a shared pointer for laws that does not own the layout. The caller keeps the layout alive.
 std::shared_ptr<const ActuatorLayout> borrow(const ActuatorLayout& layout) {
   return {std::shared_ptr<const ActuatorLayout>(), &layout};
@@ -172,15 +169,8 @@ void LawScore::advance_motors(std::uint64_t frame, double time_s) {
   }
 }
 
-const std::vector<double>& LawScore::fired_now() {
-  const std::vector<double>& asked = held_.now();
-  if (layout_.map().firing.is_own()) return asked;
-  layout_.map().firing.apply(asked, fired_amplitude_);
-  return fired_amplitude_;
-}
-
 void LawScore::end_frame(std::uint64_t frame, double time_s) {
-  const std::vector<double>& now = fired_now();
+  const std::vector<double>& now = layout_.map().firing.apply(held_.now(), fired_amplitude_);
   bool changed = !started_;
   double sum = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {

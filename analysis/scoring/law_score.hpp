@@ -58,7 +58,6 @@ class LawScore {
   void add_felt(const Share& share);
   /// Returns the amplitude of an actuator that a contact alone drives; 0 if it is not felt.
   double reached_by(std::uint32_t actuator, double amplitude) const;
-  const std::vector<double>& fired_now();
   void advance_motors(std::uint64_t frame, double time_s);
 
   const ActuatorLayout& layout_;

@@ -19,9 +19,6 @@ namespace {
 using Layout = std::shared_ptr<const ActuatorLayout>;
 using Rule = HeldAmplitudes::Rule;
 
-/// Half of a duty's step; it rounds to zero.
-constexpr double kNothing = 0.5 / 255;
-
 /// Laws whose contacts request only their own actuator, which the row's contacts carry.
 constexpr PlaneSet kOwnActuator = Plane::kActuator;
 /// Laws that need the place of a contact.
@@ -169,12 +166,12 @@ class Gaussian final : public IntensityLaw {
       if (distance_m[i] >= reach_m || !layout().place(i)) continue;
       const double squared = static_cast<double>(distance_m[i]) * static_cast<double>(distance_m[i]);
       const double amplitude = portable_exp(-squared * scale);
-      if (amplitude >= kNothing) out.push_back({i, std::min(amplitude, 1.0)});
+      if (amplitude >= kLeastAmplitude) out.push_back({i, std::min(amplitude, 1.0)});
     }
   }
 
  private:
-  static constexpr double kLogOfSteps = 6.24;  // a little more than -ln(kNothing)
+  static constexpr double kLogOfSteps = 6.24;  // a little more than -ln(kLeastAmplitude)
 };
 
 using MadeLaw = std::unique_ptr<IntensityLaw>;
@@ -260,10 +257,7 @@ const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Con
     spread(located_, shares_);
     held_.add(column, shares_);
   }
-  const std::vector<double>& asked = held_.now();
-  if (firing_.is_own()) return asked;
-  firing_.apply(asked, fired_);
-  return fired_;
+  return firing_.apply(held_.now(), fired_);
 }
 
 std::span<const LawParameter> law_parameters() {

@@ -16,6 +16,9 @@
 
 namespace vestige {
 
+/// Half a step of a duty. Less rounds to 0, and is no vibration.
+inline constexpr double kLeastAmplitude = 0.5 / 255;
+
 struct LawOptions {
   double hold_s = 0.060;  ///< how long a contact is felt, since a coin motor cannot react within an instant; 0: raw
   std::optional<double> full_speed_m_per_s = 1;  ///< `speed`: the speed of full amplitude; never empty

@@ -84,9 +84,9 @@ LawMaker::Law LawMaker::make() {
 
 void LawMaker::use(const ActuatorMap& map, const std::shared_ptr<const ActuatorLayout>& layout) {
   firing_ = map.firing;
-  if (pressure_) pressure_->change_map(firing_);
+  if (pressure_) pressure_->change_map(map.firing);
   if (drives_) drives_->use(map, layout);
-  if (drive_) drive_->law().change_map(firing_, layout);
+  if (drive_) drive_->law().change_map(map.firing, layout);
 }
 
 }  // namespace vestige

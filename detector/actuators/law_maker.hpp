@@ -82,7 +82,7 @@ class LawMaker {
 
  private:
   std::optional<DriveMaker> drives_;
-  std::size_t actuator_count_ = 0;
+  std::size_t actuator_count_ = 0;  ///< this and what follows: for pressures
   Firing firing_;
   double hold_s_ = 0;
   std::shared_ptr<ActuatorDrive> drive_;   ///< of the run that goes on

@@ -27,8 +27,8 @@ const ActuatorFrame& PressureLaw::next(double time_s, const ContactRow& row) {
   }
   frame_.time_s = time_s;
   for (std::size_t i = 0; i < held_.size(); ++i) asked_[i] = held_[i].empty() ? 0.0 : held_[i].front().pressure;
-  firing_.apply(asked_, fired_);
-  for (std::size_t i = 0; i < held_.size(); ++i) frame_.duty[i] = static_cast<std::uint8_t>(std::lround(fired_[i]));
+  const std::vector<double>& fired = firing_.apply(asked_, fired_);
+  for (std::size_t i = 0; i < fired.size(); ++i) frame_.duty[i] = static_cast<std::uint8_t>(std::lround(fired[i]));
   return frame_;
 }
 

@@ -272,7 +272,8 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige record --count 1 --count 2 -o x.mcap", 2, {"--count: is given 2 times\n  name it once"},
                  "x.mcap");
   expect_failure("vestige record --rate", 2, {"--rate: its value is missing\n  write --rate HZ"});
-  expect_failure("vestige replay small.mcap --verify auto", 2, {"name paper, geometry, cpu, exact, ", ", or a file"});
+  expect_failure("vestige replay small.mcap --verify auto", 2,
+                 {"name paper, geometry, cpu, exact, embree, embree_default, boxes, capsules, decimated, or a file"});
   expect_failure("vestige replay small.mcap --planes t", 2, {"--textures"});
   expect_failure("vestige record -o x.mcap --seed -1", 2, {"--seed"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --origin 1e300,0,0", 2, {"--origin"}, "x.mcap");

@@ -66,10 +66,9 @@ using Moments = std::vector<Moment>;
 
 /// How well colliders fit the body, by one reading.
 struct Fit {
-  std::size_t ids = 0;    ///< colliders that come near the skin
-  std::size_t total = 0;  ///< colliders
-  double share = 0;       ///< of all samples that are near
-  double height = 0;      ///< share of the body's height at which samples are near
+  std::size_t ids = 0;  ///< colliders that come near the skin
+  double share = 0;     ///< of all samples that are near
+  double height = 0;    ///< share of the body's height at which samples are near
 
   Box around = {};  ///< all samples
 
@@ -80,13 +79,11 @@ struct Fit {
 Fit fit_of(const Moments& moments, const Convention& convention) {
   constexpr std::size_t kSlices = 10;
   std::set<std::uint32_t> near_ids;
-  std::set<std::uint32_t> ids;
   std::array<bool, kSlices> slices = {};
   std::size_t near = 0;
   std::vector<glm::dvec3> places;
   for (const Moment& moment : moments)
     for (std::size_t i = 0; i < moment.ids.size(); ++i) {
-      ids.insert(moment.ids[i]);
       const glm::dvec3& place_m = places.emplace_back(convention.position_m(moment.given[i]));
       if (!moment.skin.is_near(place_m)) continue;
       near_ids.insert(moment.ids[i]);
@@ -95,7 +92,7 @@ Fit fit_of(const Moments& moments, const Convention& convention) {
       const double up = (place_m.y - box.low.y) / std::max(box.extent().y, kLeastExtent_m);
       slices[static_cast<std::size_t>(std::clamp(up, 0.0, 0.999) * kSlices)] = true;
     }
-  return {near_ids.size(), ids.size(), static_cast<double>(near) / static_cast<double>(places.size()),
+  return {near_ids.size(), static_cast<double>(near) / static_cast<double>(places.size()),
           static_cast<double>(std::ranges::count(slices, true)) / kSlices, box_around(places)};
 }
 
@@ -183,6 +180,9 @@ class Candidates {
   /// `few`: hardly any of them is near as it is.
   Candidates(const Moments& moments, const Convention& convention, const glm::dvec3& origin_m, const Fit& now, bool few)
       : moments_(moments), now_(now), few_(few) {
+    std::set<std::uint32_t> ids;
+    for (const Moment& moment : moments) ids.insert(moment.ids.begin(), moment.ids.end());
+    total_ = ids.size();
     const std::vector<Reading> others = other_readings(convention);
     const double height_m = moments.front().skin.box().extent().y;
     const bool is_small = now.around.longest_side() < kSmallScene * height_m;
@@ -226,7 +226,7 @@ class Candidates {
   /// Colliders near the floor fit better if they are stood upright, however right they are: so many of them must come
   /// near that do not do so now.
   bool fits_better(const Fit& fit, const Reading& reading) const {
-    if (fit.score() < kTimesBetter * now_.score() || 2 * fit.ids < now_.total) return false;
+    if (fit.score() < kTimesBetter * now_.score() || 2 * fit.ids < total_) return false;
     if (reading.has_other_unit) return 2 * fit.ids >= now_.ids;
     return fit.ids > now_.ids && now_.share < kManySamples;
   }
@@ -234,6 +234,7 @@ class Candidates {
   const Moments& moments_;
   const Fit& now_;
   bool few_ = false;
+  std::size_t total_ = 0;         ///< colliders
   std::vector<Candidate> plain_;  ///< without an offset
   std::vector<Candidate> moved_;  ///< with one alone: at most one
   std::vector<Candidate> both_;   ///< with an offset and more

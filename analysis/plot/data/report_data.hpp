@@ -51,6 +51,9 @@ struct Candidate {
   bool distinguishable_from_best = false;
   std::vector<Estimate> metrics;                ///< in the order of `ReportData::metrics`; empty for one scenario alone
   std::vector<std::optional<double>> by_trace;  ///< headline, in the order of `ReportData::traces`; may be empty
+
+  /// Ranked, and not to be told from the first.
+  bool is_level() const { return rank && !distinguishable_from_best; }
 };
 
 /// The ranking by the traces of one scenario alone, or by the files alone.

@@ -194,6 +194,38 @@ std::string of_motors(const ReportData& data) {
                      html_text(data.actuator));
 }
 
+/// What an error alone would hide: it counts only contacts that are felt.
+std::string more_coverage(const ReportData& data) {
+  const ReportMetric& headline = data.metrics[data.headline];
+  const Candidate& best = data.ranking.front();
+  const auto felt = data.felt_share(best);
+  if (!felt || headline.name == "coverage" || headline.name == "error_with_unfelt_mm") return {};
+  const Candidate* most = &best;
+  for (const Candidate& one : data.ranking)
+    if (data.felt_share(one).value_or(0) > data.felt_share(*most).value_or(0)) most = &one;
+  constexpr double kWorthSaying = 0.005;
+  const double felt_most = *data.felt_share(*most);
+  if (felt_most < *felt + kWorthSaying) return {};
+  return fmt::format(
+      "{} lets {:.1f}\u00a0% of a trace's contacts be felt on average, {} lets {:.1f}\u00a0%; {} says nothing about "
+      "the contacts that are not felt. Common error compares all on the same contacts, and <code>--unfelt-mm</code> "
+      "counts what is not felt.",
+      html_text(name_of(best)), 100 * *felt, html_text(name_of(*most)), 100 * felt_most,
+      html_text(words_of_name(headline.name)));
+}
+
+std::string worse_in_words(const ReportData& data, std::size_t worse, const std::string& combinations) {
+  if (!data.has_intervals())
+    return fmt::format("Whether the {} {} {} worse on other recordings, these traces cannot show.", worse, combinations,
+                       worse == 1 ? "is" : "are");
+  const auto level =
+      std::ranges::count_if(data.ranking, [](const Candidate& one) { return one.is_level() && one.rank != 1U; });
+  if (level > 0) return fmt::format("Of the {} {}, {} cannot be distinguished from it.", worse, combinations, level);
+  const std::string all =
+      worse == 1 ? fmt::format("The {} is", combinations) : fmt::format("All {} {} are", worse, combinations);
+  return fmt::format("{} worse (p by Holm's correction under 0.05).", all);
+}
+
 }  // namespace
 
 std::string quotable_sentence(const ReportData& data) {
@@ -221,6 +253,47 @@ std::string quotable_sentence(const ReportData& data) {
   if (first.headline.traces < data.traces.size())
     text += fmt::format(", on the {} of {} traces where it has a value", first.headline.traces, data.traces.size());
   return text + felt_in_words(data, first) + ".";
+}
+
+std::string others_in_words(const ReportData& data) {
+  if (data.ranking.size() == 1) return "There is nothing else to compare it with.";
+  const std::size_t equal = firsts(data.ranking).size() - 1;
+  const auto ranked = static_cast<std::size_t>(
+      std::ranges::count_if(data.ranking, [](const Candidate& one) { return one.rank.has_value(); }));
+  const std::size_t worse = ranked - 1 - equal;
+  const std::size_t without = data.ranking.size() - ranked;
+  std::vector<std::string> sentences;
+  if (equal > 0) sentences.push_back(fmt::format("{} other {} the same value.", equal, equal == 1 ? "has" : "have"));
+  if (worse > 0)
+    sentences.push_back(worse_in_words(
+        data, worse,
+        fmt::format("{} combination{} of map and law", equal > 0 ? "remaining" : "other", worse == 1 ? "" : "s")));
+  if (without > 0) sentences.push_back(fmt::format("{} {} no value.", without, without == 1 ? "has" : "have"));
+  return fmt::format("{}", fmt::join(sentences, " "));
+}
+
+std::vector<std::string> cautions(const ReportData& data) {
+  const ReportMetric& headline = data.metrics[data.headline];
+  std::vector<std::string> all;
+  if (!data.shard.empty())
+    all.push_back(fmt::format("This is shard {} of the batch: 'vestige batch merge' joins them.", data.shard));
+  if (!data.complete) all.emplace_back("The batch was stopped before its end; this page shows only a part of it.");
+  if (!data.failures.empty())
+    all.push_back(fmt::format("{} could not be used and {} left out (<a href=\"#failures\">Failures</a>).",
+                              counted(data.failures.size(), "input"), data.failures.size() == 1 ? "is" : "are"));
+  const auto damaged = std::ranges::count_if(data.traces, [](const ReportTrace& one) { return !one.damage.empty(); });
+  if (damaged != 0)
+    all.push_back(fmt::format("{} damaged; only the part of {} that could be read counts.",
+                              damaged == 1 ? "One trace is" : fmt::format("{} traces are", damaged),
+                              damaged == 1 ? "it" : "them"));
+  if (!data.has_intervals())
+    all.push_back(fmt::format("There are no intervals{}. Another recording may turn the ranking over.",
+                              data.why_no_intervals.empty() ? "" : ": " + html_text(data.why_no_intervals)));
+  if (const auto more = more_coverage(data); !more.empty()) all.push_back(more);
+  if (headline.model_based)
+    all.push_back(
+        fmt::format("{} is a model, not a user study.", html_text(sentence_case(words_of_name(headline.name)))));
+  return all;
 }
 
 std::vector<std::string> what_would_change(const ReportData& data) {

@@ -13,6 +13,13 @@ namespace vestige::plot {
 /// with what interval, and what share of the contacts was felt. It says only what the batch's folder holds.
 std::string quotable_sentence(const ReportData& data);
 
+/// Returns how the others compare with the first: which have its value, which are worse, which have none.
+/// Precondition: the first has a value.
+std::string others_in_words(const ReportData& data);
+
+/// Returns what a reader must know before believing the result, one sentence or two each.
+std::vector<std::string> cautions(const ReportData& data);
+
 /// Returns what would change the result, one paragraph each: more seeds or files, other scenarios, another metric,
 /// motors.
 std::vector<std::string> what_would_change(const ReportData& data);

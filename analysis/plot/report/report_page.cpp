@@ -98,19 +98,6 @@ class Page {
     return fmt::format("{} with {}", html_text(candidate.map), html_text(candidate.law));
   }
 
-  /// How many have the same value as the best, beside it.
-  std::size_t equal_to_best() const {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(data_.ranking, [](const Candidate& one) { return one.rank == 1U; }) - 1);
-  }
-  /// How many are worse than the best, and not to be told from it.
-  std::size_t level_with_best() const {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(data_.ranking, [](const Candidate& one) { return is_level(one) && one.rank != 1U; }));
-  }
-  /// Ranked, and not to be told from the first.
-  static bool is_level(const Candidate& one) { return one.rank && !one.distinguishable_from_best; }
-
   void head() {
     const std::string title = fmt::format("Actuator mappings compared: {} by {}", counted(data_.maps().size(), "map"),
                                           words_of_name(headline().name));
@@ -134,7 +121,7 @@ class Page {
     const ReportMetric& metric = headline();
     const std::string words = html_text(words_of_name(metric.name));
     add(out_, "<p class=\"lead\">{}</p>\n", quotable_sentence(data_));
-    if (best().headline.mean) add(out_, "<p>{}</p>\n", others_in_words());
+    if (best().headline.mean) add(out_, "<p>{}</p>\n", others_in_words(data_));
     double contacts = 0;
     double frames = 0;
     for (const ReportTrace& trace : data_.traces) {
@@ -149,78 +136,12 @@ class Page {
     cautions();
   }
 
-  std::string others_in_words() const {
-    if (data_.ranking.size() == 1) return "There is nothing else to compare it with.";
-    const std::size_t equal = equal_to_best();
-    const auto ranked = static_cast<std::size_t>(
-        std::ranges::count_if(data_.ranking, [](const Candidate& one) { return one.rank.has_value(); }));
-    const std::size_t worse = ranked - 1 - equal;
-    std::vector<std::string> sentences;
-    const auto combinations = [&](std::size_t count, const char* which) {
-      return fmt::format("{}combination{} of map and law", which, count == 1 ? "" : "s");
-    };
-    if (equal > 0) sentences.push_back(fmt::format("{} other {} the same value.", equal, equal == 1 ? "has" : "have"));
-    if (worse > 0) sentences.push_back(worse_in_words(worse, combinations(worse, equal > 0 ? "remaining " : "other ")));
-    if (const std::size_t without = data_.ranking.size() - ranked; without > 0)
-      sentences.push_back(fmt::format("{} {} no value.", without, without == 1 ? "has" : "have"));
-    return fmt::format("{}", fmt::join(sentences, " "));
-  }
-
-  std::string worse_in_words(std::size_t worse, const std::string& combinations) const {
-    if (!data_.has_intervals())
-      return fmt::format("Whether the {} {} {} worse on other recordings, these traces cannot show.", worse,
-                         combinations, worse == 1 ? "is" : "are");
-    if (const std::size_t level = level_with_best(); level > 0)
-      return fmt::format("Of the {} {}, {} cannot be distinguished from it.", worse, combinations, level);
-    const std::string all =
-        worse == 1 ? fmt::format("The {} is", combinations) : fmt::format("All {} {} are", worse, combinations);
-    return fmt::format("{} worse (p by Holm's correction under 0.05).", all);
-  }
-
   void cautions() {
-    std::vector<std::string> cautions;
-    if (!data_.shard.empty())
-      cautions.push_back(fmt::format("This is shard {} of the batch: 'vestige batch merge' joins them.", data_.shard));
-    if (!data_.complete)
-      cautions.emplace_back("The batch was stopped before its end; this page shows only a part of it.");
-    if (!data_.failures.empty())
-      cautions.push_back(fmt::format("{} could not be used and {} left out (<a href=\"#failures\">Failures</a>).",
-                                     counted(data_.failures.size(), "input"),
-                                     data_.failures.size() == 1 ? "is" : "are"));
-    const auto damaged =
-        std::ranges::count_if(data_.traces, [](const ReportTrace& one) { return !one.damage.empty(); });
-    if (damaged != 0)
-      cautions.push_back(fmt::format("{} damaged; only the part of {} that could be read counts.",
-                                     damaged == 1 ? "One trace is" : fmt::format("{} traces are", damaged),
-                                     damaged == 1 ? "it" : "them"));
-    if (!data_.has_intervals())
-      cautions.push_back(fmt::format("There are no intervals{}. Another recording may turn the ranking over.",
-                                     data_.why_no_intervals.empty() ? "" : ": " + html_text(data_.why_no_intervals)));
-    if (const auto more = more_coverage(); !more.empty()) cautions.push_back(more);
-    if (headline().model_based)
-      cautions.push_back(
-          fmt::format("{} is a model, not a user study.", html_text(sentence_case(words_of_name(headline().name)))));
-    if (cautions.empty()) return;
+    const std::vector<std::string> all = vestige::plot::cautions(data_);
+    if (all.empty()) return;
     out_ += "<div class=\"caution\" role=\"note\"><ul>\n";
-    for (const std::string& caution : cautions) add(out_, "<li>{}</li>\n", caution);
+    for (const std::string& caution : all) add(out_, "<li>{}</li>\n", caution);
     out_ += "</ul></div>\n";
-  }
-
-  /// What an error alone would hide: it counts only contacts that are felt.
-  std::string more_coverage() const {
-    const auto felt = data_.felt_share(best());
-    if (!felt || headline().name == "coverage" || headline().name == "error_with_unfelt_mm") return {};
-    const Candidate* most = &best();
-    for (const Candidate& one : data_.ranking)
-      if (data_.felt_share(one).value_or(0) > data_.felt_share(*most).value_or(0)) most = &one;
-    constexpr double kWorthSaying = 0.005;
-    const double felt_most = *data_.felt_share(*most);
-    if (felt_most < *felt + kWorthSaying) return {};
-    return fmt::format(
-        "{} lets {:.1f}\u00a0% of a trace's contacts be felt on average, {} lets {:.1f}\u00a0%; {} says nothing about "
-        "the contacts that are not felt. Common error compares all on the same contacts, and <code>--unfelt-mm</code> "
-        "counts what is not felt.",
-        name_of(best()), 100 * *felt, name_of(*most), 100 * felt_most, html_text(words_of_name(headline().name)));
   }
 
   void ranking() {
@@ -241,7 +162,7 @@ class Page {
       add(table,
           "<tr{}><td class=\"n\">{}</td><th scope=\"row\" class=\"name\">{}</th><td>{}</td>{}<td "
           "class=\"interval\">{}</td><td>{}</td>{}{}<td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
-          is_level(one) && data_.has_intervals() ? " class=\"level\"" : "",
+          one.is_level() && data_.has_intervals() ? " class=\"level\"" : "",
           one.rank ? fmt::format("{}", *one.rank) : "–", html_text(one.map), html_text(one.law),
           value_cell(one.headline.mean), interval_words(one.headline), against_first(one, i == 0),
           p_cell(i == 0 ? std::nullopt : one.p), p_cell(i == 0 ? std::nullopt : one.p_holm), one.headline.traces,

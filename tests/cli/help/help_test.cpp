@@ -16,7 +16,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
-using ::testing::Each;
 using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::Key;
@@ -214,8 +213,7 @@ TEST_F(Completion, InBashOffersVerbsFlagsValuesAndFiles) {
   ASSERT_EQ(run("touch 'a man.mcap' man.csv && mkdir mans").exit_code, 0);
   EXPECT_THAT(bash("vestige ''"), IsSupersetOf({"record", "replay", "sweep", "inspect", "devices", "plot", "claims"}));
   EXPECT_THAT(bash("vestige ''"), Not(Contains("complete")));
-  EXPECT_THAT(bash("vestige re"),
-              AllOf(IsSupersetOf({"record", "recompress", "recover", "replay"}), Each(StartsWith("re"))));
+  EXPECT_THAT(bash("vestige re"), UnorderedElementsAre("record", "recompress", "recover", "replay"));
   EXPECT_THAT(bash("vestige --"), UnorderedElementsAre("--help", "--version"));
   EXPECT_THAT(bash("vestige replay --de"), UnorderedElementsAre("--detector", "--device"));
   EXPECT_THAT(bash("vestige replay --detector ''"), IsSupersetOf({"auto", "paper", "cpu"}));
