@@ -13,7 +13,8 @@
 #include "analysis/run/skinning_error.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/detector.hpp"
-#include "detector/output/contacts_csv.hpp"
+#include "detector/output/contacts_file.hpp"
+#include "detector/output/recorded_contacts.hpp"
 #include "detector/output/texture_exr.hpp"
 #include "traces/timeline/timeline.hpp"
 #include "traces/trace_file/trace_reader.hpp"
@@ -22,7 +23,7 @@ namespace vestige {
 
 /// Where a replay's results go. A null output is left out.
 struct ReplayOutputs {
-  ContactsCsv* contacts = nullptr;
+  ContactsFile* contacts = nullptr;
   TextureExr* textures = nullptr;
   TimelineFile* timeline = nullptr;
   ActuatorDrive* drive = nullptr;  ///< makes the timeline's content; may be null only without a timeline

@@ -142,13 +142,21 @@ struct Verification {
   std::unique_ptr<DetectorTeam> detectors;
   std::vector<RecordedContact> contacts;
   std::string texture_hash;
-  bool from_csv = false;
+  bool by_contacts = false;
 
-  ReplayExpectation expectation() const { return {detectors.get(), from_csv ? &contacts : nullptr}; }
+  ReplayExpectation expectation() const { return {detectors.get(), by_contacts ? &contacts : nullptr}; }
 };
 
+/// The contacts that --verify names, if it names such a file. They are read before any thread starts.
+std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify) {
+  if (verify.empty() || is_detector(verify)) return {};
+  const bool is_contacts = verify.ends_with(".csv") || verify.ends_with(".h5") || verify.ends_with(".hdf5");
+  if (!is_contacts) return {};
+  return read_contacts(verify);
+}
+
 Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector,
-                               PlaneSet planes) {
+                               PlaneSet planes, std::optional<std::vector<RecordedContact>> expected) {
   Verification verification;
   if (options.verify.empty()) return verification;
   if (is_detector(options.verify)) {
@@ -161,13 +169,14 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
   } else if (options.verify == "-" || options.verify == "auto") {
     throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
                      fmt::format("name {}, or a file that an earlier replay wrote", fmt::join(detector_names(), ", ")));
-  } else if (options.verify.ends_with(".csv")) {
-    verification.contacts = read_contacts_csv(options.verify);
-    verification.from_csv = true;
+  } else if (expected) {
+    verification.contacts = std::move(*expected);
+    verification.by_contacts = true;
   } else {
     const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
     if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
-      throw Error(options.verify, "is neither a detector, nor contacts as CSV, nor a replay's JSON with a texture_hash",
+      throw Error(options.verify,
+                  "is neither a detector, nor contacts (.csv, .h5), nor a replay's JSON with a texture_hash",
                   fmt::format("name {}, or a file that 'vestige replay --contacts FILE.csv' or '--json FILE' wrote",
                               fmt::join(detector_names(), ", ")));
     verification.texture_hash = json["texture_hash"].get<std::string>();
@@ -340,6 +349,15 @@ void ask_about_placement(OpenTrace& trace, const ReplayResult& result, const Run
     warn(fmt::format("{}: {} (record or import it again so)", options.trace, *doubt), options.common.verbosity());
 }
 
+/// What files of textures and contacts say about their origin.
+std::map<std::string, std::string> attributes_of(const ReplayOptions& options, const Detector& detector) {
+  std::map<std::string, std::string> attributes = {
+      {"vestige_trace", options.trace}, {"vestige_detector", detector.name()}, {"vestige_commit", commit()}};
+  const GlInfo gl = detector.gl_info();
+  if (!gl.context.empty()) attributes.emplace("vestige_gl_renderer", gl.renderer);
+  return attributes;
+}
+
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
@@ -351,6 +369,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   check_outputs(outputs, inputs, options.common);
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);
+  auto expected = read_expected(options.verify);
 
   OpenTrace trace(options.trace, verbosity);
   require_surface(trace.avatar, options.trace + ", avatar.glb");
@@ -375,31 +394,27 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
                          trace.avatar, trace.map, planes);
   });
   const Run run = {options, trace, collider_ids.size(), picked, detectors.first(), drives ? &*drives : nullptr};
-  const Verification verification = load_verification(options, trace, run.detector, verified);
+  const Verification verification = load_verification(options, trace, run.detector, verified, std::move(expected));
 
   catch_interrupts();  // before the first temporary file
-  std::optional<ContactsCsv> contacts;
+  std::unique_ptr<ContactsFile> contacts;
   std::optional<TextureExr> textures;
   std::optional<OutputFile> texture_file;
   std::unique_ptr<TimelineFile> timeline;
-  if (!options.contacts.empty()) contacts.emplace(options.contacts, options.common.overwrite());
+  if (!options.contacts.empty())
+    contacts = make_contacts_file(options.contacts, options.common.overwrite(), attributes_of(options, run.detector));
   if (!options.timeline.empty())
     timeline = make_timeline(options.timeline, options.common.overwrite(), trace.map.names);
   if (!options.textures.empty()) {
     texture_file.emplace(options.textures, options.common.overwrite());
-    std::map<std::string, std::string> attributes = {
-        {"vestige_trace", options.trace}, {"vestige_detector", run.detector.name()}, {"vestige_commit", commit()}};
-    const GlInfo gl = run.detector.gl_info();
-    if (!gl.context.empty()) attributes.emplace("vestige_gl_renderer", gl.renderer);
-    textures.emplace(texture_planes, collider_ids.size(), std::move(attributes));
+    textures.emplace(texture_planes, collider_ids.size(), attributes_of(options, run.detector));
   }
 
   const std::unique_ptr<ActuatorDrive> drive = drives ? drives->make() : nullptr;
   ReplayResult result;
   {
     Progress progress("Replaying", verbosity);
-    const ReplayOutputs sinks = {contacts ? &*contacts : nullptr, textures ? &*textures : nullptr, timeline.get(),
-                                 drive.get()};
+    const ReplayOutputs sinks = {contacts.get(), textures ? &*textures : nullptr, timeline.get(), drive.get()};
     const ReplayPlan plan = {trace.avatar, trace.map.actuator_count, sinks, verification.expectation(), changes};
     result = replay(trace.reader, detectors, plan, [&](double share) { return progress.update(share); });
   }
@@ -437,7 +452,8 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   const auto add_result = [&](const char* name, auto& value, const std::string& description) {
     return verb->add_option(name, value, description)->group("Results");
   };
-  add_result("--contacts", options->contacts, "Write the contacts, one row each")->type_name("OUT.csv|-");
+  add_result("--contacts", options->contacts, "Write the contacts, one row each, as CSV or HDF5 (.h5, .hdf5)")
+      ->type_name("OUT.csv|OUT.h5|-");
   add_result("--textures", options->textures,
              "Write the collision textures as OpenEXR: one row per frame, one column per collider")
       ->type_name("OUT.exr|-");
@@ -460,9 +476,10 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->take_all();
   add_result(
       "--verify", options->verify,
-      fmt::format("Compare with another detector ({}), or with the --contacts (.csv) or --json of an earlier replay; "
-                  "exit 4 if contacts differ by more than their times",
-                  fmt::join(detector_names(), ", ")))
+      fmt::format(
+          "Compare with another detector ({}), or with the --contacts (.csv, .h5) or --json of an earlier replay; "
+          "exit 4 if contacts differ by more than their times",
+          fmt::join(detector_names(), ", ")))
       ->type_name("DETECTOR|FILE");
   add_law_options(*verb, options->law, kIntensityGroup);
   add_common_options(*verb, options->common);

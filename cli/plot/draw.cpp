@@ -192,7 +192,7 @@ int draw_body(Options options) {
       throw Error(options.map, "has no actuator", "paint regions other than black");
     if (body.subject.map.actuator_count == 0 && !body.has_contacts)
       throw Error(input, "there is no actuator map, and no contact", "name a --map, or --contacts, or both");
-    if (body.has_contacts) body.contacts = read_contacts_csv(options.contacts, limits_of(options, body.subject));
+    if (body.has_contacts) body.contacts = read_contacts(options.contacts, limits_of(options, body.subject));
     return body_figure(std::move(body));
   });
   return drawn == cli::kDone ? damage : drawn;
@@ -215,7 +215,7 @@ int draw_scene(Options options) {
     ContactLimits limits = limits_of(options, scene.subject);
     limits.frames = times.back().index + 1;
     std::vector<RecordedContact> contacts;
-    if (scene.has_contacts) contacts = read_contacts_csv(options.contacts, limits);
+    if (scene.has_contacts) contacts = read_contacts(options.contacts, limits);
     scene.moments = read_moments(trace, input.string(), times, options.moments, contacts);
     return scene_figure(scene);
   });

@@ -1,14 +1,11 @@
-#include "detector/output/contacts_csv.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <utility>
 
+#include "detector/output/contact_rows.hpp"
+#include "detector/output/contacts_file.hpp"
 #include "traces/base/csv.hpp"
-#include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 
 namespace vestige {
@@ -16,9 +13,18 @@ namespace vestige {
 namespace {
 
 constexpr std::string_view kHeader = "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z";
-constexpr std::string_view kRemedy = "write it with 'vestige replay --contacts'";
 
-}  // namespace
+class ContactsCsv final : public ContactsFile {
+ public:
+  ContactsCsv(const std::filesystem::path& path, Overwrite overwrite);
+  void write(const DetectorFrame& frame, const ContactRow& row,
+             const std::vector<std::uint32_t>& collider_ids) override;
+  void commit() override { file_.commit(); }
+
+ private:
+  OutputFile file_;
+  std::string text_;
+};
 
 ContactsCsv::ContactsCsv(const std::filesystem::path& path, Overwrite overwrite) : file_(path, overwrite) {
   file_.write(fmt::format("{}\n", kHeader));
@@ -39,15 +45,16 @@ void ContactsCsv::write(const DetectorFrame& frame, const ContactRow& row,
   file_.write(text_);
 }
 
+}  // namespace
+
+std::unique_ptr<ContactsFile> make_contacts_csv(const std::filesystem::path& path, Overwrite overwrite) {
+  return std::make_unique<ContactsCsv>(path, overwrite);
+}
+
 std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path, const ContactLimits& limits) {
   const std::string text = read_text_file(path);
-  CsvLines lines(text, path.string(), kHeader, kRemedy);
+  CsvLines lines(text, path.string(), kHeader, kContactsRemedy);
   std::vector<RecordedContact> contacts;
-  const auto check = [&](const char* what, std::uint64_t number, std::uint64_t count) {
-    if (number < count) return;
-    throw lines.error(fmt::format("refers to {} {}, but there are only {}", what, number, count),
-                      "use the contacts of this trace, avatar and map");
-  };
   while (lines.next()) {
     RecordedContact contact;
     glm::dvec2& weights = contact.barycentric;
@@ -65,20 +72,9 @@ std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path
         !lines.take(contact.actuator) || !skip(4) || !lines.at_end())
       throw lines.error("is not a row of contacts");
     if (!finite) throw lines.error("time, texture coordinates and position must be finite");
-    if (!(contact.t >= 0 && contact.t <= 1)) throw lines.error("t must be from 0 to 1");
-    if (!(weights.x >= 0 && weights.x <= 1 && weights.y >= 0 && weights.y <= 1))
-      throw lines.error("u and v must be weights from 0 to 1");
-    check("frame", contact.frame, limits.frames);
-    check("triangle", contact.triangle, limits.triangles);
-    if (contact.actuator > limits.actuators) check("actuator", contact.actuator, limits.actuators);
+    if (const auto fault = fault_of(contact, limits)) throw lines.error(fault->cause, fault->remedy);
     contacts.push_back(contact);
   }
-  const auto place = [](const RecordedContact& contact) { return std::pair(contact.frame, contact.collider); };
-  std::ranges::sort(contacts, {}, place);
-  const auto twice = std::ranges::adjacent_find(contacts, {}, place);
-  if (twice != contacts.end())
-    throw Error(path.string(), fmt::format("collider {} has two contacts in frame {}", twice->collider, twice->frame),
-                kRemedy);
   return contacts;
 }
 

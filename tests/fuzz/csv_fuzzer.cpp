@@ -1,7 +1,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "detector/output/contacts_csv.hpp"
+#include "detector/output/recorded_contacts.hpp"
 #include "tests/fuzz/require.hpp"
 #include "traces/base/error.hpp"
 #include "traces/exchange/collider_files.hpp"
@@ -66,7 +66,7 @@ void read_collider_frames(const std::filesystem::path& path) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto path = fuzz::in_a_file({reinterpret_cast<const std::byte*>(data), size});
   try_to([&] { read_colliders(path); });
-  try_to([&] { read_contacts_csv(path); });
+  try_to([&] { read_contacts(path); });
   try_to([&] { read_poses(path); });
   try_to([&] { read_collider_frames(path); });
   return 0;

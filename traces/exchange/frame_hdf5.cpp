@@ -1,141 +1,27 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <optional>
 
 #include "traces/base/error.hpp"
-#include "traces/exchange/hdf5_library.hpp"
 #include "traces/exchange/trace_export.hpp"
-#include "traces/files/scratch_file.hpp"
+#include "traces/hdf5/hdf5_writer.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "HDF5's little-endian types stand for ours");
-
-using Dimensions = std::vector<hsize_t>;
-
-constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 constexpr std::size_t kMostAttributeBytes = 60000;  // HDF5 holds 64 KiB in a header
-
-void write_attribute(hid_t object, const std::string& name, const std::string& text,
-                     const std::filesystem::path& path) {
-  const Hdf5Library& h5 = hdf5();
-  const Hdf5Handle type(h5.copy_type(h5.text), h5.close_type, path, "make a type");
-  hdf5_check(h5.set_size(type.id(), std::max<std::size_t>(1, text.size())), path, "make a type");
-  hdf5_check(h5.set_character_set(type.id(), H5T_CSET_UTF8), path, "make a type");
-  const Hdf5Handle space(h5.create_space(H5S_SCALAR), h5.close_space, path, "make a space");
-  Hdf5Handle attribute(h5.create_attribute(object, name.c_str(), type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT),
-                       h5.close_attribute, path, "make an attribute");
-  hdf5_check(h5.write_attribute(attribute.id(), type.id(), text.c_str()), path, "write an attribute");
-}
-
-/// A table that grows by one row a frame: chunked, deflated, written one chunk at a time.
-class GrowingDataset {
- public:
-  struct Description {
-    const char* name;
-    hid_t type;
-    std::size_t element_bytes;
-    Dimensions row;  ///< dimensions of one frame's row
-    std::string units;
-    std::string axes = {};
-  };
-
-  GrowingDataset(hid_t file, const std::filesystem::path& path, Description description)
-      : path_(path), description_(std::move(description)) {
-    const Hdf5Library& h5 = hdf5();
-    row_bytes_ = description_.element_bytes;
-    for (const hsize_t size : description_.row) row_bytes_ *= static_cast<std::size_t>(size);
-    chunk_rows_ = row_bytes_ == 0 ? 1 : std::clamp<std::size_t>(kChunkBytes / row_bytes_, 1, 4096);
-    // A table without columns has no chunks and cannot grow; its shape says that there are no columns.
-    const Dimensions most = dimensions(row_bytes_ == 0 ? 0 : H5S_UNLIMITED);
-    const Hdf5Handle space(h5.create_simple_space(static_cast<int>(most.size()), dimensions(0).data(), most.data()),
-                           h5.close_space, path, "make a space");
-    const Hdf5Handle how(h5.create_properties(h5.dataset_creation), h5.close_properties, path, "make properties");
-    if (row_bytes_ > 0) {
-      hdf5_check(h5.set_chunk(how.id(), static_cast<int>(most.size()), dimensions(chunk_rows_).data()), path,
-                 "choose chunks");
-      hdf5_check(h5.set_shuffle(how.id()), path, "choose a filter");
-      hdf5_check(h5.set_deflate(how.id(), 4), path, "choose compression");
-      hdf5_check(h5.set_fletcher32(how.id()), path, "choose checksums");
-    }
-    dataset_ = Hdf5Handle(
-        h5.create_dataset(file, description_.name, description_.type, space.id(), H5P_DEFAULT, how.id(), H5P_DEFAULT),
-        h5.close_dataset, path, fmt::format("make {}", description_.name));
-    if (!description_.units.empty()) write_attribute(dataset_.id(), "units", description_.units, path);
-    if (!description_.axes.empty()) write_attribute(dataset_.id(), "axes", description_.axes, path);
-  }
-
-  /// Appends a row of `row_bytes` bytes.
-  void append(const void* row) {
-    const auto* bytes = static_cast<const std::byte*>(row);
-    waiting_.insert(waiting_.end(), bytes, bytes + row_bytes_);
-    ++waiting_rows_;
-    if (waiting_rows_ == chunk_rows_) flush();
-  }
-
-  void flush() {
-    if (waiting_rows_ == 0 || row_bytes_ == 0) return;
-    const Hdf5Library& h5 = hdf5();
-    const std::string doing = fmt::format("write {}", description_.name);
-    hdf5_check(h5.set_extent(dataset_.id(), dimensions(rows_ + waiting_rows_).data()), path_, doing);
-    const Hdf5Handle place(h5.space_of(dataset_.id()), h5.close_space, path_, doing);
-    Dimensions start(description_.row.size() + 1, 0);
-    start[0] = rows_;
-    const Dimensions count = dimensions(waiting_rows_);
-    hdf5_check(h5.select_hyperslab(place.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), path_,
-               doing);
-    const Hdf5Handle memory(h5.create_simple_space(static_cast<int>(count.size()), count.data(), nullptr),
-                            h5.close_space, path_, doing);
-    hdf5_check(h5.write(dataset_.id(), description_.type, memory.id(), place.id(), H5P_DEFAULT, waiting_.data()), path_,
-               doing);
-    rows_ += waiting_rows_;
-    waiting_rows_ = 0;
-    waiting_.clear();
-  }
-
-  void close() {
-    flush();
-    // Data that HDF5 still buffers go to disk now, which may be full.
-    hdf5_check(dataset_.reset(), path_, fmt::format("write {}", description_.name));
-  }
-
- private:
-  Dimensions dimensions(hsize_t rows) const {
-    Dimensions all = {rows};
-    all.insert(all.end(), description_.row.begin(), description_.row.end());
-    return all;
-  }
-
-  std::filesystem::path path_;
-  Description description_;
-  Hdf5Handle dataset_;
-  std::size_t row_bytes_ = 0;
-  std::size_t chunk_rows_ = 1;
-  std::vector<std::byte> waiting_;
-  std::size_t waiting_rows_ = 0;
-  hsize_t rows_ = 0;
-};
 
 class FrameHdf5 final : public TraceExport {
  public:
   FrameHdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace)
-      : file_(path, overwrite), path_(path), scratch_(path, ScratchName::kKept), ids_(trace.collider_ids()) {
+      : file_(path, overwrite), path_(path), ids_(trace.collider_ids()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     const Hdf5Library& h5 = hdf5();
-    // From HDF5 1.10 on, the metadata of the tables have checksums, too.
-    const Hdf5Handle how(h5.create_properties(h5.file_access), h5.close_properties, path, "make properties");
-    hdf5_check(h5.set_versions(how.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST), path, "choose a version");
-    h5_file_ = Hdf5Handle(h5.create_file(scratch_.path().c_str(), kHdf5Truncate, H5P_DEFAULT, how.id()), h5.close_file,
-                          path, "make a file");
     write_head(trace);
     add({"time_ns", h5.int64, 8, {}, "ns"});
     add({"frame", h5.uint64, 8, {}, ""});
@@ -179,27 +65,23 @@ class FrameHdf5 final : public TraceExport {
 
   void commit() override {
     if (frames_ == 0) throw Error(path_.string(), "there is no frame to export", "");
-    for (GrowingDataset& dataset : datasets_) dataset.close();
-    hdf5_check(h5_file_.reset(), path_, "finish the file");
-    scratch_.copy_to(file_);
+    for (Hdf5Column& dataset : datasets_) dataset.close();
     file_.commit();
   }
 
  private:
-  void add(GrowingDataset::Description description) {
-    datasets_.emplace_back(h5_file_.id(), path_, std::move(description));
-  }
+  void add(Hdf5Column::Description description) { datasets_.emplace_back(file_.id(), path_, std::move(description)); }
 
   void write_head(TraceReader& trace) {
     const Hdf5Library& h5 = hdf5();
-    write_attribute(h5_file_.id(), "format", "vestige trace", path_);
-    write_attribute(h5_file_.id(), "format_version", "1", path_);
+    write_hdf5_attribute(file_.id(), "format", "vestige trace", path_);
+    write_hdf5_attribute(file_.id(), "format_version", "1", path_);
     for (const char* group : {"pose", "colliders", "session"}) {
-      Hdf5Handle made(h5.create_group(h5_file_.id(), group, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), h5.close_group,
-                      path_, "make a group");
+      Hdf5Handle made(h5.create_group(file_.id(), group, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), h5.close_group, path_,
+                      "make a group");
       if (std::string_view(group) != "session") continue;
       for (const auto& [key, value] : trace.session())
-        if (value.size() < kMostAttributeBytes) write_attribute(made.id(), key, value, path_);
+        if (value.size() < kMostAttributeBytes) write_hdf5_attribute(made.id(), key, value, path_);
     }
     write_bytes("avatar.glb", trace.avatar_glb());
     write_bytes("actuator_map.png", trace.actuator_map_png());
@@ -220,7 +102,7 @@ class FrameHdf5 final : public TraceExport {
       hdf5_check(h5.set_fletcher32(how.id()), path_, "choose checksums");
     }
     const Hdf5Handle space(h5.create_simple_space(1, &size, nullptr), h5.close_space, path_, "make a space");
-    Hdf5Handle dataset(h5.create_dataset(h5_file_.id(), name, type, space.id(), H5P_DEFAULT, how.id(), H5P_DEFAULT),
+    Hdf5Handle dataset(h5.create_dataset(file_.id(), name, type, space.id(), H5P_DEFAULT, how.id(), H5P_DEFAULT),
                        h5.close_dataset, path_, fmt::format("make {}", name));
     const std::string doing = fmt::format("write {}", name);
     if (count > 0) hdf5_check(h5.write(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), path_, doing);
@@ -245,13 +127,11 @@ class FrameHdf5 final : public TraceExport {
     write_whole("pose/node_names", type.id(), names.size(), texts.data(), Checksum::kYes);
   }
 
-  OutputFile file_;
+  Hdf5Output file_;
   std::filesystem::path path_;
-  ScratchFile scratch_;
   std::vector<std::uint32_t> ids_;
   std::map<std::uint32_t, std::size_t> place_of_;
-  Hdf5Handle h5_file_;
-  std::vector<GrowingDataset> datasets_;
+  std::vector<Hdf5Column> datasets_;
   std::uint64_t frames_ = 0;
   std::vector<float> translation_;
   std::vector<float> rotation_;

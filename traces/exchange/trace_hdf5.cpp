@@ -3,15 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <limits>
 #include <optional>
 #include <string>
 
-#include "traces/base/child_process.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/sha256.hpp"
-#include "traces/exchange/hdf5_table.hpp"
+#include "traces/hdf5/hdf5_reader.hpp"
+#include "traces/hdf5/hdf5_table.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
@@ -28,7 +27,7 @@ constexpr const char* kFormat = "vestige trace";
 
 class TraceHdf5::Implementation {
  public:
-  explicit Implementation(const std::filesystem::path& path) : path_(path), file_(open(path)) {
+  explicit Implementation(const std::filesystem::path& path) : path_(path), file_(open_hdf5(path, kHdf5Remedy)) {
     require_format();
     node_names = read_node_names();
     facing = read_text(kSession, std::string(trace_format::kFacingKey)).value_or("");
@@ -84,14 +83,6 @@ class TraceHdf5::Implementation {
   std::vector<std::byte> actuator_map_json;
 
  private:
-  static Hdf5Handle open(const std::filesystem::path& path) {
-    std::error_code failed;
-    if (!std::filesystem::exists(path, failed)) throw Error(path.string(), "there is no such file", "check the name");
-    Hdf5Handle file(hdf5().open_file(path.c_str(), kHdf5ReadOnly, H5P_DEFAULT), hdf5().close_file);
-    if (file.id() < 0) throw Error(path.string(), "is not an HDF5 file, or is damaged", kHdf5Remedy);
-    return file;
-  }
-
   /// A file that does not state its format is accepted.
   void require_format() const {
     const std::string format = read_text("/", "format").value_or(kFormat);
@@ -122,52 +113,19 @@ class TraceHdf5::Implementation {
     teleported_.emplace(file_.id(), path_, "colliders/teleported").expect({frames, colliders});
   }
 
-  [[noreturn]] void fail(std::string_view what, std::string_view cause, const char* remedy = kHdf5Remedy) const {
-    throw Error(path_.string(), fmt::format("its {} {}", what, cause), remedy);
-  }
-
-  /// Returns all texts of a table or an attribute, of fixed or variable length. `read` fills memory of the file's own
-  /// type, and returns a negative number if it fails.
-  template <typename Read>
-  std::vector<std::string> read_texts(const std::string& what, hid_t type, hid_t space, Read read) const {
-    const Hdf5Library& h5 = hdf5();
-    if (h5.class_of(type) != H5T_STRING) fail(what, "is not a text");
-    const hssize_t count = h5.element_count(space);
-    const std::size_t size = h5.size_of(type);
-    constexpr std::size_t kMostBytes = std::size_t{64} << 20;
-    if (count < 0 || static_cast<hsize_t>(count) > kMostColumns || size > kMostBytes ||
-        static_cast<std::size_t>(count) * size > kMostBytes)
-      fail(what, "is too large");
-    std::vector<std::string> texts(static_cast<std::size_t>(count));
-    if (h5.is_variable_text(type) > 0) {
-      std::vector<char*> found(texts.size(), nullptr);
-      if (read(static_cast<void*>(found.data())) < 0) fail(what, "cannot be read", kHdf5DamagedRemedy);
-      for (std::size_t i = 0; i < texts.size(); ++i) {
-        if (found[i] != nullptr) texts[i] = found[i];
-        h5.free_memory(found[i]);
-      }
-      return texts;
-    }
-    std::string found(texts.size() * size, '\0');
-    if (read(static_cast<void*>(found.data())) < 0) fail(what, "cannot be read", kHdf5DamagedRemedy);
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-      const std::string_view text = std::string_view(found).substr(i * size, size);
-      texts[i] = text.substr(0, text.find('\0'));  // the rest of a short text is padding
-    }
-    return texts;
-  }
-
   /// Empty if there are none.
   std::vector<std::string> read_node_names() const {
     const Hdf5Library& h5 = hdf5();
     if (h5.link_exists(file_.id(), kNodeNames, H5P_DEFAULT) <= 0) return {};
     const std::string what = fmt::format("table {}", kNodeNames);
     const Hdf5Handle dataset(h5.open_dataset(file_.id(), kNodeNames, H5P_DEFAULT), h5.close_dataset);
-    if (dataset.id() < 0) fail(what, "cannot be opened as a table");
+    if (dataset.id() < 0)
+      throw Error(path_.string(), fmt::format("its {} cannot be opened as a table", what), kHdf5Remedy);
     const Hdf5Handle type(h5.type_of(dataset.id()), h5.close_type);
     const Hdf5Handle space(h5.space_of(dataset.id()), h5.close_space);
-    return read_texts(what, type.id(), space.id(),
-                      [&](void* out) { return h5.read(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out); });
+    return read_hdf5_texts(path_, what, {type.id(), space.id()}, [&](void* out) {
+      return h5.read(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, out);
+    });
   }
 
   /// Empty if there is none.
@@ -188,19 +146,8 @@ class TraceHdf5::Implementation {
     return bytes;
   }
 
-  /// Returns the text of a group's attribute, if both exist.
   std::optional<std::string> read_text(const char* group, const std::string& key) const {
-    const Hdf5Library& h5 = hdf5();
-    if (h5.attribute_exists(file_.id(), group, key.c_str(), H5P_DEFAULT) <= 0) return {};
-    const std::string what = fmt::format("attribute '{}'", key);
-    const Hdf5Handle attribute(h5.open_attribute(file_.id(), group, key.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                               h5.close_attribute);
-    const Hdf5Handle type(h5.attribute_type(attribute.id()), h5.close_type);
-    const Hdf5Handle space(h5.attribute_space(attribute.id()), h5.close_space);
-    if (h5.element_count(space.id()) != 1) fail(what, "is not one text");
-    return read_texts(what, type.id(), space.id(),
-                      [&](void* out) { return h5.read_attribute(attribute.id(), type.id(), out); })
-        .front();
+    return read_hdf5_attribute(file_.id(), path_, group, key);
   }
 
   static glm::dvec3 vector(const std::vector<double>& numbers, std::size_t place) {
@@ -282,23 +229,11 @@ class TraceHdf5::Implementation {
 
 TraceHdf5::TraceHdf5(const std::filesystem::path& path) {
   static_cast<void>(hdf5());
-  // The library trusts a damaged file and may crash on it.
-  std::error_code unknown;
-  const std::uint64_t bytes = std::filesystem::file_size(path, unknown);
-  constexpr std::uint64_t kSlowestBytesPerSecond = 1'000'000;
-  const std::uint64_t most_s = 5 + (unknown ? 0 : bytes / kSlowestBytesPerSecond);
   const auto read_all = [&] {
     Implementation trial(path);
     for (TraceFrame frame; trial.next(frame);) continue;
   };
-  const int signal = signal_that_ends(read_all, most_s);
-  const bool interrupted = signal == SIGINT || signal == SIGTERM || signal == SIGHUP;
-  if (interrupted) throw Error(path.string(), "reading it was stopped", "");
-  if (signal != 0)
-    throw Error(path.string(),
-                fmt::format("is damaged: the HDF5 library {} on it (signal {})",
-                            signal == SIGXCPU ? "does not finish" : "crashes", signal),
-                kHdf5DamagedRemedy);
+  try_hdf5(path, read_all);
   implementation_ = std::make_unique<Implementation>(path);
 }
 TraceHdf5::~TraceHdf5() = default;

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "detector/output/contacts_csv.hpp"
+#include "detector/output/recorded_contacts.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::plot {

@@ -5,7 +5,7 @@
 
 #include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/studio/subject.hpp"
-#include "detector/output/contacts_csv.hpp"
+#include "detector/output/recorded_contacts.hpp"
 
 namespace vestige::plot {
 

@@ -10,7 +10,7 @@
 #include "analysis/plot/studio/studio.hpp"
 #include "analysis/plot/studio/surface.hpp"
 #include "detector/actuator_map.hpp"
-#include "detector/output/contacts_csv.hpp"
+#include "detector/output/recorded_contacts.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige::plot {

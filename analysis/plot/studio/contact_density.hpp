@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/plot/studio/surface.hpp"
-#include "detector/output/contacts_csv.hpp"
+#include "detector/output/recorded_contacts.hpp"
 
 namespace vestige::plot {
 

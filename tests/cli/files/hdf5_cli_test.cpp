@@ -12,8 +12,9 @@
 #include "tests/support/long.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 #include "traces/base/shared_library.hpp"
-#include "traces/exchange/hdf5_library.hpp"
 #include "traces/exchange/trace_hdf5.hpp"
+#include "traces/hdf5/hdf5_library.hpp"
+#include "traces/hdf5/hdf5_table.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
 namespace vestige {
@@ -161,6 +162,65 @@ TEST_F(Hdf5Exchange, OfAnotherVersionOrOtherNodesOrNumbersIsRefused) {
   const std::vector<double> times(300, 0.5);
   refused([&](Hdf5Editor& editor) { editor.replace("time_ns", h5.float64, times.size(), times.data()); },
           {"time_ns", "do not fit into whole numbers of 64 bits"});
+}
+
+TEST_F(Hdf5Exchange, ContactsAreThoseOfTheCsvToTheBit) {
+  ASSERT_EQ(run("vestige replay a.mcap --contacts c.csv && vestige replay a.mcap --contacts c.h5").exit_code, 0);
+  EXPECT_EQ(json_of("vestige replay a.mcap --verify c.h5 --json -")["verify"], [&] {
+    auto same = json_of("vestige replay a.mcap --verify c.csv --json -")["verify"];
+    same["against"] = "c.h5";
+    return same;
+  }());
+  // Every column, in the CSV's own form of numbers.
+  const Hdf5Handle file(hdf5().open_file((folder_ / "c.h5").c_str(), kHdf5ReadOnly, 0), hdf5().close_file);
+  std::vector<std::string> lines;
+  const auto add = [&]<typename Number>(const char* name, Number) {
+    const Hdf5Table table(file.id(), "c.h5", name);
+    std::vector<Number> numbers;
+    table.read(0, table.dimensions()[0], numbers);
+    const bool is_first = lines.empty();
+    lines.resize(numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) lines[i] += fmt::format("{}{}", is_first ? "" : ",", numbers[i]);
+  };
+  add("frame", std::uint64_t{});
+  add("time_s", double{});
+  add("collider", std::uint32_t{});
+  add("triangle", std::uint32_t{});
+  add("t", float{});
+  for (const char* name : {"u", "v", "texture_u", "texture_v"}) add(name, double{});
+  add("actuator", std::uint16_t{});
+  add("side", std::int64_t{});
+  for (const char* name : {"x", "y", "z"}) add(name, double{});
+  EXPECT_GT(lines.size(), 10U);
+  const std::string csv = read_text_file(folder_ / "c.csv");
+  EXPECT_EQ(fmt::format("{}\n", fmt::join(lines, "\n")), csv.substr(csv.find('\n') + 1));
+}
+
+TEST_F(Hdf5Exchange, BrokenContactsAreRefused) {
+  ASSERT_EQ(run("vestige replay a.mcap --contacts c.h5 && head -c 9000 c.h5 > cut.h5").exit_code, 0);
+  ASSERT_EQ(run("vestige export a.mcap -o a.h5").exit_code, 0);
+  expect_failure("vestige replay a.mcap --verify cut.h5", 1, {"cut.h5"});
+  expect_failure("vestige replay a.mcap --verify a.h5", 1, {"a.h5", "'vestige trace', not 'vestige contacts'"});
+  const Hdf5Library& h5 = hdf5();
+  const auto refused = [&](const std::function<void(Hdf5Editor&)>& change, const std::vector<std::string>& words) {
+    ASSERT_EQ(run("cp c.h5 changed.h5").exit_code, 0);
+    {
+      Hdf5Editor editor(folder_ / "changed.h5");
+      change(editor);
+    }
+    expect_failure("vestige replay a.mcap --verify changed.h5", 1, words);
+  };
+  refused([](Hdf5Editor& editor) { editor.remove("actuator"); },
+          {"changed.h5: its table actuator is missing", "vestige replay --contacts"});
+  const float three[] = {0, 0.5F, 2};
+  refused([&](Hdf5Editor& editor) { editor.replace("t", h5.float32, 3, three); },
+          {"its table t has the shape (3)", "vestige replay --contacts"});
+  const std::vector<float> late(
+      Hdf5Table(Hdf5Handle(h5.open_file((folder_ / "c.h5").c_str(), kHdf5ReadOnly, 0), h5.close_file).id(), "c.h5", "t")
+          .dimensions()[0],
+      2);
+  refused([&](Hdf5Editor& editor) { editor.replace("t", h5.float32, late.size(), late.data()); },
+          {"its table t, row 0: t must be from 0 to 1"});
 }
 
 TEST_F(Hdf5Exchange, WithoutCollidersNeedsNoTablesOfThem) {

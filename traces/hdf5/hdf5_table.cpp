@@ -1,4 +1,4 @@
-#include "traces/exchange/hdf5_table.hpp"
+#include "traces/hdf5/hdf5_table.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,8 @@
 
 namespace vestige {
 
-Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name) : path_(path), name_(name) {
+Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name, const char* remedy)
+    : path_(path), name_(name), remedy_(remedy) {
   const Hdf5Library& h5 = hdf5();
   dataset_ = Hdf5Handle(h5.open_dataset(file, name, H5P_DEFAULT), h5.close_dataset);
   if (dataset_.id() < 0) fail("is missing");
@@ -57,6 +58,7 @@ void Hdf5Table::read(const Type& type, hsize_t first, hsize_t rows, void* out) c
                    : type.is_signed       ? h5.int64
                    : type.bytes == 8      ? h5.uint64
                    : type.bytes == 4      ? h5.uint32
+                   : type.bytes == 2      ? h5.uint16
                                           : h5.uint8;
   std::vector<hsize_t> count = dimensions_;
   count[0] = rows;

@@ -68,7 +68,9 @@ struct Hdf5Library {
   hid_t int64;
   hid_t uint64;
   hid_t uint32;
+  hid_t uint16;
   hid_t uint8;
+  hid_t int8;
   hid_t text;
   hid_t dataset_creation;
   hid_t file_access;

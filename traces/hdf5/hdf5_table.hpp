@@ -6,13 +6,13 @@
 #include <type_traits>
 #include <vector>
 
-#include "traces/exchange/hdf5_library.hpp"
+#include "traces/hdf5/hdf5_library.hpp"
 
 namespace vestige {
 
 /// Remedies for files that are not as they should be.
-inline constexpr const char* kHdf5DamagedRemedy = "export it again, or take an undamaged copy";
-inline constexpr const char* kHdf5TypeRemedy = "convert it to the type in FORMAT.md, for example with numpy's astype";
+inline constexpr const char* kHdf5DamagedRemedy = "write it again, or take an undamaged copy";
+inline constexpr const char* kHdf5TypeRemedy = "convert it to the documented type, for example with numpy's astype";
 inline constexpr const char* kHdf5Remedy =
     "name a file that 'vestige export' wrote, or a file with the same tables (FORMAT.md)";
 
@@ -21,11 +21,13 @@ inline constexpr const char* kHdf5Remedy =
 class Hdf5Table {
  public:
   /// Throws if the table does not exist, has no rank from 1 to 3, or holds no numbers.
-  Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name);
+  /// `remedy` is that of `fail`.
+  Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name, const char* remedy = kHdf5Remedy);
 
   const std::vector<hsize_t>& dimensions() const { return dimensions_; }
 
-  [[noreturn]] void fail(std::string_view cause, const char* remedy = kHdf5Remedy) const;
+  [[noreturn]] void fail(std::string_view cause) const { fail(cause, remedy_); }
+  [[noreturn]] void fail(std::string_view cause, const char* remedy) const;
 
   /// Throws unless the table has this shape. A first size of 0 stands for any size.
   void expect(const std::vector<hsize_t>& shape) const;
@@ -55,6 +57,7 @@ class Hdf5Table {
 
   std::filesystem::path path_;
   const char* name_;
+  const char* remedy_;
   Hdf5Handle dataset_;
   Type type_;
   std::vector<hsize_t> dimensions_;

@@ -1,4 +1,4 @@
-#include "traces/exchange/hdf5_library.hpp"
+#include "traces/hdf5/hdf5_library.hpp"
 
 #include <fmt/format.h>
 
@@ -92,7 +92,9 @@ Hdf5Library load() {
     all.int64 = value("H5T_STD_I64LE_g");
     all.uint64 = value("H5T_STD_U64LE_g");
     all.uint32 = value("H5T_STD_U32LE_g");
+    all.uint16 = value("H5T_STD_U16LE_g");
     all.uint8 = value("H5T_STD_U8LE_g");
+    all.int8 = value("H5T_STD_I8LE_g");
     all.text = value("H5T_C_S1_g");
     all.dataset_creation = value("H5P_CLS_DATASET_CREATE_ID_g");
     all.file_access = value("H5P_CLS_FILE_ACCESS_ID_g");

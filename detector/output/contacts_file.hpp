@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "detector/contact.hpp"
+#include "detector/frame.hpp"
+#include "traces/files/output_file.hpp"
+
+namespace vestige {
+
+/// A file of contacts, which `read_contacts` reads. It is complete or absent: without `commit` it leaves nothing
+/// behind. Every function throws `Error` with the file's name.
+class ContactsFile {
+ public:
+  ContactsFile() = default;
+  virtual ~ContactsFile() = default;
+  ContactsFile(const ContactsFile&) = delete;
+  ContactsFile& operator=(const ContactsFile&) = delete;
+
+  /// Writes the contacts of a frame in the order of the colliders. `collider_ids` are those in the trace. The row must
+  /// carry all planes except speed and pressure.
+  virtual void write(const DetectorFrame& frame, const ContactRow& row,
+                     const std::vector<std::uint32_t>& collider_ids) = 0;
+  virtual void commit() = 0;
+};
+
+/// Writes CSV with the header `frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z`, one row
+/// for each contact. x, y, z are world metres. Floats have the shortest form that reads back to the same bits. "-" is
+/// standard output.
+std::unique_ptr<ContactsFile> make_contacts_csv(const std::filesystem::path& path, Overwrite overwrite);
+
+/// Writes HDF5: a list for each column of the CSV, with the same name and values to the bit. `attributes` become texts
+/// of the whole file. Throws `Error` if the library is not installed.
+std::unique_ptr<ContactsFile> make_contacts_hdf5(const std::filesystem::path& path, Overwrite overwrite,
+                                                 const std::map<std::string, std::string>& attributes);
+
+/// Writes HDF5 if the name ends in .h5 or .hdf5, otherwise CSV, which has no attributes.
+std::unique_ptr<ContactsFile> make_contacts_file(const std::filesystem::path& path, Overwrite overwrite,
+                                                 const std::map<std::string, std::string>& attributes);
+
+}  // namespace vestige

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <glm/vec2.hpp>
+#include <limits>
+#include <vector>
+
+namespace vestige {
+
+/// One contact of a file: the part that a comparison with another run, or a drawing, needs.
+struct RecordedContact {
+  std::uint64_t frame = 0;
+  std::uint32_t collider = 0;
+  std::uint32_t triangle = 0;
+  float t = 0;
+  glm::dvec2 barycentric = glm::dvec2(0);  ///< weights of the triangle's second and third vertex
+  std::uint16_t actuator = 0;
+};
+
+/// The numbers of triangles, actuators and frames that the contacts of a file can refer to.
+struct ContactLimits {
+  std::size_t triangles = std::numeric_limits<std::uint32_t>::max();
+  std::size_t actuators = std::numeric_limits<std::uint16_t>::max();
+  std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Reads a file of `ContactsFile`, CSV or HDF5 by its content, with rows in any order, and returns the contacts ordered
+/// by frame and collider. Throws `Error` with file and line, or table and row, also if a contact refers to something
+/// that does not exist. Precondition: no threads have been started, because HDF5 is first read in a child process.
+std::vector<RecordedContact> read_contacts(const std::filesystem::path& path, const ContactLimits& limits = {});
+
+}  // namespace vestige
