@@ -78,15 +78,17 @@ Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::si
   double frames = 0;
   for (const Repetition& repetition : repetitions) frames += static_cast<double>(repetition.frames);
   std::mt19937_64 random(seed);
-  std::vector<double> hz;
-  hz.reserve(kResamples);
+  std::vector<double> times_s;
+  times_s.reserve(kResamples);
   for (int i = 0; i < kResamples; ++i) {
     double seconds = 0;
     for (const double expected_s : found.expected_s)
       seconds += expected_s * (1 + found.relative[random() % found.relative.size()]);
-    hz.push_back(frames / seconds);
+    times_s.push_back(seconds);
   }
-  return {quantile(hz, 0.025), quantile(hz, 0.975)};
+  const double shortest_s = quantile(times_s, 0.025);
+  if (shortest_s <= 0) return {kMissing, kMissing};
+  return {frames / quantile(times_s, 0.975), frames / shortest_s};
 }
 
 Interval bootstrap_share(std::span<const ClusterShare> clusters, std::uint64_t seed) {

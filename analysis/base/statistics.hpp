@@ -37,8 +37,9 @@ double frequency_hz(std::span<const Repetition> repetitions);
 /// Returns the 95 % percentile bootstrap interval of `frequency_hz` (Davison & Hinkley 1997, section 3.2). Repetition r
 /// measured place r % `places`. Places cost differently, and all of them are measured equally often. So what is
 /// resampled is by how much each repetition differs from the mean of its place, for all places together, and for whole
-/// repetitions, since consecutive frames are not independent. NaN if no place was measured twice. The same input and
-/// `seed` give the same interval. Precondition: places > 0.
+/// repetitions, since consecutive frames are not independent. NaN if no place was measured twice, or if the times are
+/// so scattered that the interval would hold a time of 0. The same input and `seed` give the same interval.
+/// Precondition: places > 0.
 Interval bootstrap_frequency_hz(std::span<const Repetition> repetitions, std::size_t places, std::uint64_t seed);
 
 /// Returns the noise of a measurement: half the interquartile range of the repetitions' times, each over the mean of

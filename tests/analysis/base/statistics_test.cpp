@@ -100,6 +100,13 @@ TEST(Bootstrap, SeesNoiseWithinPlacesOnly) {
   EXPECT_TRUE(std::isnan(bootstrap_frequency_hz(std::span(steady).first(2), 2, 1).low)) << "each place once";
 }
 
+/// Few repetitions on a busy machine: no frequency is negative, and this tells nothing.
+TEST(Bootstrap, HasNoIntervalWhereTimesAreTooScattered) {
+  const std::vector<Repetition> scattered = {{10, 0.01}, {10, 0.01}, {10, 1}, {10, 1}};
+  EXPECT_TRUE(std::isnan(bootstrap_frequency_hz(scattered, 2, 1).low));
+  EXPECT_TRUE(std::isnan(bootstrap_frequency_hz(scattered, 2, 1).high));
+}
+
 /// Of many measurements of a known frequency, about 95 % of the intervals hold it, even where each place was measured
 /// only twice.
 TEST(Bootstrap, HoldsTheTruthAsOftenAsItSays) {
