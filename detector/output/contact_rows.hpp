@@ -1,9 +1,12 @@
 #pragma once
 
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "detector/output/contacts_file.hpp"
 #include "detector/output/recorded_contacts.hpp"
 
 namespace vestige {
@@ -20,6 +23,10 @@ struct ContactFault {
 /// Returns the first fault, if there is one.
 std::optional<ContactFault> fault_of(const RecordedContact& contact, const ContactLimits& limits);
 
+// The two formats, for `make_contacts_file` and `read_contacts`.
+std::unique_ptr<ContactsFile> make_contacts_csv(const std::filesystem::path& path, Overwrite overwrite);
+std::unique_ptr<ContactsFile> make_contacts_hdf5(const std::filesystem::path& path, Overwrite overwrite,
+                                                 const std::map<std::string, std::string>& attributes);
 std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path, const ContactLimits& limits);
 std::vector<RecordedContact> read_contacts_hdf5(const std::filesystem::path& path, const ContactLimits& limits);
 

@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "detector/output/contact_rows.hpp"
-#include "detector/output/contacts_file.hpp"
 #include "traces/base/csv.hpp"
 #include "traces/files/input_file.hpp"
 

@@ -29,17 +29,12 @@ class ContactsFile {
   virtual void commit() = 0;
 };
 
-/// Writes CSV with the header `frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z`, one row
-/// for each contact. x, y, z are world metres. Floats have the shortest form that reads back to the same bits. "-" is
-/// standard output.
-std::unique_ptr<ContactsFile> make_contacts_csv(const std::filesystem::path& path, Overwrite overwrite);
-
-/// Writes HDF5: a list for each column of the CSV, with the same name and values to the bit. `attributes` become texts
-/// of the whole file. Throws `Error` if the library is not installed.
-std::unique_ptr<ContactsFile> make_contacts_hdf5(const std::filesystem::path& path, Overwrite overwrite,
-                                                 const std::map<std::string, std::string>& attributes);
-
-/// Writes HDF5 if the name ends in .h5 or .hdf5, otherwise CSV, which has no attributes.
+/// Writes HDF5 if the name ends in .h5 or .hdf5, otherwise CSV. "-" is standard output, as CSV.
+///
+/// CSV has the header `frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z`, and one row for
+/// each contact. x, y, z are world metres. Floats have the shortest form that reads back to the same bits. HDF5 has a
+/// list for each column of the CSV, with the same name and values to the bit; `attributes`, which CSV does without,
+/// become texts of the whole file. Throws `Error` if the library of HDF5 is not installed.
 std::unique_ptr<ContactsFile> make_contacts_file(const std::filesystem::path& path, Overwrite overwrite,
                                                  const std::map<std::string, std::string>& attributes);
 

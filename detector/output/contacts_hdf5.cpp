@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "detector/output/contact_rows.hpp"
-#include "detector/output/contacts_file.hpp"
 #include "traces/base/error.hpp"
 #include "traces/hdf5/hdf5_reader.hpp"
 #include "traces/hdf5/hdf5_table.hpp"
@@ -162,12 +161,6 @@ std::vector<RecordedContact> read_all(const std::filesystem::path& path, const C
 std::unique_ptr<ContactsFile> make_contacts_hdf5(const std::filesystem::path& path, Overwrite overwrite,
                                                  const std::map<std::string, std::string>& attributes) {
   return std::make_unique<ContactsHdf5>(path, overwrite, attributes);
-}
-
-std::unique_ptr<ContactsFile> make_contacts_file(const std::filesystem::path& path, Overwrite overwrite,
-                                                 const std::map<std::string, std::string>& attributes) {
-  if (path.extension() == ".h5" || path.extension() == ".hdf5") return make_contacts_hdf5(path, overwrite, attributes);
-  return make_contacts_csv(path, overwrite);
 }
 
 std::vector<RecordedContact> read_contacts_hdf5(const std::filesystem::path& path, const ContactLimits& limits) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <optional>
 
 #include "traces/base/error.hpp"
 #include "traces/exchange/trace_export.hpp"
