@@ -29,6 +29,7 @@ struct Options {
   std::size_t poses = 6;
   MomentChoice moments;
   double trail_ms = 100;
+  std::string colour_by = "kind";
   std::string law = "binary";
   double hold_ms = 60;
   double rate_hz = 60;

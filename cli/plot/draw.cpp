@@ -210,6 +210,7 @@ int draw_scene(Options options) {
     warn_of(options, scene.subject);
     scene.trail_s = options.moments.trail_s;
     scene.has_contacts = !options.contacts.empty();
+    scene.colour_by = options.colour_by == "collider" ? ColourBy::kCollider : ColourBy::kKind;
     const std::vector<FrameTime> times = frame_times(trace, input.string());
     damage = report_damage(options, trace);
     ContactLimits limits = limits_of(options, scene.subject);

@@ -154,6 +154,11 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
       .add_option("--contacts", options.contacts,
                   "The file that 'vestige replay --contacts FILE.csv' wrote; then only frames with contacts are drawn")
       ->type_name("CSV");
+  scene
+      .add_option("--colour-by", options.colour_by,
+                  "kind: paths and contacts have a colour each; collider: each collider has its own")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"kind", "collider"}));
   add_other_map(scene, options);
   add_common_options(scene, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -scene]");
   return scene;

@@ -47,6 +47,7 @@ class Trails {
       const glm::dvec3& at = collider.position_m;
       if (!std::isfinite(at.x) || !std::isfinite(at.y) || !std::isfinite(at.z)) continue;
       Path& trail = trails_[collider.id];
+      trail.collider = collider.id;
       trail.is_current = true;
       thin(trail);
       trail.stops.push_back({time_s, at});

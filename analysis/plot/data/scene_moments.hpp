@@ -28,8 +28,9 @@ struct Path {
     double age_s = 0;  ///< time before the moment
     glm::dvec3 position_m = glm::dvec3(0);
   };
-  bool is_current = false;  ///< the collider exists at the moment
-  std::vector<Stop> stops;  ///< oldest first; thinned out if there are many
+  std::uint32_t collider = 0;  ///< its id
+  bool is_current = false;     ///< the collider exists at the moment
+  std::vector<Stop> stops;     ///< oldest first; thinned out if there are many
 };
 
 /// One frame of a trace and the paths that led to it.

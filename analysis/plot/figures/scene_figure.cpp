@@ -48,6 +48,18 @@ std::string in_words(std::size_t count, std::string_view what) {
   return fmt::format("{} {}{}", grouped(static_cast<double>(count)), what, count == 1 ? "" : "s");
 }
 
+/// All colliders of the moments, ascending.
+std::vector<std::uint32_t> colliders_in(const std::vector<Moment>& moments) {
+  std::vector<std::uint32_t> ids;
+  for (const Moment& moment : moments) {
+    for (const Path& path : moment.paths) ids.push_back(path.collider);
+    for (const RecordedContact& contact : moment.contacts) ids.push_back(contact.collider);
+  }
+  std::ranges::sort(ids);
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  return ids;
+}
+
 struct Panel {
   Raster raster;
   double time_s = 0;
@@ -59,7 +71,13 @@ class SceneFigure : public Figure {
   explicit SceneFigure(const Scene& scene)
       : title_(fmt::format("{}: {}", scene.subject.title, in_words(most_colliders(scene), "collider"))),
         trail_s_(scene.trail_s),
-        has_contacts_(scene.has_contacts) {
+        has_contacts_(scene.has_contacts),
+        colliders_(colliders_in(scene.moments)) {
+    if (scene.colour_by == ColourBy::kCollider) {
+      path_colours_.assign(kLineColours.begin(), kLineColours.end());
+      contact_colours_ = path_colours_;
+      title_ += colliders_.size() <= path_colours_.size() ? ", a colour for each" : ", nine colours in turn";
+    }
     // Far from the world's origin floats are coarse: everything is drawn relative to where the avatar first stands.
     const glm::dvec3 origin_m = standing_at(scene.subject.avatar, scene.moments.front().pose);
     const SurfacePoser poser(scene.subject.avatar);
@@ -162,24 +180,33 @@ class SceneFigure : public Figure {
     view.bottom = seen.y;
     const StudioShot shot(surface, view, ground_y_);
 
-    StudioShot::Overlay paths(shot, kPathColour);
-    StudioShot::Overlay segments(shot, kInk);
-    StudioShot::Overlay rings(shot, kWhite);
-    StudioShot::Overlay contacts(shot, kContactColour);
+    std::vector<StudioShot::Overlay> overlays;  // paths by colour, segments, rings, contacts by colour
+    const std::size_t colours = path_colours_.size();
+    overlays.reserve(2 * colours + 2);
+    for (const Colour& colour : path_colours_) overlays.emplace_back(shot, colour);
+    StudioShot::Overlay& segments = overlays.emplace_back(shot, kInk);
+    StudioShot::Overlay& rings = overlays.emplace_back(shot, kWhite);
+    for (const Colour& colour : contact_colours_) overlays.emplace_back(shot, colour);
     const bool many = moment.paths.size() > kManyColliders;
-    for (const Path& path : moment.paths) draw_path(path, origin_m, many, paths, segments);
+    for (const Path& path : moment.paths) draw_path(path, origin_m, many, overlays[colour_of(path.collider)], segments);
     const double dot = dots_of(kContactPt);
     for (const RecordedContact& contact : moment.contacts) {
       const glm::dvec3 at = surface.point(contact.triangle, contact.barycentric.x, contact.barycentric.y);
       rings.dot(at, 1.5 * dot, 1, 0, 0.01 * extent_);
-      contacts.dot(at, dot, 1, 0.35, 0.01 * extent_);
+      overlays[colours + 2 + colour_of(contact.collider)].dot(at, dot, 1, 0.35, 0.01 * extent_);
     }
     const std::size_t count = scene.subject.map.actuator_count;
     const Paint paint = [&](std::uint32_t triangle, double u, double v) {
       const std::uint16_t actuator = scene.subject.actuator_at(triangle, u, v);
       return actuator == 0 ? kSkin : blend(region_colour(actuator, count), kSkin, 0.6);
     };
-    return {shot.picture(paint, {paths, segments, rings, contacts}), moment.time_s, moment.contacts.size()};
+    return {shot.picture(paint, overlays), moment.time_s, moment.contacts.size()};
+  }
+
+  /// Which of the colours a collider has. The same collider has the same one at every moment.
+  std::size_t colour_of(std::uint32_t collider) const {
+    const auto place = std::ranges::lower_bound(colliders_, collider) - colliders_.begin();
+    return static_cast<std::size_t>(place) % path_colours_.size();
   }
 
   static double dots_of(double length_pt) { return length_pt * kPrintDotsPerInch / 72; }
@@ -203,6 +230,11 @@ class SceneFigure : public Figure {
     segments.line({tail, 1}, {head, 1}, dots_of(many ? 0.8 : 1.4), kHidden, tolerance);
   }
 
+  /// Where the k-th of the lines lies that stand for paths in the key.
+  static double height_in_key_pt(std::size_t k, std::size_t lines) {
+    return 2.2 * (static_cast<double>(lines - 1) / 2 - static_cast<double>(k));
+  }
+
   void draw_key(Canvas& canvas) const {
     const double y_pt = 7;
     draw_scale_bar(canvas, {kLeftPt + 2, y_pt}, unit_per_pt_, 60);
@@ -211,9 +243,12 @@ class SceneFigure : public Figure {
       canvas.text({left_pt, y_pt}, words, {7, kInk});
       left_pt += text_width_pt(words, {7, kInk}) + 12;
     };
-    for (int i = 0; i < 8; ++i)
-      canvas.line({left_pt + i * 2.5, y_pt}, {left_pt + (i + 1) * 2.5, y_pt},
-                  {blend(kWhite, kPathColour, 0.75 * (i + 1) / 8.0), 0.9, Dash::kSolid});
+    const std::size_t shown = std::min<std::size_t>(path_colours_.size(), 3);
+    for (std::size_t k = 0; k < shown; ++k)
+      for (int i = 0; i < 8; ++i)
+        canvas.line({left_pt + i * 2.5, y_pt + height_in_key_pt(k, shown)},
+                    {left_pt + (i + 1) * 2.5, y_pt + height_in_key_pt(k, shown)},
+                    {blend(kWhite, path_colours_[k], 0.75 * (i + 1) / 8.0), 0.9, Dash::kSolid});
     left_pt += 24;
     say(fmt::format("path of {:g} ms", trail_s_ * 1000));
     canvas.line({left_pt, y_pt}, {left_pt + 5, y_pt}, {kInk, 1.4, Dash::kSolid});
@@ -221,7 +256,7 @@ class SceneFigure : public Figure {
     left_pt += 10;
     say("collider, segment of this frame");
     if (has_contacts_) {
-      canvas.mark({left_pt + 2, y_pt}, Mark::kCircle, kContactPt, kContactColour, kContactColour);
+      canvas.mark({left_pt + 2, y_pt}, Mark::kCircle, kContactPt, contact_colours_[0], contact_colours_[0]);
       left_pt += 8;
       say(fmt::format("contact in these {:g} ms", trail_s_ * 1000));
     }
@@ -232,6 +267,9 @@ class SceneFigure : public Figure {
   std::string title_;
   double trail_s_;
   bool has_contacts_;
+  std::vector<std::uint32_t> colliders_;  ///< ascending
+  std::vector<Colour> path_colours_ = {kPathColour};
+  std::vector<Colour> contact_colours_ = {kContactColour};  ///< as many
   Camera camera_;
   double ground_y_ = 0;
   double extent_ = 1;

@@ -9,11 +9,15 @@
 
 namespace vestige::plot {
 
+/// kKind: paths, segments and contacts have a colour each. kCollider: each collider has its own.
+enum class ColourBy { kKind, kCollider };
+
 struct Scene {
   Subject subject;
   std::vector<Moment> moments;  ///< at least one; all of the subject's avatar
   double trail_s = 0.1;
   bool has_contacts = false;
+  ColourBy colour_by = ColourBy::kKind;
 };
 
 /// Draws a film strip: the avatar at each moment from half-left, with the paths of the colliders, the segments that are

@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
 #include "tests/analysis/box_avatar.hpp"
 #include "tests/support/process.hpp"
 
@@ -79,6 +83,32 @@ TEST_F(PlotSceneTest, WithContactsShowsTheFramesThatHaveThem) {
   const test::Outcome elsewhere = run("scene box.mcap --contacts contacts.csv --to 0.5 --force");
   EXPECT_EQ(elsewhere.exit_code, 2);
   EXPECT_THAT(elsewhere.standard_error, HasSubstr("are drawn have no contact"));
+}
+
+TEST_F(PlotSceneTest, ColoursByColliderTellCollidersApart) {
+  write_text(folder_ / "two.csv",
+             "time_s,id,x,y,z\n0,3,0.2,0.9,0.6\n0,8,0.2,0.6,0.6\n1,3,0.2,0.9,0.03\n1,8,0.2,0.6,0.03\n");
+  record("--animation none --colliders two.csv --rate 10 --duration 1");
+  ASSERT_EQ(test::run("vestige replay box.mcap --contacts contacts.csv -q", folder_.path()).exit_code, 0);
+  const auto dots = [&](const std::string& colour_by) {
+    const test::Outcome outcome =
+        run("scene box.mcap --contacts contacts.csv --map none --force --colour-by " + colour_by);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+    const Picture picture = read_png(folder_ / "box-scene.png");
+    const std::size_t above_key = (picture.height - 100) * picture.width;
+    const auto count = [&](const Pixel& colour) {
+      return std::count(picture.pixels.begin(), picture.pixels.begin() + static_cast<std::ptrdiff_t>(above_key),
+                        colour);
+    };
+    return std::pair(count({0, 114, 178}), count({213, 94, 0}));  // the first two colours of lines
+  };
+  const auto [kind_blue, kind_vermillion] = dots("kind");
+  EXPECT_EQ(kind_blue, 0);  // paths are never quite opaque
+  EXPECT_GT(kind_vermillion, 100);
+  const auto [blue, vermillion] = dots("collider");
+  EXPECT_GT(blue, 50);
+  EXPECT_GT(vermillion, 50);
+  EXPECT_THAT(words_of(folder_ / "box-scene.svg"), HasSubstr("2 colliders, a colour for each"));
 }
 
 TEST_F(PlotSceneTest, ContactsOfAnotherTraceAreRefusedNamingTheirLine) {
