@@ -67,6 +67,7 @@ int run(int argc, char** argv) {
   add_cat(program, invocation);
   add_export(program, invocation);
   add_import(program, invocation);
+  add_explain(program, invocation);
   add_avatar(program, invocation);
   add_map(program, invocation);
   add_devices(program, invocation);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 #include <sstream>
+#include <system_error>
 
 #include "cli/help/help_text.hpp"
 #include "cli/help/suggest.hpp"
@@ -146,7 +147,11 @@ void write_json(const std::string& path, const nlohmann::ordered_json& json, con
 
 void print_summary(std::string_view text, const std::vector<std::string>& output_paths, const CommonOptions& options) {
   if (options.quiet) return;
-  fmt::print(std::ranges::any_of(output_paths, is_standard_output) ? stderr : stdout, "{}", printable(text));
+  try {
+    fmt::print(std::ranges::any_of(output_paths, is_standard_output) ? stderr : stdout, "{}", printable(text));
+  } catch (const std::system_error& error) {
+    if (error.code() != std::errc::broken_pipe) throw;  // `| head` has seen enough
+  }
 }
 
 glm::dvec3 parse_vector(const std::string& text, const std::string& flag) {

@@ -41,6 +41,7 @@ if(TARGET vestige-plot)
   set(plot_page COMMAND vestige-plot man --markdown > ${reference}/plot.md)
 endif()
 add_custom_target(reference COMMAND vestige man --markdown ${reference} --force ${plot_page}
+  COMMAND vestige explain > ${reference}/files.md
   COMMENT "Writing docs/reference" VERBATIM)
 
 # The bundle: `vestige` and the programs of agreement, with their libraries, for a machine where nothing is installed.

@@ -57,6 +57,12 @@ nlohmann::ordered_json provenance(std::span<const std::string> argv) {
   return json;
 }
 
+nlohmann::ordered_json with_provenance(std::span<const std::string> argv, const nlohmann::ordered_json& result) {
+  nlohmann::ordered_json json = provenance(argv);
+  json.update(result);
+  return json;
+}
+
 std::map<std::string, std::string> provenance_texts(std::span<const std::string> argv) {
   std::map<std::string, std::string> texts;
   const nlohmann::ordered_json json = provenance(argv);

@@ -24,7 +24,10 @@ Machine this_machine();
 /// (UTC).
 nlohmann::ordered_json provenance(std::span<const std::string> argv);
 
-/// Returns the same values as texts, for a trace's session.
+/// Returns the same, followed by what `result` says.
+nlohmann::ordered_json with_provenance(std::span<const std::string> argv, const nlohmann::ordered_json& result);
+
+/// Returns the values of `provenance` as texts, for a trace's session.
 std::map<std::string, std::string> provenance_texts(std::span<const std::string> argv);
 
 nlohmann::ordered_json to_json(const Machine& machine);

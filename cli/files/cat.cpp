@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "analysis/base/provenance.hpp"
 #include "cli/files/range_choice.hpp"
 #include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
@@ -161,9 +162,11 @@ void run_cat(const CatOptions& options, Invocation& invocation) {
   printer.require_topics();
   damages->add(printer.damages());
   warn_of_damage(options.file, *damages, options.common.verbosity());
-  write_json(options.common.json,
-             {{"file", options.file}, {"messages", printer.messages()}, {"complete", damages->empty()}},
-             options.common);
+  write_json(
+      options.common.json,
+      with_provenance(invocation.argv,
+                      {{"file", options.file}, {"messages", printer.messages()}, {"complete", damages->empty()}}),
+      options.common);
   if (!damages->empty()) invocation.exit_code = kDataLost;
 }
 

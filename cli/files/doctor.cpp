@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "analysis/base/provenance.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
@@ -117,7 +118,7 @@ void run_doctor(const DoctorOptions& options, Invocation& invocation) {
     json.push_back(to_json(check, file));
     print_summary(describe(check, file), {options.common.json}, options.common);
   }
-  write_json(options.common.json, {{"files", json}}, options.common);
+  write_json(options.common.json, with_provenance(invocation.argv, {{"files", json}}), options.common);
 }
 
 }  // namespace

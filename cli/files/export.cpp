@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 
+#include "analysis/base/provenance.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/files/export_formats.hpp"
+#include "cli/files/exported_contacts.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/output_bytes.hpp"
 #include "cli/verbs.hpp"
@@ -29,6 +32,7 @@ struct ExportOptions {
   std::string output;
   std::string format;
   std::string what = "all";
+  std::string contacts;
   std::optional<double> rate_hz;
 };
 
@@ -89,6 +93,12 @@ class CsvFolder {
 };
 
 void check_flags(const ExportOptions& options, const std::string& format) {
+  if (!options.contacts.empty() && format != "hdf5")
+    throw UsageError("--contacts", fmt::format("{} has no place for contacts", format),
+                     "end the name in .h5, or leave --contacts out");
+  if (!options.contacts.empty() && options.rate_hz)
+    throw UsageError("--contacts", "with --rate, frames get other numbers than those of the contacts",
+                     "leave one of the two out");
   if (options.what != "all" && format != "csv")
     throw UsageError("--what", fmt::format("{} holds poses and colliders together", format), "leave --what out");
   const bool is_file = options.output == "-" || options.output.ends_with(".csv");
@@ -127,7 +137,8 @@ int export_for_paraview(const ExportOptions& options) {
 }
 
 std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& options, const std::string& format,
-                                                     const std::optional<CsvFolder>& folder, OpenTrace& trace) {
+                                                     const std::optional<CsvFolder>& folder, OpenTrace& trace,
+                                                     const std::optional<ExportedContacts>& contacts) {
   TraceReader& reader = trace.reader;
   const Overwrite overwrite = options.common.overwrite();
   std::vector<std::unique_ptr<TraceExport>> files;
@@ -140,7 +151,9 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
   } else if (format == "ndjson") {
     files.push_back(make_frame_ndjson(options.output, overwrite));
   } else if (format == "hdf5") {
-    files.push_back(make_frame_hdf5(options.output, overwrite, reader));
+    std::function<void(hid_t)> write_contacts;
+    if (contacts) write_contacts = [&contacts, &options](hid_t file) { contacts->write(file, options.output); };
+    files.push_back(make_frame_hdf5(options.output, overwrite, reader, std::move(write_contacts)));
   } else {
     files.push_back(
         make_frame_gltf(options.output, overwrite, trace.avatar, reader.avatar_glb(), reader.collider_ids()));
@@ -150,7 +163,7 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
 
 /// Returns how many frames each file has.
 std::uint64_t write_frames(TraceReader& reader, const std::vector<std::unique_ptr<TraceExport>>& files,
-                           const ExportOptions& options) {
+                           std::optional<ExportedContacts>& contacts, const ExportOptions& options) {
   std::optional<FrameThinning> thinning;
   if (options.rate_hz) thinning.emplace(*options.rate_hz);
   const auto total = static_cast<double>(reader.frame_count());
@@ -160,6 +173,7 @@ std::uint64_t write_frames(TraceReader& reader, const std::vector<std::unique_pt
   TraceFrame frame;
   while (reader.next(frame)) {
     ++read;
+    if (contacts) contacts->check(frame);
     if (!thinning || thinning->keep(frame)) {
       for (const auto& file : files) file->write(frame);
       ++written;
@@ -173,12 +187,14 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::string format = format_of(options);
   check_flags(options, format);
+  check_inputs({options.file, options.contacts});
   if (format == "paraview") {
     invocation.exit_code = export_for_paraview(options);
     return;
   }
   const bool is_folder = format == "csv" && options.what == "all";
-  if (!is_folder) check_outputs({options.output, options.common.json}, {options.file}, options.common);
+  if (!is_folder)
+    check_outputs({options.output, options.common.json}, {options.file, options.contacts}, options.common);
   OpenTrace trace(options.file, verbosity);
   TraceReader& reader = trace.reader;
   std::optional<CsvFolder> folder;
@@ -195,8 +211,10 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   catch_interrupts();
   require_frames(reader, options.file);
   const std::uint64_t total = reader.frame_count();
-  const std::vector<std::unique_ptr<TraceExport>> files = make_files(options, format, folder, trace);
-  const std::uint64_t written = write_frames(reader, files, options);
+  std::optional<ExportedContacts> contacts;
+  if (!options.contacts.empty()) contacts.emplace(options.contacts, reader.collider_ids());
+  const std::vector<std::unique_ptr<TraceExport>> files = make_files(options, format, folder, trace, contacts);
+  const std::uint64_t written = write_frames(reader, files, contacts, options);
   std::vector<std::string> losses;
   for (const auto& file : files) {
     const auto some = file->losses();
@@ -209,19 +227,19 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   invocation.exit_code = report_damage(reader, options.file, verbosity);
   if (!losses.empty()) invocation.exit_code = kDataLost;
 
-  write_json(options.common.json,
-             {{"trace", options.file},
-              {"format", format},
-              {"outputs", outputs},
-              {"frames", written},
-              {"frames_in_trace", total},
-              {"colliders", reader.collider_ids().size()},
-              {"losses", losses},
-              {"complete", reader.complete()}},
-             options.common);
+  nlohmann::ordered_json json = with_provenance(invocation.argv, {{"trace", options.file},
+                                                                  {"format", format},
+                                                                  {"outputs", outputs},
+                                                                  {"frames", written},
+                                                                  {"frames_in_trace", total},
+                                                                  {"colliders", reader.collider_ids().size()}});
+  if (contacts) json["contacts"] = contacts->count();
+  json.update({{"losses", losses}, {"complete", reader.complete()}});
+  write_json(options.common.json, json, options.common);
   print_summary(
-      fmt::format("{}: {} of {} and {}\n", options.output, counted(written, "frame"),
-                  counted(reader.collider_ids().size(), "collider"), counted(reader.node_names().size(), "node")),
+      fmt::format("{}: {} of {} and {}{}\n", options.output, counted(written, "frame"),
+                  counted(reader.collider_ids().size(), "collider"), counted(reader.node_names().size(), "node"),
+                  contacts ? ", " + counted(contacts->count(), "contact") : ""),
       {options.output, options.common.json}, options.common);
 }
 
@@ -249,6 +267,9 @@ void add_export(CLI::App& program, Invocation& invocation) {
   verb->add_option("--what", options->what, "Which of the two tables to write; CSV only")
       ->capture_default_str()
       ->check(CLI::IsMember({"all", "poses", "colliders"}));
+  verb->add_option("--contacts", options->contacts,
+                   "Take the contacts along that 'vestige replay --contacts FILE' wrote (.csv, .h5); HDF5 only")
+      ->type_name("FILE");
   verb->add_option(
           "--rate", options->rate_hz,
           "Write at most this many frames per second, and renumber them [default: all frames; for paraview, that of "

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "analysis/base/provenance.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/repair/trace_summary.hpp"
@@ -88,7 +89,7 @@ void run_inspect(const InspectOptions& options, Invocation& invocation) {
   check_outputs({options.common.json}, {options.trace}, options.common);
   const McapSummary summary = summarise_mcap(options.trace);
   for (const std::string& warning : summary.warnings) warn(warning, options.common.verbosity());
-  write_json(options.common.json, to_json(summary), options.common);
+  write_json(options.common.json, with_provenance(invocation.argv, to_json(summary)), options.common);
   print_summary(describe(summary, options.trace, options.common.verbose), {options.common.json}, options.common);
   if (!summary.complete) invocation.exit_code = kDataLost;
 }

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "analysis/base/provenance.hpp"
 #include "cli/files/export_formats.hpp"
 #include "cli/files/rewriting.hpp"
 #include "cli/verbs.hpp"
@@ -50,13 +51,13 @@ void run_merge(const MergeOptions& options, Invocation& invocation) {
                      counted(merged.missing_frames, "frame")),
          verbosity);
   write_json(options.common.json,
-             {{"files", options.files},
-              {"output", options.output},
-              {"messages", merged.messages},
-              {"frames", merged.frames},
-              {"duplicates", merged.duplicates},
-              {"missing_frames", merged.missing_frames},
-              {"complete", merged.damages.empty()}},
+             with_provenance(invocation.argv, {{"files", options.files},
+                                               {"output", options.output},
+                                               {"messages", merged.messages},
+                                               {"frames", merged.frames},
+                                               {"duplicates", merged.duplicates},
+                                               {"missing_frames", merged.missing_frames},
+                                               {"complete", merged.damages.empty()}}),
              options.common);
   print_summary(fmt::format("{}: {} of {}\n", options.output, counted(merged.frames, "frame"),
                             counted(options.files.size(), "file")),

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "analysis/base/provenance.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/files/export_formats.hpp"
 #include "cli/verbs.hpp"
@@ -132,7 +133,7 @@ void run_recover(const RecoverOptions& options, Invocation& invocation) {
   }
   file.commit();
   warn_of_losses(recovery, options);
-  write_json(options.common.json, to_json(recovery, options), options.common);
+  write_json(options.common.json, with_provenance(invocation.argv, to_json(recovery, options)), options.common);
   std::string text =
       fmt::format("{}: {}, {}{}\n", options.output, counted(recovery.messages, "message"),
                   counted(recovery.attachments, "attachment"), recovery.lost_something() ? "" : "; nothing was lost");

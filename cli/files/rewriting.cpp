@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "analysis/base/provenance.hpp"
 #include "cli/files/export_formats.hpp"
 #include "traces/base/nanoseconds.hpp"
 #include "traces/mcap/byte_source.hpp"
@@ -39,15 +40,15 @@ void run_rewrite(const std::string& file, const std::string& output, const Rewri
   const double start_s = static_cast<double>(result.start_ns) / kNanosecondsPerSecond;
   const double end_s = static_cast<double>(result.end_ns) / kNanosecondsPerSecond;
   write_json(common.json,
-             {{"file", file},
-              {"output", output},
-              {"messages", result.messages},
-              {"left_out", result.left_out},
-              {"start_s", start_s},
-              {"end_s", end_s},
-              {"bytes_before", source.size()},
-              {"bytes", result.bytes},
-              {"complete", result.damages.empty()}},
+             with_provenance(invocation.argv, {{"file", file},
+                                               {"output", output},
+                                               {"messages", result.messages},
+                                               {"left_out", result.left_out},
+                                               {"start_s", start_s},
+                                               {"end_s", end_s},
+                                               {"bytes_before", source.size()},
+                                               {"bytes", result.bytes},
+                                               {"complete", result.damages.empty()}}),
              common);
   print_summary(fmt::format("{}: {} messages from {} to {} s, {} bytes ({} before)\n", output, result.messages, start_s,
                             end_s, result.bytes, source.size()),

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "analysis/base/provenance.hpp"
 #include "analysis/claims/commands.hpp"
 #include "analysis/claims/page.hpp"
 #include "cli/verbs.hpp"
@@ -64,13 +65,13 @@ nlohmann::ordered_json to_json(const std::vector<Run>& runs) {
   return {{"claims", list}};
 }
 
-void run_claims(const ClaimsOptions& options) {
+void run_claims(const ClaimsOptions& options, const Invocation& invocation) {
   const std::vector<std::string> files = json_files_under(options.folder);
   check_outputs({options.output, options.common.json}, files, options.common);
   const std::vector<Run> runs = runs_of(read_results(files, options.folder));
   if (runs.empty())
     throw Error(options.folder, "holds no result", "write one with 'vestige sweep -o' or 'vestige replay --json'");
-  write_json(options.common.json, to_json(runs), options.common);
+  write_json(options.common.json, with_provenance(invocation.argv, to_json(runs)), options.common);
   if (options.output.empty()) return;
   OutputFile file(options.output, options.common.overwrite());
   file.write(claims_page(runs));
@@ -79,7 +80,7 @@ void run_claims(const ClaimsOptions& options) {
 
 }  // namespace
 
-void add_claims(CLI::App& program, Invocation&) {
+void add_claims(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<ClaimsOptions>();
   CLI::App* verb = add_verb(program, "claims", "Say what a folder of results shows, as a page of Markdown",
                             "  vestige claims results\n"
@@ -89,10 +90,10 @@ void add_claims(CLI::App& program, Invocation&) {
       ->capture_default_str()
       ->type_name("OUT.md|-");
   add_common_options(*verb, options->common);
-  verb->callback([options, verb] {
+  verb->callback([options, verb, &invocation] {
     // --json - takes standard output over from the page.
     if (options->common.json == "-" && verb->count("--output") == 0) options->output.clear();
-    run_claims(*options);
+    run_claims(*options, invocation);
   });
 }
 

@@ -23,6 +23,7 @@
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/hdf5/hdf5_reader.hpp"
 #include "traces/questions/placement_question.hpp"
 
 namespace vestige::cli {
@@ -150,8 +151,7 @@ struct Verification {
 /// The contacts that --verify names, if it names such a file. They are read before any thread starts.
 std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify) {
   if (verify.empty() || is_detector(verify)) return {};
-  const bool is_contacts = verify.ends_with(".csv") || verify.ends_with(".h5") || verify.ends_with(".hdf5");
-  if (!is_contacts) return {};
+  if (!verify.ends_with(".csv") && !is_hdf5(verify)) return {};
   return read_contacts(verify);
 }
 

@@ -13,6 +13,9 @@ namespace vestige {
 
 inline constexpr const char* kContactsRemedy = "write it with 'vestige replay --contacts'";
 
+/// Returns what files say of a contact of `frame`, by the collider with this id.
+RecordedContact recorded(const DetectorFrame& frame, const Contact& contact, std::uint32_t collider);
+
 /// What is wrong with a contact of a file.
 struct ContactFault {
   const char* column;

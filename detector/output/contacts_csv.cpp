@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <iterator>
 
 #include "detector/output/contact_rows.hpp"
@@ -35,11 +34,11 @@ void ContactsCsv::write(const DetectorFrame& frame, const ContactRow& row,
   for (std::size_t column = 0; column < row.size(); ++column) {
     const Contact& contact = row[column];
     if (!contact.hit()) continue;
-    const glm::dvec3 world_m = frame.origin_m + contact.position;
-    fmt::format_to(std::back_inserter(text_), "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", frame.index, frame.time_s,
-                   collider_ids[column], contact.triangle, contact.t, contact.barycentric.x, contact.barycentric.y,
-                   contact.texture_coordinate.x, contact.texture_coordinate.y, contact.actuator, contact.side,
-                   world_m.x, world_m.y, world_m.z);
+    const RecordedContact one = recorded(frame, contact, collider_ids[column]);
+    fmt::format_to(std::back_inserter(text_), "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", one.frame, one.time_s,
+                   one.collider, one.triangle, one.t, one.barycentric.x, one.barycentric.y, one.texture_coordinate.x,
+                   one.texture_coordinate.y, one.actuator, one.side, one.position_m.x, one.position_m.y,
+                   one.position_m.z);
   }
   file_.write(text_);
 }
@@ -57,20 +56,14 @@ std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path
   while (lines.next()) {
     RecordedContact contact;
     glm::dvec2& weights = contact.barycentric;
-    double ignored = 0;
-    bool finite = true;
-    const auto skip = [&](int columns) {
-      while (columns > 0 && lines.take(ignored)) {
-        finite = finite && std::isfinite(ignored);
-        --columns;
-      }
-      return columns == 0;
-    };
-    if (!lines.take(contact.frame) || !skip(1) || !lines.take(contact.collider) || !lines.take(contact.triangle) ||
-        !lines.take(contact.t) || !lines.take(weights.x) || !lines.take(weights.y) || !skip(2) ||
-        !lines.take(contact.actuator) || !skip(4) || !lines.at_end())
+    glm::dvec2& texture = contact.texture_coordinate;
+    glm::dvec3& position = contact.position_m;
+    if (!lines.take(contact.frame) || !lines.take(contact.time_s) || !lines.take(contact.collider) ||
+        !lines.take(contact.triangle) || !lines.take(contact.t) || !lines.take(weights.x) || !lines.take(weights.y) ||
+        !lines.take(texture.x) || !lines.take(texture.y) || !lines.take(contact.actuator) ||
+        !lines.take(contact.side) || !lines.take(position.x) || !lines.take(position.y) || !lines.take(position.z) ||
+        !lines.at_end())
       throw lines.error("is not a row of contacts");
-    if (!finite) throw lines.error("time, texture coordinates and position must be finite");
     if (const auto fault = fault_of(contact, limits)) throw lines.error(fault->cause, fault->remedy);
     contacts.push_back(contact);
   }

@@ -1,8 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 
+#include "detector/output/contact_columns.hpp"
 #include "detector/output/contact_rows.hpp"
 #include "traces/base/error.hpp"
 #include "traces/hdf5/hdf5_reader.hpp"
@@ -17,28 +18,6 @@ constexpr const char* kFormat = "vestige contacts";
 constexpr const char* kVersion = "1";
 constexpr hsize_t kBlockRows = 65536;
 
-/// The columns of the CSV, in its order.
-std::vector<Hdf5Column::Description> columns() {
-  const Hdf5Library& h5 = hdf5();
-  const auto column = [](const char* name, hid_t type, std::size_t bytes, const char* units, const char* description) {
-    return Hdf5Column::Description{name, type, bytes, {}, units, {}, description};
-  };
-  return {column("frame", h5.uint64, 8, "", "number of the frame in the trace"),
-          column("time_s", h5.float64, 8, "s", "time of the frame"),
-          column("collider", h5.uint32, 4, "", "id of the collider in the trace"),
-          column("triangle", h5.uint32, 4, "", "triangle of the avatar, from 0 on"),
-          column("t", h5.float32, 4, "1", "when within the frame's step: 0 at its start, 1 at its end"),
-          column("u", h5.float64, 8, "1", "weight of the triangle's second vertex"),
-          column("v", h5.float64, 8, "1", "weight of the triangle's third vertex"),
-          column("texture_u", h5.float64, 8, "1", "texture coordinate, not wrapped"),
-          column("texture_v", h5.float64, 8, "1", "texture coordinate, not wrapped"),
-          column("actuator", h5.uint16, 2, "", "from 1 on; 0 if no actuator covers the skin there"),
-          column("side", h5.int8, 1, "", "+1 entering, -1 leaving, 0 coplanar"),
-          column("x", h5.float64, 8, "m", "place in the world"),
-          column("y", h5.float64, 8, "m", "place in the world; up"),
-          column("z", h5.float64, 8, "m", "place in the world")};
-}
-
 class ContactsHdf5 final : public ContactsFile {
  public:
   ContactsHdf5(const std::filesystem::path& path, Overwrite overwrite,
@@ -47,44 +26,23 @@ class ContactsHdf5 final : public ContactsFile {
     write_hdf5_attribute(file_.id(), "format", kFormat, path);
     write_hdf5_attribute(file_.id(), "format_version", kVersion, path);
     for (const auto& [key, value] : attributes) write_hdf5_attribute(file_.id(), key, value, path);
-    for (Hdf5Column::Description& column : columns()) columns_.emplace_back(file_.id(), path, std::move(column));
+    columns_.emplace(file_.id(), path);
   }
 
   void write(const DetectorFrame& frame, const ContactRow& row,
              const std::vector<std::uint32_t>& collider_ids) override {
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const Contact& contact = row[i];
-      if (!contact.hit()) continue;
-      const std::uint64_t index = frame.index;
-      const double time_s = frame.time_s;
-      const glm::dvec3 world_m = frame.origin_m + contact.position;
-      const glm::dvec2& texture = contact.texture_coordinate;
-      const void* values[] = {&index,
-                              &time_s,
-                              &collider_ids[i],
-                              &contact.triangle,
-                              &contact.t,
-                              &contact.barycentric.x,
-                              &contact.barycentric.y,
-                              &texture.x,
-                              &texture.y,
-                              &contact.actuator,
-                              &contact.side,
-                              &world_m.x,
-                              &world_m.y,
-                              &world_m.z};
-      for (std::size_t column = 0; column < columns_.size(); ++column) columns_[column].append(values[column]);
-    }
+    for (std::size_t i = 0; i < row.size(); ++i)
+      if (row[i].hit()) columns_->append(recorded(frame, row[i], collider_ids[i]));
   }
 
   void commit() override {
-    for (Hdf5Column& column : columns_) column.close();
+    columns_->close();
     file_.commit();
   }
 
  private:
   Hdf5Output file_;
-  std::vector<Hdf5Column> columns_;
+  std::optional<ContactColumns> columns_;
 };
 
 /// All columns of a file, of equal length.
@@ -99,7 +57,7 @@ class ContactTables {
     if (version != kVersion)
       throw Error(path.string(), fmt::format("its format version is '{}', not {}", version, kVersion),
                   "use the later version of vestige that wrote it");
-    for (const Hdf5Column::Description& column : columns())
+    for (const Hdf5Column::Description& column : contact_columns())
       tables_.emplace_back(file_.id(), path, column.name, kContactsRemedy);
     for (const Hdf5Table& table : tables_) table.expect({rows()});
     // Deflate packs at most 1032 bytes into one.
@@ -112,22 +70,30 @@ class ContactTables {
   void read(hsize_t first, const ContactLimits& limits, std::vector<RecordedContact>& contacts) {
     const hsize_t count = std::min(kBlockRows, rows() - first);
     tables_[0].read(first, count, frame_);
+    tables_[1].read(first, count, time_s_);
     tables_[2].read(first, count, collider_);
     tables_[3].read(first, count, triangle_);
     tables_[4].read(first, count, t_);
     tables_[5].read(first, count, u_);
     tables_[6].read(first, count, v_);
+    tables_[7].read(first, count, texture_u_);
+    tables_[8].read(first, count, texture_v_);
     tables_[9].read(first, count, actuator_);
     tables_[10].read(first, count, side_);
-    for (const std::size_t column : {1U, 7U, 8U, 11U, 12U, 13U}) {
-      tables_[column].read(first, count, ignored_);
-      const auto odd = std::ranges::find_if_not(ignored_, [](double number) { return std::isfinite(number); });
-      if (odd != ignored_.end())
-        tables_[column].fail(fmt::format("has {} in row {}, and must be finite", *odd,
-                                         first + static_cast<hsize_t>(odd - ignored_.begin())));
-    }
+    tables_[11].read(first, count, x_m_);
+    tables_[12].read(first, count, y_m_);
+    tables_[13].read(first, count, z_m_);
     for (std::size_t i = 0; i < count; ++i) {
-      contacts.push_back({frame_[i], collider_[i], triangle_[i], t_[i], {u_[i], v_[i]}, actuator_[i]});
+      contacts.push_back({.frame = frame_[i],
+                          .time_s = time_s_[i],
+                          .collider = collider_[i],
+                          .triangle = triangle_[i],
+                          .t = t_[i],
+                          .barycentric = {u_[i], v_[i]},
+                          .texture_coordinate = {texture_u_[i], texture_v_[i]},
+                          .actuator = actuator_[i],
+                          .side = side_[i],
+                          .position_m = {x_m_[i], y_m_[i], z_m_[i]}});
       if (const auto fault = fault_of(contacts.back(), limits))
         throw Error(path_.string(), fmt::format("its table {}, row {}: {}", fault->column, first + i, fault->cause),
                     fault->remedy);
@@ -139,14 +105,19 @@ class ContactTables {
   Hdf5Handle file_;
   std::vector<Hdf5Table> tables_;  ///< in the order of `columns`
   std::vector<std::uint64_t> frame_;
+  std::vector<double> time_s_;
   std::vector<std::uint32_t> collider_;
   std::vector<std::uint32_t> triangle_;
   std::vector<float> t_;
   std::vector<double> u_;
   std::vector<double> v_;
+  std::vector<double> texture_u_;
+  std::vector<double> texture_v_;
   std::vector<std::uint16_t> actuator_;
-  std::vector<std::int64_t> side_;
-  std::vector<double> ignored_;
+  std::vector<std::int8_t> side_;
+  std::vector<double> x_m_;
+  std::vector<double> y_m_;
+  std::vector<double> z_m_;
 };
 
 std::vector<RecordedContact> read_all(const std::filesystem::path& path, const ContactLimits& limits) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "detector/output/contact_rows.hpp"
@@ -11,15 +12,40 @@
 
 namespace vestige {
 
+RecordedContact recorded(const DetectorFrame& frame, const Contact& contact, std::uint32_t collider) {
+  return {.frame = frame.index,
+          .time_s = frame.time_s,
+          .collider = collider,
+          .triangle = contact.triangle,
+          .t = contact.t,
+          .barycentric = contact.barycentric,
+          .texture_coordinate = contact.texture_coordinate,
+          .actuator = contact.actuator,
+          .side = contact.side,
+          .position_m = frame.origin_m + contact.position};
+}
+
 std::optional<ContactFault> fault_of(const RecordedContact& contact, const ContactLimits& limits) {
   const glm::dvec2& weights = contact.barycentric;
+  const glm::dvec2& texture = contact.texture_coordinate;
+  const glm::dvec3& place = contact.position_m;
+  const std::pair<const char*, double> finite[] = {{"time_s", contact.time_s},
+                                                   {"texture_u", texture.x},
+                                                   {"texture_v", texture.y},
+                                                   {"x", place.x},
+                                                   {"y", place.y},
+                                                   {"z", place.z}};
+  for (const auto& [column, number] : finite)
+    if (!std::isfinite(number))
+      return ContactFault{column, fmt::format("{} must be finite, and is {}", column, number), kContactsRemedy};
   const auto beyond = [](const char* what, std::uint64_t number, std::uint64_t count) {
     return ContactFault{what, fmt::format("refers to {} {}, but there are only {}", what, number, count),
                         "use the contacts of this trace, avatar and map"};
   };
   if (!(contact.t >= 0 && contact.t <= 1)) return ContactFault{"t", "t must be from 0 to 1", kContactsRemedy};
-  if (!(weights.x >= 0 && weights.x <= 1 && weights.y >= 0 && weights.y <= 1))
-    return ContactFault{"u", "u and v must be weights from 0 to 1", kContactsRemedy};
+  for (const auto& [column, weight] : {std::pair("u", weights.x), std::pair("v", weights.y)})
+    if (!(weight >= 0 && weight <= 1))
+      return ContactFault{column, "u and v must be weights from 0 to 1", kContactsRemedy};
   if (contact.frame >= limits.frames) return beyond("frame", contact.frame, limits.frames);
   if (contact.triangle >= limits.triangles) return beyond("triangle", contact.triangle, limits.triangles);
   if (contact.actuator > limits.actuators) return beyond("actuator", contact.actuator, limits.actuators);

@@ -4,19 +4,24 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 #include <limits>
 #include <vector>
 
 namespace vestige {
 
-/// One contact of a file: the part that a comparison with another run, or a drawing, needs.
+/// One contact of a file, with all that the file says of it.
 struct RecordedContact {
   std::uint64_t frame = 0;
-  std::uint32_t collider = 0;
+  double time_s = 0;
+  std::uint32_t collider = 0;  ///< its id
   std::uint32_t triangle = 0;
   float t = 0;
-  glm::dvec2 barycentric = glm::dvec2(0);  ///< weights of the triangle's second and third vertex
+  glm::dvec2 barycentric = glm::dvec2(0);         ///< weights of the triangle's second and third vertex
+  glm::dvec2 texture_coordinate = glm::dvec2(0);  ///< not wrapped into [0, 1]
   std::uint16_t actuator = 0;
+  std::int8_t side = 0;
+  glm::dvec3 position_m = glm::dvec3(0);  ///< in the world
 };
 
 /// The numbers of triangles, actuators and frames that the contacts of a file can refer to.

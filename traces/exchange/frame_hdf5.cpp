@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include "traces/base/error.hpp"
 #include "traces/exchange/trace_export.hpp"
@@ -17,8 +18,9 @@ constexpr std::size_t kMostAttributeBytes = 60000;  // HDF5 holds 64 KiB in a he
 
 class FrameHdf5 final : public TraceExport {
  public:
-  FrameHdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace)
-      : file_(path, overwrite), path_(path), ids_(trace.collider_ids()) {
+  FrameHdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace,
+            std::function<void(hid_t file)> write_more)
+      : file_(path, overwrite), path_(path), write_more_(std::move(write_more)), ids_(trace.collider_ids()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     const Hdf5Library& h5 = hdf5();
     write_head(trace);
@@ -65,6 +67,7 @@ class FrameHdf5 final : public TraceExport {
   void commit() override {
     if (frames_ == 0) throw Error(path_.string(), "there is no frame to export", "");
     for (Hdf5Column& dataset : datasets_) dataset.close();
+    if (write_more_) write_more_(file_.id());
     file_.commit();
   }
 
@@ -128,6 +131,7 @@ class FrameHdf5 final : public TraceExport {
 
   Hdf5Output file_;
   std::filesystem::path path_;
+  std::function<void(hid_t file)> write_more_;
   std::vector<std::uint32_t> ids_;
   std::map<std::uint32_t, std::size_t> place_of_;
   std::vector<Hdf5Column> datasets_;
@@ -142,9 +146,9 @@ class FrameHdf5 final : public TraceExport {
 
 }  // namespace
 
-std::unique_ptr<TraceExport> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite,
-                                             TraceReader& trace) {
-  return std::make_unique<FrameHdf5>(path, overwrite, trace);
+std::unique_ptr<TraceExport> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace,
+                                             std::function<void(hid_t file)> write_more) {
+  return std::make_unique<FrameHdf5>(path, overwrite, trace, std::move(write_more));
 }
 
 }  // namespace vestige

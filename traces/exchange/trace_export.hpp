@@ -1,8 +1,11 @@
 #pragma once
 
+#include <hdf5.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -56,8 +59,8 @@ std::unique_ptr<TraceExport> make_frame_gltf(const std::filesystem::path& path, 
 
 /// Writes HDF5, which holds a whole trace: `TraceHdf5` reads it back to the bit, except markers and counts of drops.
 /// FORMAT.md describes the layout. Holds a few chunks in memory. Opens the library at run time, and throws `Error` if
-/// it is missing.
-std::unique_ptr<TraceExport> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite,
-                                             TraceReader& trace);
+/// it is missing. `write_more`, if given, is called when all frames are written, to add groups of its own to the file.
+std::unique_ptr<TraceExport> make_frame_hdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace,
+                                             std::function<void(hid_t file)> write_more = {});
 
 }  // namespace vestige

@@ -57,6 +57,7 @@ Hdf5Library load() {
     library.find("H5Dread", all.read);
     library.find("H5Dclose", all.close_dataset);
     library.find("H5Lexists", all.link_exists);
+    library.find("H5Lvisit", all.visit_links);
     library.find("H5Acreate2", all.create_attribute);
     library.find("H5Awrite", all.write_attribute);
     library.find("H5Aexists_by_name", all.attribute_exists);

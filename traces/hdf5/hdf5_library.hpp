@@ -45,6 +45,7 @@ struct Hdf5Library {
   decltype(&::H5Dread) read;
   decltype(&::H5Dclose) close_dataset;
   decltype(&::H5Lexists) link_exists;
+  decltype(&::H5Lvisit) visit_links;
   decltype(&::H5Acreate2) create_attribute;
   decltype(&::H5Awrite) write_attribute;
   decltype(&::H5Aexists_by_name) attribute_exists;

@@ -45,6 +45,28 @@ void try_hdf5(const std::filesystem::path& path, const std::function<void()>& re
                 kHdf5DamagedRemedy);
 }
 
+namespace {
+
+herr_t note_name(hid_t, const char* name, const H5L_info_t*, void* names) {
+  static_cast<std::vector<std::string>*>(names)->emplace_back(name);
+  return 0;
+}
+
+std::vector<std::string> visit_names(const std::filesystem::path& path) {
+  const Hdf5Handle file = open_hdf5(path, kHdf5DamagedRemedy);
+  std::vector<std::string> names;
+  hdf5_check(hdf5().visit_links(file.id(), H5_INDEX_NAME, H5_ITER_INC, note_name, &names), path, "read the names");
+  return names;
+}
+
+}  // namespace
+
+std::vector<std::string> hdf5_names(const std::filesystem::path& path) {
+  static_cast<void>(hdf5());
+  try_hdf5(path, [&] { visit_names(path); });
+  return visit_names(path);
+}
+
 std::vector<std::string> read_hdf5_texts(const std::filesystem::path& path, const std::string& what,
                                          const Hdf5TextShape& shape, const std::function<herr_t(void*)>& read) {
   const auto fail = [&](std::string_view cause, const char* remedy = kHdf5Remedy) {

@@ -22,6 +22,9 @@ Hdf5Handle open_hdf5(const std::filesystem::path& path, const char* remedy);
 /// finish; ignores other errors. Precondition: no threads have been started.
 void try_hdf5(const std::filesystem::path& path, const std::function<void()>& read_all);
 
+/// Returns the paths of all tables and groups, ascending: "colliders", "colliders/id". Reads none of them.
+std::vector<std::string> hdf5_names(const std::filesystem::path& path);
+
 /// What a text is stored as.
 struct Hdf5TextShape {
   hid_t type;

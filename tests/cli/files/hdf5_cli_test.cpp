@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
@@ -14,6 +15,7 @@
 #include "traces/base/shared_library.hpp"
 #include "traces/exchange/trace_hdf5.hpp"
 #include "traces/hdf5/hdf5_library.hpp"
+#include "traces/hdf5/hdf5_reader.hpp"
 #include "traces/hdf5/hdf5_table.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 
@@ -30,6 +32,45 @@ TEST_F(Hdf5Exchange, ThereAndBackIsTheSameTraceToTheBit) {
   EXPECT_EQ(run("vestige cat a.mcap > a.txt; vestige cat back.mcap > back.txt; cmp a.txt back.txt").exit_code, 0);
   EXPECT_EQ(hash_of("back.mcap"), hash_of("a.mcap"));
   EXPECT_EQ(run("grep -c -a units a.h5").exit_code, 0);
+}
+
+TEST_F(Hdf5Exchange, AnExportTakesTheContactsAlong) {
+  ASSERT_EQ(run("vestige replay a.mcap --contacts a.csv -q && vestige replay a.mcap --contacts c.h5 -q").exit_code, 0);
+  const nlohmann::json json = json_of("vestige export a.mcap -o a.h5 --contacts a.csv --json -");
+  ASSERT_EQ(run("vestige export a.mcap -o b.h5 --contacts c.h5").exit_code, 0);
+  const std::string rows = run("tail -n +2 a.csv").standard_output;
+  EXPECT_EQ(json["contacts"], std::ranges::count(rows, '\n'));
+  EXPECT_GT(json["contacts"], 10);
+  for (const char* name : {"a.h5", "b.h5"}) {
+    const Hdf5Handle file = open_hdf5(folder_ / name, "");
+    std::vector<std::uint64_t> frame;
+    std::vector<float> t;
+    std::vector<std::int8_t> side;
+    std::vector<double> z_m;
+    Hdf5Table(file.id(), name, "contacts/frame").read(0, json["contacts"], frame);
+    Hdf5Table(file.id(), name, "contacts/t").read(0, json["contacts"], t);
+    Hdf5Table(file.id(), name, "contacts/side").read(0, json["contacts"], side);
+    Hdf5Table(file.id(), name, "contacts/z").read(0, json["contacts"], z_m);
+    std::string text;
+    for (std::size_t i = 0; i < t.size(); ++i) text += fmt::format("{},{},{},{}\n", frame[i], t[i], side[i], z_m[i]);
+    EXPECT_EQ(text, run("tail -n +2 a.csv | cut -d, -f1,5,11,14").standard_output) << name;
+  }
+  ASSERT_EQ(run("vestige import a.h5 -o back.mcap").exit_code, 0);
+  EXPECT_EQ(hash_of("back.mcap"), hash_of("a.mcap"));
+}
+
+TEST_F(Hdf5Exchange, RefusesTheContactsOfAnotherTrace) {
+  ASSERT_EQ(run("vestige replay a.mcap --contacts a.csv -q").exit_code, 0);
+  const auto expect_refused = [&](const std::string& change, const std::vector<std::string>& words) {
+    ASSERT_EQ(run("awk -F, -v OFS=, '" + change + " {print}' a.csv > b.csv").exit_code, 0);
+    expect_failure("vestige export a.mcap -o a.h5 --contacts b.csv", 1, words, "a.h5");
+  };
+  expect_refused("NR == 2 {$3 = 999}", {"b.csv", "collider 999, which the trace has not"});
+  expect_refused("NR == 2 {$1 = 9999}", {"b.csv", "frame 9999, which the trace has not"});
+  expect_refused("NR == 3 {$2 += 0.001}", {"b.csv", "and the trace has it at"});
+  expect_refused("NR == 2 {$12 = \"nan\"}", {"b.csv, line 2", "x must be finite"});
+  expect_failure("vestige export a.mcap -o a.ndjson --contacts a.csv", 2, {"--contacts", ".h5"}, "a.ndjson");
+  expect_failure("vestige export a.mcap -o a.h5 --contacts a.csv --rate 10", 2, {"--contacts", "--rate"}, "a.h5");
 }
 
 TEST_F(Hdf5Exchange, OfABrokenFileIsRefused) {

@@ -1,0 +1,230 @@
+#include "analysis/explain/fields.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr Field kContacts[] = {
+    {"frame", "", "number of the frame in the trace"},
+    {"time_s", "s", "time of the frame, from the trace's start"},
+    {"collider", "", "id of the collider in the trace"},
+    {"triangle", "", "triangle of the avatar, from 0 on: glTF's triangles in node, primitive, index order"},
+    {"t", "", "when within the frame's step: 0 at its start (the frame before), 1 at its end"},
+    {"u", "", "weight of the triangle's second vertex, 0 to 1"},
+    {"v", "", "weight of the triangle's third vertex, 0 to 1"},
+    {"texture_u", "", "texture coordinate, as the avatar has it: not wrapped into 0 to 1"},
+    {"texture_v", "", "texture coordinate, as the avatar has it: not wrapped into 0 to 1"},
+    {"actuator", "", "actuator of the skin there, from 1 on; 0: no actuator covers it"},
+    {"side", "", "+1: the collider enters through the triangle's front; -1: it leaves; 0: it moves in its plane"},
+    {"x", "m", "place of the contact in the world"},
+    {"y", "m", "place of the contact in the world; up"},
+    {"z", "m", "place of the contact in the world"},
+};
+
+constexpr Field kTexture[] = {
+    {"actuator", "", "actuator of the contact, from 1 on; 0: no actuator covers the skin there; +inf: no contact"},
+    {"t", "", "when within the frame's step, 0 to 1; +inf: no contact"},
+    {"triangle", "", "triangle of the avatar, from 0 on; 4294967295 (0xFFFFFFFF): no contact"},
+    {"u", "", "weight of the triangle's second vertex, 0 to 1; +inf: no contact"},
+    {"v", "", "weight of the triangle's third vertex, 0 to 1; +inf: no contact"},
+    {"texture_u", "", "texture coordinate, not wrapped; +inf: no contact"},
+    {"texture_v", "", "texture coordinate, not wrapped; +inf: no contact"},
+    {"x", "m", "place of the contact in the world; +inf: no contact"},
+    {"y", "m", "place of the contact in the world; up; +inf: no contact"},
+    {"z", "m", "place of the contact in the world; +inf: no contact"},
+    {"speed", "m/s", "speed of the collider along the triangle's normal, 0 or more; +inf: no contact"},
+    {"side", "", "+1 entering, -1 leaving, 0 in the triangle's plane; +inf: no contact"},
+    {"pressure", "", "pressure for a pneumatic cell, from the speed: 0 to 1; +inf: no contact"},
+};
+
+constexpr Field kTimeline[] = {
+    {"time_s", "s", "time of the frame, from the trace's start"},
+    {"actuator_*", "", "duty of that actuator from this frame on: 0 (off) to 255 (full)"},
+};
+
+// ISO/IEC 23090-31.
+constexpr Field kHjif[] = {
+    {"version", "", "edition of the format"},
+    {"profile", "", "which part of the format is used"},
+    {"level", "", "how demanding the file is, by the format"},
+    {"date", "", "when the file was written, UTC"},
+    {"description", "", "what wrote it, and how long it is"},
+    {"timescale", "1/s", "units of time in one second: 1000, so times are milliseconds"},
+    {"avatars/*", "", "what the format calls an avatar: none of our bodies"},
+    {"perceptions/channels/id", "", "actuator, from 0 on"},
+    {"perceptions/channels/description", "", "name of the actuator"},
+    {"perceptions/channels/bands/effects/keyframes/relative_position", "ms", "time, from the start"},
+    {"perceptions/channels/bands/effects/keyframes/amplitude_modulation", "", "duty from then on, 0 to 1"},
+    {"perceptions/*", "", "constant in our files"},
+    {"syncs", "", "empty in our files"},
+};
+
+constexpr Field kTact[] = {
+    {"intervalMillis", "ms", "time from one entry of feedback to the next"},
+    {"size", "", "motors of one side of the vest"},
+    {"name", "", "name of the trace"},
+    {"feedback/*/position", "", "side of the vest: VestFront or VestBack; feedback's names are times (ms)"},
+    {"feedback/*/mode", "", "DOT_MODE: a value for each motor"},
+    {"feedback/*/values", "%", "level of each motor of that side, 0 to 100"},
+    {"feedback/*/texture", "", "constant in our files"},
+    {"durationMillis", "ms", "length of the timeline"},
+};
+
+constexpr Field kStreamLog[] = {
+    {"time_s", "s", "when the state was due, in the time of the trace"},
+    {"state", "", "sent, or superseded: a newer state replaced it before the line was free"},
+    {"written_us", "us", "from the due time until the last byte was written; empty: never sent"},
+    {"actuator_*", "", "duty of that actuator, 0 to 255"},
+};
+
+// What replay and stream say of the detector that ran.
+constexpr Field kRun[] = {
+    {"trace", "", "the trace that was read"},
+    {"detector", "", "the detector that ran"},
+    {"approximate", "", "true: simpler shapes stood for the skin"},
+    {"triangles_kept", "", "triangles of the simpler mesh; only with decimated"},
+    {"frames", "", "frames that were detected"},
+    {"contacts", "", "contacts in all frames, on skin with and without an actuator"},
+    {"complete", "", "false: the trace is damaged, or the run was interrupted"},
+};
+
+constexpr Field kLaw[] = {
+    {"name", "", "intensity law"},
+    {"hold_ms", "ms", "how long an actuator runs on after a contact"},
+    {"full_speed_m_per_s", "m/s", "speed along the normal that drives an actuator fully; only with speed"},
+    {"sigma_mm", "mm", "width of a contact along the skin; only with gaussian"},
+    {"actuator", "", "the file of the actuator's model"},
+};
+
+constexpr Field kReplay[] = {
+    {"picked", "", "what --detector auto chose"},
+    {"why", "", "why it chose that"},
+    {"threads", "", "threads that detected"},
+    {"method", "", "static, carried or ccd: how the body's own motion counts (CONTRACT)"},
+    {"skip", "", "on: what cannot touch was skipped"},
+    {"surface", "", "all: skin without an actuator hides what lies behind it; mapped: it does not"},
+    {"hold_ms", "ms", "how long an actuator runs on after a contact"},
+    {"map_at", "", "--map-at, as given"},
+    {"triangles_left_out", "", "triangles that can fire nothing and were left out; only with --surface mapped"},
+    {"frames_skipped", "", "frames that bounds alone showed to be without contact"},
+    {"colliders", "", "colliders of the trace"},
+    {"unsure", "", "pairs that the filter passed to exact arithmetic"},
+    {"texture_hash", "", "SHA-256 of all contacts' triangle, t and actuator; equal: equal to the bit"},
+    {"pairs_tested", "", "pairs of segment and triangle that were tested"},
+    {"pairs_captured", "", "of them, pairs that the geometry shader could not reject"},
+    {"pairs_meeting", "", "of them, pairs that meet"},
+    {"origin_changes", "", "how often the frame's origin moved with the body"},
+    {"non_finite_frames", "", "frames whose pose has NaN or infinity; they fire nothing"},
+    {"non_finite_segments", "", "segments with such an end; they fire nothing"},
+    {"first_non_finite_frame", "", "the first frame with one of these; absent: none"},
+    {"reading_s", "s", "reading the trace"},
+    {"detection_s", "s", "detecting, with upload and read-back"},
+    {"hz", "Hz", "frames / detection_s"},
+    {"actuators/name", "", "name of an actuator of the map, in its order"},
+    {"actuators/contacts", "", "contacts on its region"},
+    {"skinning/frames", "", "frames in which vertices were compared with skinning in double precision"},
+    {"skinning/vertices", "", "vertices that were compared"},
+    {"skinning/identical_to_cpu", "", "of them, those with the same bits as the CPU's; null: the CPU skinned them"},
+    {"skinning/largest_error_m", "m", "largest distance from double precision"},
+    {"skinning/largest_error_cpu_m", "m", "the same of the CPU's skinning in single precision"},
+    {"skinning/height_m", "m", "longest side of the posed avatar's box"},
+    {"skinning/largest_error_of_height", "", "largest_error_m / height_m"},
+    {"verify/against", "", "what --verify compared with"},
+    {"verify/expected", "", "contacts of the other run"},
+    {"verify/differing", "", "missing + extra + other_triangle + other_actuator; 0: they agree"},
+    {"verify/missing", "", "contacts of the other run that this one lacks"},
+    {"verify/extra", "", "contacts that only this run has"},
+    {"verify/other_triangle", "", "contacts of both, on different triangles"},
+    {"verify/other_actuator", "", "contacts on the same triangle, with different actuators"},
+    {"verify/other_t", "", "contacts on the same triangle whose t differs in its bits"},
+    {"verify/largest_t_difference", "", "largest difference of t on the same triangle"},
+};
+
+constexpr Field kStream[] = {
+    {"loops", "", "how often the trace was played to its end"},
+    {"duration_s", "s", "length of the playback"},
+    {"missed_deadlines", "", "frames that were ready only after they were due"},
+    {"most_late_s", "s", "how late the latest frame was"},
+    {"sent", "", "frames passed to the system: changes, refreshes, and those that switch off"},
+    {"changes", "", "states that differ from the one before"},
+    {"superseded", "", "changes that a newer one replaced before the line was free"},
+    {"acknowledged", "", "frames that the board answered"},
+    {"off_sent", "", "true: the frame that switches everything off was sent at the end"},
+    {"off_acknowledged", "", "true: the board acknowledged it"},
+    {"zeros_acknowledged", "", "true: the board acknowledged levels of 0 before it"},
+    {"most_unanswered", "", "most frames under way at once; 0: the port gives no answers"},
+    {"fail_safes", "", "answers that say that the board had switched itself off"},
+    {"overruns", "", "answers that say that the board had lost bytes"},
+    {"receive_errors", "", "damaged frames, as the board counts them"},
+    {"links_lost", "", "how often the link was lost"},
+    {"maps_reloaded", "", "how often a changed map was read again"},
+    {"floor_us", "us", "least time between two frames"},
+    {"latency_us/written/*", "us", "from a change until its last byte was written: median, 95 %, 99 %, most"},
+    {"latency_us/acknowledged/*", "us", "from a change until its answer: median, 95 %, 99 %, most; 0: no answers"},
+};
+
+constexpr Field kLink[] = {
+    {"port", "", "--port, as given"},
+    {"datagrams", "", "datagrams sent; only over OSC"},
+    {"frame_bytes", "bytes", "length of one frame on the line"},
+    {"baud", "bit/s", "speed of the line"},
+    {"line_time_us", "us", "how long one frame takes on the line"},
+    {"ttl_ms", "ms", "the board switches itself off if it hears nothing for so long"},
+    {"xbee_api", "", "the XBee frame type that wraps each frame; empty: none"},
+    {"board/version", "", "protocol version that the board greeted with"},
+    {"board/actuators", "", "actuators that the board has"},
+    {"bytes", "bytes", "bytes passed to the system"},
+};
+
+constexpr Field kVestCheck[] = {
+    {"actuators", "", "actuators that were tried, one after another"},
+    {"sent", "", "frames passed to the system"},
+    {"acknowledged", "", "frames that the board answered"},
+    {"receive_errors", "", "damaged frames, as the board counts them"},
+    {"links_lost", "", "how often the link was lost"},
+    {"off_sent", "", "true: the frame that switches everything off was sent at the end"},
+    {"off_acknowledged", "", "true: the board acknowledged it"},
+    {"zeros_acknowledged", "", "true: the board acknowledged levels of 0 before it"},
+    {"good", "", "false: the vest does not hear everything (exit code 4)"},
+};
+
+}  // namespace
+
+FieldGroups contact_fields() {
+  return {{"", kContacts}};
+}
+
+FieldGroups texture_fields() {
+  return {{"", kTexture}};
+}
+
+FieldGroups timeline_fields() {
+  return {{"", kTimeline}};
+}
+
+FieldGroups hjif_fields() {
+  return {{"", kHjif}};
+}
+
+FieldGroups tact_fields() {
+  return {{"", kTact}};
+}
+
+FieldGroups stream_log_fields() {
+  return {{"", kStreamLog}};
+}
+
+FieldGroups replay_fields() {
+  return {{"", kRun},          {"", kReplay},        {"law", kLaw}, {"avatar", avatar_fields()},
+          {"gl", gl_fields()}, {"", origin_fields()}};
+}
+
+FieldGroups stream_fields() {
+  return {{"", kRun}, {"", kStream}, {"law", kLaw}, {"link", kLink}, {"gl", gl_fields()}, {"", origin_fields()}};
+}
+
+FieldGroups vest_check_fields() {
+  return {{"", kVestCheck}, {"link", kLink}, {"", origin_fields()}};
+}
+
+}  // namespace vestige
