@@ -44,15 +44,15 @@ void measure(const char* scenario, int frames) {
       }
       return 1e6 * best_s / frames / static_cast<double>(laws.size());
     };
-    std::vector<LawChoice> laws(4);
+    std::vector<LawChoice> laws(law_names().size());
     std::string alone;
-    for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t i = 0; i < laws.size(); ++i) {
       laws[i].name = law_names()[i];
       alone += fmt::format(", {} {:.2f}", laws[i].name, cost_us({laws[i]}));
     }
     const double together_us = cost_us(laws);
     for (LawChoice& law : laws) law.actuators = motors;
-    fmt::print("  {} actuators: layout {:.1f} ms; us a frame and law: four together {:.2f}, with motors {:.2f}{}\n",
+    fmt::print("  {} actuators: layout {:.1f} ms; us a frame and law: all together {:.2f}, with motors {:.2f}{}\n",
                name, 1e3 * layout_s, together_us, cost_us(laws), alone);
   }
 }
