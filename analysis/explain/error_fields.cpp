@@ -30,14 +30,14 @@ constexpr Field kAccuracy[] = {
     {"scenes/truth/halved/events", "", "events at that rate"},
 };
 
-constexpr Field kSeries[] = {
+constexpr Field kErrorSeries[] = {
     {"detector", "", "the detector that was measured"},
     {"approximate", "", "true: simpler shapes stood for the skin"},
     {"method", "", "static, carried or ccd: how the body's own motion counts"},
     {"triangles_kept", "", "triangles of the simpler mesh; only with decimated"},
 };
 
-constexpr Field kPoint[] = {
+constexpr Field kErrorPoint[] = {
     {"rate_hz", "Hz", "frames per second of the scene"},
     {"frames", "", "frames of all seeds"},
     {"contacts", "", "contacts in them"},
@@ -45,7 +45,7 @@ constexpr Field kPoint[] = {
 };
 
 // By the rule of one frame; below within_tolerance, by the tolerance.
-constexpr Field kEvents[] = {
+constexpr Field kErrorEvents[] = {
     {"true_events", "", "found + mistaken + missed"},
     {"found", "", "true events that an event of the detector meets, with the right actuator"},
     {"mistaken", "", "true events that only an event of another actuator meets"},
@@ -76,7 +76,7 @@ constexpr Field kInstants[] = {
     {"onset_error_ms/*", "ms", "from the true instant to the end of the event's first frame: latency"},
 };
 
-constexpr Field kTimes[] = {
+constexpr Field kErrorTimes[] = {
     {"scenes/colliders", "", "the scenario or file"},
     {"scenes/pareto/detector", "", "a point that nothing beats in both processor time and wrong events"},
     {"scenes/pareto/method", "", "its method"},
@@ -147,13 +147,13 @@ constexpr Field kQueryScore[] = {
 FieldGroups scenes() {
   return {{"avatar", avatar_fields()},
           {"", kAccuracy},
-          {"scenes/truth/halved", kEvents},
+          {"scenes/truth/halved", kErrorEvents},
           {"scenes/truth/halved", kInstants},
-          {"scenes/series", kSeries},
-          {"scenes/series/points", kPoint},
-          {"scenes/series/points", kEvents},
+          {"scenes/series", kErrorSeries},
+          {"scenes/series/points", kErrorPoint},
+          {"scenes/series/points", kErrorEvents},
           {"scenes/series/points", kInstants},
-          {"scenes/series/points/within_tolerance", kEvents}};
+          {"scenes/series/points/within_tolerance", kErrorEvents}};
 }
 
 }  // namespace
@@ -165,13 +165,15 @@ FieldGroups accuracy_fields() {
 }
 
 FieldGroups accuracy_run_fields() {
-  return {{"", kTimes}, {"scenes/series", kSeries}, {"scenes/series/gl", gl_fields()}, {"", origin_fields()}};
+  return {{"", kErrorTimes}, {"scenes/series", kErrorSeries}, {"scenes/series/gl", gl_fields()}, {"", origin_fields()}};
 }
 
 FieldGroups accuracy_whole_fields() {
   FieldGroups groups = accuracy_fields();
-  const FieldGroups run = {
-      {"run", kTimes}, {"run/scenes/series", kSeries}, {"run/scenes/series/gl", gl_fields()}, {"run", origin_fields()}};
+  const FieldGroups run = {{"run", kErrorTimes},
+                           {"run/scenes/series", kErrorSeries},
+                           {"run/scenes/series/gl", gl_fields()},
+                           {"run", origin_fields()}};
   groups.insert(groups.end(), run.begin(), run.end());
   return groups;
 }

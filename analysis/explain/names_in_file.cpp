@@ -22,11 +22,11 @@ namespace vestige {
 
 namespace {
 
-constexpr const char* kRemedy = "name a CSV, JSON, HDF5 or OpenEXR file that Vestige wrote";
-constexpr std::string_view kExr = "\x76\x2f\x31\x01";
-constexpr std::string_view kMcap = "\x89MCAP";
-constexpr std::string_view kZstd = "\x28\xb5\x2f\xfd";
-constexpr std::string_view kHdf5 = "\x89HDF";
+constexpr const char* kNamesRemedy = "name a CSV, JSON, HDF5 or OpenEXR file that Vestige wrote";
+constexpr std::string_view kExrStart = "\x76\x2f\x31\x01";
+constexpr std::string_view kMcapStart = "\x89MCAP";
+constexpr std::string_view kZstdStart = "\x28\xb5\x2f\xfd";
+constexpr std::string_view kHdf5Start = "\x89HDF";
 
 /// The first bytes of a regular file; of anything else, which can be read only once, nothing.
 std::string start_of(const std::filesystem::path& path) {
@@ -74,7 +74,7 @@ NamesInFile names_in_json(std::string_view text, const std::string& file) {
     json = nlohmann::ordered_json::parse(text.substr(0, text.find('\n')), nullptr, false);
   }
   if (json.is_discarded()) throw Error(file, "begins as JSON does, and is not JSON", "write it again");
-  if (!json.is_object() || json.empty()) throw Error(file, "is JSON without any name", kRemedy);
+  if (!json.is_object() || json.empty()) throw Error(file, "is JSON without any name", kNamesRemedy);
   JsonNames(found).walk(json, "", 0);
   if (json.contains("argv") && json["argv"].size() > 1 && json["argv"][1].is_string()) found.verb = json["argv"][1];
   return found;
@@ -82,12 +82,12 @@ NamesInFile names_in_json(std::string_view text, const std::string& file) {
 
 NamesInFile names_in_text(std::string_view text, const std::string& file) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) throw Error(file, "is empty", kRemedy);
+  if (first == std::string_view::npos) throw Error(file, "is empty", kNamesRemedy);
   if (text[first] == '{' || text[first] == '[') return names_in_json(text, file);
   const std::string_view line = text.substr(0, text.find('\n'));
   if (line.find('\0') != std::string_view::npos || line.find(',') == std::string_view::npos)
-    throw Error(file, "is neither CSV nor JSON", kRemedy);
-  return {FileFormat::kCsv, CsvLines(text, file, kRemedy).take_header(), {}, {}};
+    throw Error(file, "is neither CSV nor JSON", kNamesRemedy);
+  return {FileFormat::kCsv, CsvLines(text, file, kNamesRemedy).take_header(), {}, {}};
 }
 
 NamesInFile names_in_exr(const std::filesystem::path& path) {
@@ -108,17 +108,17 @@ NamesInFile names_in_exr(const std::filesystem::path& path) {
 
 NamesInFile names_in_file(const std::filesystem::path& path) {
   const std::string start = start_of(path);
-  if (start.starts_with(kMcap))
+  if (start.starts_with(kMcapStart))
     throw Error(path.string(), "is an MCAP file, such as a trace",
                 "'vestige inspect' says what it holds; traces/FORMAT.md describes traces");
-  if (start.starts_with(kExr)) return names_in_exr(path);
-  if (start.starts_with(kHdf5)) {
+  if (start.starts_with(kExrStart)) return names_in_exr(path);
+  if (start.starts_with(kHdf5Start)) {
     const std::vector<std::string> names = hdf5_names(path);
     return {FileFormat::kHdf5, names, {names.begin(), names.end()}, {}};  // any of them may be a group
   }
   const std::string name = path == "-" ? "standard input" : path.string();
   const bool is_long_table =
-      !start.empty() && start.find_first_of("{[") == std::string::npos && !start.starts_with(kZstd);
+      !start.empty() && start.find_first_of("{[") == std::string::npos && !start.starts_with(kZstdStart);
   if (is_long_table) {
     LineReader lines(path);
     std::string_view header;
@@ -129,7 +129,7 @@ NamesInFile names_in_file(const std::filesystem::path& path) {
   mcap::RawBuffer expanded;
   constexpr std::size_t kHeaderBytes = 65536;
   std::span<const std::byte> text = bytes;
-  if (text_of(bytes).starts_with(kZstd))
+  if (text_of(bytes).starts_with(kZstdStart))
     text = mcap::decompress_beginning(mcap::name_of(mcap::Compression::kZstd), bytes, kHeaderBytes, expanded);
   return names_in_text(text_of(text), name);
 }

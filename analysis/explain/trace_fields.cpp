@@ -62,7 +62,7 @@ constexpr Field kTraceHdf5[] = {
     {"session", "", "group whose attributes are the trace's metadata: where the recording came from"},
 };
 
-constexpr Field kSession[] = {
+constexpr Field kSessionFile[] = {
     {"facing", "", "axis along which the avatar looks at rest: +z, -z, +x, -x"},
 };
 
@@ -234,7 +234,7 @@ FieldGroups trace_hdf5_fields() {
 }
 
 FieldGroups session_fields() {
-  return {{"", kSession}};
+  return {{"", kSessionFile}};
 }
 
 FieldGroups record_fields() {
