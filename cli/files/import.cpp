@@ -44,6 +44,7 @@ struct ImportOptions {
   std::string session;  ///< session.json of the folder; empty without one
   MotionChoice motion_choice;
   ConventionChoice convention;
+  bool are_collider_axes_given = false;
   FacingChoice facing;
   std::optional<double> rate_hz;
   std::string compression = "zstd";
@@ -251,6 +252,18 @@ TraceWriterOptions writing_of(const ImportOptions& options) {
   return writing;
 }
 
+/// Asks whether colliders have the axes of the poses, which a person nearly alike on both sides does not tell.
+/// Empty if there is nothing to ask.
+std::string doubt_of_axes(const ImportOptions& options) {
+  const ConventionChoice& choice = options.convention;
+  const bool is_told = options.are_collider_axes_given || choice.pose_axes == choice.collider_axes;
+  if (options.poses.empty() || is_told || !options.colliders.ends_with(".csv")) return {};
+  return fmt::format(
+      "its axes are taken to be those of {}, and those of the poses are of {}; if both come from there: "
+      "--collider-axes {}",
+      choice.collider_axes, choice.pose_axes, choice.pose_axes);
+}
+
 /// What is asked about files of other programs once they are read.
 class Questions {
  public:
@@ -272,7 +285,7 @@ class Questions {
     const std::vector<std::string> doubts = options.poses.empty() ? std::vector<std::string>() : pose_.ask();
     for (const std::string& doubt : doubts) doubt_of(options.poses, doubt);
     // Around a body that is wrong, colliders that are right look wrong.
-    if (placement_ && doubts.empty()) doubt_of(options.colliders, placement_->ask().value_or(""));
+    if (placement_ && doubts.empty()) doubt_of(options.colliders, placement_->ask().value_or(doubt_of_axes(options)));
     if (!any_collider_)
       doubt_of(options.colliders,
                fmt::format("no frame has a collider; check that the file's times are those of the motion, 0 to {} s",
@@ -407,7 +420,10 @@ void add_import(CLI::App& program, Invocation& invocation) {
       ->required()
       ->type_name("OUT.mcap|-");
   add_common_options(*verb, options->common);
-  verb->callback([options, &invocation] { run_import(*options, invocation); });
+  verb->callback([options, verb, &invocation] {
+    options->are_collider_axes_given = verb->count("--collider-axes") > 0;
+    run_import(*options, invocation);
+  });
 }
 
 }  // namespace vestige::cli

@@ -164,6 +164,9 @@ TEST_F(ConventionCommandLine, AsksAboutPosesOfUnity) {
   colliders("unity_colliders.csv", "t,i,-x,y,z");
   const std::string import = "vestige import --poses unity.csv --colliders unity_colliders.csv --force -o x.mcap ";
   EXPECT_THAT(run(import).standard_error, HasSubstr("--pose-axes unity"));
+  // Mirrored colliders around a body that is alike on both sides touch as often: only the poses tell.
+  EXPECT_THAT(run(import + "--pose-axes unity").standard_error, HasSubstr("--collider-axes unity"));
+  EXPECT_THAT(run(import + "--pose-axes unity --collider-axes gltf").standard_error, IsEmpty());
   const test::Outcome mended = run(import + "--pose-axes unity --collider-axes unity");
   EXPECT_THAT(mended.standard_error, IsEmpty());
   EXPECT_NEAR(contacts("x.mcap"), right_contacts_, right_contacts_ / 50 + 1);
