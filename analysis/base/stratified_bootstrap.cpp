@@ -105,8 +105,11 @@ class Comparison {
           squares[k] += difference * difference;
         }
       }
-      for (std::size_t k = 0; k < count_; ++k)
-        errors[k] += std::max(0.0, squares[k] - sums[k] * sums[k] / units);  // the widening makes up for units - 1
+      for (std::size_t k = 0; k < count_; ++k) {
+        const double scatter = squares[k] - sums[k] * sums[k] / units;  // the widening makes up for units - 1
+        constexpr double kRounding = 1e-12;
+        if (scatter > kRounding * squares[k]) errors[k] += scatter;
+      }
     }
     for (double& error : errors) error = std::sqrt(error);
     errors[two.best] = errors[two.second];  // the best of the others is the second, and a difference has one error
@@ -255,8 +258,10 @@ std::vector<std::optional<LeaderTest>> StratifiedBootstrap::against_leader(
       if (k == lucky.best) continue;
       ++studentized[k].behind;
       const double behind = means[k] - means[found.other_than(k)];
-      if ((chance[k] - chance[lucky.best]) * found_errors[k] >= behind * errors[k] && behind * errors[k] > 0)
-        ++studentized[k].as_far;
+      const double by_chance = chance[k] - chance[lucky.best];
+      // Two that differ in a few units only may not scatter at all in a resample without these.
+      const bool is_as_far = errors[k] > 0 ? by_chance * found_errors[k] >= behind * errors[k] : by_chance >= behind;
+      if (behind > 0 && is_as_far) ++studentized[k].as_far;
     }
   }
   for (std::size_t k = 0; k < count; ++k) {

@@ -71,6 +71,21 @@ TEST(StratifiedBootstrap, TellsAClearLoserFromTheLeaderAndNotATie) {
   EXPECT_DOUBLE_EQ(higher[2]->p, tests[2]->p);
 }
 
+TEST(StratifiedBootstrap, TwoThatDifferInOneUnitAreBothToldFromTheLeader) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> noise(0, 1);
+  std::vector<std::vector<double>> candidates(3);
+  for (int unit = 0; unit < 20; ++unit) {
+    candidates[0].push_back(20 + noise(random));
+    candidates[1].push_back(126 + noise(random));
+    candidates[2].push_back(candidates[1].back());
+  }
+  candidates[2][7] += 0.02;  // resamples without this unit do not tell the two apart
+  const auto tests = StratifiedBootstrap(in_strata(1, 20), 1).against_leader(candidates, 1);
+  EXPECT_LT(tests[1]->p_holm, 0.001);
+  EXPECT_LT(tests[2]->p_holm, 0.001);
+}
+
 TEST(StratifiedBootstrap, LeadersThatAreTheSameAreNotTold) {
   std::vector<std::vector<double>> candidates(3);
   for (int unit = 0; unit < 12; ++unit) {
