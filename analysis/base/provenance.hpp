@@ -24,7 +24,7 @@ Machine this_machine();
 /// (UTC).
 nlohmann::ordered_json provenance(std::span<const std::string> argv);
 
-/// Returns the same, followed by what `result` says.
+/// Returns the same, followed by what `result` says, whose values win.
 nlohmann::ordered_json with_provenance(std::span<const std::string> argv, const nlohmann::ordered_json& result);
 
 /// Returns the values of `provenance` as texts, for a trace's session.

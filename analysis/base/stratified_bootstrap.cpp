@@ -107,7 +107,7 @@ class Comparison {
       }
       for (std::size_t k = 0; k < count_; ++k) {
         const double scatter = squares[k] - sums[k] * sums[k] / units;  // the widening makes up for units - 1
-        constexpr double kRounding = 1e-12;
+        constexpr double kRounding = 1e-12;                             // equal differences scatter by rounding only
         if (scatter > kRounding * squares[k]) errors[k] += scatter;
       }
     }

@@ -28,9 +28,9 @@ constexpr Field kRanked[] = {
 constexpr Field kRankedRow[] = {
     {"traces", "", "traces in which the metric that ranks has a value"},
     {"difference_from_best", "", "mean difference from the leader over traces; empty: not compared"},
-    {"difference_low", "", "low end of its 95 % interval"},
+    {"difference_low", "", "low end of its 95 % interval, which does not reach beyond 0"},
     {"difference_high", "", "high end of that interval"},
-    {"p", "", "probability of such a difference if it were none; empty: not compared"},
+    {"p", "", "chance of a difference at least as large if there were none; the leader: 1; empty: not compared"},
     {"p_holm", "", "p by Holm's correction for many comparisons"},
     {"distinguishable_from_best", "", "yes: p_holm is below 0.05; no: it is not; empty: not compared"},
 };
@@ -61,7 +61,7 @@ constexpr Field kRanking[] = {
     {"interval", "", "how intervals were computed; null: there are none"},
     {"why_no_intervals", "", "why there are none; null: there are"},
     {"over", "", "what the ranking is over, in words: 6 scenarios x 20 seeds"},
-    {"reversals", "", "scenarios that turn the order over, in words; empty: none"},
+    {"reversals", "", "scenarios on which another is first, in words; empty: none"},
     {"by_scenario/scenario", "", "a scenario"},
     {"by_scenario/traces", "", "its traces"},
 };
@@ -76,9 +76,10 @@ constexpr Field kRankedObject[] = {
     {"difference_from_best/low", "", "low end of its 95 % interval"},
     {"difference_from_best/high", "", "high end of that interval"},
     {"difference_from_best/n", "", "traces that have a value"},
-    {"difference_from_best/p", "", "probability of such a difference if it were none; null: not compared"},
+    {"difference_from_best/p", "",
+     "chance of a difference at least as large if there were none; the leader: 1; null: not compared"},
     {"difference_from_best/p_holm", "", "p by Holm's correction for many comparisons"},
-    {"distinguishable_from_best", "", "true: p_holm is below 0.05"},
+    {"distinguishable_from_best", "", "true: p_holm is below 0.05; false: it is not, or not compared"},
     {"metrics/*/mean", "", "mean of that metric over traces; null: none has a value"},
     {"metrics/*/low", "", "low end of its 95 % interval; null: none"},
     {"metrics/*/high", "", "high end of that interval"},
@@ -122,7 +123,7 @@ constexpr Field kBatchRun[] = {
     {"shard/count", "", "into how many parts it is split"},
     {"rank_by", "", "the metric that ranks"},
     {"complete", "", "false: interrupted, or still running"},
-    {"jobs", "", "threads"},
+    {"jobs", "", "number of threads"},
     {"wall_s", "s", "how long the run took"},
     {"avatar/warnings", "", "what was odd about the avatar"},
     {"maps/name", "", "name of a map"},
@@ -135,7 +136,7 @@ constexpr Field kBatchRun[] = {
     {"traces/contacts", "", "its contacts"},
     {"traces/damage", "", "its parts that could not be read, a sentence each"},
     {"traces/earlier", "", "true: an earlier run had scored it"},
-    {"traces/time", "", "when it was scored, UTC"},
+    {"traces/time", "", "when it was scored, UTC; null: not known"},
     {"failures/what", "", "map or trace"},
     {"failures/name", "", "its name"},
     {"failures/given", "", "as given"},
@@ -159,6 +160,13 @@ constexpr Field kCosts[] = {
     {"scoring_s", "s", "processor time of all maps and laws; null: not known"},
 };
 
+constexpr Field kTotals[] = {
+    {"recording_s", "s", "processor time of recording scenarios, as far as known"},
+    {"reading_s", "s", "processor time of reading traces, as far as known"},
+    {"detection_s", "s", "processor time of detecting, as far as known"},
+    {"scoring_s", "s", "processor time of all maps and laws, as far as known"},
+};
+
 constexpr Field kItem[] = {
     {"key", "", "SHA-256 of all that the scores depend on but the trace; equal: the item can be used again"},
     {"trace", "", "name of the trace"},
@@ -167,7 +175,7 @@ constexpr Field kItem[] = {
     {"frames", "", "its frames"},
     {"colliders", "", "its colliders"},
     {"contacts", "", "its contacts"},
-    {"origin_changes", "", "how often the frame's origin moved with the body"},
+    {"origin_changes", "", "how often the origin of computing followed the body, which had gone more than 2 m"},
     {"non_finite_frames", "", "frames whose pose has NaN or infinity; they fire nothing"},
     {"non_finite_segments", "", "segments with such an end; they fire nothing"},
     {"damage", "", "its parts that could not be read, a sentence each"},
@@ -256,7 +264,7 @@ FieldGroups ranking_fields() {
 }
 
 FieldGroups batch_run_fields() {
-  FieldGroups groups = {{"", kBatch}, {"", kBatchRun}, {"traces", kCosts}, {"totals", kCosts}, {"", origin_fields()}};
+  FieldGroups groups = {{"", kBatch}, {"", kBatchRun}, {"traces", kCosts}, {"totals", kTotals}, {"", origin_fields()}};
   const FieldGroups ranking =
       ranking_below("ranking", "ranking/ranking", "ranking/by_scenario/ranking", "ranking/metrics");
   groups.insert(groups.end(), ranking.begin(), ranking.end());

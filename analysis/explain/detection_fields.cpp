@@ -14,7 +14,7 @@ constexpr Field kContacts[] = {
     {"v", "", "weight of the triangle's third vertex, 0 to 1"},
     {"texture_u", "", "texture coordinate, as the avatar has it: not wrapped into 0 to 1"},
     {"texture_v", "", "texture coordinate, as the avatar has it: not wrapped into 0 to 1"},
-    {"actuator", "", "actuator of the skin there, from 1 on; 0: no actuator covers it"},
+    {"actuator", "", "actuator of the skin there, numbered from 1 on as in the map's JSON; 0: no actuator covers it"},
     {"side", "", "+1: the collider enters through the triangle's front; -1: it leaves; 0: it moves in its plane"},
     {"x", "m", "place of the contact in the world"},
     {"y", "m", "place of the contact in the world; up"},
@@ -50,11 +50,12 @@ constexpr Field kHjif[] = {
     {"date", "", "when the file was written, UTC"},
     {"description", "", "what wrote it, and how long it is"},
     {"timescale", "1/s", "units of time in one second: 1000, so times are milliseconds"},
-    {"avatars/*", "", "what the format calls an avatar: none of our bodies"},
+    {"avatars/*", "", "required by the format; says nothing of our bodies"},
     {"perceptions/channels/id", "", "actuator, from 0 on"},
     {"perceptions/channels/description", "", "name of the actuator"},
     {"perceptions/channels/bands/effects/keyframes/relative_position", "ms", "time, from the start"},
-    {"perceptions/channels/bands/effects/keyframes/amplitude_modulation", "", "duty from then on, 0 to 1"},
+    {"perceptions/channels/bands/effects/keyframes/amplitude_modulation", "",
+     "duty at that time, 0 to 1; linear in between"},
     {"perceptions/*", "", "constant in our files"},
     {"syncs", "", "empty in our files"},
 };
@@ -62,7 +63,7 @@ constexpr Field kHjif[] = {
 constexpr Field kTact[] = {
     {"intervalMillis", "ms", "time from one entry of feedback to the next"},
     {"size", "", "motors of one side of the vest"},
-    {"name", "", "name of the trace"},
+    {"name", "", "name of this file, without .tact"},
     {"feedback/*/position", "", "side of the vest: VestFront or VestBack; feedback's names are times (ms)"},
     {"feedback/*/mode", "", "DOT_MODE: a value for each motor"},
     {"feedback/*/values", "%", "level of each motor of that side, 0 to 100"},
@@ -83,9 +84,8 @@ constexpr Field kRun[] = {
     {"detector", "", "the detector that ran"},
     {"approximate", "", "true: simpler shapes stood for the skin"},
     {"triangles_kept", "", "triangles of the simpler mesh; only with decimated"},
-    {"frames", "", "frames that were detected"},
+    {"frames", "", "frames that the detector ran on"},
     {"contacts", "", "contacts in all frames, on skin with and without an actuator"},
-    {"complete", "", "false: the trace is damaged, or the run was interrupted"},
 };
 
 constexpr Field kLaw[] = {
@@ -97,9 +97,10 @@ constexpr Field kLaw[] = {
 };
 
 constexpr Field kReplay[] = {
+    {"complete", "", "false: the trace is damaged, or the run was interrupted"},
     {"picked", "", "what --detector auto chose"},
     {"why", "", "why it chose that"},
-    {"threads", "", "threads that detected"},
+    {"threads", "", "number of threads that detected"},
     {"method", "", "static, carried or ccd: how the body's own motion counts (CONTRACT)"},
     {"skip", "", "on: what cannot touch was skipped"},
     {"surface", "", "all: skin without an actuator hides what lies behind it; mapped: it does not"},
@@ -113,7 +114,7 @@ constexpr Field kReplay[] = {
     {"pairs_tested", "", "pairs of segment and triangle that were tested"},
     {"pairs_captured", "", "of them, pairs that the geometry shader could not reject"},
     {"pairs_meeting", "", "of them, pairs that meet"},
-    {"origin_changes", "", "how often the frame's origin moved with the body"},
+    {"origin_changes", "", "how often the origin of computing followed the body, which had gone more than 2 m"},
     {"non_finite_frames", "", "frames whose pose has NaN or infinity; they fire nothing"},
     {"non_finite_segments", "", "segments with such an end; they fire nothing"},
     {"first_non_finite_frame", "", "the first frame with one of these; absent: none"},
@@ -141,10 +142,11 @@ constexpr Field kReplay[] = {
 };
 
 constexpr Field kStream[] = {
+    {"complete", "", "false: interrupted before the end, without --loop, or the link was lost"},
     {"loops", "", "how often the trace was played to its end"},
     {"duration_s", "s", "length of the playback"},
     {"missed_deadlines", "", "frames that were ready only after they were due"},
-    {"most_late_s", "s", "how late the latest frame was"},
+    {"most_late_s", "s", "largest delay of a frame"},
     {"sent", "", "frames passed to the system: changes, refreshes, and those that switch off"},
     {"changes", "", "states that differ from the one before"},
     {"superseded", "", "changes that a newer one replaced before the line was free"},
@@ -158,7 +160,7 @@ constexpr Field kStream[] = {
     {"receive_errors", "", "damaged frames, as the board counts them"},
     {"links_lost", "", "how often the link was lost"},
     {"maps_reloaded", "", "how often a changed map was read again"},
-    {"floor_us", "us", "least time between two frames"},
+    {"floor_us", "us", "least time that the sender leaves between two frames"},
     {"latency_us/written/*", "us", "from a change until its last byte was written: median, 95 %, 99 %, most"},
     {"latency_us/acknowledged/*", "us", "from a change until its answer: median, 95 %, 99 %, most; 0: no answers"},
 };

@@ -32,6 +32,11 @@ ExplainedFile explain_as(const FileKind& kind, const NamesInFile& found) {
   return explained;
 }
 
+bool has_all(const NamesInFile& found, const std::vector<std::string>& names) {
+  return std::ranges::all_of(
+      names, [&](const std::string& name) { return std::ranges::find(found.names, name) != found.names.end(); });
+}
+
 /// How well a kind fits, the less the better: names that it has not, and whether another verb writes it.
 std::pair<std::size_t, bool> misfit(const ExplainedFile& explained, const NamesInFile& found) {
   return {explained.unexplained.size(), !explained.kind->written_by.starts_with("vestige " + found.verb)};
@@ -43,11 +48,12 @@ ExplainedFile explain_file(const std::filesystem::path& path) {
   const NamesInFile found = names_in_file(path);
   ExplainedFile best;
   for (const FileKind& kind : file_kinds()) {
-    if (kind.format != found.format) continue;
+    if (kind.format != found.format || !has_all(found, required_names(kind))) continue;
     ExplainedFile explained = explain_as(kind, found);
     if (best.kind == nullptr || misfit(explained, found) < misfit(best, found)) best = std::move(explained);
   }
-  if (best.names.size() <= best.unexplained.size())
+  if (found.names.empty()) throw Error(path.string(), "has no names", kRemedy);
+  if (best.kind == nullptr || 2 * best.unexplained.size() >= found.names.size())
     throw Error(
         path == "-" ? "standard input" : path.string(),
         fmt::format("is no file that Vestige writes: its first names are {}",

@@ -15,9 +15,9 @@ struct ExplainedFile {
   std::vector<std::string> unexplained;  ///< names that this kind of file has not
 };
 
-/// Reads the names in a file ("-": text from standard input), and finds the kind that explains most of them. Of CSV, it
-/// reads the header only. Throws `Error` if the file cannot be read, or if no kind explains more than half of its
-/// names.
+/// Reads the names in a file ("-": text from standard input), and finds the kind that explains most of them, among
+/// those whose required names it has. Of CSV, it reads the header only. Throws `Error` if the file cannot be read, or
+/// if no kind explains more than half of its names.
 ExplainedFile explain_file(const std::filesystem::path& path);
 
 }  // namespace vestige

@@ -4,7 +4,8 @@
 
 namespace vestige {
 
-// What stands in files, by topic. Each function returns the fields of one kind of file.
+// What stands in files, by topic. Each function returns the fields of one kind of file. The first field is one that
+// every such file has.
 
 /// What every result in JSON says of its origin (`provenance`).
 std::span<const Field> origin_fields();
@@ -68,6 +69,7 @@ FieldGroups export_fields();
 
 // Avatars, maps and machines.
 FieldGroups avatar_file_fields();
+FieldGroups region_fields();
 FieldGroups map_sidecar_fields();
 FieldGroups map_make_fields();
 FieldGroups map_check_fields();

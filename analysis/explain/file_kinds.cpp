@@ -76,7 +76,7 @@ std::vector<FileKind> trace_kinds() {
       {"poses.csv", kCsv, "Poses, a row for each frame", "vestige export -o DIR", pose_table_fields()},
       {"colliders.csv", kCsv, "Colliders, a row for each collider and frame", "vestige export -o DIR",
        collider_table_fields()},
-      {"session.json", kJson, "What else frames depend on", "vestige export -o DIR", session_fields()},
+      {"session.json", kJson, "Which way the avatar faces", "vestige export -o DIR", session_fields()},
       {"trace.ndjson", kLines, "Frames, a line of JSON for each", "vestige export -o OUT.ndjson", frame_line_fields()},
       {"trace.h5", kHdf5, "A whole trace; with --contacts, its contacts too", "vestige export -o OUT.h5",
        trace_hdf5_fields()},
@@ -96,6 +96,7 @@ std::vector<FileKind> trace_kinds() {
 std::vector<FileKind> setup_kinds() {
   return {
       {"avatar.json", kJson, "An avatar", "vestige avatar --json OUT.json", avatar_file_fields()},
+      {"regions.json", kJson, "Regions to make a map of", "vestige map make --save-regions OUT.json", region_fields()},
       {"map.json", kJson, "The names beside an actuator map", "vestige map make -o OUT.png", map_sidecar_fields()},
       {"map_make.json", kJson, "A map that was made", "vestige map make --json OUT.json", map_make_fields()},
       {"map_check.json", kJson, "What is wrong with a map", "vestige map check --json OUT.json", map_check_fields()},
@@ -123,17 +124,29 @@ std::string path_of(std::string_view below, std::string_view name) {
 }
 
 PlacedField find_field(const FileKind& kind, const std::string& name) {
-  for (const bool is_pattern : {false, true}) {
-    for (const FieldGroup& group : kind.groups) {
-      if (!name.starts_with(group.below)) continue;
-      for (const Field& field : group.fields) {
-        std::string path = path_of(group.below, field.name);
-        if (is_pattern ? ::fnmatch(path.c_str(), name.c_str(), FNM_NOESCAPE) == 0 : path == name)
-          return {std::move(path), &field};
-      }
+  PlacedField by_pattern = {name, nullptr};
+  for (const FieldGroup& group : kind.groups) {
+    std::string_view rest = name;
+    if (!group.below.empty()) {
+      if (!rest.starts_with(group.below) || rest.size() <= group.below.size() || rest[group.below.size()] != '/')
+        continue;
+      rest.remove_prefix(group.below.size() + 1);
+    }
+    for (const Field& field : group.fields) {
+      if (field.name == rest) return {name, &field};
+      if (by_pattern.field == nullptr && field.name.find('*') != std::string_view::npos &&
+          ::fnmatch(std::string(field.name).c_str(), std::string(rest).c_str(), FNM_NOESCAPE) == 0)
+        by_pattern = {path_of(group.below, field.name), &field};
     }
   }
-  return {name, nullptr};
+  return by_pattern;
+}
+
+std::vector<std::string> required_names(const FileKind& kind) {
+  const Field& origin = origin_fields().front();
+  std::vector<std::string> names = {path_of(kind.groups.front().below, kind.groups.front().fields.front().name)};
+  if (find_field(kind, std::string(origin.name)).field == &origin) names.emplace_back(origin.name);
+  return names;
 }
 
 bool holds_fields(const FileKind& kind, std::string_view path) {

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "analysis/explain/field.hpp"
 
@@ -33,6 +34,9 @@ struct PlacedField {
 
 /// Returns the field that explains `name`. One with the very name is preferred to a pattern.
 PlacedField find_field(const FileKind& kind, const std::string& name);
+
+/// The names that every file of this kind has: its first, and `schema_version` if it says where it comes from.
+std::vector<std::string> required_names(const FileKind& kind);
 
 /// Whether names of `kind` stand below `path`, so that an empty list, or null, there needs no explanation of its own.
 bool holds_fields(const FileKind& kind, std::string_view path);

@@ -8,7 +8,6 @@
 #include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <span>
 #include <string_view>
 
 #include "traces/base/csv.hpp"
@@ -31,7 +30,7 @@ constexpr std::string_view kHdf5Start = "\x89HDF";
 /// The first bytes of a regular file; of anything else, which can be read only once, nothing.
 std::string start_of(const std::filesystem::path& path) {
   std::error_code failed;
-  if (!std::filesystem::is_regular_file(path, failed)) return {};
+  if (path == "-" || !std::filesystem::is_regular_file(path, failed)) return {};
   std::array<char, 8> start = {};
   std::ifstream file(path, std::ios::binary);
   file.read(start.data(), start.size());
@@ -65,29 +64,75 @@ class JsonNames {
   std::set<std::string> seen_;
 };
 
-NamesInFile names_in_json(std::string_view text, const std::string& file) {
+/// The whole of a JSON file, or the first thousand lines of a file that has a document in each.
+NamesInFile names_in_json(LineReader& lines, std::string_view first, const std::string& file) {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+  constexpr std::size_t kMostLines = 1000;
   NamesInFile found;
-  found.format = FileFormat::kJson;
-  auto json = nlohmann::ordered_json::parse(text, nullptr, false);
-  if (json.is_discarded()) {
+  JsonNames names(found);
+  auto json = nlohmann::ordered_json::parse(first, nullptr, false);
+  std::string_view line;
+  // A trace of one frame is one line, too.
+  const bool is_frame = json.is_object() && json.contains("frame") && json.contains("time_s");
+  if (json.is_object()) names.walk(json, "", 0);
+  bool more = json.is_object() && lines.next(line);
+  while (more && line.empty()) more = lines.next(line);
+  if (is_frame || more) {
     found.format = FileFormat::kLines;
-    json = nlohmann::ordered_json::parse(text.substr(0, text.find('\n')), nullptr, false);
+    for (; more && lines.line() < kMostLines; more = lines.next(line)) {
+      if (line.empty()) continue;
+      json = nlohmann::ordered_json::parse(line, nullptr, false);
+      if (!json.is_object())
+        throw Error(fmt::format("{}, line {}", file, lines.line()), "is no JSON object", kNamesRemedy);
+      names.walk(json, "", 0);
+    }
+    return found;
   }
+  std::string text(first);
+  while (json.is_discarded() && lines.next(line)) {
+    text += '\n';
+    text += line;
+    if (text.size() > kMostBytes) throw Error(file, "is more than 1 GiB of JSON", kNamesRemedy);
+  }
+  if (json.is_discarded()) json = nlohmann::ordered_json::parse(text, nullptr, false);
   if (json.is_discarded()) throw Error(file, "begins as JSON does, and is not JSON", "write it again");
-  if (!json.is_object() || json.empty()) throw Error(file, "is JSON without any name", kNamesRemedy);
-  JsonNames(found).walk(json, "", 0);
-  if (json.contains("argv") && json["argv"].size() > 1 && json["argv"][1].is_string()) found.verb = json["argv"][1];
+  if (!json.is_object()) throw Error(file, "is JSON, but no object with names", kNamesRemedy);
+  found.format = FileFormat::kJson;
+  names.walk(json, "", 0);
+  if (json.contains("argv") && json["argv"].is_array() && json["argv"].size() > 1 && json["argv"][1].is_string())
+    found.verb = json["argv"][1];
   return found;
 }
 
-NamesInFile names_in_text(std::string_view text, const std::string& file) {
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) throw Error(file, "is empty", kNamesRemedy);
-  if (text[first] == '{' || text[first] == '[') return names_in_json(text, file);
-  const std::string_view line = text.substr(0, text.find('\n'));
+NamesInFile names_in_header(std::string_view line, const std::string& file) {
   if (line.find('\0') != std::string_view::npos || line.find(',') == std::string_view::npos)
     throw Error(file, "is neither CSV nor JSON", kNamesRemedy);
-  return {FileFormat::kCsv, CsvLines(text, file, kNamesRemedy).take_header(), {}, {}};
+  return {FileFormat::kCsv, CsvLines(line, file, kNamesRemedy).take_header(), {}, {}};
+}
+
+NamesInFile names_in_text(const std::filesystem::path& path) {
+  LineReader lines(path);
+  const std::string& file = lines.name();
+  std::string_view line;
+  std::size_t first = std::string_view::npos;
+  while (first == std::string_view::npos && lines.next(line)) {
+    if (line.starts_with("\xEF\xBB\xBF")) line.remove_prefix(3);
+    first = line.find_first_not_of(" \t\r");
+  }
+  if (first == std::string_view::npos) throw Error(file, "is empty", kNamesRemedy);
+  for (const std::string_view start : {kExrStart, kMcapStart, kHdf5Start, kZstdStart})
+    if (line.starts_with(start)) throw Error(file, "is no text, and only text is read from a pipe", "name the file");
+  if (line[first] == '{' || line[first] == '[') return names_in_json(lines, std::string(line), file);
+  return names_in_header(line, file);
+}
+
+NamesInFile names_in_zstd(const std::filesystem::path& path) {
+  constexpr std::size_t kHeaderBytes = 65536;
+  mcap::RawBuffer expanded;
+  const std::string_view text = text_of(
+      mcap::decompress_beginning(mcap::name_of(mcap::Compression::kZstd), read_file(path), kHeaderBytes, expanded));
+  if (text.empty()) throw Error(path.string(), "holds nothing that zstd can expand", "write it again");
+  return names_in_header(text.substr(0, text.find('\n')), path.string());
 }
 
 NamesInFile names_in_exr(const std::filesystem::path& path) {
@@ -116,22 +161,8 @@ NamesInFile names_in_file(const std::filesystem::path& path) {
     const std::vector<std::string> names = hdf5_names(path);
     return {FileFormat::kHdf5, names, {names.begin(), names.end()}, {}};  // any of them may be a group
   }
-  const std::string name = path == "-" ? "standard input" : path.string();
-  const bool is_long_table =
-      !start.empty() && start.find_first_of("{[") == std::string::npos && !start.starts_with(kZstdStart);
-  if (is_long_table) {
-    LineReader lines(path);
-    std::string_view header;
-    lines.next(header);
-    return names_in_text(header, name);
-  }
-  const std::vector<std::byte> bytes = read_file(path);
-  mcap::RawBuffer expanded;
-  constexpr std::size_t kHeaderBytes = 65536;
-  std::span<const std::byte> text = bytes;
-  if (text_of(bytes).starts_with(kZstdStart))
-    text = mcap::decompress_beginning(mcap::name_of(mcap::Compression::kZstd), bytes, kHeaderBytes, expanded);
-  return names_in_text(text_of(text), name);
+  if (start.starts_with(kZstdStart)) return names_in_zstd(path);
+  return names_in_text(path);
 }
 
 }  // namespace vestige

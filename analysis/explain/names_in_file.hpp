@@ -18,8 +18,8 @@ struct NamesInFile {
   std::string verb;                  ///< of JSON: the verb that wrote it, as its "argv" says; empty: it does not say
 };
 
-/// Reads them; of CSV and lines of JSON, from the first line only. `path` may be "-" for CSV and JSON. Throws `Error`
-/// if the file cannot be read or is of no such format.
+/// Reads them; of CSV from the header only, of lines of JSON from the first thousand. `path` may be "-" for text.
+/// Throws `Error` if the file cannot be read or is of no such format.
 NamesInFile names_in_file(const std::filesystem::path& path);
 
 }  // namespace vestige

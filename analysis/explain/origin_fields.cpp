@@ -37,7 +37,7 @@ constexpr Field kAvatar[] = {
     {"triangles", "", "triangles of the skin"},
     {"joints", "", "joints that move the skin"},
     {"facing", "", "axis along which the avatar looks at rest: +z, -z, +x, -x"},
-    {"facing_by", "", "what told it: the trace, a flag, joints, feet, VRM's version, or an assumption"},
+    {"facing_by", "", "what told it: trace, asked (a flag), sides (names of joints), feet, vrm, map, assumed"},
 };
 
 }  // namespace

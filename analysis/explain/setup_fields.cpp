@@ -20,11 +20,31 @@ constexpr Field kAvatarFile[] = {
     {"warnings", "", "what is odd about the file, a sentence each"},
 };
 
+constexpr Field kRegions[] = {
+    {"regions/name", "", "name of the actuator; of several, what their names begin with"},
+    {"regions/part", "", "parts of the body whose skin it is: 'vestige map parts' lists them"},
+    {"regions/joints", "", "joints whose skin it is; * stands for any letters"},
+    {"regions/below", "", "joints whose skin it is, and of what hangs on them"},
+    {"regions/height", "", "from and to, as shares of the height of that skin: 0 is its lowest point, 1 its highest"},
+    {"regions/height_m", "m", "from and to, above y = 0 at rest"},
+    {"regions/angle", "°", "from and to, around the vertical through its middle: 0 front, 90 left"},
+    {"regions/side", "", "front, back, left, right"},
+    {"regions/grid/rows", "", "rows of actuators, from the top"},
+    {"regions/grid/columns", "", "columns of actuators"},
+    {"regions/grid/names", "", "their names, row by row"},
+    {"regions/actuators/name", "", "name of an actuator of the region"},
+    {"regions/actuators/position_m", "m", "where it sits on the body at rest: x, y, z"},
+    {"regions/actuators/height", "", "where it sits: share of the height"},
+    {"regions/actuators/angle", "°", "where it sits: around the vertical"},
+    {"regions/radius_m", "m", "how far along the surface an actuator's skin goes at most; absent: no limit"},
+    {"fires/*", "", "actuators that the region of that name drives, with gains; absent: its own"},
+};
+
 constexpr Field kMapSidecar[] = {
+    {"actuators/grey", "", "grey of the actuator's region in the PNG; actuators count from 1 in this order"},
     {"facing", "", "axis along which the avatar looked at rest when the map was made"},
     {"triangles", "", "triangles of the avatar; only in a map with one texel for each"},
     {"skin", "", "digest of the skin that a map with one texel for each triangle belongs to"},
-    {"actuators/grey", "", "grey of the actuator's region in the PNG; actuators count from 1 in this order"},
     {"actuators/name", "", "name of the actuator"},
     {"actuators/position_m", "m", "where it sits on the body at rest: x, y, z; laws between actuators need it"},
     {"fires/*", "", "actuators that the region of that name drives, with gains; absent: its own"},
@@ -61,7 +81,7 @@ constexpr Field kMapCheck[] = {
     {"findings/kind", "",
      "never_fires, shared_texels, mirrored_texels, split, soft_edges, position, "
      "texture_coordinates, wrong_side, facing"},
-    {"findings/actuator", "", "actuator that it is about, from 1 on; 0: the whole map"},
+    {"findings/actuator", "", "actuator that it is about, from 1 on; 0: several, or the whole map"},
     {"findings/cause", "", "what is wrong"},
     {"findings/remedy", "", "what to do"},
 };
@@ -74,8 +94,8 @@ constexpr Field kMapParts[] = {
 };
 
 constexpr Field kDevices[] = {
-    {"contexts/unusable", "", "why there is no such context"},
     {"contexts/context", "", "how the context is made: egl-device-N, egl-surfaceless, osmesa"},
+    {"contexts/unusable", "", "why there is no such context"},
     {"contexts/limits/*", "", "that limit of the driver: 'vestige devices -v' says what each is"},
     {"contexts/geometry_refused", "", "why the detector geometry is refused; null: it is not"},
     {"contexts/paper_lacks", "", "what the detector paper lacks; null: nothing"},
@@ -99,8 +119,8 @@ constexpr Field kClaims[] = {
 };
 
 constexpr Field kExplained[] = {
-    {"file", "", "the file that was read; absent: every kind of file is listed"},
     {"kind", "", "kind of file"},
+    {"file", "", "the file that was read; absent: every kind of file is listed"},
     {"what", "", "what is in it"},
     {"written_by", "", "command that writes it"},
     {"names/name", "", "a name in it; * stands for any text"},
@@ -113,6 +133,10 @@ constexpr Field kExplained[] = {
 
 FieldGroups avatar_file_fields() {
   return {{"", kAvatarFile}, {"", avatar_fields()}, {"", origin_fields()}};
+}
+
+FieldGroups region_fields() {
+  return {{"", kRegions}};
 }
 
 FieldGroups map_sidecar_fields() {
@@ -132,7 +156,7 @@ FieldGroups map_parts_fields() {
 }
 
 FieldGroups device_fields() {
-  return {{"auto", gl_fields()}, {"contexts", gl_fields()}, {"", kDevices}, {"", origin_fields()}};
+  return {{"", kDevices}, {"auto", gl_fields()}, {"contexts", gl_fields()}, {"", origin_fields()}};
 }
 
 FieldGroups claim_fields() {

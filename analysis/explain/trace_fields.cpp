@@ -23,8 +23,8 @@ constexpr Field kPoses[] = {
 };
 
 constexpr Field kColliders[] = {
-    {"frame", "", "number of the frame; a collider without a row in a frame is absent in it"},
     {"time_s", "s", "time of the frame, from the trace's start"},
+    {"frame", "", "number of the frame; a collider without a row in a frame is absent in it"},
     {"id", "", "id of the collider"},
     {"x", "m", "its place in the world"},
     {"y", "m", "its place in the world; up"},
@@ -73,9 +73,9 @@ constexpr Field kRecord[] = {
     {"frames", "", "frames written"},
     {"recording_s", "s", "how long the recording took"},
     {"bytes", "bytes", "size of what was written"},
-    {"lost/late", "", "live frames that came later than a newer one and were left out"},
+    {"lost/late", "", "live frames that were ready more than 20 ms late, or that found no room"},
     {"lost/malformed", "", "live messages that could not be read"},
-    {"lost/overflowed", "", "live messages that found no room"},
+    {"lost/overflowed", "", "datagrams that the operating system threw away"},
 };
 
 constexpr Field kImport[] = {
@@ -119,7 +119,7 @@ constexpr Field kInspect[] = {
     {"attachments/recorded", "", "whether that is the SHA-256 that was recorded; null: none was"},
     {"duration_s", "s", "from the first message to the last"},
     {"dropped", "", "messages that were lost while recording"},
-    {"dropped_by_topic/*", "", "of them, those of one topic"},
+    {"dropped_by_topic/*", "", "of them, those of one topic; beyond 1000 topics, (other topics)"},
     {"complete", "", "false: the file is damaged or cut"},
     {"recovered", "", "what 'vestige recover' noted in the file; empty: nothing"},
     {"warnings", "", "faults, a sentence each"},
@@ -136,13 +136,13 @@ constexpr Field kDoctor[] = {
     {"chunks", "", "chunks"},
     {"damaged_chunks", "", "of them, damaged ones"},
     {"attachments", "", "attachments"},
-    {"frames", "", "frames that readers deliver"},
+    {"frames", "", "frames that readers deliver, up to the first one that they refuse"},
     {"dropped", "", "messages that were lost while recording"},
     {"attachment_checks/name", "", "name of an undamaged attachment"},
     {"attachment_checks/sha256", "", "its SHA-256"},
     {"attachment_checks/recorded", "", "whether that is the SHA-256 that was recorded; null: none was"},
     {"problem_count", "", "problems found"},
-    {"problems/offset", "bytes", "where in the file one is"},
+    {"problems/offset", "bytes", "where in the file one is; only the first thousand are listed"},
     {"problems/bytes", "bytes", "how long it is"},
     {"problems/offset_in_chunk", "bytes", "where in the expanded chunk; absent: not in a chunk"},
     {"problems/problem", "", "what is wrong"},
@@ -156,7 +156,7 @@ constexpr Field kRecover[] = {
     {"messages", "", "messages that were written"},
     {"messages_lost", "", "messages that are missing; null: the file does not say how many there were"},
     {"messages_left_out", "", "messages that contradict the rest, or whose channel is unknown"},
-    {"messages_unverified", "", "messages out of damaged chunks: no CRC verifies them"},
+    {"messages_unverified", "", "of messages: those out of damaged chunks, which no CRC verifies"},
     {"chunks_whole", "", "intact chunks"},
     {"chunks_partly_lost", "", "chunks of which some messages could be read"},
     {"chunks_lost", "", "chunks of which nothing could be read"},
@@ -167,10 +167,10 @@ constexpr Field kRecover[] = {
     {"replaced/recorded", "", "true: it is the recorded one, by its SHA-256"},
     {"replaced/left_out", "", "true: the other file has none, so it was left out"},
     {"metadata", "", "metadata records that were written"},
-    {"bytes_lost", "bytes", "bytes that could not be used"},
+    {"bytes_lost", "bytes", "bytes that could not be used, or that follow the end of the file"},
     {"another_file_at", "bytes", "where a second MCAP file begins, which is left out; null: there is none"},
     {"unexplained_change", "", "true: a byte that no other CRC covers has changed"},
-    {"repaired", "", "what was mended, a sentence each"},
+    {"repaired", "", "what was mended, a sentence each; the first 100"},
 };
 
 constexpr Field kRewriting[] = {
@@ -178,8 +178,8 @@ constexpr Field kRewriting[] = {
     {"output", "", "the file that was written"},
     {"messages", "", "messages that were written"},
     {"left_out", "", "messages that were left out"},
-    {"start_s", "s", "time of the first message that was kept, from the start of the file"},
-    {"end_s", "s", "time of the last one"},
+    {"start_s", "s", "log time of the first message that was kept; of a trace, from the start of the recording"},
+    {"end_s", "s", "log time of the last one"},
     {"bytes_before", "bytes", "size of the file that was read"},
     {"bytes", "bytes", "size of the file that was written"},
     {"complete", "", "false: the file that was read is damaged"},

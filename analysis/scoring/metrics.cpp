@@ -121,7 +121,8 @@ constexpr Metric kMetrics[] = {
      .better = Better::kLower,
      .model_based = true,
      .shown = Shown::kInFiles,
-     .formula = "the same, with each contact's error in units of the torso's acuity: 25 mm, at the midline 10 mm",
+     .formula =
+         "localisation_error_mm with each contact's error in units of the torso's acuity: 25 mm, at the midline 10 mm",
      .source = "van Erp 2005",
      .value = [](const LawTally& all) { return root_mean(all.squared_acuities, all.felt); }},
     {.name = "energy_localisation_error_mm",

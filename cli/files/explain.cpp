@@ -87,7 +87,7 @@ void add_explain(CLI::App& program, Invocation& invocation) {
                             "  vestige explain compared/ranking.csv compared/scores.csv\n");
   verb->add_option(
       "FILE", options->files,
-      "CSV, JSON, HDF5 or OpenEXR files that Vestige wrote; '-' for standard input [default: prints a page "
+      "CSV, JSON, HDF5 or OpenEXR files that Vestige wrote; '-' for standard input (text) [default: prints a page "
       "about all kinds of files, as Markdown]");
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_explain(*options, invocation); });

@@ -92,6 +92,13 @@ class CsvFolder {
   std::string session_json;  ///< empty: the trace does not say where its avatar faces
 };
 
+ContactLimits limits_of(const OpenTrace& trace) {
+  ContactLimits limits;
+  limits.triangles = trace.avatar.triangles.size();
+  limits.actuators = trace.map.actuator_count;
+  return limits;
+}
+
 void check_flags(const ExportOptions& options, const std::string& format) {
   if (!options.contacts.empty() && format != "hdf5")
     throw UsageError("--contacts", fmt::format("{} has no place for contacts", format),
@@ -212,7 +219,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   require_frames(reader, options.file);
   const std::uint64_t total = reader.frame_count();
   std::optional<ExportedContacts> contacts;
-  if (!options.contacts.empty()) contacts.emplace(options.contacts, reader.collider_ids());
+  if (!options.contacts.empty()) contacts.emplace(options.contacts, reader.collider_ids(), limits_of(trace));
   const std::vector<std::unique_ptr<TraceExport>> files = make_files(options, format, folder, trace, contacts);
   const std::uint64_t written = write_frames(reader, files, contacts, options);
   std::vector<std::string> losses;

@@ -11,11 +11,12 @@
 
 namespace vestige::cli {
 
-ExportedContacts::ExportedContacts(const std::string& file, std::span<const std::uint32_t> collider_ids)
-    : file_(file), contacts_(read_contacts(file)) {
+ExportedContacts::ExportedContacts(const std::string& file, std::span<const std::uint32_t> collider_ids,
+                                   const ContactLimits& limits)
+    : file_(file), contacts_(read_contacts(file, limits)) {
   for (const RecordedContact& contact : contacts_)
     if (!std::ranges::binary_search(collider_ids, contact.collider))
-      refuse(fmt::format("has a contact of collider {}, which the trace has not", contact.collider));
+      refuse(fmt::format("has a contact of collider {}, which the trace does not have", contact.collider));
 }
 
 void ExportedContacts::check(const TraceFrame& frame) {
@@ -23,7 +24,7 @@ void ExportedContacts::check(const TraceFrame& frame) {
   for (; next_ < contacts_.size() && contacts_[next_].frame <= frame.index; ++next_) {
     const RecordedContact& contact = contacts_[next_];
     if (contact.frame < frame.index)
-      refuse(fmt::format("has a contact in frame {}, which the trace has not", contact.frame));
+      refuse(fmt::format("has a contact in frame {}, which the trace does not have", contact.frame));
     if (std::abs(contact.time_s - frame.time_s()) > kRounding_s)
       refuse(fmt::format("has frame {} at {} s, and the trace has it at {} s", contact.frame, contact.time_s,
                          frame.time_s()));
@@ -32,7 +33,7 @@ void ExportedContacts::check(const TraceFrame& frame) {
 
 void ExportedContacts::write(hid_t file, const std::filesystem::path& path) const {
   if (next_ < contacts_.size())
-    refuse(fmt::format("has a contact in frame {}, which the trace has not", contacts_[next_].frame));
+    refuse(fmt::format("has a contact in frame {}, which the trace does not have", contacts_[next_].frame));
   const Hdf5Handle group(hdf5().create_group(file, "contacts", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                          hdf5().close_group, path, "make a group");
   ContactColumns columns(group.id(), path);

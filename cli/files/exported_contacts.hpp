@@ -18,9 +18,9 @@ namespace vestige::cli {
 /// belong to the trace.
 class ExportedContacts {
  public:
-  /// Reads the contacts of `file`. `collider_ids` are those of the trace, ascending. Precondition: no threads have been
-  /// started.
-  ExportedContacts(const std::string& file, std::span<const std::uint32_t> collider_ids);
+  /// Reads the contacts of `file`. `collider_ids` are those of the trace, ascending; `limits` what it has.
+  /// Precondition: no threads have been started.
+  ExportedContacts(const std::string& file, std::span<const std::uint32_t> collider_ids, const ContactLimits& limits);
 
   /// Checks the contacts of the next frame of the trace.
   void check(const TraceFrame& frame);

@@ -285,7 +285,9 @@ class Questions {
     const std::vector<std::string> doubts = options.poses.empty() ? std::vector<std::string>() : pose_.ask();
     for (const std::string& doubt : doubts) doubt_of(options.poses, doubt);
     // Around a body that is wrong, colliders that are right look wrong.
-    if (placement_ && doubts.empty()) doubt_of(options.colliders, placement_->ask().value_or(doubt_of_axes(options)));
+    // With axes in doubt, an offset would be guessed in wrong ones.
+    const std::string axes = doubt_of_axes(options);
+    if (placement_ && doubts.empty()) doubt_of(options.colliders, axes.empty() ? placement_->ask().value_or("") : axes);
     if (!any_collider_)
       doubt_of(options.colliders,
                fmt::format("no frame has a collider; check that the file's times are those of the motion, 0 to {} s",

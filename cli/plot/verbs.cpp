@@ -121,8 +121,9 @@ CLI::App& add_body(CLI::App& app, Options& options) {
           "The actuator map: a greyscale PNG (FILE.json names the actuators, if it exists), or a layout ('vestige map "
           "make --help' lists the layouts) [default: the trace's]")
       ->type_name("builtin|none|LAYOUT|FILE.png");
-  body.add_option("--contacts", options.contacts, "The file that 'vestige replay --contacts FILE.csv' wrote")
-      ->type_name("CSV");
+  body.add_option("--contacts", options.contacts,
+                  "The contacts (.csv, .h5) that 'vestige replay --contacts FILE' wrote")
+      ->type_name("FILE");
   add_common_options(body, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name and -body]");
   return body;
 }
@@ -152,8 +153,9 @@ CLI::App& add_scene(CLI::App& app, Options& options) {
       ->check(help::between(0.001, 10000));
   scene
       .add_option("--contacts", options.contacts,
-                  "The file that 'vestige replay --contacts FILE.csv' wrote; then only frames with contacts are drawn")
-      ->type_name("CSV");
+                  "The contacts (.csv, .h5) that 'vestige replay --contacts FILE' wrote; then only frames with "
+                  "contacts are drawn")
+      ->type_name("FILE");
   scene
       .add_option("--colour-by", options.colour_by,
                   "kind: paths and contacts have a colour each; collider: each collider has its own")

@@ -84,6 +84,7 @@ class ContactTables {
     tables_[12].read(first, count, y_m_);
     tables_[13].read(first, count, z_m_);
     for (std::size_t i = 0; i < count; ++i) {
+      constexpr std::int64_t kNoSide = 2;  // is refused
       contacts.push_back({.frame = frame_[i],
                           .time_s = time_s_[i],
                           .collider = collider_[i],
@@ -92,7 +93,7 @@ class ContactTables {
                           .barycentric = {u_[i], v_[i]},
                           .texture_coordinate = {texture_u_[i], texture_v_[i]},
                           .actuator = actuator_[i],
-                          .side = side_[i],
+                          .side = static_cast<std::int8_t>(std::clamp(side_[i], -kNoSide, kNoSide)),
                           .position_m = {x_m_[i], y_m_[i], z_m_[i]}});
       if (const auto fault = fault_of(contacts.back(), limits))
         throw Error(path_.string(), fmt::format("its table {}, row {}: {}", fault->column, first + i, fault->cause),
@@ -114,7 +115,7 @@ class ContactTables {
   std::vector<double> texture_u_;
   std::vector<double> texture_v_;
   std::vector<std::uint16_t> actuator_;
-  std::vector<std::int8_t> side_;
+  std::vector<std::int64_t> side_;  // of any type of whole numbers, as other programs may write it
   std::vector<double> x_m_;
   std::vector<double> y_m_;
   std::vector<double> z_m_;

@@ -46,6 +46,7 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
   for (const auto& [column, weight] : {std::pair("u", weights.x), std::pair("v", weights.y)})
     if (!(weight >= 0 && weight <= 1))
       return ContactFault{column, "u and v must be weights from 0 to 1", kContactsRemedy};
+  if (contact.side < -1 || contact.side > 1) return ContactFault{"side", "side must be -1, 0 or 1", kContactsRemedy};
   if (contact.frame >= limits.frames) return beyond("frame", contact.frame, limits.frames);
   if (contact.triangle >= limits.triangles) return beyond("triangle", contact.triangle, limits.triangles);
   if (contact.actuator > limits.actuators) return beyond("actuator", contact.actuator, limits.actuators);

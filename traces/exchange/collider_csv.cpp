@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
@@ -84,7 +85,8 @@ class CsvColliders final : public ColliderSource {
     }
   }
 
-  void sample(double time_s, std::vector<ColliderSample>& out) override {
+  void sample(double exact_s, std::vector<ColliderSample>& out) override {
+    const double time_s = std::round(exact_s * 1e9) / 1e9;  // as traces, and so exported files, have it
     out.clear();
     teleported_.clear();
     for (Track& track : tracks_) {

@@ -23,6 +23,7 @@ Hdf5Handle open_hdf5(const std::filesystem::path& path, const char* remedy);
 void try_hdf5(const std::filesystem::path& path, const std::function<void()>& read_all);
 
 /// Returns the paths of all tables and groups, ascending: "colliders", "colliders/id". Reads none of them.
+/// Precondition: no threads have been started.
 std::vector<std::string> hdf5_names(const std::filesystem::path& path);
 
 /// What a text is stored as.

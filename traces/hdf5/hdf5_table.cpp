@@ -55,7 +55,7 @@ void Hdf5Table::read(const Type& type, hsize_t first, hsize_t rows, void* out) c
                      8 * type.bytes),
          kHdf5TypeRemedy);
   const hid_t as = type.kind == H5T_FLOAT ? (type.bytes == 4 ? h5.float32 : h5.float64)
-                   : type.is_signed       ? (type.bytes == 1 ? h5.int8 : h5.int64)
+                   : type.is_signed       ? h5.int64
                    : type.bytes == 8      ? h5.uint64
                    : type.bytes == 4      ? h5.uint32
                    : type.bytes == 2      ? h5.uint16

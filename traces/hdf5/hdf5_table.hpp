@@ -35,8 +35,7 @@ class Hdf5Table {
   /// Reads the rows from `first` to `first + rows - 1`. Throws if a number of the table's type may not fit a `Number`.
   template <typename Number>
   void read(hsize_t first, hsize_t rows, std::vector<Number>& out) const {
-    static_assert(!std::is_signed_v<Number> || std::is_floating_point_v<Number> || sizeof(Number) == 1 ||
-                  sizeof(Number) == 8);
+    static_assert(!std::is_integral_v<Number> || std::is_unsigned_v<Number> || sizeof(Number) == 8);
     out.resize(numbers_in(rows));
     if (!out.empty())
       read({.kind = std::is_floating_point_v<Number> ? H5T_FLOAT : H5T_INTEGER,

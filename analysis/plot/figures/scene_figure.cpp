@@ -76,7 +76,8 @@ class SceneFigure : public Figure {
     if (scene.colour_by == ColourBy::kCollider) {
       path_colours_.assign(kLineColours.begin(), kLineColours.end());
       contact_colours_ = path_colours_;
-      title_ += colliders_.size() <= path_colours_.size() ? ", a colour for each" : ", nine colours in turn";
+      title_ += colliders_.size() <= path_colours_.size() ? std::string(", a colour for each")
+                                                          : fmt::format(", {} colours in turn", path_colours_.size());
     }
     // Far from the world's origin floats are coarse: everything is drawn relative to where the avatar first stands.
     const glm::dvec3 origin_m = standing_at(scene.subject.avatar, scene.moments.front().pose);

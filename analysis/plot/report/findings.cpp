@@ -92,10 +92,12 @@ TraceWords traces_in_words(const ReportData& data) {
   return {fmt::format("{} and {}", made, recorded), "these scenarios and files"};
 }
 
-/// "; it let 54.2 % of a trace's contacts be felt"
+/// "; on average it let 54.2 % of a trace's contacts be felt"
 std::string felt_in_words(const ReportData& data, const Candidate& candidate) {
   const auto felt = data.felt_share(candidate);
-  return felt ? fmt::format("; it let {:.1f}\u00a0% of a trace's contacts be felt", 100 * *felt) : "";
+  if (!felt) return "";
+  return fmt::format("; {} let {:.1f}\u00a0% of {} contacts be felt", data.traces.size() == 1 ? "it" : "on average it",
+                     100 * *felt, data.traces.size() == 1 ? "the" : "a trace's");
 }
 
 /// Returns by how much the seeds must be more so that a difference of this size would show; none if there is none.
@@ -244,7 +246,7 @@ std::string quotable_sentence(const ReportData& data) {
   if (data.ranking.size() > 1)
     text += fmt::format(" of {} combinations of {}{} and {}{}", data.ranking.size(), counted(maps.size(), "map"),
                         in_brackets(maps), counted(data.laws.size(), "intensity law"), in_brackets(data.laws));
-  text += fmt::format(": {} on average", with_unit(*first.headline.mean, metric));
+  text += fmt::format(": {}{}", with_unit(*first.headline.mean, metric), data.traces.size() == 1 ? "" : " on average");
   if (first.headline.has_interval())
     text += fmt::format(" over {} (95\u00a0% interval {} to {})", traces.these, number_text(*first.headline.low),
                         with_unit(*first.headline.high, metric));
@@ -252,7 +254,7 @@ std::string quotable_sentence(const ReportData& data) {
     text += fmt::format(" over {} (without an interval)", traces.these);
   if (first.headline.traces < data.traces.size())
     text += fmt::format(", on the {} of {} traces where it has a value", first.headline.traces, data.traces.size());
-  return text + felt_in_words(data, first) + ".";
+  return text + (best.size() > 1 ? "" : felt_in_words(data, first)) + ".";
 }
 
 std::string others_in_words(const ReportData& data) {

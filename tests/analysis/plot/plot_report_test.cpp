@@ -121,7 +121,7 @@ TEST_F(ReportTest, BeginsWithASentenceThatAPaperCanQuote) {
       HasSubstr("<p class=\"lead\">Over 1 scenario (slide; seeds 1 and 2), <strong>box with phantom</strong> had "
                 "the lowest modelled localisation error of 2 combinations of 1 map (box) and 2 intensity laws "
                 "(binary and phantom): 12.5\u00a0mm on average over this scenario (95\u00a0% interval 11.5 to "
-                "13.5\u00a0mm); it let 62.5\u00a0% of a trace's contacts be felt.</p>"));
+                "13.5\u00a0mm); on average it let 62.5\u00a0% of a trace's contacts be felt.</p>"));
   run_["batch"].erase("traces");
   ASSERT_EQ(report("--force").exit_code, 0);
   EXPECT_THAT(page(), HasSubstr("Over 2 recorded files (one and two), <strong>box"));

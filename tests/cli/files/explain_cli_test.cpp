@@ -52,9 +52,12 @@ TEST_F(Explain, SaysWhatTheColumnsOfContactsMean) {
   record_small();
   must_run("vestige replay small.mcap --contacts contacts.csv -q");
   const std::string text = run("vestige explain contacts.csv").standard_output;
-  EXPECT_THAT(text, AllOf(HasSubstr("contacts.csv: Contacts, a row for each (vestige replay --contacts OUT.csv)\n"),
-                          HasSubstr("  time_s     time of the frame, from the trace's start [s]\n"),
-                          HasSubstr("actuator of the skin there, from 1 on; 0: no actuator covers it\n")));
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("contacts.csv: Contacts, a row for each (vestige replay --contacts OUT.csv)\n"),
+            HasSubstr("  time_s     time of the frame, from the trace's start [s]\n"),
+            HasSubstr(
+                "actuator of the skin there, numbered from 1 on as in the map's JSON; 0: no actuator covers it\n")));
   EXPECT_EQ(run("vestige explain - < contacts.csv").standard_output, "-" + text.substr(text.find(':')));
 }
 
@@ -88,12 +91,15 @@ TEST_F(Explain, KnowsEveryNameThatVerbsOnTracesWrite) {
   EXPECT_NE(run("vestige doctor small.mcap cut.mcap --json doctor.json -q").exit_code, 0);
   must_run("vestige recover cut.mcap --map builtin -o saved.mcap --json recover.json -q");
   must_run("vestige avatar --json avatar.json -q");
-  must_run("vestige map make --layout body -o map.png --json made.json -q");
+  must_run("vestige map make --layout body -o map.png --save-regions regions.json --json made.json -q");
   must_run("vestige map check map.png --json checked.json -q");
   must_run("vestige map parts --json parts.json -q");
   must_run("vestige devices --json devices.json -q");
   must_run("vestige explain --json explained.json -q");
   expect_all_explained(15);
+  // Of the same names: the verb tells.
+  EXPECT_THAT(run("vestige explain trim.json").standard_output, HasSubstr("(vestige trim --json"));
+  EXPECT_THAT(run("vestige explain recompress.json").standard_output, HasSubstr("(vestige recompress --json"));
 }
 
 TEST_F(Explain, KnowsEveryNameThatMeasurementsWrite) {
@@ -128,6 +134,30 @@ TEST_F(Explain, KnowsEveryNameThatBatchesWrite) {
   expect_all_explained(60);
 }
 
+TEST_F(Explain, ReadsNoMoreOfATableThanItsHeader) {
+  const test::Outcome endless =
+      run("{ echo frame,time_s,collider,triangle; yes 1,2,3,4; } | timeout 20 vestige explain -");
+  EXPECT_EQ(endless.exit_code, 0);
+  EXPECT_THAT(endless.standard_output, HasSubstr("  triangle  triangle of the avatar"));
+}
+
+TEST_F(Explain, ReadsFurtherLinesOfFrames) {
+  write("a.ndjson", R"({"frame": 0, "time_s": 0})"
+                    "\n"
+                    R"({"frame": 1, "time_s": 1, "teleported": [3]})"
+                    "\n");
+  EXPECT_THAT(run("vestige explain a.ndjson").standard_output, HasSubstr("\n  teleported"));
+  write("one.ndjson", R"({"frame": 0, "time_s": 0, "teleported": []})"
+                      "\n");
+  EXPECT_EQ(run("vestige explain one.ndjson").exit_code, 0);
+  write("one.json", run("vestige explain --json - -q").standard_output + "\n\n");
+  EXPECT_EQ(run("vestige explain one.json").exit_code, 0);
+  write("b.ndjson", R"({"frame": 0, "time_s": 0})"
+                    "\n"
+                    "nothing\n");
+  expect_failure("vestige explain b.ndjson", 1, {"b.ndjson, line 2", "no JSON object"});
+}
+
 TEST_F(Explain, MayBeCutShortByItsReader) {
   const test::Outcome page = run("vestige explain | head -1");
   EXPECT_EQ(page.exit_code, 0);
@@ -146,8 +176,14 @@ TEST_F(Explain, QuestionsNamesThatItDoesNotKnow) {
 TEST_F(Explain, RefusesFilesOfOthers) {
   write("own.csv", "participant,age\n1,30\n");
   expect_failure("vestige explain own.csv", 1, {"own.csv", "no file that Vestige writes", "participant, age"});
+  write("short.csv", "x,y\n1,2\n");
+  expect_failure("vestige explain short.csv", 1, {"short.csv", "no file that Vestige writes"});
+  write("short.json", R"({"file": "a", "messages": 3})");
+  expect_failure("vestige explain short.json", 1, {"short.json", "no file that Vestige writes"});
   write("own.json", "{\"participant\": {\"age\": 30}}");
   expect_failure("vestige explain own.json", 1, {"own.json", "no file that Vestige writes", "participant/age"});
+  write("odd.json", R"({"argv": {"a": 1, "b": 2}})");
+  expect_failure("vestige explain odd.json", 1, {"odd.json", "no file that Vestige writes"});
   write("cut.json", "{\"argv\": [");
   expect_failure("vestige explain cut.json", 1, {"cut.json", "is not JSON"});
   write("empty.csv", "");
@@ -159,6 +195,7 @@ TEST_F(Explain, RefusesFilesOfOthers) {
   expect_failure("vestige explain cut.exr", 1, {"cut.exr", "OpenEXR"});
   write("cut.h5", "\x89HDF\r\n\x1a\n and no more");
   expect_failure("vestige explain cut.h5", 1, {"cut.h5", "HDF5"});
+  expect_failure("cat cut.h5 | vestige explain -", 1, {"standard input", "name the file"});
   record_small();
   expect_failure("vestige explain small.mcap", 1, {"small.mcap", "vestige inspect"});
 }

@@ -45,15 +45,20 @@ TEST_F(Hdf5Exchange, AnExportTakesTheContactsAlong) {
     const Hdf5Handle file = open_hdf5(folder_ / name, "");
     std::vector<std::uint64_t> frame;
     std::vector<float> t;
-    std::vector<std::int8_t> side;
+    std::vector<std::int64_t> side;
+    std::vector<double> u;
+    std::vector<double> texture_v;
     std::vector<double> z_m;
+    Hdf5Table(file.id(), name, "contacts/u").read(0, json["contacts"], u);
+    Hdf5Table(file.id(), name, "contacts/texture_v").read(0, json["contacts"], texture_v);
     Hdf5Table(file.id(), name, "contacts/frame").read(0, json["contacts"], frame);
     Hdf5Table(file.id(), name, "contacts/t").read(0, json["contacts"], t);
     Hdf5Table(file.id(), name, "contacts/side").read(0, json["contacts"], side);
     Hdf5Table(file.id(), name, "contacts/z").read(0, json["contacts"], z_m);
     std::string text;
-    for (std::size_t i = 0; i < t.size(); ++i) text += fmt::format("{},{},{},{}\n", frame[i], t[i], side[i], z_m[i]);
-    EXPECT_EQ(text, run("tail -n +2 a.csv | cut -d, -f1,5,11,14").standard_output) << name;
+    for (std::size_t i = 0; i < t.size(); ++i)
+      text += fmt::format("{},{},{},{},{},{}\n", frame[i], t[i], u[i], texture_v[i], side[i], z_m[i]);
+    EXPECT_EQ(text, run("tail -n +2 a.csv | cut -d, -f1,5,6,9,11,14").standard_output) << name;
   }
   ASSERT_EQ(run("vestige import a.h5 -o back.mcap").exit_code, 0);
   EXPECT_EQ(hash_of("back.mcap"), hash_of("a.mcap"));
@@ -65,9 +70,12 @@ TEST_F(Hdf5Exchange, RefusesTheContactsOfAnotherTrace) {
     ASSERT_EQ(run("awk -F, -v OFS=, '" + change + " {print}' a.csv > b.csv").exit_code, 0);
     expect_failure("vestige export a.mcap -o a.h5 --contacts b.csv", 1, words, "a.h5");
   };
-  expect_refused("NR == 2 {$3 = 999}", {"b.csv", "collider 999, which the trace has not"});
-  expect_refused("NR == 2 {$1 = 9999}", {"b.csv", "frame 9999, which the trace has not"});
+  expect_refused("NR == 2 {$3 = 999}", {"b.csv", "collider 999, which the trace does not have"});
+  expect_refused("NR == 2 {$1 = 9999}", {"b.csv", "frame 9999, which the trace does not have"});
   expect_refused("NR == 3 {$2 += 0.001}", {"b.csv", "and the trace has it at"});
+  expect_refused("NR == 2 {$4 = 999999}", {"b.csv, line 2", "triangle 999999"});
+  expect_refused("NR == 2 {$10 = 99}", {"b.csv, line 2", "actuator 99"});
+  expect_refused("NR == 2 {$11 = 5}", {"b.csv, line 2", "side must be -1, 0 or 1"});
   expect_refused("NR == 2 {$12 = \"nan\"}", {"b.csv, line 2", "x must be finite"});
   expect_failure("vestige export a.mcap -o a.ndjson --contacts a.csv", 2, {"--contacts", ".h5"}, "a.ndjson");
   expect_failure("vestige export a.mcap -o a.h5 --contacts a.csv --rate 10", 2, {"--contacts", "--rate"}, "a.h5");
