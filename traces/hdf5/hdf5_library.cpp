@@ -75,8 +75,7 @@ Hdf5Library load() {
     library.find("H5Tset_strpad", all.set_padding);
     library.find("H5Tset_cset", all.set_character_set);
     library.find("H5Tclose", all.close_type);
-    // HDF5's own exit handler would crash on a file that could not be flushed. Every user of the library closes its own
-    // objects.
+    // HDF5's exit handler would crash on a file that could not be flushed. Users of the library close their objects.
     decltype(&::H5dont_atexit) leave_exit_alone = nullptr;
     library.find("H5dont_atexit", leave_exit_alone);
     static_cast<void>(leave_exit_alone());
