@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <set>
 #include <sstream>
-#include <system_error>
 
 #include "cli/help/help_text.hpp"
 #include "cli/help/suggest.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/system_error.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige::cli {
@@ -147,11 +149,11 @@ void write_json(const std::string& path, const nlohmann::ordered_json& json, con
 
 void print_summary(std::string_view text, const std::vector<std::string>& output_paths, const CommonOptions& options) {
   if (options.quiet) return;
-  try {
-    fmt::print(std::ranges::any_of(output_paths, is_standard_output) ? stderr : stdout, "{}", printable(text));
-  } catch (const std::system_error& error) {
-    if (error.code() != std::errc::broken_pipe) throw;  // `| head` has seen enough
-  }
+  std::FILE* out = std::ranges::any_of(output_paths, is_standard_output) ? stderr : stdout;
+  const std::string shown = printable(text);
+  if (std::fwrite(shown.data(), 1, shown.size(), out) == shown.size() && std::fflush(out) == 0) return;
+  // `| head` has seen enough, however long the text is.
+  if (errno != EPIPE) throw system_error("standard output", "could not write", errno);
 }
 
 glm::dvec3 parse_vector(const std::string& text, const std::string& flag) {

@@ -159,6 +159,10 @@ TEST_F(Explain, ReadsFurtherLinesOfFrames) {
 }
 
 TEST_F(Explain, MayBeCutShortByItsReader) {
+  write("short.csv", "frame,time_s,collider,triangle\n");
+  for (const char* command : {"explain", "explain short.csv"})
+    EXPECT_EQ(run(std::string("{ vestige ") + command + "; echo $? > code; } | true; cat code").standard_output, "0\n")
+        << command;
   const test::Outcome page = run("vestige explain | head -1");
   EXPECT_EQ(page.exit_code, 0);
   EXPECT_EQ(page.standard_output, "# Files\n");
