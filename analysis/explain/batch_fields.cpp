@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "analysis/explain/fields.hpp"
 #include "analysis/scoring/metrics.hpp"
@@ -207,10 +210,9 @@ class MetricTable {
       texts_.push_back(fmt::format("{}{}", metric.formula, metric.model_based ? "; from a model" : ""));
       fields_.push_back({metric.name, metric.unit, texts_.back()});
       if (ends == Ends::kNo) continue;
-      for (const auto& [end, name] : {std::pair("_low", "low"), std::pair("_high", "high")}) {
+      for (const auto& [end, meaning] : {std::pair("_low", kLow), std::pair("_high", kHigh)}) {
         texts_.push_back(fmt::format("{}{}", metric.name, end));
-        const std::string_view of_end = texts_.back();
-        fields_.push_back({of_end, metric.unit, name == std::string_view("low") ? kLow : kHigh});
+        fields_.push_back({texts_.back(), metric.unit, meaning});
       }
     }
   }
@@ -246,7 +248,7 @@ FieldGroups score_table_fields() {
 }
 
 FieldGroups score_fields() {
-  return {{"metrics", kMetric}, {"scores", kScore}, {"scores/values", metric_values()}, {"", origin_fields().first(1)}};
+  return {{"metrics", kMetric}, {"scores", kScore}, {"scores/values", metric_values()}, {"", version_field()}};
 }
 
 FieldGroups ranking_table_fields() {
@@ -259,7 +261,7 @@ FieldGroups scenario_ranking_table_fields() {
 
 FieldGroups ranking_fields() {
   FieldGroups groups = ranking_below("", "ranking", "by_scenario/ranking", "metrics");
-  groups.push_back({"", origin_fields().first(1)});
+  groups.push_back({"", version_field()});
   return groups;
 }
 
@@ -268,12 +270,12 @@ FieldGroups batch_run_fields() {
   const FieldGroups ranking =
       ranking_below("ranking", "ranking/ranking", "ranking/by_scenario/ranking", "ranking/metrics");
   groups.insert(groups.end(), ranking.begin(), ranking.end());
-  groups.push_back({"ranking", origin_fields().first(1)});
+  groups.push_back({"ranking", version_field()});
   return groups;
 }
 
 FieldGroups batch_item_fields() {
-  return {{"", kItem}, {"scores/values", metric_values()}, {"", origin_fields().first(1)}};
+  return {{"", kItem}, {"scores/values", metric_values()}, {"", version_field()}};
 }
 
 FieldGroups batch_times_fields() {

@@ -162,7 +162,7 @@ FieldGroups scenes() {
 
 FieldGroups accuracy_fields() {
   FieldGroups groups = scenes();
-  groups.push_back({"", origin_fields().first(1)});
+  groups.push_back({"", version_field()});
   return groups;
 }
 
@@ -181,7 +181,7 @@ FieldGroups accuracy_whole_fields() {
 }
 
 FieldGroups stress_fields() {
-  return {{"", kStress}, {"", origin_fields().first(1)}};
+  return {{"", kStress}, {"", version_field()}};
 }
 
 FieldGroups stress_run_fields() {

@@ -37,7 +37,7 @@ bool has_all(const NamesInFile& found, const std::vector<std::string>& names) {
       names, [&](const std::string& name) { return std::ranges::find(found.names, name) != found.names.end(); });
 }
 
-/// How well a kind fits, the less the better: names that it has not, and whether another verb writes it.
+/// How well a kind fits, the less the better: names that it does not have, and whether another verb writes it.
 std::pair<std::size_t, bool> misfit(const ExplainedFile& explained, const NamesInFile& found) {
   return {explained.unexplained.size(), !explained.kind->written_by.starts_with("vestige " + found.verb)};
 }

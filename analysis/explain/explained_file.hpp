@@ -12,7 +12,7 @@ namespace vestige {
 struct ExplainedFile {
   const FileKind* kind = nullptr;  ///< never null
   std::vector<PlacedField> names;  ///< in the order of the file, each once; a pattern once for all that it explains
-  std::vector<std::string> unexplained;  ///< names that this kind of file has not
+  std::vector<std::string> unexplained;  ///< names that this kind of file does not have
 };
 
 /// Reads the names in a file ("-": text from standard input), and finds the kind that explains most of them, among

@@ -9,6 +9,8 @@ namespace vestige {
 
 /// What every result in JSON says of its origin (`provenance`).
 std::span<const Field> origin_fields();
+/// Of these, `schema_version` alone: what files with numbers only say.
+std::span<const Field> version_field();
 /// What results say of the OpenGL that they used (`to_json(GlInfo)`).
 std::span<const Field> gl_fields();
 /// What results say of their avatar (`to_json(Avatar)`).

@@ -143,9 +143,9 @@ PlacedField find_field(const FileKind& kind, const std::string& name) {
 }
 
 std::vector<std::string> required_names(const FileKind& kind) {
-  const Field& origin = origin_fields().front();
+  const Field& version = version_field().front();
   std::vector<std::string> names = {path_of(kind.groups.front().below, kind.groups.front().fields.front().name)};
-  if (find_field(kind, std::string(origin.name)).field == &origin) names.emplace_back(origin.name);
+  if (find_field(kind, std::string(version.name)).field == &version) names.emplace_back(version.name);
   return names;
 }
 

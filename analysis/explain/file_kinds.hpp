@@ -35,7 +35,7 @@ struct PlacedField {
 /// Returns the field that explains `name`. One with the very name is preferred to a pattern.
 PlacedField find_field(const FileKind& kind, const std::string& name);
 
-/// The names that every file of this kind has: its first, and `schema_version` if it says where it comes from.
+/// The names that every file of this kind has: its first, and `schema_version` if the kind has it.
 std::vector<std::string> required_names(const FileKind& kind);
 
 /// Whether names of `kind` stand below `path`, so that an empty list, or null, there needs no explanation of its own.

@@ -46,6 +46,10 @@ std::span<const Field> origin_fields() {
   return kOrigin;
 }
 
+std::span<const Field> version_field() {
+  return std::span(kOrigin).first<1>();
+}
+
 std::span<const Field> gl_fields() {
   return kGl;
 }

@@ -126,7 +126,7 @@ constexpr Field kExplained[] = {
     {"names/name", "", "a name in it; * stands for any text"},
     {"names/unit", "", "its unit; empty: none"},
     {"names/meaning", "", "its meaning"},
-    {"unexplained", "", "names that this kind of file has not (exit code 3)"},
+    {"unexplained", "", "names that this kind of file does not have (exit code 3)"},
 };
 
 }  // namespace

@@ -23,8 +23,7 @@ void ExportedContacts::check(const TraceFrame& frame) {
   constexpr double kRounding_s = 1e-9;  // of files that other programs wrote
   for (; next_ < contacts_.size() && contacts_[next_].frame <= frame.index; ++next_) {
     const RecordedContact& contact = contacts_[next_];
-    if (contact.frame < frame.index)
-      refuse(fmt::format("has a contact in frame {}, which the trace does not have", contact.frame));
+    if (contact.frame < frame.index) refuse_frame(contact.frame);
     if (std::abs(contact.time_s - frame.time_s()) > kRounding_s)
       refuse(fmt::format("has frame {} at {} s, and the trace has it at {} s", contact.frame, contact.time_s,
                          frame.time_s()));
@@ -32,13 +31,16 @@ void ExportedContacts::check(const TraceFrame& frame) {
 }
 
 void ExportedContacts::write(hid_t file, const std::filesystem::path& path) const {
-  if (next_ < contacts_.size())
-    refuse(fmt::format("has a contact in frame {}, which the trace does not have", contacts_[next_].frame));
+  if (next_ < contacts_.size()) refuse_frame(contacts_[next_].frame);
   const Hdf5Handle group(hdf5().create_group(file, "contacts", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                          hdf5().close_group, path, "make a group");
   ContactColumns columns(group.id(), path);
   for (const RecordedContact& contact : contacts_) columns.append(contact);
   columns.close();
+}
+
+void ExportedContacts::refuse_frame(std::uint64_t frame) const {
+  refuse(fmt::format("has a contact in frame {}, which the trace does not have", frame));
 }
 
 void ExportedContacts::refuse(const std::string& cause) const {

@@ -30,6 +30,7 @@ class ExportedContacts {
   std::size_t count() const { return contacts_.size(); }
 
  private:
+  [[noreturn]] void refuse_frame(std::uint64_t frame) const;
   [[noreturn]] void refuse(const std::string& cause) const;
 
   std::string file_;

@@ -23,6 +23,7 @@
 #include "traces/exchange/pose_csv.hpp"
 #include "traces/exchange/trace_hdf5.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/hdf5/hdf5_reader.hpp"
 #include "traces/questions/placement_question.hpp"
 #include "traces/questions/pose_question.hpp"
 #include "traces/scene/colliders.hpp"
@@ -66,10 +67,6 @@ struct Frames {
   std::function<double()> share;
   std::vector<bool> placed;  ///< for each node, whether a file of poses says where it is
 };
-
-bool is_hdf5(const std::string& path) {
-  return path.ends_with(".h5") || path.ends_with(".hdf5");
-}
 
 /// What `export` wrote stands for all of its parts: none may be named beside it.
 void refuse_parts(const ImportOptions& options) {
@@ -308,7 +305,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   check_trace_name(options.output);
   if (!options.from.empty()) refuse_parts(options);
-  const bool from_hdf5 = is_hdf5(options.from);
+  const bool from_hdf5 = has_hdf5_name(options.from);
   if (!options.from.empty() && !from_hdf5) expand_folder(options);
   if (!from_hdf5) check_flags(options);
   if (options.avatar.empty() && !from_hdf5) options.avatar = "builtin";

@@ -151,8 +151,7 @@ struct Verification {
 /// The contacts that --verify names, if it names such a file. They are read before any thread starts.
 std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify) {
   if (verify.empty() || is_detector(verify)) return {};
-  const bool is_named_so = verify.ends_with(".csv") || verify.ends_with(".h5") || verify.ends_with(".hdf5");
-  if (!is_named_so && !is_hdf5(verify)) return {};
+  if (!verify.ends_with(".csv") && !has_hdf5_name(verify) && !is_hdf5(verify)) return {};
   return read_contacts(verify);
 }
 

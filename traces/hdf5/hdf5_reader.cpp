@@ -14,6 +14,10 @@
 
 namespace vestige {
 
+bool has_hdf5_name(const std::filesystem::path& path) {
+  return path.extension() == ".h5" || path.extension() == ".hdf5";
+}
+
 bool is_hdf5(const std::filesystem::path& path) {
   std::error_code failed;
   if (!std::filesystem::is_regular_file(path, failed)) return false;

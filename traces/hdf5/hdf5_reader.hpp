@@ -12,6 +12,9 @@ namespace vestige {
 
 // For files that any program may have written. Every function throws `Error` with the name of the file.
 
+/// Whether the name ends as those of HDF5 files do: .h5, .hdf5.
+bool has_hdf5_name(const std::filesystem::path& path);
+
 /// Whether `path` is a regular file that begins as HDF5 files do. Never throws, and reads nothing from pipes.
 bool is_hdf5(const std::filesystem::path& path);
 
