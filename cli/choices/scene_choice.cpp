@@ -33,7 +33,8 @@ std::string describe_colliders() {
   for (const Scenario& scenario : scenarios())
     fmt::format_to(std::back_inserter(text), "\n  {:<{}} {}", scenario.name, longest, scenario.summary);
   return text +
-         "\nor a file of rows time_s,id,x,y,z, or the animated nodes of a glTF file. Its convention: " + kConvention;
+         "\nor a file of rows time_s,id,x,y,z[,radius_m], or the animated nodes of a glTF file. Its convention: " +
+         kConvention;
 }
 
 /// Samples of a file that the scene does not reach are said, and when it reaches none it is refused.
@@ -121,6 +122,7 @@ void check_scene_choice(const SceneChoice& choice) {
     throw UsageError("--nodes", "the colliders do not come from a glTF file",
                      "leave --nodes out, or name a .glb as --colliders");
   check_collider_convention(choice.convention, choice.colliders, false);
+  check_radius(choice.radius, choice.colliders);
   if (choice.count && choice.from_file())
     throw UsageError("--count", "the file sets the number of colliders", "leave --count out");
 }
@@ -132,9 +134,14 @@ void load_motion(const SceneChoice& choice, Avatar& avatar, const std::vector<st
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
                                                const Animation* animation, std::uint64_t seed) {
-  if (choice.from_gltf()) return read_collider_gltf(choice.colliders, choice.nodes, choice.convention.of_colliders());
-  if (choice.from_file()) return read_collider_csv(choice.colliders, choice.convention.of_colliders());
-  return find_scenario(choice.colliders)->make(avatar, animation, {choice.collider_count(), seed});
+  const auto make = [&]() -> std::unique_ptr<ColliderSource> {
+    if (choice.from_gltf())
+      return read_collider_gltf(choice.colliders, choice.nodes, choice.convention.of_colliders(),
+                                choice.radius.of_gltf());
+    if (choice.from_file()) return read_collider_csv(choice.colliders, choice.convention.of_colliders());
+    return find_scenario(choice.colliders)->make(avatar, animation, {choice.collider_count(), seed});
+  };
+  return choice.radius.apply(make());
 }
 
 void check_colliders(const SceneChoice& choice, const ColliderSource& colliders, double duration_s,

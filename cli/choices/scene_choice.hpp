@@ -10,6 +10,7 @@
 
 #include "cli/choices/convention_choice.hpp"
 #include "cli/choices/motion.hpp"
+#include "cli/choices/radius_choice.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/terminal.hpp"
 #include "traces/scene/avatar.hpp"
@@ -27,8 +28,9 @@ struct SceneChoice {
   FacingChoice facing;
   std::string map;
   std::string colliders = "swarm";
-  std::string nodes;                   ///< of a glTF of colliders: a pattern of names
-  ConventionChoice convention;         ///< of a file of colliders
+  std::string nodes;            ///< of a glTF of colliders: a pattern of names
+  ConventionChoice convention;  ///< of a file of colliders
+  RadiusChoice radius;
   std::optional<std::uint32_t> count;  ///< of a scenario; if empty, the scenario's default
 
   bool from_file() const { return colliders.ends_with(".csv") || from_gltf(); }

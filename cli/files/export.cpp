@@ -151,10 +151,10 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
   std::vector<std::unique_ptr<TraceExport>> files;
   if (folder) {
     files.push_back(make_pose_csv(folder->poses, overwrite, reader.node_names()));
-    files.push_back(make_collider_csv(folder->colliders, overwrite));
+    files.push_back(make_collider_csv(folder->colliders, overwrite, reader.shape()));
   } else if (format == "csv") {
     files.push_back(options.what == "poses" ? make_pose_csv(options.output, overwrite, reader.node_names())
-                                            : make_collider_csv(options.output, overwrite));
+                                            : make_collider_csv(options.output, overwrite, reader.shape()));
   } else if (format == "ndjson") {
     files.push_back(make_frame_ndjson(options.output, overwrite));
   } else if (format == "hdf5") {
@@ -162,8 +162,8 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
     if (contacts) write_contacts = [&contacts, &options](hid_t file) { contacts->write(file, options.output); };
     files.push_back(make_frame_hdf5(options.output, overwrite, reader, std::move(write_contacts)));
   } else {
-    files.push_back(
-        make_frame_gltf(options.output, overwrite, trace.avatar, reader.avatar_glb(), reader.collider_ids()));
+    files.push_back(make_frame_gltf(options.output, overwrite, trace.avatar, reader.avatar_glb(),
+                                    {.all = reader.collider_ids(), .spheres = reader.sphere_ids()}));
   }
   return files;
 }

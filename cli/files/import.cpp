@@ -40,6 +40,7 @@ struct ImportOptions {
   std::string poses;
   std::string colliders;
   std::string nodes;
+  RadiusChoice radius;
   std::string avatar;
   std::string map;
   std::string session;  ///< session.json of the folder; empty without one
@@ -64,6 +65,7 @@ struct Frames {
   std::function<void(TraceFrame&)> add_colliders = [](TraceFrame&) {};
   std::function<void()> finish = [] {};
   std::shared_ptr<const ColliderSource> sampled = {};  ///< colliders that are sampled at the times of the frames
+  ColliderShape shape = ColliderShape::kPoints;
   std::function<double()> share;
   std::vector<bool> placed;  ///< for each node, whether a file of poses says where it is
 };
@@ -76,6 +78,7 @@ void refuse_parts(const ImportOptions& options) {
                                                 {"--avatar", !options.avatar.empty()},
                                                 {"--map", !options.map.empty()},
                                                 {"--nodes", !options.nodes.empty()},
+                                                {"--radius", !options.radius.text.empty()},
                                                 {"--rate", options.rate_hz.has_value()}};
   std::optional<std::string> named = options.motion_choice.given();
   if (!named) named = options.convention.given_for_colliders();
@@ -146,6 +149,7 @@ void check_flags(const ImportOptions& options) {
     throw UsageError(*flag, "there is no file of poses",
                      fmt::format("leave {} out: --unit and --up are about motion capture", *flag));
   check_collider_convention(options.convention, options.colliders, !options.poses.empty());
+  check_radius(options.radius, options.colliders);
   const bool from_gltf = options.colliders.ends_with(".glb") || options.colliders.ends_with(".gltf");
   if (!options.nodes.empty() && !from_gltf)
     throw UsageError("--nodes", "the colliders do not come from a glTF file",
@@ -161,24 +165,31 @@ double seconds(const TraceFrame& frame) {
 void read_colliders(const ImportOptions& options, Frames& frames) {
   const std::string& path = options.colliders;
   if (path.empty()) return;
-  const auto sample_from = [&](std::shared_ptr<ColliderSource> source) {
+  const auto sample_from = [&](std::unique_ptr<ColliderSource> of_file) {
+    const std::shared_ptr<ColliderSource> source = options.radius.apply(std::move(of_file));
     for (const std::string& warning : source->warnings())
       warn(fmt::format("--colliders {}: {}", path, warning), options.common.verbosity());
     frames.sampled = source;
+    frames.shape = source->shape();
     frames.add_colliders = [source](TraceFrame& frame) {
       source->sample(seconds(frame), frame.colliders);
       frame.teleported = source->teleported();
     };
   };
   if (path.ends_with(".glb") || path.ends_with(".gltf")) {
-    sample_from(read_collider_gltf(path, options.nodes, options.convention.of_colliders()));
+    sample_from(read_collider_gltf(path, options.nodes, options.convention.of_colliders(), options.radius.of_gltf()));
     return;
   }
   if (!options.poses.empty()) {
     // Rows that say their frame go to it, and nothing is made up between them.
     auto rows = std::make_shared<ColliderFrames>(path, options.convention.of_colliders());
     if (rows->columns() == ColliderColumns::kFrames) {
-      frames.add_colliders = [rows](TraceFrame& frame) { rows->fill(frame); };
+      const std::optional<float> radius_m = options.radius.radius_m();
+      frames.shape = radius_m.value_or(0) > 0 ? ColliderShape::kSpheres : rows->shape();
+      frames.add_colliders = [rows, radius_m](TraceFrame& frame) {
+        rows->fill(frame);
+        for (ColliderSample& collider : frame.colliders) collider.radius_m = radius_m.value_or(collider.radius_m);
+      };
       frames.finish = [rows] { rows->expect_end(); };
       return;
     }
@@ -228,6 +239,7 @@ Scene read_hdf5(const std::string& path, const FacingChoice& facing, Frames& fra
   require_names(path, file->node_names(), scene.avatar);
   frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
   frames.share = [file] { return file->share(); };
+  frames.shape = file->shape();
   return scene;
 }
 
@@ -240,10 +252,11 @@ void read_poses(const ImportOptions& options, const Avatar& avatar, Frames& fram
   frames.placed = reader->placed();
 }
 
-TraceWriterOptions writing_of(const ImportOptions& options) {
+TraceWriterOptions writing_of(const ImportOptions& options, ColliderShape shape) {
   TraceWriterOptions writing;
   writing.overwrite = options.common.overwrite();
   writing.unfinished = Unfinished::kRemoved;
+  writing.shape = shape;
   if (options.compression == "lz4") writing.compression = Compression::kLz4;
   if (options.compression == "none") writing.compression = Compression::kNone;
   return writing;
@@ -336,6 +349,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
   frames.placed.resize(scene.avatar.nodes.size());
   read_colliders(options, frames);
   if (!options.colliders.empty()) note_collider_convention(options.convention, session);
+  if (!options.radius.text.empty()) session["radius"] = options.radius.text;
 
   catch_interrupts();
   TraceFrame frame;
@@ -343,7 +357,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
   bool more = frames.next(frame);
   std::optional<Questions> questions;  // what 'vestige export' wrote is not in doubt
   if (options.from.empty()) questions.emplace(scene.avatar, options, frames);
-  TraceWriter trace(options.output, session, scene.avatar, scene.attachments(), writing_of(options));
+  TraceWriter trace(options.output, session, scene.avatar, scene.attachments(), writing_of(options, frames.shape));
   {
     Progress progress("Importing", verbosity);
     for (; more; more = frames.next(frame)) {
@@ -391,14 +405,15 @@ void add_import(CLI::App& program, Invocation& invocation) {
                        kConvention)
       ->type_name("FILE.csv|-");
   add_pose_convention(*verb, options->convention);
-  verb->add_option(
-          "--colliders", options->colliders,
-          std::string("Colliders: rows time_s,id,x,y,z, a file that 'vestige export' wrote, or the animated nodes of a "
-                      "glTF file. Its convention: ") +
-              kConvention + " [default: none]")
+  verb->add_option("--colliders", options->colliders,
+                   std::string("Colliders: rows time_s,id,x,y,z[,radius_m], a file that 'vestige export' wrote, or the "
+                               "animated nodes of a "
+                               "glTF file. Its convention: ") +
+                       kConvention + " [default: none]")
       ->type_name("FILE.csv|FILE.glb");
   add_collider_convention(*verb, options->convention);
   verb->add_option("--nodes", options->nodes, kNodesHelp)->type_name("PATTERN");
+  add_radius_option(*verb, options->radius);
   verb->add_option("--avatar", options->avatar,
                    "The avatar that moves: the built-in one, or a glTF file (.glb, .gltf, .vrm) [default: builtin]")
       ->type_name("builtin|FILE");

@@ -33,6 +33,9 @@ constexpr double kFarthest_m = 1e7;  // detector/CONTRACT.md, 2
 /// When a live recording's chunks are closed, so that with the time until somebody looks nothing waits for 100 ms.
 constexpr double kLiveChunk_s = 0.08;
 
+/// A radius may come at any time.
+constexpr ColliderShape kLiveShape = ColliderShape::kSpheres;
+
 struct RecordOptions {
   CommonOptions common;
   SceneChoice scene;
@@ -68,17 +71,19 @@ Session session_of(const RecordOptions& options, const Animation* animation, con
   session["rate_hz"] = fmt::format("{}", options.recording.rate_hz);
   session["animation"] = animation == nullptr ? "" : animation->name;
   session["colliders"] = options.scene.colliders;
+  if (!options.scene.radius.text.empty()) session["radius"] = options.scene.radius.text;
   session["seed"] = fmt::format("{}", options.common.seed);
   if (options.scene.from_file()) note_collider_convention(options.scene.convention, session);
   return session;
 }
 
-TraceWriterOptions writing_of(const RecordOptions& options) {
+TraceWriterOptions writing_of(const RecordOptions& options, ColliderShape shape) {
   TraceWriterOptions writing;
   writing.overwrite = options.common.overwrite();
   if (options.compression == "lz4") writing.compression = Compression::kLz4;
   if (options.compression == "none") writing.compression = Compression::kNone;
   if (options.viz) writing.viz = Viz::kScene;
+  writing.shape = shape;
   if (options.limits.sync) writing.sync = ChunkSync::kEach;
   if (options.live.is_live()) writing.chunk_s = kLiveChunk_s;
   return writing;
@@ -156,7 +161,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
                      .session = session_of(options, animation, invocation),
                      .avatar = scene.avatar,
                      .attachments = scene.attachments(),
-                     .writing = writing_of(options),
+                     .writing = writing_of(options, colliders ? colliders->shape() : kLiveShape),
                      .limits = limits});
   LiveCounts lost;
   if (options.live.is_live()) {
@@ -212,6 +217,7 @@ void add_record(CLI::App& program, Invocation& invocation) {
                             "  vestige record -o man.mcap\n"
                             "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n");
   add_scene_options(*verb, options->scene);
+  add_radius_option(*verb, options->scene.radius);
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")
       ->type_name("HZ")
       ->capture_default_str()

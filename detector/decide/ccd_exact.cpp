@@ -5,21 +5,12 @@
 #include <cstdint>
 #include <utility>
 
+#include "detector/decide/moving_polynomials.hpp"
 #include "detector/decide/unit_roots.hpp"
 
 namespace vestige {
 
 namespace {
-
-using PolynomialVector = std::array<Polynomial, 3>;
-
-PolynomialVector cross(const PolynomialVector& a, const PolynomialVector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Polynomial dot(const PolynomialVector& a, const PolynomialVector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// An edge relative to the point: the cross product and the dot product of its two corners, quadratics in t.
 struct Edge {

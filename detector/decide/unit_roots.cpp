@@ -106,6 +106,14 @@ int UnitRoots::sign_at(std::size_t root, const Polynomial& other) const {
   return root == 0 ? (even - last_less_first) / 2 : (even + last_less_first) / 2;
 }
 
+bool UnitRoots::is_before(std::size_t root, const UnitRoots& other, std::size_t other_root) const {
+  // Sturm's theorem counts the other's roots above 0 and up to this one.
+  std::vector<int> signs;
+  signs.reserve(other.sturm_.size());
+  for (const Polynomial& polynomial : other.sturm_) signs.push_back(sign_at(root, polynomial));
+  return other.changes_at_0_ - sign_changes(signs) <= static_cast<int>(other_root);
+}
+
 bool UnitRoots::is_even(std::size_t root) const {
   // A triple root, at which the common divisor has degree 2, is odd.
   return common_.degree() == 1 && sign_at(root, common_) == 0;

@@ -24,6 +24,9 @@ class UnitRoots {
   /// Returns the sign, at the root, of a polynomial of degree <= 2.
   int sign_at(std::size_t root, const Polynomial& other) const;
 
+  /// Returns whether a root is below a root of another polynomial.
+  bool is_before(std::size_t root, const UnitRoots& other, std::size_t other_root) const;
+
   /// Returns whether the polynomial has the same sign on both sides of the root.
   bool is_even(std::size_t root) const;
 

@@ -44,6 +44,13 @@ inline std::vector<std::byte> collider(std::int32_t id, float x, float y, float 
   return bytes_of("/vestige/collider", message);
 }
 
+inline std::vector<std::byte> collider(std::int32_t id, float x, float y, float z, float radius_m) {
+  OscBuilder message(lo_message_new());
+  lo_message_add_int32(message.get(), id);
+  for (const float value : {x, y, z, radius_m}) lo_message_add_float(message.get(), value);
+  return bytes_of("/vestige/collider", message);
+}
+
 inline std::vector<std::byte> with_id(const char* address, std::int32_t id) {
   OscBuilder message(lo_message_new());
   lo_message_add_int32(message.get(), id);

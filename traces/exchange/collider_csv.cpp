@@ -20,6 +20,7 @@ enum class Arrival { kMoved, kApart };
 struct Sample {
   double time_s = 0;
   glm::dvec3 position_m = glm::dvec3(0);
+  float radius_m = 0;
   Arrival arrival = Arrival::kMoved;
 };
 
@@ -34,7 +35,7 @@ Samples parse(ColliderRows& rows) {
     if (!of_collider.empty() && of_collider.back().time_s == row.time_s)
       throw rows.error(fmt::format("collider {} has two positions at {} s", row.sample.id, row.time_s),
                        "give each collider an id of its own, or remove one of the rows");
-    Sample sample = {row.time_s, row.sample.position_m, Arrival::kMoved};
+    Sample sample = {row.time_s, row.sample.position_m, row.sample.radius_m, Arrival::kMoved};
     if (rows.columns() == ColliderColumns::kFrames) {
       const auto [last, is_first] = last_frame.try_emplace(row.sample.id, row.frame);
       if (row.teleported || (!is_first && row.frame != last->second + 1)) sample.arrival = Arrival::kApart;
@@ -75,8 +76,8 @@ Steps steps_of(const Samples& samples) {
 
 class CsvColliders final : public ColliderSource {
  public:
-  CsvColliders(const Samples& samples, const Convention& convention)
-      : steps_(steps_of(samples)), convention_(convention) {
+  CsvColliders(const Samples& samples, ColliderShape shape, const Convention& convention)
+      : steps_(steps_of(samples)), shape_(shape), convention_(convention) {
     span_s_ = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (const auto& [id, of_collider] : samples) {
       tracks_.push_back({id, of_collider, 0});
@@ -97,15 +98,18 @@ class CsvColliders final : public ColliderSource {
       if (track.next == 0) continue;
       const Sample& before = track.samples[track.next - 1];
       if (before.time_s == time_s) {
-        out.push_back({track.id, before.position_m});
+        out.push_back({track.id, before.position_m, before.radius_m});
       } else if (track.next < track.samples.size() && track.samples[track.next].arrival == Arrival::kMoved) {
         const Sample& after = track.samples[track.next];
         const double s = (time_s - before.time_s) / (after.time_s - before.time_s);
-        out.push_back({track.id, before.position_m + s * (after.position_m - before.position_m)});
+        const double grown_m = s * (double{after.radius_m} - double{before.radius_m});
+        out.push_back({track.id, before.position_m + s * (after.position_m - before.position_m),
+                       static_cast<float>(double{before.radius_m} + grown_m)});
       }
     }
   }
 
+  ColliderShape shape() const override { return shape_; }
   TimeSpan span_s() const override { return span_s_; }
   double median_step_s() const override { return steps_.median_s; }
 
@@ -131,6 +135,7 @@ class CsvColliders final : public ColliderSource {
     std::size_t next;  // the first sample after the time of the last `sample`
   };
   Steps steps_;
+  ColliderShape shape_;
   Convention convention_;
   std::vector<Track> tracks_;
   TimeSpan span_s_;
@@ -140,7 +145,8 @@ class CsvColliders final : public ColliderSource {
 
 std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path, const Convention& convention) {
   ColliderRows rows(path, convention);
-  return std::make_unique<CsvColliders>(parse(rows), convention);
+  const Samples samples = parse(rows);
+  return std::make_unique<CsvColliders>(samples, rows.shape(), convention);
 }
 
 }  // namespace vestige

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
 #include <set>
 
 #include "traces/base/error.hpp"
@@ -12,6 +15,7 @@
 #include "traces/gltf/gltf_document.hpp"
 #include "traces/gltf/gltf_nodes.hpp"
 #include "traces/scene/colliders.hpp"
+#include "traces/scene/radius.hpp"
 
 namespace vestige {
 
@@ -43,11 +47,44 @@ struct Scene {
   Avatar nodes;
   Animation animation;
   std::set<int> joints;
+  std::vector<double> radii;  ///< of each node, at scale 1
   std::vector<std::string> warnings;
+  std::string name;  ///< of the file
 };
 
-Scene load(const std::filesystem::path& path) {
+/// Returns the radius that the node's `extras.radius_m` says; 0 if it says none.
+double radius_in_extras(const gltf::Document& document, Index node, const gltf::Report& report) {
+  const nlohmann::json extras = document.json.extras("nodes", node);
+  if (!extras.is_object() || !extras.contains("radius_m")) return 0;
+  const std::string path = fmt::format("nodes[{}].extras.radius_m", node);
+  if (!extras["radius_m"].is_number()) report.fail(path, "is not a number");
+  const auto radius_m = extras["radius_m"].get<double>();
+  if (const std::string_view fault = radius_fault(radius_m); !fault.empty()) report.fail(path, std::string(fault));
+  return radius_m;
+}
+
+/// Returns half of the longest side of the box around the node's mesh; 0 if it has none.
+double radius_of_mesh(const gltf::Document& document, Index node, const gltf::Report& report) {
+  const int mesh = document.model.nodes[node].mesh;
+  if (mesh < 0) return 0;
+  glm::dvec3 low(std::numeric_limits<double>::infinity());
+  glm::dvec3 high = -low;
+  for (const tinygltf::Primitive& primitive : document.model.meshes[static_cast<Index>(mesh)].primitives) {
+    const auto position = primitive.attributes.find("POSITION");
+    if (position == primitive.attributes.end()) continue;
+    const gltf::Accessor& accessor = document.accessors[static_cast<Index>(position->second)];
+    if (!accessor.min || !accessor.max || accessor.normalized)
+      report.fail(fmt::format("meshes[{}]", mesh), "does not tell its size by the bounds of its positions");
+    low = glm::min(low, glm::dvec3((*accessor.min)[0], (*accessor.min)[1], (*accessor.min)[2]));
+    high = glm::max(high, glm::dvec3((*accessor.max)[0], (*accessor.max)[1], (*accessor.max)[2]));
+  }
+  const glm::dvec3 size = high - low;
+  return std::max({0.0, 0.5 * size.x, 0.5 * size.y, 0.5 * size.z});
+}
+
+Scene load(const std::filesystem::path& path, GltfRadius radius) {
   Scene scene;
+  scene.name = path.string();
   const std::vector<std::byte> glb = read_avatar_glb(path);
   gltf::Report report(path.string());
   const gltf::Document document = gltf::load_document(glb, report);
@@ -55,6 +92,9 @@ Scene load(const std::filesystem::path& path) {
   gltf::MorphTargets no_skin(document, report);
   gltf::read_animations(document, no_skin, scene.nodes, report);
   scene.joints = joints_of(document);
+  for (Index node = 0; node < scene.nodes.nodes.size(); ++node)
+    scene.radii.push_back(radius == GltfRadius::kMesh ? radius_of_mesh(document, node, report)
+                                                      : radius_in_extras(document, node, report));
   std::set<std::pair<int, AnimatedProperty>> animated;
   for (Animation& animation : scene.nodes.animations)
     for (AnimationChannel& channel : animation.channels) {
@@ -70,7 +110,7 @@ Scene load(const std::filesystem::path& path) {
   return scene;
 }
 
-std::vector<int> choose(const Scene& scene, const std::string& pattern, const std::string& name) {
+std::vector<int> choose(const Scene& scene, const std::string& pattern) {
   std::set<int> moving;
   for (const AnimationChannel& channel : scene.animation.channels)
     if (channel.property == AnimatedProperty::kTranslation && !scene.joints.contains(channel.node))
@@ -85,7 +125,7 @@ std::vector<int> choose(const Scene& scene, const std::string& pattern, const st
   std::vector<std::string> names;
   for (const Node& node : scene.nodes.nodes)
     if (!node.name.empty() && names.size() < 10) names.push_back(node.name);
-  throw Error(name,
+  throw Error(scene.name,
               pattern.empty()
                   ? "no node's name begins with collider, and no node other than a joint has an animated translation"
                   : fmt::format("no node's name matches '{}'", pattern),
@@ -94,8 +134,12 @@ std::vector<int> choose(const Scene& scene, const std::string& pattern, const st
 
 class GltfColliders final : public ColliderSource {
  public:
-  GltfColliders(Scene scene, const std::vector<int>& chosen, const Convention& convention)
+  GltfColliders(Scene scene, const std::vector<int>& chosen, const Convention& convention, GltfRadius radius)
       : scene_(std::move(scene)), convention_(convention) {
+    // `radius_m` says its unit; a mesh has that of the file.
+    if (radius == GltfRadius::kMesh)
+      for (double& at_scale_1 : scene_.radii) at_scale_1 *= convention.metres_per_unit;
+    has_radii_ = std::ranges::any_of(chosen, [&](int node) { return scene_.radii[static_cast<Index>(node)] > 0; });
     std::set<std::uint32_t> numbers;
     for (const int node : chosen)
       if (const auto number = number_at_end(scene_.nodes.nodes[static_cast<Index>(node)].name)) numbers.insert(*number);
@@ -106,7 +150,8 @@ class GltfColliders final : public ColliderSource {
     std::ranges::sort(colliders_, {}, &Collider::id);
   }
 
-  void sample(double time_s, std::vector<ColliderSample>& out) override {
+  void sample(double exact_s, std::vector<ColliderSample>& out) override {
+    const double time_s = double{static_cast<float>(exact_s)};  // as keys have it: on them, nothing is interpolated
     out.clear();
     if (time_s > span_s().last_s) return;
     world_matrices(scene_.nodes, sample_animation(scene_.nodes, scene_.animation, time_s), matrices_);
@@ -114,9 +159,21 @@ class GltfColliders final : public ColliderSource {
       const glm::dmat4& matrix = matrices_[static_cast<Index>(collider.node)];
       const bool is_hidden =
           glm::dvec3(matrix[0]) == glm::dvec3(0) && glm::dvec3(matrix[1]) == glm::dvec3(0) && matrix[2].z == 0;
-      if (!is_hidden) out.push_back({collider.id, convention_.position_m(glm::dvec3(matrix[3]))});
+      if (is_hidden) continue;
+      // Where axes differ in their scale, the longest counts.
+      const double scale = std::max(
+          {glm::length(glm::dvec3(matrix[0])), glm::length(glm::dvec3(matrix[1])), glm::length(glm::dvec3(matrix[2]))});
+      const auto radius_m = static_cast<float>(scale * scene_.radii[static_cast<Index>(collider.node)]);
+      if (const std::string_view fault = radius_fault(double{radius_m}); !fault.empty())
+        throw Error(scene_.name,
+                    fmt::format("at {} s, the radius of node '{}', {} m, {}", time_s,
+                                scene_.nodes.nodes[static_cast<Index>(collider.node)].name, radius_m, fault),
+                    "check the node's scale and size");
+      out.push_back({collider.id, convention_.position_m(glm::dvec3(matrix[3])), radius_m});
     }
   }
+
+  ColliderShape shape() const override { return has_radii_ ? ColliderShape::kSpheres : ColliderShape::kPoints; }
 
   TimeSpan span_s() const override {
     return scene_.animation.channels.empty() ? TimeSpan() : TimeSpan{0, scene_.animation.duration_s};
@@ -132,15 +189,16 @@ class GltfColliders final : public ColliderSource {
   Convention convention_;
   std::vector<Collider> colliders_;
   std::vector<glm::dmat4> matrices_;
+  bool has_radii_ = false;
 };
 
 }  // namespace
 
 std::unique_ptr<ColliderSource> read_collider_gltf(const std::filesystem::path& path, const std::string& pattern,
-                                                   const Convention& convention) {
-  Scene scene = load(path);
-  const std::vector<int> chosen = choose(scene, pattern, path.string());
-  return std::make_unique<GltfColliders>(std::move(scene), chosen, convention);
+                                                   const Convention& convention, GltfRadius radius) {
+  Scene scene = load(path, radius);
+  const std::vector<int> chosen = choose(scene, pattern);
+  return std::make_unique<GltfColliders>(std::move(scene), chosen, convention, radius);
 }
 
 }  // namespace vestige

@@ -3,27 +3,39 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 
 #include "traces/base/number_text.hpp"
 #include "traces/exchange/trace_export.hpp"
+#include "traces/scene/radius.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 
 namespace {
 
-constexpr std::string_view kTimesRemedy = "each row is time_s,id,x,y,z: seconds, a whole number, metres";
-constexpr std::string_view kFramesRemedy =
-    "each row is frame,time_s,id,x,y,z,teleported: a whole number, seconds, a whole number, metres, 0 or 1";
 constexpr std::string_view kAloneRemedy =
     "export poses and colliders of the same trace, or leave out the columns frame and teleported";
 
+std::string_view remedy_of(ColliderColumns columns, ColliderShape shape) {
+  const bool has_frames = columns == ColliderColumns::kFrames;
+  if (shape == ColliderShape::kPoints)
+    return has_frames
+               ? "each row is frame,time_s,id,x,y,z,teleported: a whole number, seconds, a whole number, metres, "
+                 "0 or 1"
+               : "each row is time_s,id,x,y,z: seconds, a whole number, metres";
+  return has_frames ? "each row is frame,time_s,id,x,y,z,radius_m,teleported: a whole number, seconds, a whole number, "
+                      "metres, 0 or 1"
+                    : "each row is time_s,id,x,y,z,radius_m: seconds, a whole number, metres";
+}
+
 class ColliderCsv final : public TraceExport {
  public:
-  ColliderCsv(const std::filesystem::path& path, Overwrite overwrite) : file_(path, overwrite) {
-    file_.write(kColliderFramesHeader);
+  ColliderCsv(const std::filesystem::path& path, Overwrite overwrite, ColliderShape shape)
+      : file_(path, overwrite), shape_(shape) {
+    file_.write(collider_header(ColliderColumns::kFrames, shape));
     file_.write("\n");
   }
 
@@ -35,8 +47,10 @@ class ColliderCsv final : public TraceExport {
     for (const ColliderSample& collider : frame.colliders) {
       row_.clear();
       const bool teleported = std::ranges::binary_search(teleported_, collider.id);
-      fmt::format_to(std::back_inserter(row_), "{},{},{},{},{},{},{}\n", frame.index, time_, collider.id,
-                     collider.position_m.x, collider.position_m.y, collider.position_m.z, teleported ? 1 : 0);
+      fmt::format_to(std::back_inserter(row_), "{},{},{},{},{},{},", frame.index, time_, collider.id,
+                     collider.position_m.x, collider.position_m.y, collider.position_m.z);
+      if (shape_ == ColliderShape::kSpheres) fmt::format_to(std::back_inserter(row_), "{},", collider.radius_m);
+      row_ += teleported ? "1\n" : "0\n";
       file_.write(row_);
     }
   }
@@ -45,6 +59,7 @@ class ColliderCsv final : public TraceExport {
 
  private:
   OutputFile file_;
+  ColliderShape shape_;
   std::string time_;
   std::string row_;
   std::vector<std::uint32_t> teleported_;
@@ -52,51 +67,88 @@ class ColliderCsv final : public TraceExport {
 
 }  // namespace
 
-std::unique_ptr<TraceExport> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite) {
-  return std::make_unique<ColliderCsv>(path, overwrite);
+std::string_view collider_header(ColliderColumns columns, ColliderShape shape) {
+  if (columns == ColliderColumns::kTimes)
+    return shape == ColliderShape::kPoints ? "time_s,id,x,y,z" : "time_s,id,x,y,z,radius_m";
+  return shape == ColliderShape::kPoints ? "frame,time_s,id,x,y,z,teleported"
+                                         : "frame,time_s,id,x,y,z,radius_m,teleported";
+}
+
+std::unique_ptr<TraceExport> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite,
+                                               ColliderShape shape) {
+  return std::make_unique<ColliderCsv>(path, overwrite, shape);
 }
 
 ColliderRows::ColliderRows(const std::filesystem::path& path, const Convention& convention)
-    : reader_(path), lines_(reader_, kTimesRemedy), convention_(convention) {
+    : reader_(path),
+      lines_(reader_, remedy_of(ColliderColumns::kTimes, ColliderShape::kPoints)),
+      convention_(convention) {
+  take_header();
+}
+
+void ColliderRows::take_header() {
   const std::string header = fmt::format("{}", fmt::join(lines_.take_header(), ","));
-  if (header == kColliderFramesHeader) {
-    columns_ = ColliderColumns::kFrames;
-    lines_.set_remedy(kFramesRemedy);
-  } else if (header != kColliderTimesHeader) {
-    throw lines_.error(fmt::format("the header is neither '{}' nor '{}'", kColliderTimesHeader, kColliderFramesHeader));
-  }
+  for (const ColliderColumns columns : {ColliderColumns::kTimes, ColliderColumns::kFrames})
+    for (const ColliderShape shape : {ColliderShape::kPoints, ColliderShape::kSpheres}) {
+      if (header != collider_header(columns, shape)) continue;
+      columns_ = columns;
+      shape_ = shape;
+      lines_.set_remedy(remedy_of(columns, shape));
+      return;
+    }
+  throw lines_.error(
+      "the header is neither 'time_s,id,x,y,z' nor 'frame,time_s,id,x,y,z,teleported', with or without radius_m behind "
+      "z");
+}
+
+void ColliderRows::take_fields(ColliderRow& row) {
+  glm::dvec3& position = row.sample.position_m;
+  const bool has_frames = columns_ == ColliderColumns::kFrames;
+  const bool has_radii = shape_ == ColliderShape::kSpheres;
+  int teleported = 0;
+  const auto wrong_count = [&] {
+    constexpr std::array kCounts = {"five", "six", "seven", "eight"};
+    return lines_.error(fmt::format("is not {} numbers", kCounts.at((has_frames ? 2U : 0U) + (has_radii ? 1U : 0U))));
+  };
+  if (has_frames && !lines_.take(row.frame)) throw lines_.error("frame is not a whole number");
+  if (!lines_.take(row.time_s)) throw lines_.error("time_s is not a number");
+  if (!lines_.take(row.sample.id)) throw lines_.error("id is not a whole number from 0 to 4294967295");
+  if (!lines_.take(position.x) || !lines_.take(position.y) || !lines_.take(position.z)) throw wrong_count();
+  if (has_radii && !lines_.take(row.sample.radius_m)) throw lines_.error("radius_m is not a number");
+  if (has_frames && (!lines_.take(teleported) || (teleported != 0 && teleported != 1)))
+    throw lines_.error("teleported is neither 0 nor 1");
+  if (!lines_.at_end()) throw wrong_count();
+  if (!std::isfinite(row.time_s) || !std::isfinite(position.x) || !std::isfinite(position.y) ||
+      !std::isfinite(position.z))
+    throw lines_.error("a number is not finite");
+  if (const std::string_view fault = radius_fault(double{row.sample.radius_m}); !fault.empty())
+    throw lines_.error(fmt::format("radius_m {}", fault), "a radius is a number of metres from 0 to 10");
+  row.teleported = teleported == 1;
+}
+
+void ColliderRows::check_order(const ColliderRow& row) const {
+  const bool has_frames = columns_ == ColliderColumns::kFrames;
+  if (rows_ == 0) return;
+  if (row.time_s < last_time_s_)
+    throw lines_.error(fmt::format("time runs backwards, from {} s to {} s", last_time_s_, row.time_s),
+                       "sort the rows by time");
+  if (has_frames && row.frame < last_frame_)
+    throw lines_.error(fmt::format("frame {} comes after frame {}", row.frame, last_frame_), "sort the rows");
+  if (has_frames && row.frame == last_frame_ && row.time_s != last_time_s_)
+    throw lines_.error(fmt::format("frame {} is at {} s and at {} s", row.frame, last_time_s_, row.time_s));
 }
 
 bool ColliderRows::next(ColliderRow& row) {
   if (!lines_.next()) return false;
+  take_fields(row);
   glm::dvec3& position = row.sample.position_m;
-  const bool has_frames = columns_ == ColliderColumns::kFrames;
-  int teleported = 0;
-  if (has_frames && !lines_.take(row.frame)) throw lines_.error("frame is not a whole number");
-  if (!lines_.take(row.time_s)) throw lines_.error("time_s is not a number");
-  if (!lines_.take(row.sample.id)) throw lines_.error("id is not a whole number from 0 to 4294967295");
-  if (!lines_.take(position.x) || !lines_.take(position.y) || !lines_.take(position.z))
-    throw lines_.error(has_frames ? "is not seven numbers" : "is not five numbers");
-  if (has_frames && (!lines_.take(teleported) || (teleported != 0 && teleported != 1)))
-    throw lines_.error("teleported is neither 0 nor 1");
-  if (!lines_.at_end()) throw lines_.error(has_frames ? "is not seven numbers" : "is not five numbers");
-  if (!std::isfinite(row.time_s) || !std::isfinite(position.x) || !std::isfinite(position.y) ||
-      !std::isfinite(position.z))
-    throw lines_.error("a number is not finite");
   if (!convention_.is_of_trace()) {
     position = convention_.position_m(position);
     row.time_s *= convention_.seconds_per_unit;
   }
   if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) > trace_format::kFarthest_m)
     throw lines_.error("a coordinate is beyond 1e9 m");
-  if (rows_ > 0 && row.time_s < last_time_s_)
-    throw lines_.error(fmt::format("time runs backwards, from {} s to {} s", last_time_s_, row.time_s),
-                       "sort the rows by time");
-  if (has_frames && rows_ > 0 && row.frame < last_frame_)
-    throw lines_.error(fmt::format("frame {} comes after frame {}", row.frame, last_frame_), "sort the rows");
-  if (has_frames && rows_ > 0 && row.frame == last_frame_ && row.time_s != last_time_s_)
-    throw lines_.error(fmt::format("frame {} is at {} s and at {} s", row.frame, last_time_s_, row.time_s));
-  row.teleported = teleported == 1;
+  check_order(row);
   last_time_s_ = row.time_s;
   last_frame_ = row.frame;
   ++rows_;

@@ -21,17 +21,17 @@ struct ColliderRow {
 };
 
 enum class ColliderColumns {
-  kTimes,   ///< time_s,id,x,y,z
-  kFrames,  ///< frame,time_s,id,x,y,z,teleported
+  kTimes,   ///< time_s,id,x,y,z[,radius_m]
+  kFrames,  ///< frame,time_s,id,x,y,z[,radius_m],teleported
 };
 
-inline constexpr std::string_view kColliderTimesHeader = "time_s,id,x,y,z";
-inline constexpr std::string_view kColliderFramesHeader = "frame,time_s,id,x,y,z,teleported";
+/// Returns the header of a collider CSV. Spheres have the column radius_m.
+std::string_view collider_header(ColliderColumns columns, ColliderShape shape);
 
-/// Reads a collider CSV with either header, one row at a time, and changes its numbers from their `Convention` to
-/// metres, seconds and the trace's axes. Throws `Error` with file and line: another header, a
-/// wrong number of columns, a field that is not a number, not finite, farther than 1e9 m, frames or times that
-/// decrease.
+/// Reads a collider CSV with one of the four headers, one row at a time, and changes its numbers from their
+/// `Convention` to metres, seconds and the trace's axes. Throws `Error` with file and line: another header, a wrong
+/// number of columns, a field that is not a number, not finite, farther than 1e9 m, a radius that is negative or larger
+/// than 10 m, frames or times that decrease.
 class ColliderRows {
  public:
   explicit ColliderRows(const std::filesystem::path& path, const Convention& convention = {});
@@ -39,13 +39,19 @@ class ColliderRows {
   /// The name that error messages use.
   const std::string& name() const { return reader_.name(); }
   ColliderColumns columns() const { return columns_; }
+  ColliderShape shape() const { return shape_; }
   Error error(std::string_view cause, std::string_view remedy) const { return lines_.error(cause, remedy); }
 
  private:
+  void take_header();
+  void take_fields(ColliderRow& row);
+  void check_order(const ColliderRow& row) const;
+
   LineReader reader_;
   CsvLines lines_;
   Convention convention_;
   ColliderColumns columns_ = ColliderColumns::kTimes;
+  ColliderShape shape_ = ColliderShape::kPoints;
   std::uint64_t rows_ = 0;
   std::uint64_t last_frame_ = 0;
   double last_time_s_ = 0;
@@ -59,6 +65,7 @@ class ColliderFrames {
     advance();
   }
   ColliderColumns columns() const { return rows_.columns(); }
+  ColliderShape shape() const { return rows_.shape(); }
 
   /// Fills in colliders and teleported ids of the frame with this index and time. Indices must increase from call to
   /// call. Throws `Error` if the file has a frame between two requested indices, an id twice, or another time for this

@@ -31,17 +31,19 @@ constexpr std::uint64_t kMostGlbBytes = std::numeric_limits<std::uint32_t>::max(
 constexpr int kFloat = 5126;
 constexpr const char* kTooLarge = "export fewer frames: use --rate 60, or cut out a part with 'vestige trim'";
 
+constexpr double kPoint_m = 0.01;  ///< radius with which a point is drawn
+/// The scale of a node is the radius of its sphere, and a node of scale 0 is absent.
+constexpr float kSmallestRadius_m = 1e-6F;
+
 struct Sphere {
   std::vector<float> positions;
   std::vector<float> normals;
   std::vector<std::uint16_t> indices;
 };
 
-/// Returns a sphere of 1 cm radius.
-Sphere make_sphere() {
+Sphere make_sphere(double radius_m) {
   constexpr int kRings = 8;
   constexpr int kSegments = 12;
-  constexpr double kRadius_m = 0.01;
   Sphere sphere;
   for (int ring = 0; ring <= kRings; ++ring)
     for (int segment = 0; segment < kSegments; ++segment) {
@@ -50,7 +52,7 @@ Sphere make_sphere() {
       const glm::dvec3 normal(std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around));
       for (int axis = 0; axis < 3; ++axis) {
         sphere.normals.push_back(static_cast<float>(normal[axis]));
-        sphere.positions.push_back(static_cast<float>(kRadius_m * normal[axis]));
+        sphere.positions.push_back(static_cast<float>(radius_m * normal[axis]));
       }
     }
   const auto corner = [](int ring, int segment) {
@@ -83,14 +85,12 @@ Json& scene_of(Builder& builder) {
   return builder.json["scenes"][0];
 }
 
-int add_sphere(Builder& builder) {
-  const Sphere sphere = make_sphere();
+/// Adds the mesh of the colliders with this radius.
+int add_sphere(Builder& builder, double radius_m, int material) {
+  const Sphere sphere = make_sphere(radius_m);
   const int position = builder.add_bounded_accessor(sphere.positions, "VEC3", 3, gltf::Target::kVertices);
   const int normal = builder.add_accessor(sphere.normals, "VEC3", 3, gltf::Target::kVertices);
   const int indices = builder.add_accessor(sphere.indices, "SCALAR", 1, gltf::Target::kIndices);
-  const int material = builder.add(
-      "materials", {{"name", "collider"},
-                    {"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.3, 0.1, 1.0}}, {"metallicFactor", 0.0}}}});
   return builder.add("meshes",
                      {{"name", "collider"},
                       {"primitives", Json::array({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
@@ -98,19 +98,27 @@ int add_sphere(Builder& builder) {
                                                    {"material", material}}})}});
 }
 
+int add_collider_material(Builder& builder) {
+  return builder.add("materials",
+                     {{"name", "collider"},
+                      {"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.3, 0.1, 1.0}}, {"metallicFactor", 0.0}}}});
+}
+
 class FrameGltf final : public TraceExport {
  public:
   FrameGltf(const std::filesystem::path& path, Overwrite overwrite, const Avatar& avatar,
-            std::span<const std::byte> glb, std::vector<std::uint32_t> ids)
+            std::span<const std::byte> glb, ColliderIds ids)
       : file_(path, overwrite),
         path_(path),
         avatar_(avatar),
         glb_(clean_avatar_glb(glb, "avatar.glb")),
-        ids_(std::move(ids)),
+        ids_(std::move(ids.all)),
         columns_(path, widths(avatar.nodes.size(), ids_.size())),
         varies_(2 + 3 * avatar.nodes.size() + 2 * ids_.size()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     last_position_.resize(ids_.size(), glm::vec3(0));
+    is_sphere_.resize(ids_.size(), false);
+    for (const std::uint32_t id : ids.spheres) is_sphere_[place_of_.at(id)] = true;
   }
 
   void write(const TraceFrame& frame) override;
@@ -140,6 +148,7 @@ class FrameGltf final : public TraceExport {
   };
 
   void append_node(std::size_t index, NodeLocal node);
+  float scale_of(const ColliderSample& collider, std::size_t place);
   void note_what_varies();
   void place_nodes(Builder& builder) const;
   std::optional<int> add_origin_node(Builder& builder) const;
@@ -162,9 +171,12 @@ class FrameGltf final : public TraceExport {
   std::vector<float> first_row_;
   std::vector<float> last_row_;
   std::vector<glm::vec3> last_position_;
+  std::vector<float> scale_;     ///< of each collider in the current frame: 0 if it is absent
+  std::vector<bool> is_sphere_;  ///< for each collider; the scale of a sphere is its radius, that of a point 1
   glm::dvec3 base_m_ = glm::dvec3(0);
   std::uint64_t frames_left_out_ = 0;
   std::uint64_t non_finite_ = 0;
+  std::uint64_t radii_raised_ = 0;
 };
 
 bool is_finite(const glm::vec3& vector) {
@@ -193,6 +205,12 @@ void FrameGltf::append_node(std::size_t index, NodeLocal node) {
   row_.insert(row_.end(), numbers.begin(), numbers.end());
 }
 
+float FrameGltf::scale_of(const ColliderSample& collider, std::size_t place) {
+  if (!is_sphere_[place]) return 1;
+  if (collider.radius_m < kSmallestRadius_m) ++radii_raised_;
+  return std::max(collider.radius_m, kSmallestRadius_m);
+}
+
 void FrameGltf::write(const TraceFrame& frame) {
   const auto time_s = static_cast<float>(static_cast<double>(frame.time_ns) / 1e9);
   if (!last_row_.empty() && !(time_s > last_row_.front())) {
@@ -209,7 +227,7 @@ void FrameGltf::write(const TraceFrame& frame) {
   }
   append(origin);
   for (std::size_t i = 0; i < frame.pose.nodes.size(); ++i) append_node(i, frame.pose.nodes[i]);
-  std::vector<bool> present(ids_.size());
+  scale_.assign(ids_.size(), 0);
   for (const ColliderSample& collider : frame.colliders) {
     const auto place = place_of_.find(collider.id);
     if (place == place_of_.end()) continue;
@@ -218,12 +236,12 @@ void FrameGltf::write(const TraceFrame& frame) {
       ++non_finite_;
       continue;
     }
-    present[place->second] = true;
+    scale_[place->second] = scale_of(collider, place->second);
     last_position_[place->second] = position;
   }
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     append(last_position_[i]);
-    append(glm::vec3(present[i] ? 1 : 0));
+    append(glm::vec3(scale_[i]));
   }
   note_what_varies();
   columns_.append(row_);
@@ -278,11 +296,16 @@ std::optional<int> FrameGltf::add_origin_node(Builder& builder) const {
 std::vector<int> FrameGltf::add_colliders(Builder& builder) const {
   std::vector<int> nodes;
   if (ids_.empty()) return nodes;
-  const int sphere = add_sphere(builder);
+  const int material = add_collider_material(builder);
+  const bool any_sphere = std::ranges::find(is_sphere_, true) != is_sphere_.end();
+  const bool any_point = std::ranges::find(is_sphere_, false) != is_sphere_.end();
+  const int point_mesh = any_point ? add_sphere(builder, kPoint_m, material) : -1;
+  const int sphere_mesh = any_sphere ? add_sphere(builder, 1, material) : -1;
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     const float* numbers = &first_row_[4 + 10 * avatar_.nodes.size() + 6 * i];
     nodes.push_back(builder.add("nodes", {{"name", fmt::format("collider {}", ids_[i])},
-                                          {"mesh", sphere},
+                                          {"mesh", is_sphere_[i] ? sphere_mesh : point_mesh},
+                                          {"extras", {{"radius_m", is_sphere_[i] ? 1 : 0}}},
                                           {"translation", {numbers[0], numbers[1], numbers[2]}},
                                           {"scale", {numbers[3], numbers[4], numbers[5]}}}));
     scene_of(builder)["nodes"].push_back(nodes.back());
@@ -405,15 +428,17 @@ std::vector<std::string> FrameGltf::losses() const {
     losses.push_back(fmt::format(
         "not finite in fp32: {}; nodes and the origin keep the values of the frame before, colliders are absent",
         counted(non_finite_, "value")));
+  if (radii_raised_ > 0)
+    losses.push_back(fmt::format("{} of spheres below {:g} m became that: a node of scale 0 is an absent collider",
+                                 counted(radii_raised_, "radius value"), kSmallestRadius_m));
   return losses;
 }
 
 }  // namespace
 
 std::unique_ptr<TraceExport> make_frame_gltf(const std::filesystem::path& path, Overwrite overwrite,
-                                             const Avatar& avatar, std::span<const std::byte> glb,
-                                             std::vector<std::uint32_t> collider_ids) {
-  return std::make_unique<FrameGltf>(path, overwrite, avatar, glb, std::move(collider_ids));
+                                             const Avatar& avatar, std::span<const std::byte> glb, ColliderIds ids) {
+  return std::make_unique<FrameGltf>(path, overwrite, avatar, glb, std::move(ids));
 }
 
 }  // namespace vestige

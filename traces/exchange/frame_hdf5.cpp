@@ -8,6 +8,7 @@
 #include "traces/base/error.hpp"
 #include "traces/exchange/trace_export.hpp"
 #include "traces/hdf5/hdf5_writer.hpp"
+#include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige {
@@ -20,7 +21,11 @@ class FrameHdf5 final : public TraceExport {
  public:
   FrameHdf5(const std::filesystem::path& path, Overwrite overwrite, TraceReader& trace,
             std::function<void(hid_t file)> write_more)
-      : file_(path, overwrite), path_(path), write_more_(std::move(write_more)), ids_(trace.collider_ids()) {
+      : file_(path, overwrite),
+        path_(path),
+        write_more_(std::move(write_more)),
+        shape_(trace.shape()),
+        ids_(trace.collider_ids()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     const Hdf5Library& h5 = hdf5();
     write_head(trace);
@@ -35,6 +40,8 @@ class FrameHdf5 final : public TraceExport {
     add({"colliders/position", h5.float64, 8, {colliders, 3}, "m", "x, y, z; NaN where absent"});
     add({"colliders/present", h5.uint8, 1, {colliders}, ""});
     add({"colliders/teleported", h5.uint8, 1, {colliders}, ""});
+    if (shape_ == ColliderShape::kSpheres)
+      add({"colliders/radius", h5.float32, 4, {colliders}, "m", "0 is a point; NaN where absent"});
   }
 
   void write(const TraceFrame& frame) override {
@@ -48,11 +55,13 @@ class FrameHdf5 final : public TraceExport {
       scale_.insert(scale_.end(), {node.scale.x, node.scale.y, node.scale.z});
     }
     position_.assign(3 * ids_.size(), std::numeric_limits<double>::quiet_NaN());
+    radius_.assign(ids_.size(), std::numeric_limits<float>::quiet_NaN());
     present_.assign(ids_.size(), 0);
     teleported_.assign(ids_.size(), 0);
     for (const ColliderSample& collider : frame.colliders) {
       const std::size_t place = place_of_.at(collider.id);
       present_[place] = 1;
+      radius_[place] = collider.radius_m;
       for (int axis = 0; axis < 3; ++axis)
         position_[3 * place + static_cast<std::size_t>(axis)] = collider.position_m[axis];
     }
@@ -60,7 +69,7 @@ class FrameHdf5 final : public TraceExport {
       if (const auto place = place_of_.find(id); place != place_of_.end()) teleported_[place->second] = 1;
     const double origin[] = {frame.pose.origin_m.x, frame.pose.origin_m.y, frame.pose.origin_m.z};
     const void* rows[] = {&frame.time_ns, &frame.index,     origin,          translation_.data(), rotation_.data(),
-                          scale_.data(),  position_.data(), present_.data(), teleported_.data()};
+                          scale_.data(),  position_.data(), present_.data(), teleported_.data(),  radius_.data()};
     for (std::size_t i = 0; i < datasets_.size(); ++i) datasets_[i].append(rows[i]);
   }
 
@@ -77,7 +86,7 @@ class FrameHdf5 final : public TraceExport {
   void write_head(TraceReader& trace) {
     const Hdf5Library& h5 = hdf5();
     write_hdf5_attribute(file_.id(), "format", "vestige trace", path_);
-    write_hdf5_attribute(file_.id(), "format_version", "1", path_);
+    write_hdf5_attribute(file_.id(), "format_version", fmt::format("{}", trace_format::version_with(shape_)), path_);
     for (const char* group : {"pose", "colliders", "session"}) {
       Hdf5Handle made(h5.create_group(file_.id(), group, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), h5.close_group, path_,
                       "make a group");
@@ -132,6 +141,7 @@ class FrameHdf5 final : public TraceExport {
   Hdf5Output file_;
   std::filesystem::path path_;
   std::function<void(hid_t file)> write_more_;
+  ColliderShape shape_;
   std::vector<std::uint32_t> ids_;
   std::map<std::uint32_t, std::size_t> place_of_;
   std::vector<Hdf5Column> datasets_;
@@ -140,6 +150,7 @@ class FrameHdf5 final : public TraceExport {
   std::vector<float> rotation_;
   std::vector<float> scale_;
   std::vector<double> position_;
+  std::vector<float> radius_;
   std::vector<std::uint8_t> present_;
   std::vector<std::uint8_t> teleported_;
 };

@@ -11,6 +11,8 @@
 #include "traces/base/sha256.hpp"
 #include "traces/hdf5/hdf5_reader.hpp"
 #include "traces/hdf5/hdf5_table.hpp"
+#include "traces/scene/radius.hpp"
+#include "traces/trace_file/session_check.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
@@ -47,8 +49,8 @@ class TraceHdf5::Implementation {
     scale_.expect({frames, nodes_, 3});
     if (nodes_ > kMostColumns) translation_.fail("has more than a million nodes");
     read_ids(frames);
-    const std::size_t row_bytes =
-        static_cast<std::size_t>(nodes_) * 10 * sizeof(float) + ids_.size() * (3 * sizeof(double) + 2) + 40;
+    const std::size_t row_bytes = static_cast<std::size_t>(nodes_) * 10 * sizeof(float) +
+                                  ids_.size() * (3 * sizeof(double) + sizeof(float) + 2) + 40;
     block_rows_ = std::max<std::size_t>(1, kBlockBytes / row_bytes);
     frames_ = frames;
   }
@@ -75,6 +77,7 @@ class TraceHdf5::Implementation {
   }
 
   double share() const { return static_cast<double>(row_) / static_cast<double>(frames_); }
+  ColliderShape shape() const { return has_radii() ? ColliderShape::kSpheres : ColliderShape::kPoints; }
 
   std::vector<std::string> node_names;
   std::string facing;
@@ -88,11 +91,12 @@ class TraceHdf5::Implementation {
     const std::string format = read_text("/", "format").value_or(kFormat);
     if (format != kFormat) throw Error(path_.string(), fmt::format("its format is '{}'", format), kHdf5Remedy);
     for (const char* object : {"/", kSession}) {
-      const std::string version(trace_format::kVersion);
-      const std::string said = read_text(object, std::string(trace_format::kVersionKey)).value_or(version);
-      if (said != version)
-        throw Error(path_.string(), fmt::format("its format version is '{}', not {}", said, version),
-                    "use the later version of vestige that wrote it");
+      const std::string said = read_text(object, std::string(trace_format::kVersionKey)).value_or("1");
+      const std::optional<int> version = trace_format::parse_version(said);
+      if (!version)
+        throw Error(path_.string(), fmt::format("its format version is '{}', which is no version", said), kHdf5Remedy);
+      if (*version > trace_format::kNewestVersion)
+        throw Error(path_.string(), unknown_version(said), "use the later version of vestige that wrote it");
     }
   }
 
@@ -111,6 +115,12 @@ class TraceHdf5::Implementation {
     position_.emplace(file_.id(), path_, "colliders/position").expect({frames, colliders, 3});
     present_.emplace(file_.id(), path_, "colliders/present").expect({frames, colliders});
     teleported_.emplace(file_.id(), path_, "colliders/teleported").expect({frames, colliders});
+    if (has_radii()) radius_.emplace(file_.id(), path_, "colliders/radius").expect({frames, colliders});
+  }
+
+  bool has_radii() const {
+    return hdf5().link_exists(file_.id(), "colliders", H5P_DEFAULT) > 0 &&
+           hdf5().link_exists(file_.id(), "colliders/radius", H5P_DEFAULT) > 0;
   }
 
   /// Empty if there are none.
@@ -166,6 +176,7 @@ class TraceHdf5::Implementation {
     position_->read(row_, rows, block_.position);
     present_->read(row_, rows, block_.present);
     teleported_->read(row_, rows, block_.teleported);
+    if (radius_) radius_->read(row_, rows, block_.radius);
   }
 
   void fill_pose(std::size_t place, Pose& pose) const {
@@ -189,9 +200,17 @@ class TraceHdf5::Implementation {
       if (block_.present[k] > 1) present_->fail(fmt::format("has {} in row {}, not 0 or 1", block_.present[k], row_));
       if (block_.teleported[k] > 1)
         teleported_->fail(fmt::format("has {} in row {}, not 0 or 1", block_.teleported[k], row_));
-      if (block_.present[k] != 0) frame.colliders.push_back({ids_[i], vector(block_.position, k)});
+      if (block_.present[k] != 0) frame.colliders.push_back({ids_[i], vector(block_.position, k), radius_at(k)});
       if (block_.teleported[k] != 0) frame.teleported.push_back(ids_[i]);
     }
+  }
+
+  float radius_at(std::size_t k) const {
+    if (!radius_) return 0;
+    const float radius_m = block_.radius[k];
+    if (const std::string_view fault = radius_fault(double{radius_m}); !fault.empty())
+      radius_->fail(fmt::format("has {} in row {}, which {}", radius_m, row_, fault));
+    return radius_m;
   }
 
   struct Block {
@@ -202,6 +221,7 @@ class TraceHdf5::Implementation {
     std::vector<float> rotation;
     std::vector<float> scale;
     std::vector<double> position;
+    std::vector<float> radius;
     std::vector<std::uint8_t> present;
     std::vector<std::uint8_t> teleported;
   };
@@ -217,6 +237,7 @@ class TraceHdf5::Implementation {
   std::optional<Hdf5Table> position_;
   std::optional<Hdf5Table> present_;
   std::optional<Hdf5Table> teleported_;
+  std::optional<Hdf5Table> radius_;
   hsize_t nodes_ = 0;
   hsize_t frames_ = 0;
   std::vector<std::uint32_t> ids_;
@@ -252,6 +273,9 @@ const std::vector<std::string>& TraceHdf5::node_names() const {
 }
 std::string TraceHdf5::facing() const {
   return implementation_->facing;
+}
+ColliderShape TraceHdf5::shape() const {
+  return implementation_->shape();
 }
 bool TraceHdf5::next(TraceFrame& frame) {
   return implementation_->next(frame);

@@ -33,6 +33,9 @@ class TraceHdf5 {
   /// Which way the avatar looks at rest, as recorded: `take_recorded_facing`. Empty: the file does not say it.
   std::string facing() const;
 
+  /// Whether the colliders may have a radius.
+  ColliderShape shape() const;
+
   bool next(TraceFrame& frame);
   double share() const;
 

@@ -13,9 +13,9 @@ namespace vestige {
 
 /// Reads a glTF avatar as one self-contained binary file. A self-contained .glb (or .vrm) is returned unchanged, byte
 /// for byte. Any other .glb, and a .gltf (recognised by its content), is packed together with the buffers that are
-/// read. Images, materials and extras are then left out; the same input gives the same bytes. "-" is standard input.
-/// Throws `Error` if the file does not exist or is not glTF, a buffer is missing or too short, or a URI leaves the
-/// folder.
+/// read. Images, materials and extras (but `radius_m` of nodes) are then left out; the same input gives the same bytes.
+/// "-" is standard input. Throws `Error` if the file does not exist or is not glTF, a buffer is missing or too short,
+/// or a URI leaves the folder.
 std::vector<std::byte> read_avatar_glb(const std::filesystem::path& path);
 
 /// Returns the built-in avatar if `avatar` is `kBuiltin`. Otherwise does the same as `read_avatar_glb`.

@@ -132,12 +132,20 @@ class Packer {
     }
   }
 
+  /// Of all extras, only that of nodes that are colliders is ever read.
+  void keep_radius(json& element, std::string_view list, std::size_t index) const {
+    if (list != "nodes") return;
+    const json extras = source_.extras(list, index);
+    if (extras.is_object() && extras.contains("radius_m")) element["extras"]["radius_m"] = extras["radius_m"];
+  }
+
   template <typename Change>
   void add_list(const char* name, std::string& text, const Change& change) {
     if (!source_.has(name)) return;
     text += fmt::format("\"{}\":[", name);
     for (std::size_t i = 0; i < source_.count(name); ++i) {
       json element = source_.element(name, i, report_);
+      keep_radius(element, name, i);
       change(element, i);
       text += i > 0 ? "," : "";
       text += element.dump();

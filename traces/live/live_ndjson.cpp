@@ -10,6 +10,7 @@
 
 #include "traces/base/nanoseconds.hpp"
 #include "traces/mcap/decode.hpp"
+#include "traces/scene/radius.hpp"
 
 namespace vestige {
 
@@ -95,14 +96,14 @@ std::uint32_t id_of(const Json& json) {
   return json.get<std::uint32_t>();
 }
 
-/// Reads the line's pose again, as floats. If a number outside the nodes exceeds float, the pose is converted from
-/// double instead. That rounds about one in some hundred million numbers twice, by one bit, which hardly matters so far
-/// out.
-FloatJson pose_in_floats(std::string_view line, const Json& pose) {
+/// Reads the line again, as floats. If a number that is no float of a node or a radius exceeds float, the line is
+/// converted from double instead. That rounds about one in some hundred million numbers twice, by one bit, which hardly
+/// matters so far out.
+FloatJson in_floats(std::string_view line, const Json& json) {
   try {
-    return FloatJson::parse(line).at("pose");
+    return FloatJson::parse(line);
   } catch (const nlohmann::json::exception&) {
-    return FloatJson(pose);
+    return FloatJson(json);
   }
 }
 
@@ -132,7 +133,14 @@ void read_joint(const FloatJson& joint, NodeLocal& node) {
   }
 }
 
-std::vector<ColliderSample> colliders_of(const Json& json) {
+float radius_of(const FloatJson& collider) {
+  const auto radius_m = number_of<float>(collider["radius"], "radius");
+  if (const std::string_view fault = radius_fault(double{radius_m}); !fault.empty())
+    throw Malformed(fmt::format("a collider's radius, {} m, {}", radius_m, fault));
+  return radius_m;
+}
+
+std::vector<ColliderSample> colliders_of(const Json& json, const FloatJson& floats) {
   if (!json.is_array()) throw Malformed("'colliders' is not an array");
   std::vector<ColliderSample> colliders;
   colliders.reserve(json.size());
@@ -140,6 +148,7 @@ std::vector<ColliderSample> colliders_of(const Json& json) {
     if (!one.is_object() || !one.contains("id") || !one.contains("position"))
       throw Malformed("a collider has no id or no position");
     colliders.push_back({.id = id_of(one["id"]), .position_m = position_of(one["position"], "position")});
+    if (one.contains("radius")) colliders.back().radius_m = radius_of(floats[colliders.size() - 1]);
   }
   std::vector<std::uint32_t> ids;
   ids.reserve(colliders.size());
@@ -239,14 +248,15 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     const auto time = json.find("time_s");
     frame.time_ns = time == json.end() ? std::max(now_ns, last_ns_) : time_of(*time, last_ns_);
     frame.pose = pose_;
+    FloatJson floats = in_floats(line, json);
     if (const auto pose = json.find("pose"); pose != json.end()) {
       if (!pose->is_object()) throw Malformed("'pose' is not an object");
       note_unknown(*pose, {"origin", "nodes", "joints"});
       frame.pose.origin_m = pose->contains("origin") ? position_of((*pose)["origin"], "origin") : glm::dvec3(0);
-      const FloatJson floats = pose_in_floats(line, *pose);
-      if (const auto nodes = floats.find("nodes"); nodes != floats.end()) {
+      const FloatJson& in_float = floats["pose"];
+      if (const auto nodes = in_float.find("nodes"); nodes != in_float.end()) {
         read_nodes(*nodes, frame.pose);
-      } else if (const auto joints = floats.find("joints"); joints != floats.end() && joints->is_object()) {
+      } else if (const auto joints = in_float.find("joints"); joints != in_float.end() && joints->is_object()) {
         frame.pose.nodes = rest_.nodes;
         for (const auto& [name, joint] : joints->items()) {
           const auto node = node_of_.find(name);
@@ -259,8 +269,8 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
       }
     }
     if (const auto colliders = json.find("colliders"); colliders != json.end()) {
-      frame.colliders = colliders_of(*colliders);
-      for (const Json& collider : *colliders) note_unknown(collider, {"id", "position"});
+      frame.colliders = colliders_of(*colliders, floats["colliders"]);
+      for (const Json& collider : *colliders) note_unknown(collider, {"id", "position", "radius"});
     }
     if (const auto teleported = json.find("teleported"); teleported != json.end())
       frame.teleported = teleported_of(*teleported);

@@ -10,6 +10,7 @@
 
 #include "traces/base/error.hpp"
 #include "traces/mcap/decode.hpp"
+#include "traces/scene/radius.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
@@ -38,6 +39,16 @@ double number(const OscMessage& message, std::size_t at) {
   if (std::abs(value) > trace_format::kFarthest_m)
     throw Malformed(fmt::format("{}: argument {} is beyond {:g}", message.address, at + 1, trace_format::kFarthest_m));
   return value;
+}
+
+/// Returns the radius of a collider in metres; 0 if the message has none.
+float radius(const OscMessage& message) {
+  constexpr std::size_t kPlace = 4;
+  if (message.arguments.size() <= kPlace) return 0;
+  const auto radius_m = static_cast<float>(number(message, kPlace));
+  if (const std::string_view fault = radius_fault(double{radius_m}); !fault.empty())
+    throw Malformed(fmt::format("{}: its radius, {} m, {}", message.address, radius_m, fault));
+  return radius_m;
 }
 
 std::uint32_t id(const OscMessage& message) {
@@ -116,6 +127,7 @@ bool VmcState::take(std::span<const std::byte> datagram) {
       } else if (message.address == "/vestige/collider") {
         id(message);
         for (std::size_t i = 1; i <= 3; ++i) number(message, i);
+        radius(message);
         if (!colliders_.contains(id(message)) && ++colliders > kMostColliders)
           throw Malformed("there are already a million colliders");
       } else if (message.address == "/vestige/collider/remove" || message.address == "/vestige/teleport") {
@@ -156,7 +168,8 @@ bool VmcState::apply(const OscMessage& message) {
     return true;
   }
   if (message.address == "/vestige/collider") {
-    colliders_[id(message)] = pose_.origin_m + glm::dvec3(number(message, 1), number(message, 2), number(message, 3));
+    const glm::dvec3 given(number(message, 1), number(message, 2), number(message, 3));
+    colliders_[id(message)] = {id(message), pose_.origin_m + given, radius(message)};
     return true;
   }
   if (message.address == "/vestige/collider/remove") return colliders_.erase(id(message)) > 0;
@@ -194,7 +207,7 @@ void VmcState::show(TraceFrame& frame) {
   top.rotation = glm::quat(glm::normalize(root_.rotation * glm::normalize(glm::dquat(top_local_.rotation))));
   frame.pose = pose_;
   frame.colliders.clear();
-  for (const auto& [collider, position_m] : colliders_) frame.colliders.push_back({collider, position_m});
+  for (const auto& [id, collider] : colliders_) frame.colliders.push_back(collider);
   frame.teleported = std::exchange(teleported_, {});
 }
 

@@ -24,6 +24,7 @@ namespace vestige {
 ///     /VMC/Ext/Bone/Pos  ,sfffffff           Unity's HumanBodyBones, position, rotation x y z w, in its parent
 ///
 ///     /vestige/collider  ,ifff or ,iddd      id, x, y, z: its position, in metres, in glTF's axes
+///                        ,iffff or ,idddd    the same, then its radius in metres; without it, it is a point
 ///     /vestige/collider/remove  ,i           the collider is gone
 ///     /vestige/teleport  ,i                  its path since the last frame is not a motion
 ///     /vestige/marker    ,s                  a place to find again
@@ -78,7 +79,7 @@ class VmcState {
   std::size_t top_ = 0;  ///< the outermost node above the hips, which the root moves
   NodeLocal top_local_;  ///< transform of `top_` without the root
   Placement root_;
-  std::map<std::uint32_t, glm::dvec3> colliders_;
+  std::map<std::uint32_t, ColliderSample> colliders_;
   std::vector<std::uint32_t> teleported_;
   std::vector<RecordingNote> markers_;
   std::set<std::string> bones_;

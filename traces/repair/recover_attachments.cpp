@@ -27,6 +27,7 @@ void Recoverer::take_metadata(mcap::Metadata metadata) {
   if (metadata.name == trace_format::kSessionName) {
     facts_.claims.session = metadata.metadata;
     drop_facing(metadata.metadata);
+    mend_version(metadata.metadata);
   }
   output_.write(metadata);
   ++result_.metadata;
@@ -42,6 +43,25 @@ void Recoverer::drop_facing(mcap::StringMap& session) {
   const bool is_axis = facing_named(facing->second).has_value();
   if (!is_axis) repaired(fmt::format("the session's facing '{}', which is no axis, was left out", facing->second));
   if (!is_axis || is_other) session.erase(facing);
+}
+
+/// Mends a format version that is not known, if the file has the schemas of a known one: then a bit of it was damaged.
+void Recoverer::mend_version(mcap::StringMap& session) {
+  const auto text = session.find(std::string(trace_format::kVersionKey));
+  if (text == session.end()) return;
+  const std::optional<int> said = trace_format::parse_version(text->second);
+  if (said && *said <= trace_format::kNewestVersion) return;
+  const auto& schemas = output_.definitions().schemas;
+  for (int version = trace_format::kPointsVersion; version <= trace_format::kNewestVersion; ++version) {
+    const mcap::Schema known = trace_format::schema_of(Stream::kColliders, version);
+    const bool has_it = std::ranges::any_of(
+        schemas, [&](const auto& entry) { return entry.second.name == known.name && entry.second.data == known.data; });
+    if (!has_it) continue;
+    repaired(
+        fmt::format("the session's format version '{}' became {}, whose schemas the file has", text->second, version));
+    text->second = fmt::format("{}", version);
+    return;
+  }
 }
 
 AttachmentFacts Recoverer::facts() const {

@@ -59,6 +59,7 @@ class Recoverer {
   void take_attachment(mcap::Bytes content);
   void take_metadata(mcap::Metadata metadata);
   void drop_facing(mcap::StringMap& session);
+  void mend_version(mcap::StringMap& session);
   void note_attachment(const mcap::Attachment& attachment, std::string_view name, bool is_whole);
   void replace(const std::string& name, const Replacement& replacement);
   void write_replaced();

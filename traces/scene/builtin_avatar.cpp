@@ -2,26 +2,20 @@
 
 #include <span>
 
-// The three files are embedded in the program unchanged.
-#define VESTIGE_EMBED(symbol, file)                                                                        \
-  asm(".pushsection .rodata\n" #symbol "_begin:\n.incbin \"" VESTIGE_MANNEQUIN_DIR "/" file "\"\n" #symbol \
-      "_end:\n"                                                                                            \
-      ".popsection\n");                                                                                    \
-  extern "C" const std::byte symbol##_begin[];                                                             \
-  extern "C" const std::byte symbol##_end[]
+#include "traces/base/embed.hpp"
 
-VESTIGE_EMBED(vestige_mannequin_glb, "mannequin.glb");
-VESTIGE_EMBED(vestige_mannequin_map_png, "actuator_map.png");
-VESTIGE_EMBED(vestige_mannequin_map_json, "actuator_map.json");
+VESTIGE_EMBED(vestige_mannequin_glb, VESTIGE_MANNEQUIN_DIR "/mannequin.glb");
+VESTIGE_EMBED(vestige_mannequin_map_png, VESTIGE_MANNEQUIN_DIR "/actuator_map.png");
+VESTIGE_EMBED(vestige_mannequin_map_json, VESTIGE_MANNEQUIN_DIR "/actuator_map.json");
 
 namespace vestige {
 
 std::vector<std::byte> builtin_avatar_glb() {
-  return {vestige_mannequin_glb_begin, vestige_mannequin_glb_end};
+  return VESTIGE_EMBEDDED(vestige_mannequin_glb);
 }
 
 std::vector<std::byte> builtin_actuator_map_png() {
-  return {vestige_mannequin_map_png_begin, vestige_mannequin_map_png_end};
+  return VESTIGE_EMBEDDED(vestige_mannequin_map_png);
 }
 
 std::string builtin_actuator_map_json() {

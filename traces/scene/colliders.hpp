@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,9 @@ class ColliderSource {
   /// between calls.
   virtual void sample(double time_s, std::vector<ColliderSample>& out) = 0;
 
+  /// Whether the colliders may have a radius.
+  virtual ColliderShape shape() const { return ColliderShape::kPoints; }
+
   /// The ids of colliders that jumped to their position in the last `sample`. Their path is not a line segment and must
   /// not be tested.
   const std::vector<std::uint32_t>& teleported() const { return teleported_; }
@@ -42,5 +46,8 @@ class ColliderSource {
  protected:
   std::vector<std::uint32_t> teleported_;
 };
+
+/// Returns the same colliders, each with this radius in every frame. 0: points.
+std::unique_ptr<ColliderSource> with_radius(std::unique_ptr<ColliderSource> source, float radius_m);
 
 }  // namespace vestige

@@ -32,6 +32,10 @@ void append_json(std::string& out, const std::vector<ColliderSample>& colliders)
   for (std::size_t i = 0; i < colliders.size(); ++i) {
     fmt::format_to(std::back_inserter(out), R"({}{{"id":{},"position":)", i == 0 ? "" : ",", colliders[i].id);
     append_json(out, colliders[i].position_m);
+    if (colliders[i].radius_m != 0) {
+      out += R"(,"radius":)";
+      append_json(out, colliders[i].radius_m);
+    }
     out += '}';
   }
   out += ']';

@@ -10,11 +10,15 @@
 
 namespace vestige {
 
-/// A collider: a point with an id that stays the same over the whole trace.
+/// A collider: a sphere with an id that stays the same over the whole trace.
 struct ColliderSample {
   std::uint32_t id = 0;
-  glm::dvec3 position_m = glm::dvec3(0);  ///< world
+  glm::dvec3 position_m = glm::dvec3(0);  ///< world; of the centre
+  float radius_m = 0;                     ///< 0 is a point; may change from frame to frame
 };
+
+/// kPoints: no collider of the trace has a radius. kSpheres: each may have one.
+enum class ColliderShape : std::uint8_t { kPoints, kSpheres };
 
 /// Most frames of a trace, which numbers them in 32 bits.
 inline constexpr double kMostTraceFrames = 4294967295.0;

@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "traces/base/error.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/scene/builtin_avatar.hpp"
 #include "traces/scene/facing.hpp"
@@ -80,7 +81,32 @@ void AttachmentCheck::present(std::string_view name, const std::string& sha256) 
   }
 }
 
+std::optional<SessionProblem> check_version(const Session& session) {
+  const auto text = session.find(std::string(trace_format::kVersionKey));
+  if (text == session.end()) return {};
+  const std::optional<int> version = trace_format::parse_version(text->second);
+  if (!version)
+    return SessionProblem{fmt::format("its format version is '{}', which is no version", text->second),
+                          "its frames are read as far as they fit; `vestige recover` mends the number"};
+  if (*version <= trace_format::kNewestVersion) return {};
+  return SessionProblem{unknown_version(text->second), "`vestige replay` refuses the file"};
+}
+
 }  // namespace
+
+std::string unknown_version(std::string_view version) {
+  return fmt::format("its format version is {}, and this vestige reads versions up to {}", version,
+                     trace_format::kNewestVersion);
+}
+
+void refuse_later_version(std::string_view file, const Session& session) {
+  const auto text = session.find(std::string(trace_format::kVersionKey));
+  if (text == session.end()) return;
+  const std::optional<int> version = trace_format::parse_version(text->second);
+  if (!version || *version <= trace_format::kNewestVersion) return;
+  throw Error(std::string(file), unknown_version(text->second),
+              "use the later version of vestige that wrote it; if the file is damaged, `vestige recover` may mend it");
+}
 
 mcap::StringMap pose_metadata(const StreamTable& streams) {
   const mcap::Channel* pose = streams.find(trace_format::Stream::kPose);
@@ -108,11 +134,7 @@ std::vector<SessionProblem> check_session(std::string_view file, const Attachmen
   for (const std::string_view name : trace_format::kAttachmentNames)
     if (!sha256.contains(std::string(name))) check.missing(name);
   std::vector<SessionProblem> problems = check.take_problems();
-  const auto version = claims.session.find(std::string(trace_format::kVersionKey));
-  if (version != claims.session.end() && version->second != trace_format::kVersion)
-    problems.insert(problems.begin(),
-                    {fmt::format("its format version is '{}', not {}", version->second, trace_format::kVersion),
-                     "a later version of vestige wrote it; this version does not understand the new parts"});
+  if (auto problem = check_version(claims.session)) problems.insert(problems.begin(), *std::move(problem));
   const auto facing = claims.session.find(std::string(trace_format::kFacingKey));
   if (facing != claims.session.end() && !facing_named(facing->second))
     problems.push_back({fmt::format("the session records the facing '{}', which is no axis", facing->second),

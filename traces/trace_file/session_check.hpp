@@ -41,6 +41,12 @@ struct SessionProblem {
 std::vector<SessionProblem> check_session(std::string_view file, const AttachmentClaims& claims,
                                           const std::map<std::string, std::string>& sha256);
 
+/// Returns "its format version is 9, and this vestige reads versions up to 2".
+std::string unknown_version(std::string_view version);
+
+/// Throws `Error` if a later version of vestige wrote the file: its `format_version` is greater than the newest known.
+void refuse_later_version(std::string_view file, const Session& session);
+
 /// Returns the command that puts an intact attachment into a file: "`vestige recover a.mcap --avatar FILE.glb -o
 /// mended.mcap`". It says `builtin` in place of FILE if that is the recorded one.
 std::string replacing_command(std::string_view file, const AttachmentClaims& claims, std::string_view attachment);

@@ -1,13 +1,16 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "traces/mcap/record.hpp"
+#include "traces/scene/trace.hpp"
 
-/// The trace file's own layer above MCAP; format version 1, whose meaning never changes.
+/// The trace file's own layer above MCAP; format versions 1 and 2, whose meaning never changes. A trace of version 1
+/// has colliders without a size; in version 2 each has a radius.
 ///
 ///     Header      profile "vestige", library "vestige VERSION"
 ///     Metadata    "session": format_version, facing, sha256 of each attachment, and what the recorder adds
@@ -24,7 +27,9 @@
 namespace vestige::trace_format {
 
 inline constexpr std::string_view kProfile = "vestige";
-inline constexpr std::string_view kVersion = "1";
+inline constexpr int kPointsVersion = 1;
+inline constexpr int kSpheresVersion = 2;
+inline constexpr int kNewestVersion = kSpheresVersion;
 inline constexpr std::string_view kVersionKey = "format_version";
 inline constexpr std::string_view kSessionName = "session";
 inline constexpr std::string_view kRecoveredName = "recovered";  // what `recover` could not save
@@ -61,16 +66,24 @@ inline constexpr std::array<StreamFormat, 3> kStreams = {{
     {Stream::kEvents, 3, "/events", "vestige.trace.Event"},
 }};
 
+/// Returns the format version of a trace whose colliders have this shape.
+constexpr int version_with(ColliderShape shape) {
+  return shape == ColliderShape::kPoints ? kPointsVersion : kSpheresVersion;
+}
+
+/// Returns a `format_version`; nothing if the text is no whole number above 0.
+std::optional<int> parse_version(std::string_view text);
+
 /// Returns "sha256:NAME", the key of an attachment's SHA-256.
 std::string sha256_key(std::string_view attachment);
 
 /// Returns one of Vestige's own attachments, with its media type.
 mcap::Attachment attachment_of(std::string_view name, mcap::Bytes data);
 
-/// Returns the schema record of a stream, with its compiled FlatBuffers schema.
-mcap::Schema schema_of(Stream stream);
-/// Returns the channel record of a stream. The writer adds the node names to /pose.
-mcap::Channel channel_of(Stream stream);
+/// Returns the schema record of a stream in this format version, with its compiled FlatBuffers schema.
+mcap::Schema schema_of(Stream stream, int version = kPointsVersion);
+/// Returns the channel record of a stream in this format version. The writer adds the node names to /pose.
+mcap::Channel channel_of(Stream stream, int version = kPointsVersion);
 
 bool is_ours(const mcap::Schema& schema);
 

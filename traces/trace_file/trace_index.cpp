@@ -158,6 +158,7 @@ TraceIndex read_index(const mcap::ByteSource& source) {
 
 TraceIndex index_trace(const mcap::ByteSource& source) {
   TraceIndex index = read_index(source);
+  refuse_later_version(source.name(), index.session);
   check(source, index);
   return index;
 }

@@ -32,7 +32,7 @@ struct TraceIndex {
 };
 
 /// Reads the index from the summary if that is complete, otherwise by scanning the file. Throws `Error` if the file is
-/// not an MCAP file or reading fails.
+/// not an MCAP file, reading fails, or a later version of vestige wrote it.
 TraceIndex index_trace(const mcap::ByteSource& source);
 
 /// "FILE: at byte 123: a Chunk: its CRC is wrong; 456 bytes are lost".

@@ -1,7 +1,7 @@
 #include "traces/trace_file/trace_messages.hpp"
 
 #include <fmt/format.h>
-#include <schemas/collider_frame_generated.h>
+#include <schemas/collider_frame_2_generated.h>
 #include <schemas/event_generated.h>
 #include <schemas/pose_frame_generated.h>
 
@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "traces/mcap/decode.hpp"
+#include "traces/scene/radius.hpp"
 
 namespace vestige {
 
@@ -28,6 +29,18 @@ std::optional<std::uint32_t> find_duplicate(std::vector<std::uint32_t>& ids) {
   std::sort(ids.begin(), ids.end());
   const auto twice = std::adjacent_find(ids.begin(), ids.end());
   return twice == ids.end() ? std::nullopt : std::optional(*twice);
+}
+
+/// Throws `mcap::Malformed` if the frame has another number of radii than colliders, or a radius that none can have.
+void require_valid_radii(const trace::ColliderFrame& table) {
+  const auto* radii = table.radii();
+  if (radii == nullptr) return;
+  const std::size_t colliders = table.colliders() == nullptr ? 0 : table.colliders()->size();
+  if (radii->size() != colliders)
+    throw mcap::Malformed(fmt::format("it has {} colliders, but {} radii", colliders, radii->size()));
+  for (unsigned i = 0; i < radii->size(); ++i)
+    if (const std::string_view fault = radius_fault(double{radii->Get(i)}); !fault.empty())
+      throw mcap::Malformed(fmt::format("the radius of collider {} {}", table.colliders()->Get(i)->id(), fault));
 }
 
 }  // namespace
@@ -67,7 +80,13 @@ mcap::Bytes MessageEncoder::colliders(std::int64_t time_ns, const std::vector<Co
   for (const ColliderSample& collider : colliders) {
     *target++ = trace::Collider(collider.id, collider.position_m.x, collider.position_m.y, collider.position_m.z);
   }
-  buffer.Finish(trace::CreateColliderFrame(buffer, time_ns, vector));
+  flatbuffers::Offset<flatbuffers::Vector<float>> radii;
+  if (std::ranges::any_of(colliders, [](const ColliderSample& collider) { return collider.radius_m != 0; })) {
+    float* radius = nullptr;
+    radii = buffer.CreateUninitializedVector(colliders.size(), &radius);
+    for (const ColliderSample& collider : colliders) *radius++ = flatbuffers::EndianScalar(collider.radius_m);
+  }
+  buffer.Finish(trace::CreateColliderFrame(buffer, time_ns, vector, radii));
   return finished(buffer);
 }
 
@@ -119,8 +138,10 @@ std::int64_t MessageDecoder::colliders_time_ns(mcap::Bytes message) {
 }
 
 void MessageDecoder::colliders(mcap::Bytes message, std::vector<ColliderSample>& colliders) {
-  const auto* vector = verified<trace::ColliderFrame>(message).colliders();
+  const auto& table = verified<trace::ColliderFrame>(message);
+  const auto* vector = table.colliders();
   colliders.clear();
+  require_valid_radii(table);
   if (vector == nullptr) return;
   colliders.reserve(vector->size());
   bool ascending = true;
@@ -128,6 +149,8 @@ void MessageDecoder::colliders(mcap::Bytes message, std::vector<ColliderSample>&
     if (!colliders.empty() && collider->id() <= colliders.back().id) ascending = false;
     colliders.push_back({.id = collider->id(), .position_m = {collider->x(), collider->y(), collider->z()}});
   }
+  if (const auto* radii = table.radii())
+    for (std::size_t i = 0; i < colliders.size(); ++i) colliders[i].radius_m = radii->Get(static_cast<unsigned>(i));
   if (ascending) return;
   ids_.clear();
   for (const ColliderSample& collider : colliders) ids_.push_back(collider.id);

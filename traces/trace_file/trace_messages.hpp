@@ -51,7 +51,7 @@ class MessageDecoder {
   std::size_t pose_node_count(mcap::Bytes message);
   std::int64_t pose_time_ns(mcap::Bytes message);
   std::int64_t colliders_time_ns(mcap::Bytes message);
-  /// Throws `mcap::Malformed` if an id occurs twice.
+  /// Throws `mcap::Malformed` if an id occurs twice or a radius is impossible (`radius_fault`).
   void colliders(mcap::Bytes message, std::vector<ColliderSample>& colliders);
   /// Decodes an event, whose text is valid until the next call.
   TraceEvent event(mcap::Bytes message);

@@ -27,12 +27,23 @@ constexpr std::size_t kMostWarnings = 1000;
 constexpr std::size_t kMostColliders = 1'000'000;  ///< in a trace; also the most teleports in a frame
 constexpr std::string_view kRecover = "run `vestige recover`, which may still find a part of it";
 
+/// A session that was damaged says nothing, so its colliders may have radii.
+ColliderShape recorded_shape(const Session& session) {
+  const auto text = session.find(std::string(trace_format::kVersionKey));
+  const bool is_first =
+      text != session.end() && trace_format::parse_version(text->second) == trace_format::kPointsVersion;
+  return is_first ? ColliderShape::kPoints : ColliderShape::kSpheres;
+}
+
 }  // namespace
 
 class TraceReader::Implementation {
  public:
   explicit Implementation(const std::filesystem::path& path)
-      : source_(path), index_(index_trace(source_)), frames_(*this, PoseDecoding::kFull) {
+      : source_(path),
+        index_(index_trace(source_)),
+        shape_(recorded_shape(index_.session)),
+        frames_(*this, PoseDecoding::kFull) {
     if (index_.recovered) recovered_ = describe_recovered(*index_.recovered);
     for (const mcap::Damage& damage : index_.damages.kept()) warn(damage);
     require_trace();
@@ -40,6 +51,7 @@ class TraceReader::Implementation {
 
   const TraceIndex& index() const { return index_; }
   const std::vector<std::string>& node_names() const { return node_names_; }
+  ColliderShape shape() const { return shape_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
   const std::string& recovered() const { return recovered_; }
   bool complete() const { return index_.has_footer && warnings_.empty(); }
@@ -48,6 +60,7 @@ class TraceReader::Implementation {
 
   struct Census {
     std::vector<std::uint32_t> collider_ids;  ///< ascending
+    std::vector<std::uint32_t> sphere_ids;    ///< ascending
     std::uint64_t frames = 0;
     std::uint64_t dropped = 0;
   };
@@ -96,6 +109,7 @@ class TraceReader::Implementation {
 
   mcap::FileSource source_;
   TraceIndex index_;
+  ColliderShape shape_;
   std::vector<std::string> node_names_;
   std::vector<std::string> warnings_;
   std::string recovered_;
@@ -145,6 +159,7 @@ const TraceReader::Implementation::Census& TraceReader::Implementation::census()
   if (census_) return *census_;
   Census census;
   std::set<std::uint32_t> ids;
+  std::set<std::uint32_t> sphere_ids;
   Frames frames(*this, PoseDecoding::kNodeCount);
   TraceFrame frame;
   std::vector<std::uint32_t> previous;
@@ -152,7 +167,10 @@ const TraceReader::Implementation::Census& TraceReader::Implementation::census()
   while (frames.next(frame)) {
     ++census.frames;
     current.clear();
-    for (const ColliderSample& collider : frame.colliders) current.push_back(collider.id);
+    for (const ColliderSample& collider : frame.colliders) {
+      current.push_back(collider.id);
+      if (collider.radius_m > 0) sphere_ids.insert(collider.id);
+    }
     if (current == previous) continue;
     previous = current;
     ids.insert(current.begin(), current.end());
@@ -161,6 +179,7 @@ const TraceReader::Implementation::Census& TraceReader::Implementation::census()
                   "number the colliders anew: an id may be used again when its collider is gone");
   }
   census.collider_ids.assign(ids.begin(), ids.end());
+  census.sphere_ids.assign(sphere_ids.begin(), sphere_ids.end());
   census.dropped = frames.dropped();
   return census_.emplace(std::move(census));
 }
@@ -223,6 +242,11 @@ void TraceReader::Implementation::Frames::take(TraceFrame& frame) {
   }
   if (colliders_taken_) refuse("has its colliders twice");
   decoder_.colliders(message_.message.data, frame.colliders);
+  if (owner_.shape_ == ColliderShape::kPoints &&
+      std::ranges::any_of(frame.colliders, [](const ColliderSample& collider) { return collider.radius_m != 0; })) {
+    frame.colliders.clear();
+    throw Malformed("its colliders have radii, which format version 1 does not have");
+  }
   colliders_taken_ = true;
 }
 
@@ -270,11 +294,17 @@ std::span<const std::byte> TraceReader::actuator_map_png() const {
 std::span<const std::byte> TraceReader::actuator_map_json() const {
   return implementation_->index().actuator_map_json;
 }
+ColliderShape TraceReader::shape() const {
+  return implementation_->shape();
+}
 const std::vector<std::string>& TraceReader::node_names() const {
   return implementation_->node_names();
 }
 const std::vector<std::uint32_t>& TraceReader::collider_ids() {
   return implementation_->census().collider_ids;
+}
+const std::vector<std::uint32_t>& TraceReader::sphere_ids() {
+  return implementation_->census().sphere_ids;
 }
 std::uint64_t TraceReader::frame_count() {
   return implementation_->census().frames;

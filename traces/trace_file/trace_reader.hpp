@@ -18,8 +18,9 @@ namespace vestige {
 /// `complete()`.
 ///
 /// Every function throws `Error` with the name of the file and the offset. Causes: not an MCAP file, not a Vestige
-/// trace, no avatar or a damaged one, more than a million colliders. Also a frame that contradicts the rest: frames out
-/// of order, time running backwards, another number of nodes than the avatar has, a collider twice.
+/// trace, a later `format_version`, no avatar or a damaged one, more than a million colliders. Also a frame that
+/// contradicts the rest: frames out of order, time running backwards, another number of nodes than the avatar has, a
+/// collider twice.
 class TraceReader {
  public:
   /// "-" is standard input, which is copied to a nameless temporary file.
@@ -34,12 +35,16 @@ class TraceReader {
   std::span<const std::byte> avatar_glb() const;
   std::span<const std::byte> actuator_map_png() const;   ///< empty: the trace has none
   std::span<const std::byte> actuator_map_json() const;  ///< empty: the trace has none
+  /// Whether the trace's colliders may have a radius: kPoints in format version 1.
+  ColliderShape shape() const;
   /// The names of the avatar's nodes, in order. Each frame's pose has as many nodes.
   const std::vector<std::string>& node_names() const;
 
-  /// The ids of all colliders in the trace, ascending. The first call of this or the next two functions reads the whole
-  /// trace once, without decoding poses. `next` still continues where it was.
+  /// The ids of all colliders in the trace, ascending. The first call of this or the next three functions reads the
+  /// whole trace once, without decoding poses. `next` still continues where it was.
   const std::vector<std::uint32_t>& collider_ids();
+  /// The ids of the colliders that have a radius in some frame, ascending.
+  const std::vector<std::uint32_t>& sphere_ids();
   /// The total number of frames that `next` delivers.
   std::uint64_t frame_count();
   /// The number of messages that the recorder noted as lost.

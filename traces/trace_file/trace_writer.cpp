@@ -14,6 +14,7 @@
 #include "traces/base/sha256.hpp"
 #include "traces/files/append_file.hpp"
 #include "traces/mcap/writer.hpp"
+#include "traces/scene/radius.hpp"
 #include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_messages.hpp"
 #include "traces/trace_file/viz_messages.hpp"
@@ -111,7 +112,8 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
               writer_options(options)),
       node_count_(avatar.nodes.size()) {
   const std::vector<mcap::Attachment> all = list_attachments(attachments);
-  session.insert_or_assign(std::string(trace_format::kVersionKey), std::string(trace_format::kVersion));
+  session.insert_or_assign(std::string(trace_format::kVersionKey),
+                           fmt::format("{}", trace_format::version_with(options.shape)));
   session.emplace(trace_format::kFacingKey, to_string(avatar.facing.axis));
   mcap::StringMap of_poses = {{std::string(trace_format::kNodesKey), node_names(avatar)}};
   for (const mcap::Attachment& one : all) {
@@ -132,9 +134,10 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
 }
 
 void TraceWriter::Implementation::define(Stream stream, const mcap::StringMap& metadata) {
-  mcap::Channel channel = trace_format::channel_of(stream);
+  const int version = trace_format::version_with(options_.shape);
+  mcap::Channel channel = trace_format::channel_of(stream, version);
   channel.metadata.insert(metadata.begin(), metadata.end());
-  writer_.write(trace_format::schema_of(stream));
+  writer_.write(trace_format::schema_of(stream, version));
   writer_.write(channel);
 }
 
@@ -155,7 +158,13 @@ void TraceWriter::Implementation::require_valid(const TraceFrame& frame) {
   if (frame.pose.nodes.size() != node_count_)
     refuse(frame, fmt::format("its pose has {} nodes, but the avatar has {}", frame.pose.nodes.size(), node_count_));
   ids_.clear();
-  for (const ColliderSample& collider : frame.colliders) ids_.push_back(collider.id);
+  for (const ColliderSample& collider : frame.colliders) {
+    ids_.push_back(collider.id);
+    if (const std::string_view fault = radius_fault(double{collider.radius_m}); !fault.empty())
+      refuse(frame, fmt::format("the radius of collider {}, {} m, {}", collider.id, collider.radius_m, fault));
+    if (options_.shape == ColliderShape::kPoints && collider.radius_m != 0)
+      refuse(frame, fmt::format("collider {} has a radius in a trace of points", collider.id));
+  }
   std::sort(ids_.begin(), ids_.end());
   const auto twice = std::adjacent_find(ids_.begin(), ids_.end());
   if (twice != ids_.end()) refuse(frame, fmt::format("it has collider {} twice", *twice));
@@ -242,7 +251,7 @@ std::uint64_t TraceWriter::Implementation::bytes_if_finished_with(const TraceFra
   // Size of a FlatBuffer, its message record and its index entry, without the parts counted below.
   constexpr std::uint64_t kMessageBytes = 192;
   constexpr std::uint64_t kNodeBytes = 40;
-  constexpr std::uint64_t kColliderBytes = 32;
+  constexpr std::uint64_t kColliderBytes = 36;
   constexpr std::uint64_t kEventsChannelBytes = 4096;  // holds its schema twice
   std::uint64_t bytes = writer_.bytes_if_finished() + 1024;
   bytes += 2 * kMessageBytes + kNodeBytes * frame.pose.nodes.size() + kColliderBytes * frame.colliders.size();

@@ -34,6 +34,7 @@ struct TraceWriterOptions {
   double chunk_s = 0.1;                            ///< age, by the wall clock, at which a chunk is closed
   ChunkSync sync = ChunkSync::kNone;
   Viz viz = Viz::kNone;
+  ColliderShape shape = ColliderShape::kPoints;  ///< kSpheres: the trace says format version 2
 };
 
 /// The attachments that make a trace one self-contained file. The caller keeps the bytes alive until the writer is

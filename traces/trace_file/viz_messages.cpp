@@ -1,9 +1,7 @@
 #include "traces/trace_file/viz_messages.hpp"
 
 #include <fmt/format.h>
-#include <schemas/frame_transforms_bfbs_generated.h>
 #include <schemas/frame_transforms_generated.h>
-#include <schemas/scene_update_bfbs_generated.h>
 #include <schemas/scene_update_generated.h>
 
 #include <algorithm>
@@ -13,7 +11,11 @@
 #include <span>
 #include <utility>
 
+#include "traces/base/embed.hpp"
 #include "traces/trace_file/trace_format.hpp"
+
+VESTIGE_EMBED(vestige_schema_frame_transforms, VESTIGE_SCHEMA_DIR "/frame_transforms.bfbs");
+VESTIGE_EMBED(vestige_schema_scene_update, VESTIGE_SCHEMA_DIR "/scene_update.bfbs");
 
 namespace vestige {
 
@@ -21,15 +23,9 @@ namespace {
 
 constexpr const char* kWorld = "world";
 constexpr const char* kAvatar = "avatar";
-constexpr double kCollider_m = 0.02;  ///< diameter: a point has none, but must be visible
+constexpr double kPoint_m = 0.02;  ///< diameter: a point has none, but must be visible
 constexpr double kBone_m = 0.008;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-
-template <typename BinarySchema>
-std::vector<std::byte> compiled() {
-  const auto bytes = std::as_bytes(std::span(BinarySchema::data(), BinarySchema::size()));
-  return {bytes.begin(), bytes.end()};
-}
 
 foxglove::Time time_of(std::int64_t time_ns) {
   return {static_cast<std::uint32_t>(time_ns / kSecond_ns), static_cast<std::uint32_t>(time_ns % kSecond_ns)};
@@ -74,11 +70,11 @@ std::vector<mcap::Schema> schemas() {
   return {{.id = kTransformsId,
            .name = "foxglove.FrameTransforms",
            .encoding = encoding,
-           .data = compiled<foxglove::FrameTransformsBinarySchema>()},
+           .data = VESTIGE_EMBEDDED(vestige_schema_frame_transforms)},
           {.id = kSceneId,
            .name = "foxglove.SceneUpdate",
            .encoding = encoding,
-           .data = compiled<foxglove::SceneUpdateBinarySchema>()}};
+           .data = VESTIGE_EMBEDDED(vestige_schema_scene_update)}};
 }
 
 std::vector<mcap::Channel> channels() {
@@ -194,10 +190,11 @@ mcap::Bytes VizEncoder::scene(const TraceFrame& frame) {
   add_entity(kAvatar, "skeleton", [&](auto& entity) { entity.add_lines(lines); });
 
   const auto colour = foxglove::CreateColor(buffer, 0.9, 0.35, 0.2, 1.0);
-  const auto size = builder_->vector(glm::dvec3(kCollider_m));
   std::set<std::uint32_t> shown;
   for (const ColliderSample& collider : frame.colliders) {
     shown.insert(collider.id);
+    const double diameter_m = collider.radius_m > 0 ? 2 * double{collider.radius_m} : kPoint_m;
+    const auto size = builder_->vector(glm::dvec3(diameter_m));
     const auto sphere = foxglove::CreateSpherePrimitive(buffer, builder_->pose(collider.position_m), size, colour);
     const auto spheres = buffer.CreateVector(&sphere, 1);
     add_entity(kWorld, fmt::format("collider {}", collider.id), [&](auto& entity) { entity.add_spheres(spheres); });

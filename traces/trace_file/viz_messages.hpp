@@ -38,8 +38,8 @@ class VizEncoder {
   /// have the names of the nodes. A frame gets its number appended if its node has no name or shares its name with
   /// another frame. Frames have no scale, so scale only affects positions.
   mcap::Bytes transforms(const TraceFrame& frame);
-  /// Returns the skeleton as lines between its nodes, and each collider as a sphere named by the collider's id. Deletes
-  /// the spheres of colliders that have gone since the last message.
+  /// Returns the skeleton as lines between its nodes, and each collider as a sphere of its size (a point: 2 cm wide)
+  /// named by the collider's id. Deletes the spheres of colliders that have gone since the last message.
   mcap::Bytes scene(const TraceFrame& frame);
 
   /// Upper bound of the size of both messages together.

@@ -40,14 +40,14 @@ TEST(GltfValidator, FindsNoErrorInTheExportOfATraceWhoseAvatarHasFaults) {
   const std::vector<std::byte> glb = builder.glb();
   const Avatar avatar = parse_avatar_glb(glb, "a.glb");
   const test::TemporaryFolder folder;
-  const auto file = make_frame_gltf(folder / "a.glb", Overwrite::kRefuse, avatar, glb, {7});
+  const auto file = make_frame_gltf(folder / "a.glb", Overwrite::kRefuse, avatar, glb, {.all = {7, 8}, .spheres = {8}});
   for (int i = 0; i < 3; ++i) {
     TraceFrame frame;
     frame.time_ns = i * 1'000'000;
     frame.pose = rest_pose(avatar);
     frame.pose.origin_m.x = i;
     frame.pose.nodes[2].translation.y = static_cast<float>(i);
-    frame.colliders = {{7, glm::dvec3(0.5 * i, 0, 0)}};
+    frame.colliders = {{7, glm::dvec3(0.5 * i, 0, 0)}, {8, glm::dvec3(1, 0, 0), 0.1F * static_cast<float>(i + 1)}};
     file->write(frame);
   }
   file->commit();

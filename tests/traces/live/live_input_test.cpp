@@ -123,6 +123,10 @@ TEST_F(LiveLines, ThatAreWrongAreLeftOutAndCounted) {
       "{\"colliders\":[{\"id\":-1,\"position\":[0,0,0]}]}\n",
       "{\"colliders\":[{\"id\":1,\"position\":[0,0]}]}\n",
       "{\"colliders\":[{\"id\":1,\"position\":[0,0,0]},{\"id\":1,\"position\":[0,0,0]}]}\n",
+      "{\"colliders\":[{\"id\":1,\"position\":[0,0,0],\"radius\":-1}]}\n",
+      "{\"colliders\":[{\"id\":1,\"position\":[0,0,0],\"radius\":11}]}\n",
+      "{\"colliders\":[{\"id\":1,\"position\":[0,0,0],\"radius\":\"nan\"}]}\n",
+      "{\"colliders\":[{\"id\":1,\"position\":[0,0,0],\"radius\":[1]}]}\n",
       "{\"teleported\":{}}\n",
       "{\"frame\":0}\n",
       "{\"time_s\":0.4}\n",
@@ -429,6 +433,27 @@ TEST_F(Vmc, CollidersComeGoAndJump) {
   state.show(frame);
   ASSERT_EQ(frame.colliders.size(), 1U);
   EXPECT_TRUE(frame.teleported.empty());
+}
+
+TEST_F(Vmc, ACollidersRadiusIsThatOfItsLastMessage) {
+  VmcState state(avatar_, glm::dvec3(0));
+  const auto radius = [&] {
+    TraceFrame frame;
+    state.show(frame);
+    return frame.colliders.at(0).radius_m;
+  };
+  state.take(collider(1, 1, 2, 3, 0.05F));
+  EXPECT_EQ(radius(), 0.05F);
+  OscBuilder twice(lo_message_new());
+  lo_message_add_int32(twice.get(), 1);
+  for (const double value : {1.0, 2.0, 3.0, 0.1}) lo_message_add_double(twice.get(), value);
+  state.take(bytes_of("/vestige/collider", twice));
+  EXPECT_EQ(radius(), 0.1F);
+  for (const float wrong : {-1.0F, 11.0F, NAN}) state.take(collider(1, 1, 2, 3, wrong));
+  EXPECT_EQ(state.malformed(), 3U);
+  EXPECT_EQ(radius(), 0.1F);
+  state.take(collider(1, 1, 2, 3));
+  EXPECT_EQ(radius(), 0.0F) << "a message without a radius is that of a point";
 }
 
 TEST_F(Vmc, CollidersStandWhereTheAvatarDoes) {

@@ -385,11 +385,67 @@ TEST(TraceFile, SaysWhereItContradictsItsSession) {
     return fmt::format("{}", fmt::join(reader.warnings(), "\n"));
   };
   // Behind the key stands the length of the value.
-  EXPECT_THAT(changed("format_version", 14 + 4, '9'), HasSubstr("its format version is '9', not 1"));
+  EXPECT_THAT(changed("format_version", 14 + 4, 'x'), HasSubstr("its format version is 'x', which is no version"));
   const char other = glb_sha256[5] == '0' ? '1' : '0';
   EXPECT_THAT(changed(glb_sha256, 5, other), HasSubstr("that of the session is damaged"));
   // In the session, in the channel /pose, and in the summary.
   EXPECT_THAT(changed(glb_sha256, 5, other, 3), HasSubstr("the attachment avatar.glb is not the recorded one"));
+}
+
+TEST(TraceReader, RefusesALaterFormatVersion) {
+  const test::TemporaryFolder folder;
+  test::write_trace(folder / "a.mcap", 5, test::steady_options());
+  std::string bytes = read_text_file(folder / "a.mcap");
+  bytes[bytes.find("format_version") + 14 + 4] = '9';
+  std::ofstream(folder / "b.mcap", std::ios::binary) << bytes;
+  try {
+    TraceReader reader(folder / "b.mcap");
+    FAIL() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.fault(), HasSubstr("b.mcap: its format version is 9, and this vestige reads versions up to 2"));
+    EXPECT_THAT(error.remedy(), HasSubstr("later version"));
+  }
+  EXPECT_THAT(fmt::format("{}", fmt::join(summarise_mcap(folder / "b.mcap").warnings, "\n")),
+              HasSubstr("its format version is 9"));
+}
+
+TEST(TraceFile, OfSpheresGivesTheirRadiiBackToTheBit) {
+  const test::TemporaryFolder folder;
+  TraceWriterOptions options = test::steady_options();
+  options.shape = ColliderShape::kSpheres;
+  const std::vector<std::byte> glb = test::skeleton_glb(kNodes);
+  std::vector<TraceFrame> written;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    TraceFrame& frame = written.emplace_back(test::frame(i, kNodes, kColliders));
+    if (i != 1) frame.colliders[i % kColliders].radius_m = 0.1F / static_cast<float>(i + 1);  // frame 1: points only
+  }
+  {
+    TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, options);
+    for (const TraceFrame& frame : written) writer.write(frame);
+    writer.finish();
+  }
+  TraceReader reader(folder / "a.mcap");
+  EXPECT_EQ(reader.shape(), ColliderShape::kSpheres);
+  EXPECT_EQ(reader.session().at("format_version"), "2");
+  const auto frames = test::read_frames(reader);
+  ASSERT_EQ(frames.size(), written.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) EXPECT_TRUE(test::same_bits(frames[i], written[i])) << i;
+  EXPECT_EQ(reader.sphere_ids(), (std::vector<std::uint32_t>{3}));
+  EXPECT_TRUE(reader.complete());
+}
+
+TEST(TraceFile, RefusesToRecordARadiusThatNoneCanHave) {
+  const test::TemporaryFolder folder;
+  TraceWriterOptions options = test::steady_options();
+  options.shape = ColliderShape::kSpheres;
+  const std::vector<std::byte> glb = test::skeleton_glb(kNodes);
+  for (const float wrong : {-1.0F, 10.5F, NAN, INFINITY}) {
+    options.overwrite = Overwrite::kAllow;
+    TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, options);
+    TraceFrame frame = test::frame(0, kNodes, kColliders);
+    frame.colliders[0].radius_m = wrong;
+    EXPECT_THROW(writer.write(frame), Error) << wrong;
+  }
 }
 
 TEST(TraceSummary, SaysWhatATraceHolds) {

@@ -77,6 +77,8 @@ inline bool same_bits(const TraceFrame& a, const TraceFrame& b) {
   for (std::size_t i = 0; i < a.colliders.size(); ++i) {
     if (a.colliders[i].id != b.colliders[i].id) return false;
     if (!same_bits(a.colliders[i].position_m, b.colliders[i].position_m)) return false;
+    if (std::bit_cast<std::uint32_t>(a.colliders[i].radius_m) != std::bit_cast<std::uint32_t>(b.colliders[i].radius_m))
+      return false;
   }
   return true;
 }

@@ -54,6 +54,11 @@ std::string_view Json::buffer_uri(std::size_t index, const json& buffer, const R
   return uri == "data:" ? find_data_uri(outline_.lists.find("buffers")->second[index], report) : uri;
 }
 
+json Json::extras(std::string_view list, std::size_t index) const {
+  const json element = json::parse(outline_.lists.find(list)->second[index]);
+  return element.value("extras", json());
+}
+
 json Json::element(std::string_view list, std::size_t index, Report& report) const {
   const std::string path = fmt::format("{}[{}]", list, index);
   const std::string text = reduce_element(outline_.lists.find(list)->second[index], list, path, report);

@@ -32,6 +32,9 @@ class Json {
   /// Returns one element of a list, checked by `check_element`. Precondition: index < count(list).
   nlohmann::json element(std::string_view list, std::size_t index, Report& report) const;
 
+  /// Returns the `extras` of one element, unchecked; null if it has none. Precondition: index < count(list).
+  nlohmann::json extras(std::string_view list, std::size_t index) const;
+
   /// Returns the full `uri` of a buffer. `buffer` is `element("buffers", index)`, in which a data URI is shortened to
   /// "data:".
   std::string_view buffer_uri(std::size_t index, const nlohmann::json& buffer, const Report& report) const;

@@ -1,0 +1,116 @@
+#include "detector/decide/sphere_filter.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <optional>
+
+#include "detector/decide/bounded.hpp"
+#include "detector/decide/ccd_formulas.hpp"
+#include "detector/decide/triangle_distance.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr int kMostSteps = 64;
+/// Shorter steps are lost in the rounding of t.
+constexpr double kShortestStep = 0x1p-45;
+/// Before the steps are this short, a time of contact is not looked for.
+constexpr double kShortStep = 0x1p-20;
+
+constexpr SphereProof kNoTouch = {SphereProof::Verdict::kNoTouch, {}};
+constexpr SphereProof kGivenUp = {SphereProof::Verdict::kUnsure, {}};
+
+Corners relative_to(const glm::dvec3& centre, const Corners& triangle) {
+  return {triangle.a - centre, triangle.b - centre, triangle.c - centre};
+}
+
+/// Returns the exact midpoint between an fp32 number >= 0 and the next one.
+double middle_above(float t) {
+  const float next = std::nextafter(t, HUGE_VALF);
+  return 0.5 * (double{t} + double{next});
+}
+
+class ConservativeAdvance {
+ public:
+  ConservativeAdvance(const MovingSphere& sphere, const Corners& before, const Corners& after)
+      : radius_(sphere.radius),
+        first_(relative_to(sphere.centre.start, before)),
+        last_(relative_to(sphere.centre.end, after)),
+        reach_(std::max(reach_of(first_), reach_of(last_))) {
+    const double fastest =
+        std::max({glm::length(last_.a - first_.a), glm::length(last_.b - first_.b), glm::length(last_.c - first_.c)});
+    speed_ = fastest * (1 + 16 * kUnit) + 16 * kUnit * reach_;
+  }
+
+  bool in_range() const { return is_in_range(reach_); }
+
+  SphereProof run() const {
+    const DistanceRange at_start = distance_at(0);
+    if (at_start.high <= radius_) return touch({0, 0, true}, 0, 0);
+    double low = at_start.low;
+    double t = 0;
+    for (int step = 0; step < kMostSteps; ++step) {
+      if (low <= radius_) return kGivenUp;
+      const double wait = (low - radius_) * (1 - 16 * kUnit) / speed_;
+      if (wait < kShortestStep) return kGivenUp;
+      t += wait - kShortestStep / 2;  // not beyond t + wait, even when rounded: the gap still lasts at this time
+      if (t >= 1) return kNoTouch;
+      if (wait <= kShortStep)
+        if (const auto proof = touch_after(t)) return *proof;
+      low = distance_at(t).low;
+    }
+    return kGivenUp;
+  }
+
+ private:
+  DistanceRange distance_at(double t) const {
+    return distance_to(
+        {corner_at(first_.a, last_.a, t), corner_at(first_.b, last_.b, t), corner_at(first_.c, last_.c, t)}, reach_);
+  }
+
+  /// Given that nothing touches up to `t`: proves a first touch that rounds as `t` does, or returns nothing.
+  std::optional<SphereProof> touch_after(double t) const {
+    const auto rounded = static_cast<float>(t);
+    const double late = std::min(1.0, std::nextafter(middle_above(rounded), 0.0));
+    if (late <= t || distance_at(late).high > radius_) return {};
+    return touch({rounded, 0, false}, t, late);
+  }
+
+  /// Completes a touch between these times by its side.
+  SphereProof touch(FirstTouch touch, double from, double to) const {
+    const Corners at = {corner_at(first_.a, last_.a, from), corner_at(first_.b, last_.b, from),
+                        corner_at(first_.c, last_.c, from)};
+    const double volume = -dot_product(at.a, cross_product(at.b, at.c));
+    const glm::dvec3 most = glm::max(glm::max(glm::max(glm::abs(first_.a), glm::abs(first_.b)), glm::abs(first_.c)),
+                                     glm::max(glm::max(glm::abs(last_.a), glm::abs(last_.b)), glm::abs(last_.c)));
+    // Within (to - from), each coordinate changes by 2 (to - from) of its greatest size at most, and each of the six
+    // products of three coordinates by less than 7 (to - from) of the greatest.
+    const double error = (kVolumeError + 48 * (to - from)) * (most.x * most.y * most.z);
+    if (!(std::abs(volume) > error) || error < kLeastVolumeError) return kGivenUp;
+    touch.side = volume > 0 ? 1 : -1;
+    return {SphereProof::Verdict::kTouch, touch};
+  }
+
+  /// Below this bound, products may have lost bits to underflow.
+  static constexpr double kLeastVolumeError = 0x1p-1000;
+
+  double radius_;
+  Corners first_;  ///< relative to the centre
+  Corners last_;
+  double reach_;
+  double speed_ = 0;  ///< the fastest corner, relative to the centre, in lengths per frame
+};
+
+}  // namespace
+
+SphereProof filter_sphere(const MovingSphere& sphere, const Corners& before, const Corners& after) {
+  const ConservativeAdvance advance(sphere, before, after);
+  return advance.in_range() ? advance.run() : kGivenUp;
+}
+
+}  // namespace vestige

@@ -1,0 +1,66 @@
+#include "detector/decide/triangle_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "detector/decide/bounded.hpp"
+#include "detector/nearest_in_triangle.hpp"
+
+namespace vestige {
+
+namespace {
+
+// Let u = kUnit and m = reach. Every coordinate of a computed corner errs by at most 4 u m.
+//
+// Above: the point q = w0 A + w1 B + w2 C, for weights that are not negative and sum to 1 within 4 u, is in the
+// triangle but for rounding. The weights' sum moves it by 4 u m, three products and two sums by 5 u m, the corners' own
+// errors by 4 u m in each coordinate, so by less than 7 u m. Its length is computed with at most 4 u m more: 20 u m.
+//
+// Below: for every vector g, each point y of the triangle has y.g >= min(A.g, B.g, C.g), so |y| >= that / |g|. This is
+// sharp if g is the nearest point (Rockafellar 1970, Convex Analysis, theorem 11.4: two convex sets are as far apart as
+// two parallel planes between them). A product P.g errs by 4 u m |g| sqrt(3) from the corner, and by 3 u m |g| from its
+// own three roundings; dividing by the computed |g| adds 6 u m: less than 17 u m.
+constexpr double kDistanceError = 32 * kUnit;
+/// Below this square, the length of g may have lost bits to underflow, and the distance is at most 2^-450.
+constexpr double kLeastSquare = 0x1p-900;
+
+bool is_share(double weight) {
+  return weight >= 0 && weight <= 1;  // false for NaN
+}
+
+/// Returns a point of the triangle that is near the origin, usually the nearest one.
+glm::dvec3 near_origin(const Corners& corners) {
+  const glm::dvec3 weights = nearest_in_triangle(glm::dvec3(0), corners);
+  const double excess = (weights.x + weights.y + weights.z) - 1;
+  if (is_share(weights.x) && is_share(weights.y) && is_share(weights.z) && std::abs(excess) <= 4 * kUnit)
+    return weights.x * corners.a + weights.y * corners.b + weights.z * corners.c;
+  const auto is_nearer = [](const glm::dvec3& p, const glm::dvec3& q) { return glm::dot(p, p) < glm::dot(q, q); };
+  return std::min({corners.a, corners.b, corners.c}, is_nearer);
+}
+
+}  // namespace
+
+double reach_of(const Corners& corners) {
+  double reach = 0;
+  for (const glm::dvec3& corner : {corners.a, corners.b, corners.c})
+    reach = std::max(reach, std::abs(corner.x) + std::abs(corner.y) + std::abs(corner.z));
+  return reach * (1 + 16 * kUnit);
+}
+
+bool is_in_range(double reach) {
+  return reach >= 0x1p-300 && reach <= 0x1p300;
+}
+
+DistanceRange distance_to(const Corners& corners, double reach) {
+  const glm::dvec3 nearest = near_origin(corners);
+  const double square = glm::dot(nearest, nearest);
+  const double length = std::sqrt(square);
+  const double error = kDistanceError * reach;
+  if (square < kLeastSquare) return {0, length + error};
+  const double least =
+      std::min({glm::dot(corners.a, nearest), glm::dot(corners.b, nearest), glm::dot(corners.c, nearest)});
+  return {std::max(0.0, least / length - error), length + error};
+}
+
+}  // namespace vestige

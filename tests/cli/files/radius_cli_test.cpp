@@ -1,0 +1,151 @@
+// Colliders with a radius, as they come in from every carrier and leave by it again.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/cli/files/exchange_fixture.hpp"
+
+namespace vestige {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Radius : public test::ExchangeTest {
+ protected:
+  /// What `cat` prints of the frames: all that a trace says, but who wrote it.
+  std::string frames_of(const std::string& trace) const {
+    return run("vestige cat " + trace + " | grep -v '\"topic\":\"/viz'").standard_output;
+  }
+  std::string version_of(const std::string& trace) const {
+    return json_of("vestige inspect " + trace + " --json -")["session"]["format_version"];
+  }
+  /// A recording whose radii change from frame to frame, and in which a point is among spheres.
+  void record_growing() const {
+    write("growing.csv",
+          "time_s,id,x,y,z,radius_m\n"
+          "0,4,0,1,1,0.05\n0,9,0.5,1,1,0\n0.1,4,0,1,0.5,0.1\n0.1,9,0.5,1,0,0\n0.2,4,0,1,1,0.0123456789\n");
+    ASSERT_EQ(run("vestige record --colliders growing.csv --rate 100 --duration 0.2 -o growing.mcap").exit_code, 0);
+  }
+};
+
+TEST_F(Radius, ATraceOfPointsSaysVersion1AndOneOfSpheresVersion2) {
+  EXPECT_EQ(version_of("a.mcap"), "1");
+  ASSERT_EQ(run("vestige record --count 3 --duration 0.1 --radius 0.05 -o b.mcap").exit_code, 0);
+  EXPECT_EQ(version_of("b.mcap"), "2");
+  EXPECT_THAT(frames_of("b.mcap"), HasSubstr(R"("radius":0.05)"));
+  ASSERT_EQ(run("vestige record --count 3 --duration 0.1 --radius 0 -o c.mcap").exit_code, 0);
+  EXPECT_EQ(version_of("c.mcap"), "1");
+}
+
+TEST_F(Radius, InCsvIsInterpolatedAsThePositionIs) {
+  record_growing();
+  EXPECT_EQ(version_of("growing.mcap"), "2");
+  ASSERT_EQ(run("vestige export growing.mcap -o c.csv --what colliders").exit_code, 0);
+  EXPECT_EQ(run("head -1 c.csv").standard_output, "frame,time_s,id,x,y,z,radius_m,teleported\n");
+  EXPECT_EQ(run("grep ^5, c.csv").standard_output, "5,0.05,4,0,1,0.75,0.075,0\n5,0.05,9,0.5,1,0.5,0,0\n");
+}
+
+TEST_F(Radius, ComesBackToTheBitFromEveryLosslessFormat) {
+  record_growing();
+  const std::string frames = frames_of("growing.mcap");
+  EXPECT_THAT(frames, HasSubstr(R"("radius":0.0)"));
+  for (const char* out : {"folder", "g.h5", "g.ndjson"}) {
+    ASSERT_EQ(run(fmt::format("vestige export growing.mcap -o {}", out)).exit_code, 0) << out;
+    const std::string back = std::string(out) == "g.ndjson"
+                                 ? "vestige record --live - -o back.mcap --force < g.ndjson"
+                                 : fmt::format("vestige import {} -o back.mcap --force", out);
+    ASSERT_EQ(run(back).exit_code, 0) << out;
+    EXPECT_EQ(version_of("back.mcap"), "2") << out;
+    EXPECT_TRUE(frames_of("back.mcap") == frames) << out;
+  }
+}
+
+TEST_F(Radius, OfAGltfNodeIsItsScale) {
+  record_growing();
+  const auto exported = run("vestige export growing.mcap -o g.glb");
+  EXPECT_EQ(exported.exit_code, 0) << exported.standard_error;
+  const nlohmann::json glb = json_of_glb("g.glb");
+  std::map<std::string, double> radii;
+  for (const auto& node : glb["nodes"])
+    if (node.contains("extras")) radii[node["name"]] = node["extras"]["radius_m"];
+  EXPECT_EQ(radii, (std::map<std::string, double>{{"collider 4", 1}, {"collider 9", 0}}));
+  ASSERT_EQ(run("vestige record --colliders g.glb --rate 100 --duration 0.2 -o back.mcap").exit_code, 0);
+  const auto radii_of = [&](const std::string& trace) {
+    return run("vestige export " + trace + " -o - --format csv --what colliders | cut -d, -f1,3,7").standard_output;
+  };
+  EXPECT_EQ(radii_of("back.mcap"), radii_of("growing.mcap"));
+  ASSERT_EQ(run("vestige record --colliders g.glb --rate 100 --duration 0.2 --radius mesh -o mesh.mcap").exit_code, 0);
+  EXPECT_THAT(radii_of("mesh.mcap"), HasSubstr("0,9,0.01\n")) << "a point is drawn as a sphere of 1 cm";
+}
+
+TEST_F(Radius, OfZeroAmongTheRadiiOfASphereIsSaidToBeLostInAGltf) {
+  write("c.csv", "time_s,id,x,y,z,radius_m\n0,4,0,1,1,0.05\n0.1,4,0,1,0.5,0\n");
+  ASSERT_EQ(run("vestige record --colliders c.csv --rate 100 --duration 0.1 -o c.mcap").exit_code, 0);
+  const auto exported = run("vestige export c.mcap -o c.glb");
+  EXPECT_EQ(exported.exit_code, 0) << "the sphere never shrinks to 0 in a frame: " << exported.standard_error;
+  write("z.csv", "time_s,id,x,y,z,radius_m\n0,4,0,1,1,0.05\n0.05,4,0,1,0.5,0\n0.1,4,0,1,0.5,0\n");
+  ASSERT_EQ(run("vestige record --colliders z.csv --rate 100 --duration 0.1 -o z.mcap").exit_code, 0);
+  const auto lossy = run("vestige export z.mcap -o z.glb");
+  EXPECT_EQ(lossy.exit_code, 3);
+  EXPECT_THAT(lossy.standard_error, HasSubstr("radius value"));
+}
+
+TEST_F(Radius, MayBeGivenToTheCollidersOfAFile) {
+  write("c.csv", "time_s,id,x,y,z\n0,4,0,1,1\n0.1,4,0,1,0.5\n");
+  ASSERT_EQ(run("vestige record --colliders c.csv --rate 100 --duration 0.1 --radius 0.03 -o c.mcap").exit_code, 0);
+  EXPECT_EQ(version_of("c.mcap"), "2");
+  EXPECT_EQ(json_of("vestige inspect c.mcap --json -")["session"]["radius"], "0.03");
+  ASSERT_EQ(run("vestige export a.mcap -o folder").exit_code, 0);
+  ASSERT_EQ(
+      run("vestige import --poses folder/poses.csv --colliders folder/colliders.csv --radius 0.04 -o d.mcap").exit_code,
+      0);
+  EXPECT_THAT(frames_of("d.mcap"), HasSubstr(R"("radius":0.04)"));
+}
+
+TEST_F(Radius, ThatNoneCanHaveIsRefusedWithItsPlace) {
+  const auto refused = [&](const std::string& rows, const std::vector<std::string>& words) {
+    write("c.csv", rows);
+    expect_failure("vestige record --colliders c.csv --duration 0.1 -o c.mcap", 1, words, "c.mcap");
+  };
+  const std::string head = "time_s,id,x,y,z,radius_m\n0,4,0,1,1,0.05\n";
+  refused(head + "0.1,4,0,1,1,-0.05\n", {"c.csv, line 3", "radius_m is negative"});
+  refused(head + "0.1,4,0,1,1,nan\n", {"c.csv, line 3", "radius_m is not finite"});
+  refused(head + "0.1,4,0,1,1,10.5\n", {"c.csv, line 3", "radius_m is larger than 10 m"});
+  refused(head + "0.1,4,0,1,1,large\n", {"c.csv, line 3", "radius_m is not a number"});
+  refused(head + "0.1,4,0,1,1\n", {"c.csv, line 3", "radius_m is not a number"});
+  refused(head + "0.1,4,0,1,1,0.05,0\n", {"c.csv, line 3", "is not six numbers"});
+  refused("time_s,id,x,y,z,radius\n0,4,0,1,1,0.05\n", {"c.csv, line 1", "radius_m"});
+  for (const char* radius : {"-1", "11", "nan", "big", "1cm"})
+    expect_failure(fmt::format("vestige record --duration 0.1 --radius={} -o c.mcap", radius), 2, {"--radius", radius},
+                   "c.mcap");
+  expect_failure("vestige record --duration 0.1 --radius mesh -o c.mcap", 2, {"--radius mesh", ".glb"}, "c.mcap");
+}
+
+TEST_F(Radius, OfANodeThatNoneCanHaveIsRefusedWithItsPlace) {
+  const auto refused = [&](const std::string& extras, const std::vector<std::string>& words) {
+    write("c.gltf", R"({"asset":{"version":"2.0"},"nodes":[{"name":"collider 1","extras":)" + extras + "}]}");
+    expect_failure("vestige record --colliders c.gltf --duration 0.1 -o c.mcap", 1, words, "c.mcap");
+  };
+  refused(R"({"radius_m":-1})", {"nodes[0].extras.radius_m", "is negative"});
+  refused(R"({"radius_m":"1"})", {"nodes[0].extras.radius_m", "is not a number"});
+  refused(R"({"radius_m":11})", {"nodes[0].extras.radius_m", "is larger than 10 m"});
+  write("c.gltf",
+        R"({"asset":{"version":"2.0"},"nodes":[{"name":"collider 1","scale":[9,9,9],"extras":{"radius_m":2}}]})");
+  expect_failure("vestige record --colliders c.gltf --duration 0.1 -o c.mcap", 1, {"collider 1", "18 m"});
+}
+
+TEST_F(Radius, OfALiveCollider) {
+  record_lines(R"({"colliders":[{"id":1,"position":[0,1,0.5],"radius":0.05},{"id":2,"position":[0,1,1]}]})"
+               "\n",
+               "live.mcap");
+  EXPECT_EQ(version_of("live.mcap"), "2");
+  EXPECT_THAT(frames_of("live.mcap"), HasSubstr(R"({"id":1,"position":[0,1,0.5],"radius":0.05},{"id":2,"position")"));
+}
+
+}  // namespace
+}  // namespace vestige
