@@ -1,10 +1,14 @@
 #include "detector/decide/polynomial.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <utility>
+
+#include "detector/decide/exact_quotient.hpp"
 
 namespace vestige {
 
@@ -22,32 +26,12 @@ Dyadic dyadic(double value) {
   int exponent = 0;
   auto whole = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), kDigits));
   exponent -= kDigits;
-  while (exponent < 0 && whole % 2 == 0) {
-    whole /= 2;
-    ++exponent;
+  if (exponent < 0) {
+    const int twos = std::min(-exponent, std::countr_zero(static_cast<std::uint64_t>(whole)));
+    whole >>= twos;
+    exponent += twos;
   }
   return exponent < 0 ? Dyadic{whole, static_cast<unsigned>(-exponent)} : Dyadic{whole << exponent, 0};
-}
-
-/// Divides by the powers of two that all coefficients have in common.
-std::vector<Integer> without_common_twos(std::vector<Integer> coefficients) {
-  unsigned twos = std::numeric_limits<unsigned>::max();
-  for (const Integer& coefficient : coefficients)
-    if (!coefficient.is_zero()) twos = std::min(twos, boost::multiprecision::lsb(abs(coefficient)));
-  for (Integer& coefficient : coefficients)
-    if (!coefficient.is_zero()) coefficient >>= twos;
-  return coefficients;
-}
-
-/// One step of a division: returns a |lead(b)| - b t^k (sign of lead(b)) lead(a), which has a smaller degree than a.
-std::vector<Integer> division_step(const std::vector<Integer>& a, const std::vector<Integer>& b) {
-  const Integer scale = abs(b.back());
-  const Integer factor = b.back().sign() > 0 ? a.back() : Integer(-a.back());
-  std::vector<Integer> rest(a.begin(), a.end() - 1);
-  for (Integer& coefficient : rest) coefficient *= scale;
-  const std::size_t shift = a.size() - b.size();
-  for (std::size_t i = 0; i + 1 < b.size(); ++i) rest[i + shift] -= factor * b[i];
-  return rest;
 }
 
 }  // namespace
@@ -74,20 +58,54 @@ int Polynomial::sign_at(double t) const {
   return value.sign();
 }
 
-int Polynomial::constant_sign_on(double low, double high) const {
-  const int sign = sign_at(low);
-  if (sign == 0 || sign_at(high) != sign) return 0;
-  if (degree() < 2) return sign;
-  // The middle Bernstein coefficient is the polar form: c0 + c1 (low + high) / 2 + c2 low high.
-  Dyadic from = dyadic(low);
-  Dyadic to = dyadic(high);
+int Polynomial::sign_beside(double t, int side) const {
+  // The first derivative that does not vanish at t tells.
+  int mirror = 1;
+  for (Polynomial derived = *this; !derived.is_zero(); derived = derived.derivative()) {
+    const int sign = derived.sign_at(t);
+    if (sign != 0) return sign * mirror;
+    mirror *= side;
+  }
+  return 0;
+}
+
+std::vector<int> Polynomial::bernstein_signs(double low, double high) const {
+  if (is_zero()) return {};
+  const Dyadic from = dyadic(low);
+  const Dyadic to = dyadic(high);
   const unsigned places = std::max(from.places, to.places);
   const Integer from_whole = Integer(from.whole) << (places - from.places);
   const Integer to_whole = Integer(to.whole) << (places - to.places);
-  Integer middle = coefficients_[0] << (2 * places + 1);
-  middle += (coefficients_[1] * (from_whole + to_whole)) << places;
-  middle += (coefficients_[2] * from_whole * to_whole) << 1U;
-  return middle.sign() == sign ? sign : 0;
+  // Horner's scheme for t = low (1 - s) + high s. row[i] is the coefficient of (1 - s)^(degree - i) s^i, a positive
+  // multiple of the Bernstein coefficient. To raise the degree by one, a constant is multiplied by (1 - s) + s.
+  std::vector<Integer> row;
+  row.reserve(coefficients_.size());
+  row.push_back(leading());
+  unsigned shift = 0;
+  for (std::size_t j = coefficients_.size() - 1; j-- > 0;) {
+    shift += places;
+    Integer added = coefficients_[j] << shift;
+    const std::size_t size = row.size();
+    row.push_back(row.back() * to_whole + added);
+    std::size_t binomial = 1;
+    for (std::size_t i = size - 1; i > 0; --i) {
+      binomial = binomial * (i + 1) / (size - i);
+      row[i] *= from_whole;
+      row[i] += row[i - 1] * to_whole;
+      row[i] += added * binomial;
+    }
+    row[0] *= from_whole;
+    row[0] += added;
+  }
+  std::vector<int> signs;
+  signs.reserve(row.size());
+  for (const Integer& coefficient : row) signs.push_back(coefficient.sign());
+  return signs;
+}
+
+int Polynomial::constant_sign_on(double low, double high) const {
+  const std::vector<int> signs = bernstein_signs(low, high);
+  return std::ranges::adjacent_find(signs, std::not_equal_to<>()) == signs.end() && !signs.empty() ? signs[0] : 0;
 }
 
 int Polynomial::sign_after_0() const {
@@ -116,6 +134,17 @@ Polynomial Polynomial::without_end_roots() const {
   return polynomial;
 }
 
+Polynomial Polynomial::divided_by(const Integer& divisor) const {
+  Polynomial result = *this;
+  for (Integer& coefficient : result.coefficients_) coefficient = exact_quotient(coefficient, divisor);
+  return result;
+}
+
+Polynomial operator-(Polynomial a) {
+  for (Integer& coefficient : a.coefficients_) coefficient = -coefficient;
+  return a;
+}
+
 Polynomial operator+(const Polynomial& a, const Polynomial& b) {
   const bool longer = a.coefficients_.size() >= b.coefficients_.size();
   std::vector<Integer> sum = longer ? a.coefficients_ : b.coefficients_;
@@ -140,46 +169,16 @@ Polynomial operator*(const Polynomial& a, const Polynomial& b) {
   return Polynomial(std::move(product));
 }
 
-Polynomial remainder(const Polynomial& a, const Polynomial& b) {
-  Polynomial rest = a;
-  while (rest.degree() >= b.degree()) rest = Polynomial(division_step(rest.coefficients(), b.coefficients()));
-  if (rest.is_zero()) return rest;
-  return Polynomial(without_common_twos(rest.coefficients()));
-}
-
 Polynomial quotient(const Polynomial& a, const Polynomial& b) {
-  Polynomial result;
-  Polynomial rest = a;
-  while (rest.degree() >= b.degree()) {
-    const auto shift = static_cast<std::size_t>(rest.degree() - b.degree());
-    std::vector<Integer> term(shift + 1);
-    term[shift] = b.leading().sign() > 0 ? rest.leading() : Integer(-rest.leading());
-    result = result * Polynomial({Integer(abs(b.leading()))}) + Polynomial(std::move(term));
-    rest = Polynomial(division_step(rest.coefficients(), b.coefficients()));
+  // By Gauss's lemma, all coefficients are integers.
+  const std::vector<Integer>& divisor = b.coefficients();
+  std::vector<Integer> rest = a.coefficients();
+  std::vector<Integer> result(rest.size() - divisor.size() + 1);
+  for (std::size_t shift = result.size(); shift-- > 0;) {
+    result[shift] = exact_quotient(rest[shift + divisor.size() - 1], divisor.back());
+    for (std::size_t i = 0; i < divisor.size(); ++i) rest[i + shift] -= result[shift] * divisor[i];
   }
-  return Polynomial(without_common_twos(result.coefficients()));
-}
-
-std::vector<Polynomial> signed_remainders(const Polynomial& a, const Polynomial& b) {
-  std::vector<Polynomial> sequence = {a};
-  if (!b.is_zero()) sequence.push_back(b);
-  while (sequence.size() > 1) {
-    Polynomial next = Polynomial() - remainder(sequence[sequence.size() - 2], sequence.back());
-    if (next.is_zero()) break;
-    sequence.push_back(std::move(next));
-  }
-  return sequence;
-}
-
-int sign_changes(std::span<const int> signs) {
-  int changes = 0;
-  int last = 0;
-  for (const int sign : signs) {
-    if (sign == 0) continue;
-    if (last == -sign) ++changes;
-    last = sign;
-  }
-  return changes;
+  return Polynomial(std::move(result));
 }
 
 }  // namespace vestige

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "detector/decide/scaled_integers.hpp"
@@ -23,8 +22,13 @@ class Polynomial {
   int sign_at_1() const;
   /// Returns the sign at a finite t >= 0.
   int sign_at(double t) const;
-  /// Returns the sign throughout [low, high], if the Bernstein coefficients of the polynomial agree; otherwise 0.
-  /// Requires degree <= 2 and 0 <= low < high, both finite.
+  /// Returns the sign just above or just below t >= 0. Returns 0 only for the zero polynomial.
+  int sign_after(double t) const { return sign_beside(t, 1); }
+  int sign_before(double t) const { return sign_beside(t, -1); }
+  /// Returns the signs of the Bernstein coefficients on [low, high]. Between `low` and `high` there are at most as many
+  /// roots as signs change along the list, and as many but for an even number. Requires 0 <= low < high, both finite.
+  std::vector<int> bernstein_signs(double low, double high) const;
+  /// Returns the sign throughout [low, high], if the Bernstein coefficients agree; otherwise 0.
   int constant_sign_on(double low, double high) const;
 
   /// Returns the sign between 0 and the first root above it. Returns 0 only for the zero polynomial.
@@ -34,27 +38,21 @@ class Polynomial {
   /// Returns the polynomial divided by the highest powers of t and of t - 1 that divide it. The result has no roots at
   /// 0 and 1. The polynomial must not be zero.
   Polynomial without_end_roots() const;
+  /// Requires that the divisor divides all coefficients.
+  Polynomial divided_by(const Integer& divisor) const;
 
+  friend Polynomial operator-(Polynomial a);
   friend Polynomial operator+(const Polynomial& a, const Polynomial& b);
   friend Polynomial operator-(const Polynomial& a, const Polynomial& b);
   friend Polynomial operator*(const Polynomial& a, const Polynomial& b);
 
  private:
+  int sign_beside(double t, int side) const;
+
   std::vector<Integer> coefficients_;
 };
 
-/// Returns a positive multiple of the remainder of a / b. b must not be zero.
-Polynomial remainder(const Polynomial& a, const Polynomial& b);
-
-/// Returns a non-zero multiple of a / b. b must divide a.
+/// Returns a / b. b must divide a, and the coefficients of b must have no common divisor.
 Polynomial quotient(const Polynomial& a, const Polynomial& b);
-
-/// Returns a, b, and then repeatedly the negative remainder of the last two, until the remainder is zero: the signed
-/// remainder sequence of Basu, Pollack, Roy, Algorithms in Real Algebraic Geometry (2006), definition 1.7, up to
-/// positive factors.
-std::vector<Polynomial> signed_remainders(const Polynomial& a, const Polynomial& b);
-
-/// Returns the number of sign changes along a list, zeros left out.
-int sign_changes(std::span<const int> signs);
 
 }  // namespace vestige

@@ -1,7 +1,9 @@
 #include "detector/decide/unit_roots.hpp"
 
+#include <algorithm>
 #include <bit>
-#include <cstdint>
+
+#include "detector/decide/remainder_sequence.hpp"
 
 namespace vestige {
 
@@ -9,114 +11,117 @@ namespace {
 
 constexpr std::uint32_t kBitsOfOne = std::bit_cast<std::uint32_t>(1.0F);
 
-/// Returns the number of sign changes that the sequence loses from 0 to 1.
-int changes_lost(const std::vector<Polynomial>& sequence) {
-  std::vector<int> at_0;
-  std::vector<int> at_1;
-  at_0.reserve(sequence.size());
-  at_1.reserve(sequence.size());
-  for (const Polynomial& polynomial : sequence) {
-    at_0.push_back(polynomial.sign_at_0());
-    at_1.push_back(polynomial.sign_at_1());
-  }
-  return sign_changes(at_0) - sign_changes(at_1);
-}
-
-int changes_at(const std::vector<Polynomial>& sequence, double t) {
-  std::vector<int> signs;
-  signs.reserve(sequence.size());
-  for (const Polynomial& polynomial : sequence) signs.push_back(polynomial.sign_at(t));
-  return sign_changes(signs);
-}
-
 /// Returns the midpoint between the fp32 number with these bits and the next number. The result is exact.
 double midpoint_above(std::uint32_t bits) {
   return 0.5 * (static_cast<double>(std::bit_cast<float>(bits)) + static_cast<double>(std::bit_cast<float>(bits + 1)));
 }
 
+/// Between these two lies what rounds to the fp32 number with these bits.
+double cell_low(std::uint32_t bits) {
+  return bits > 0 ? midpoint_above(bits - 1) : 0;
+}
+
+double cell_high(std::uint32_t bits) {
+  return bits < kBitsOfOne ? midpoint_above(bits) : 1;
+}
+
 }  // namespace
 
-UnitRoots::UnitRoots(const Polynomial& polynomial) {
-  const Polynomial inner = polynomial.without_end_roots();
-  if (inner.degree() < 1) return;
-  const std::vector<Polynomial> remainders = signed_remainders(inner, inner.derivative());
-  common_ = remainders.back();
-  square_free_ = common_.degree() > 0 ? quotient(inner, common_) : inner;
-  derivative_ = square_free_.derivative();
-  sturm_ = common_.degree() > 0 ? signed_remainders(square_free_, derivative_) : remainders;
-  // Sturm's theorem: Basu, Pollack, Roy, theorem 2.50.
-  changes_at_0_ = changes_at(sturm_, 0);
-  cells_.resize(static_cast<std::size_t>(changes_lost(sturm_)));
-  for (std::size_t root = 0; root < cells_.size(); ++root) cells_[root] = find_cell(root);
+UnitRoots::UnitRoots(const Polynomial& polynomial) : polynomial_(polynomial.without_end_roots()) {
+  if (polynomial_.degree() < 1) return;
+  find_cells(0, kBitsOfOne);
+  place_roots();
 }
 
-bool UnitRoots::is_at_most(std::size_t root, double t) const {
-  if (cells_.size() == 1) return square_free_.sign_at(t) != square_free_.sign_at_0();
-  return changes_at_0_ - changes_at(sturm_, t) > static_cast<int>(root);
+void UnitRoots::find_cells(std::uint32_t low, std::uint32_t high) {
+  const double from = cell_low(low);
+  const double to = cell_high(high);
+  const int most = sign_changes(polynomial_.bernstein_signs(from, to));
+  if (most == 0) return;
+  if (most == 1) return find_single(low, high);
+  if (low == high) {
+    cells_.push_back({{from, to, {}, {}}, std::bit_cast<float>(low), true});
+    return;
+  }
+  const std::uint32_t middle = low + (high - low) / 2;
+  find_cells(low, middle);
+  if (polynomial_.sign_at(cell_high(middle)) == 0) add_midpoint(middle);
+  find_cells(middle + 1, high);
 }
 
-UnitRoots::Cell UnitRoots::find_cell(std::size_t root) const {
+void UnitRoots::find_single(std::uint32_t low, std::uint32_t high) {
   // Bisection over the fp32 numbers: find the first number whose upper midpoint is not below the root.
-  std::uint32_t low = 0;
-  std::uint32_t high = kBitsOfOne;
+  const int sign_below = polynomial_.sign_after(cell_low(low));
   while (low < high) {
     const std::uint32_t middle = low + (high - low) / 2;
-    if (is_at_most(root, midpoint_above(middle)))
-      high = middle;
-    else
+    const int sign = polynomial_.sign_at(cell_high(middle));
+    if (sign == 0) return add_midpoint(middle);
+    if (sign == sign_below)
       low = middle + 1;
+    else
+      high = middle;
   }
-  Cell cell;
-  if (low > 0) cell.low = midpoint_above(low - 1);
-  if (low < kBitsOfOne) cell.high = midpoint_above(low);
-  const bool tie = low < kBitsOfOne && square_free_.sign_at(cell.high) == 0 &&
-                   (root + 1 == cells_.size() || !is_at_most(root + 1, cell.high));
-  cell.rounded = std::bit_cast<float>(tie && low % 2 == 1 ? low + 1 : low);
-  return cell;
+  cells_.push_back({{cell_low(low), cell_high(low), {}, {}}, std::bit_cast<float>(low), false});
 }
 
-int UnitRoots::tarski_query(const Polynomial& other) const {
-  // The result is the sum, over the roots, of the sign of `other`: Basu, Pollack, Roy, theorem 2.61. The remainder has
-  // the same Cauchy index and a lower degree.
-  return changes_lost(signed_remainders(square_free_, remainder(derivative_ * other, square_free_)));
+void UnitRoots::add_midpoint(std::uint32_t below) {
+  const double at = midpoint_above(below);
+  cells_.push_back({{at, at, {}, {}}, std::bit_cast<float>(below + below % 2), false});
+}
+
+void UnitRoots::place_roots() {
+  std::vector<Polynomial> remainders;
+  square_free_ = polynomial_;
+  if (std::ranges::any_of(cells_, &Cell::crowded)) {
+    remainders = signed_remainders(polynomial_, polynomial_.derivative());
+    repeated_ = repeated_part(remainders);
+    if (repeated_.degree() > 0) square_free_ = quotient(polynomial_, repeated_);
+  }
+  places_.reserve(static_cast<std::size_t>(polynomial_.degree()));
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    CloseRoots& roots = cells_[i].roots;
+    // Sturm's theorem: Basu, Pollack, Roy, theorem 2.50.
+    const int count = cells_[i].crowded ? changes_lost(remainders, roots.low, roots.high) : 1;
+    for (int index = 0; index < count; ++index) places_.push_back({i, static_cast<std::size_t>(index)});
+    if (count > 0 && !cells_[i].is_midpoint())
+      roots = tell_roots_apart(square_free_, roots.low, roots.high, static_cast<std::size_t>(count));
+  }
 }
 
 int UnitRoots::sign_at(std::size_t root, const Polynomial& other) const {
   if (other.degree() < 1) return other.sign_at_0();
-  const int seen = other.constant_sign_on(cells_[root].low, cells_[root].high);
-  if (seen != 0) return seen;
-
-  const int sum = tarski_query(other);
-  if (cells_.size() == 1) return sum;
-  // All roots are simple, so the derivative's signs alternate from root to root. A second query separates the even from
-  // the odd roots.
-  const int first_slope = -square_free_.sign_at_0();
-  const int alternating = first_slope * tarski_query(remainder(derivative_ * other, square_free_));
-  const int even = (sum + alternating) / 2;
-  const int odd = (sum - alternating) / 2;
-  if (root == 1) return odd;
-  if (cells_.size() == 2) return even;
-  // With three roots, the second derivative vanishes at their mean, which lies between the first and the last root. A
-  // third query separates these two.
-  const Polynomial curvature = derivative_.derivative();
-  const int leading = square_free_.leading().sign();
-  const int middle_curvature = tarski_query(curvature);
-  const int weighed = tarski_query(remainder(curvature * other, square_free_));
-  const int last_less_first = leading * (weighed - middle_curvature * odd);
-  return root == 0 ? (even - last_less_first) / 2 : (even + last_less_first) / 2;
+  const Cell& cell = cells_[places_[root].cell];
+  const CloseRoots& roots = cell.roots;
+  if (cell.is_midpoint()) return other.sign_at(roots.low);
+  const int seen = other.constant_sign_on(roots.low, roots.high);
+  return seen != 0 ? seen : signs_at_roots(square_free_, roots, other)[places_[root].index];
 }
 
 bool UnitRoots::is_before(std::size_t root, const UnitRoots& other, std::size_t other_root) const {
+  const float mine = rounded(root);
+  const float its = other.rounded(other_root);
+  if (mine != its) return mine < its;
   // Sturm's theorem counts the other's roots above 0 and up to this one.
-  std::vector<int> signs;
-  signs.reserve(other.sturm_.size());
-  for (const Polynomial& polynomial : other.sturm_) signs.push_back(sign_at(root, polynomial));
-  return other.changes_at_0_ - sign_changes(signs) <= static_cast<int>(other_root);
+  std::vector<int> at_0;
+  std::vector<int> at_root;
+  for (const Polynomial& polynomial : signed_remainders(other.square_free_, other.square_free_.derivative())) {
+    at_0.push_back(polynomial.sign_at_0());
+    at_root.push_back(sign_at(root, polynomial));
+  }
+  return sign_changes(at_0) - sign_changes(at_root) <= static_cast<int>(other_root);
 }
 
-bool UnitRoots::is_even(std::size_t root) const {
-  // A triple root, at which the common divisor has degree 2, is odd.
-  return common_.degree() == 1 && sign_at(root, common_) == 0;
+int UnitRoots::multiplicity(std::size_t root) const {
+  const Cell& cell = cells_[places_[root].cell];
+  int times = 1;
+  if (cell.is_midpoint()) {
+    for (Polynomial derived = polynomial_.derivative(); derived.sign_at(cell.roots.low) == 0; ++times)
+      derived = derived.derivative();
+  } else if (cell.crowded) {
+    for (Polynomial rest = repeated_; rest.degree() > 0 && sign_at(root, rest) == 0; ++times)
+      rest = repeated_part(signed_remainders(rest, rest.derivative()));
+  }
+  return times;
 }
 
 }  // namespace vestige
