@@ -35,6 +35,17 @@ IdPlace place_of(const std::vector<std::uint32_t>& ids, std::uint32_t id, IdPlac
 
 }  // namespace
 
+SegmentBox box_of(const Segment& segment) {
+  SegmentBox box = {glm::min(segment.start, segment.end), glm::max(segment.start, segment.end)};
+  if (!segment.is_sphere()) return box;
+  const float radius_m = bounding_radius_m(segment);
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = std::nextafter(box.low[axis] - radius_m, -std::numeric_limits<float>::infinity());
+    box.high[axis] = std::nextafter(box.high[axis] + radius_m, std::numeric_limits<float>::infinity());
+  }
+  return box;
+}
+
 FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method)
     : avatar_(avatar),
       collider_ids_(collider_ids.begin(), collider_ids.end()),
@@ -125,7 +136,7 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
     Column& before = columns_[column];
     if (before.seen_in != 0 && before.seen_in == trace_frame.index) {
       const Segment segment = {static_cast<std::uint32_t>(column), glm::vec3(before.position_m - frame_.origin_m),
-                               glm::vec3(sample.position_m - frame_.origin_m)};
+                               glm::vec3(sample.position_m - frame_.origin_m), sample.radius_m};
       if (within_reach(segment.start) && within_reach(segment.end)) {
         frame_.segments.push_back(segment);
       } else {

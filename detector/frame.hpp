@@ -20,7 +20,23 @@ struct Segment {
   std::uint32_t column = 0;  ///< of the collision texture
   glm::vec3 start = glm::vec3(0);
   glm::vec3 end = glm::vec3(0);
+  float radius_m = 0;  ///< of the sphere whose centre moves along the segment; 0: a point
+
+  bool is_sphere() const { return radius_m > 0; }
 };
+
+/// The box around everything that a collider covers while it moves along a segment. For a sphere it is rounded
+/// outwards, with room for a start that is carried with the skin and rounded once more.
+struct SegmentBox {
+  glm::vec3 low;
+  glm::vec3 high;
+};
+SegmentBox box_of(const Segment& segment);
+
+/// Returns the radius with room for the rounding of bounds in fp32: 2^-20 larger. 0 for a point.
+inline float bounding_radius_m(const Segment& segment) {
+  return segment.radius_m * (1 + 0x1p-20F);
+}
 
 /// The input of a detector: detector/CONTRACT.md, 1 to 3. All positions are relative to `origin_m`.
 struct DetectorFrame {

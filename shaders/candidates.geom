@@ -30,7 +30,7 @@ struct Slot {
   uint offset;   // number of its first segment among the meshlet's segments
 };
 struct GpuSegment {
-  vec4 start;
+  vec4 start;  // w: the radius of a sphere, 2^-20 larger than it is; 0 for a point
   vec4 end;
 };
 layout(std140, binding = VESTIGE_BINDING_CANDIDATES) uniform Candidates {
@@ -46,6 +46,8 @@ layout(std430, binding = VESTIGE_BINDING_CAPTURED) buffer Captured {
 const float kLargest = 67108864.0;                        // 2^26
 const float kTiny = 1.0 / 1237940039285380274899124224.0;  // 2^-90
 const float kMargin = 1.0 / 262144.0;                      // 64 u
+const float kSlack = 1.001;
+const float kLost = 1.0 / 288230376151711744.0;  // 2^-58: more than the length of a vector whose squares are flushed
 
 #if METHOD == VESTIGE_METHOD_STATIC
 const float kVolumeError = 96.0 / 16777216.0;            // 96 u
@@ -65,7 +67,10 @@ bool one_sign(float x, float x_error, float y, float y_error) {
 // each at most the product of the largest coordinates. Each term meets 8 roundings (detector/decide/bounded.hpp), fewer
 // with fma. Twice that covers the rounding of the bound itself and of the sums of volumes. Flushed denormals err by
 // less than 2^-126 times two factors of at most 2^27, fewer than 64 times.
-bool proven_beside(vec3 start, vec3 end) {
+//
+// A sphere misses if both ends are on one side of the plane and farther away than its radius: heights are distances times
+// the length of the normal.
+bool proven_beside(vec3 start, vec3 end, float radius) {
   precise vec3 way = end - start;
   precise vec3 a = bounds[0].a - start;
   precise vec3 b = bounds[0].b - start;
@@ -77,13 +82,20 @@ bool proven_beside(vec3 start, vec3 end) {
   float height = dot(a, normal_bc);
   float height_error = kVolumeError * reach * reach * reach + kTinyVolume;
   float height_end = height - (volumes.x + volumes.y + volumes.z);
+  if (radius > 0.0) {
+    float normal_length = kSlack * length(cross(b - a, c - a)) + kVolumeError * reach * reach + kLost;
+    float far = height_error + kSlack * radius * normal_length;
+    return one_sign(height, far, height_end, far + 3.0 * error);
+  }
   return (any(greaterThan(volumes, vec3(error))) && any(lessThan(volumes, vec3(-error)))) ||
          one_sign(height, height_error, height_end, height_error + 3.0 * error);
 }
 #else
-bool proven_beside(vec3 start, vec3 end) {
+// A sphere misses if both ends are farther from the slabs than its radius.
+bool proven_beside(vec3 start, vec3 end, float radius) {
   vec3 size = max(abs(start), abs(end));
   float margin = kMargin * dot(abs(bounds[0].normal), size) + kTiny;
+  if (radius > 0.0) margin += kSlack * radius * (length(bounds[0].normal) + kLost);
   float along_start = dot(bounds[0].normal, start);
   float along_end = dot(bounds[0].normal, end);
   vec2 slab_start = bounds[0].slab_start;
@@ -93,12 +105,13 @@ bool proven_beside(vec3 start, vec3 end) {
 }
 #endif
 
-bool proven_apart(vec3 start, vec3 end) {
-  bool apart = any(greaterThan(bounds[0].low.xyz, max(start, end))) ||
-               any(lessThan(bounds[0].high.xyz, min(start, end)));
+bool proven_apart(vec3 start, vec3 end, float radius) {
   vec3 size = max(abs(start), abs(end));
+  vec3 reach = radius > 0.0 ? radius + kMargin * (radius + size) : vec3(0.0);
+  bool apart = any(greaterThan(bounds[0].low.xyz, max(start, end) + reach)) ||
+               any(lessThan(bounds[0].high.xyz, min(start, end) - reach));
   bool computable = max(size.x, max(size.y, size.z)) <= kLargest;
-  return apart || (computable && proven_beside(start, end));
+  return apart || (computable && proven_beside(start, end, radius));
 }
 
 void main() {
@@ -107,7 +120,7 @@ void main() {
   uint i = 0u;
   do {
     GpuSegment segment = segments[slot.first + i];
-    if (!proven_apart(segment.start.xyz, segment.end.xyz)) {
+    if (!proven_apart(segment.start.xyz, segment.end.xyz, segment.start.w)) {
       uint place = atomicAdd(captured_count, 1u);
       if (place < capacity) captured[place] = uvec2(slot.offset + i, triangle);
     }

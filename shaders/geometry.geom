@@ -8,7 +8,8 @@
 // holds too.) So any axis m on which all six lie on one side of 0 proves a miss: the separating axis theorem. The axes
 // are those that suffice for a segment and a triangle, and for both in one plane. An axis need not be accurate. It only
 // has to be the same for all six, so its own rounding does not affect the proof. `precise` keeps a compiler from
-// computing it, or anything that it is made of, in several ways.
+// computing it, or anything that it is made of, in several ways. A sphere needs more: along m, all six must be farther
+// from 0 than its radius.
 //
 // The bound. Let u = 2^-24 (Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., 3.1). A coordinate of X_i
 // is the difference of a vertex and an end of the segment. It lies within radius + u |X_i| of the true one. m . X_i, in
@@ -34,7 +35,7 @@ in Skinned {
 struct GpuSegment {
   vec4 low;  // corners of its box
   vec4 high;
-  vec4 start;
+  vec4 start;  // w: the radius of a sphere, 2^-20 larger than it is; 0 for a point
   vec4 end;
 };
 layout(std140, binding = VESTIGE_BINDING_SEGMENTS) uniform Segments {
@@ -53,10 +54,12 @@ layout(location = VESTIGE_UNIFORM_FIRST_TRIANGLE) uniform int first_triangle;
 const float kLargest = 67108864.0;
 const float kSlack = 1.001;
 const float kTiny = 1.0 / 1237940039285380274899124224.0;  // 2^-90
+const float kLost = 1.0 / 288230376151711744.0;  // 2^-58: more than the length of a vector whose squares are flushed
 const float kFourUlps = 1.0 / 2097152.0;                      // 8 u
 
 const float kThird = 1.0 / 3.0;
 
+float radius;  // of the sphere, or 0
 precise vec3 relative[6];
 vec3 relative_radius[6];
 #if METHOD == VESTIGE_METHOD_CCD
@@ -68,15 +71,17 @@ precise vec3 carried;  // the mean displacement, which moves the segment's start
 vec3 carried_radius;   // largest distance from the true displacement
 #endif
 
-// Returns whether all corners are proven to lie on one side of the origin along the axis a x b.
+// Returns whether all corners are proven to lie on one side of the origin along the axis a x b, and farther away than the
+// radius.
 bool apart_along_cross(vec3 a, vec3 b) {
   precise vec3 axis = cross(a, b);
   vec3 magnitude = abs(axis);
+  float reach = radius > 0.0 ? kSlack * radius * (length(axis) + kLost) : 0.0;
   bool above = true;
   bool below = true;
   for (int i = 0; i < 6; ++i) {
     precise float along = dot(axis, relative[i]);
-    float error = kSlack * dot(magnitude, relative_radius[i]) + kTiny;
+    float error = kSlack * dot(magnitude, relative_radius[i]) + kTiny + reach;
     above = above && along > error;
     below = below && -along > error;
   }
@@ -166,7 +171,7 @@ bool proven_apart(vec3 segment_start, vec3 end) {
          apart_along_cross(way, ca) || apart_along_cross(normal, ab) || apart_along_cross(normal, bc) ||
          apart_along_cross(normal, ca) || apart_along_cross(normal, way)
 #if METHOD == VESTIGE_METHOD_CCD
-         || never_in_one_plane()
+         || (radius == 0.0 && never_in_one_plane())
 #endif
       ;
 }
@@ -220,6 +225,7 @@ void main() {
     while (close != 0u) {
       int segment = first + findLSB(close);
       close &= close - 1u;
+      radius = segments[segment].start.w;
       if (!proven_apart(segments[segment].start.xyz, segments[segment].end.xyz)) capture(segment);
     }
   }

@@ -85,6 +85,7 @@ struct BatchPlan {
   BatchActuators actuators;
   std::string detector;
   bool approximate = false;  ///< the detector puts simpler shapes in place of the skin
+  bool takes_radii = true;   ///< the detector tests spheres; otherwise traces with radii are refused
   double keep = 0.1;         ///< share of the triangles that `decimated` keeps
   std::string method;
   std::string skip;

@@ -244,6 +244,9 @@ class BatchRun {
                   fmt::format("records that its avatar faces {}, and that of the batch faces {}", to_string(*recorded),
                               to_string(facing)),
                   "run one batch for each facing");
+    if (!plan_.takes_radii && !reader.sphere_ids().empty())
+      throw Error(path, fmt::format("has colliders with a radius, of which {} tests only the centres", plan_.detector),
+                  "choose --detector cpu, geometry, exact or decimated");
     const std::vector<std::uint32_t>& ids = reader.collider_ids();
     const auto frame_count = static_cast<double>(reader.frame_count());
     RecordedTrace recorded;

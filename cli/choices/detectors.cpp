@@ -11,6 +11,7 @@
 #include "detector/detectors/embree_detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "traces/base/error.hpp"
+#include "traces/base/number_text.hpp"
 
 namespace vestige::cli {
 
@@ -102,6 +103,22 @@ const std::vector<std::string>& detector_names() {
 
 bool is_approximate(const std::string& detector) {
   return detector == "boxes" || detector == "capsules" || detector == "decimated";
+}
+
+bool takes_radii(const std::string& detector) {
+  return detector == "cpu" || detector == "geometry" || detector == "exact" || detector == "decimated";
+}
+
+void warn_of_radii(const std::vector<std::string>& detectors, TraceReader& trace, const std::string& file,
+                   Verbosity verbosity) {
+  if (trace.shape() == ColliderShape::kPoints || std::ranges::all_of(detectors, takes_radii)) return;
+  if (trace.sphere_ids().empty()) return;
+  for (const std::string& detector : detectors)
+    if (!takes_radii(detector))
+      warn(fmt::format("{}: {} of {} have a radius, but {} tests the paths of their centres; cpu, geometry, exact and "
+                       "decimated test spheres",
+                       file, trace.sphere_ids().size(), counted(trace.collider_ids().size(), "collider"), detector),
+           verbosity);
 }
 
 std::vector<std::string> skin_detector_names() {

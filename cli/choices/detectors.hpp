@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "cli/terminal.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::cli {
 
@@ -65,6 +67,11 @@ ContextKind context_kind(const std::string& context);
 const std::vector<std::string>& detector_names();
 /// Whether a detector puts simpler shapes in place of the avatar's skin.
 bool is_approximate(const std::string& detector);
+/// Whether a detector tests spheres. The others test the paths of their centres.
+bool takes_radii(const std::string& detector);
+/// Warns of detectors that ignore the radii of a trace's colliders, if it has any. `file` is the trace's name.
+void warn_of_radii(const std::vector<std::string>& detectors, TraceReader& trace, const std::string& file,
+                   Verbosity verbosity);
 /// Those that test the avatar's skin itself, and no simpler shape in its place.
 std::vector<std::string> skin_detector_names();
 bool is_detector(const std::string& name);

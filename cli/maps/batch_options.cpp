@@ -200,6 +200,7 @@ BatchPlan plan_of(const BatchOptions& options) {
   if (options.unfelt_mm) plan.unfelt_m = *options.unfelt_mm / 1e3;
   plan.detector = options.choice.detector == "auto" ? "cpu" : options.choice.detector;
   plan.approximate = is_approximate(plan.detector);
+  plan.takes_radii = takes_radii(plan.detector);
   plan.keep = options.choice.keep;
   plan.method = options.choice.method;
   plan.skip = options.choice.skip;

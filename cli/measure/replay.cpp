@@ -393,6 +393,9 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     return make_detector(picked ? picked->detector : options.choice.detector, options.choice.context, options.choice,
                          trace.avatar, trace.map, planes);
   });
+  std::vector<std::string> tested_by = {picked ? picked->detector : options.choice.detector};
+  if (is_detector(options.verify)) tested_by.push_back(options.verify);
+  warn_of_radii(tested_by, trace.reader, options.trace, verbosity);
   const Run run = {options, trace, collider_ids.size(), picked, detectors.first(), drives ? &*drives : nullptr};
   const Verification verification = load_verification(options, trace, run.detector, verified, std::move(expected));
 

@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <set>
 
 #include "analysis/base/provenance.hpp"
 #include "analysis/frequency/sweep_report.hpp"
+#include "cli/choices/detectors.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/sweep_choice.hpp"
 #include "cli/verbs.hpp"
@@ -42,6 +44,9 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   OpenTrace trace(path, verbosity);
   leave_out_missing_colliders(choice, trace.reader.collider_ids().size(), options.settings);
   const std::vector<Contestant> contestants = make_contestants(choice.contestants, trace.avatar, trace.map, verbosity);
+  std::set<std::string> names;
+  for (const Contestant& contestant : contestants) names.insert(contestant.detector);
+  warn_of_radii({names.begin(), names.end()}, trace.reader, path, verbosity);
   const std::unique_ptr<Detector> survey = make_survey(choice.contestants, trace.avatar, trace.map);
   Sweep sweep;
   {

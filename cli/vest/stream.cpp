@@ -228,6 +228,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
       options.choice.detector == "auto"
           ? pick_path(trace.avatar.triangles.size(), colliders, options.choice.skip_kind()).detector
           : options.choice.detector;
+  warn_of_radii({name}, trace.reader, options.trace, verbosity);
   LawMaker laws = make_laws(options, trace);
   const auto detector =
       make_detector(name, options.choice.context, options.choice, trace.avatar, trace.map, laws.planes());

@@ -26,6 +26,9 @@
 // is less than 32 u |n| . M on the slab's side, and 8 u |n| . |x| on the segment's side. Each side gets 64 u, which
 // also covers its own rounding, and 2^-120 for underflow. A margin that overflows is infinite or not a number, and then
 // proves nothing.
+//
+// Spheres. A sphere of radius r misses if its centre is more than r away from the slab: the same comparison with r |n|
+// more on the segment's side. r is taken 2^-20 larger, which covers the rounding of |n| and of the product.
 HWY_BEFORE_NAMESPACE();
 namespace vestige {
 namespace HWY_NAMESPACE {
@@ -94,6 +97,14 @@ inline Vector margin_of(const Vector& size) {
   return {margin_of(size.x), margin_of(size.y), margin_of(size.z)};
 }
 
+/// Returns at least how far a sphere reaches along `normal`, from its centre. Squares below 2^-126 may be lost, so less
+/// than 2^-62 of the normal's length.
+inline V reach_along(const Vector& normal, const Segment& sphere) {
+  const D d;
+  const V length = hn::Add(hn::Sqrt(dot(normal, normal)), hn::Set(d, 0x1p-62F));
+  return hn::Mul(length, hn::Set(d, bounding_radius_m(sphere)));
+}
+
 void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Method method,
                      MeshletTriangles::Bounds& out) {
   const D d;
@@ -157,19 +168,19 @@ inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Seg
   const D d;
   const auto number = [&](const MeshletTriangles::Numbers& numbers) { return hn::Load(d, &numbers[i]); };
   auto apart = hn::FirstN(d, 0);
+  const SegmentBox box = box_of(segment);
   for (int axis = 0; axis < 3; ++axis) {
     const auto place = static_cast<std::size_t>(axis);
-    const float low = std::min(segment.start[axis], segment.end[axis]);
-    const float high = std::max(segment.start[axis], segment.end[axis]);
-    apart = hn::Or(apart, hn::Gt(number(bounds.low[place]), hn::Set(d, high)));
-    apart = hn::Or(apart, hn::Lt(number(bounds.high[place]), hn::Set(d, low)));
+    apart = hn::Or(apart, hn::Gt(number(bounds.low[place]), hn::Set(d, box.high[axis])));
+    apart = hn::Or(apart, hn::Lt(number(bounds.high[place]), hn::Set(d, box.low[axis])));
   }
   auto meets = hn::Not(apart);
   if (hn::AllFalse(d, meets)) return 0;
   const Vector normal = {number(bounds.normal[0]), number(bounds.normal[1]), number(bounds.normal[2])};
   const Vector start = everywhere(segment.start);
   const Vector end = everywhere(segment.end);
-  const V margin = margin_of(dot(magnitude(normal), greatest(magnitude(start), magnitude(end))));
+  V margin = margin_of(dot(magnitude(normal), greatest(magnitude(start), magnitude(end))));
+  if (segment.is_sphere()) margin = hn::Add(margin, reach_along(normal, segment));
   const V along_start = dot(normal, start);
   const V along_end = dot(normal, end);
   const auto above = hn::And(hn::Gt(hn::Sub(along_start, margin), number(bounds.slab_high[0])),

@@ -15,10 +15,11 @@ void SegmentBoxes::reset(std::size_t capacity) {
 }
 
 void SegmentBoxes::add(const Segment& segment, std::uint32_t number) {
+  const SegmentBox box = box_of(segment);
   for (int axis = 0; axis < 3; ++axis) {
     float* low = &ends_[static_cast<std::size_t>(axis) * stride_ + count_];
-    low[0] = std::min(segment.start[axis], segment.end[axis]);
-    low[3 * stride_] = std::max(segment.start[axis], segment.end[axis]);
+    low[0] = box.low[axis];
+    low[3 * stride_] = box.high[axis];
   }
   number_[count_++] = number;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -26,9 +25,10 @@ class TriangleBoxes {
   void meet(const Segment& segment, Found&& found) const {
     std::array<float, 3> low = {};
     std::array<float, 3> high = {};
+    const SegmentBox box = box_of(segment);
     for (int axis = 0; axis < 3; ++axis) {
-      low[static_cast<std::size_t>(axis)] = std::min(segment.start[axis], segment.end[axis]);
-      high[static_cast<std::size_t>(axis)] = std::max(segment.start[axis], segment.end[axis]);
+      low[static_cast<std::size_t>(axis)] = box.low[axis];
+      high[static_cast<std::size_t>(axis)] = box.high[axis];
     }
     for (std::size_t first = 0; first < count_; first += kBlock) {
       std::array<std::uint32_t, kBlock> meets;

@@ -23,11 +23,6 @@ struct SquaredDistance {
   }
 };
 
-std::strong_ordering ordering(int sign) {
-  if (sign == 0) return std::strong_ordering::equal;
-  return sign < 0 ? std::strong_ordering::less : std::strong_ordering::greater;
-}
-
 /// Returns the exact squared distance from the origin to the triangle.
 SquaredDistance squared_distance(const std::array<IntegerVector, 3>& corner) {
   const IntegerVector normal = cross(minus(corner[1], corner[0]), minus(corner[2], corner[0]));
@@ -79,7 +74,7 @@ bool is_less(const glm::dvec3& p, const glm::dvec3& q) {
 StartDistance::StartDistance(const glm::dvec3& centre, const Corners& triangle) : centre_(centre), triangle_(triangle) {
   const Corners relative = {triangle.a - centre, triangle.b - centre, triangle.c - centre};
   const double reach = reach_of(relative);
-  range_ = is_in_range(reach) ? distance_to(relative, reach) : DistanceRange{0, HUGE_VAL};
+  range_ = is_in_range(reach) ? separation_from(relative, reach).range : DistanceRange{0, HUGE_VAL};
 }
 
 std::optional<std::vector<glm::dvec3>> StartDistance::nearest_part() const {
@@ -107,12 +102,12 @@ std::optional<std::vector<glm::dvec3>> StartDistance::nearest_part() const {
   return {};
 }
 
-std::strong_ordering StartDistance::compare(const StartDistance& a, const StartDistance& b, bool& exact_arithmetic) {
-  if (a.range_.high < b.range_.low) return std::strong_ordering::less;
-  if (b.range_.high < a.range_.low) return std::strong_ordering::greater;
+int StartDistance::compare(const StartDistance& a, const StartDistance& b, bool& exact_arithmetic) {
+  if (a.range_.high < b.range_.low) return -1;
+  if (b.range_.high < a.range_.low) return 1;
   if (a.centre_ == b.centre_) {
     const auto part = a.nearest_part();
-    if (part && part == b.nearest_part()) return std::strong_ordering::equal;
+    if (part && part == b.nearest_part()) return 0;
   }
   exact_arithmetic = true;
   Integer unused;
@@ -123,19 +118,19 @@ std::strong_ordering StartDistance::compare(const StartDistance& a, const StartD
     return std::array{minus(points[centre + 1], points[centre]), minus(points[centre + 2], points[centre]),
                       minus(points[centre + 3], points[centre])};
   };
-  return ordering(squared_distance(relative(0)).compare(squared_distance(relative(4))));
+  return squared_distance(relative(0)).compare(squared_distance(relative(4)));
 }
 
-std::strong_ordering StartDistance::compare(const StartDistance& a, double radius, bool& exact_arithmetic) {
-  if (a.range_.high < radius) return std::strong_ordering::less;
-  if (a.range_.low > radius) return std::strong_ordering::greater;
+int StartDistance::compare(const StartDistance& a, double radius, bool& exact_arithmetic) {
+  if (a.range_.high < radius) return -1;
+  if (a.range_.low > radius) return 1;
   exact_arithmetic = true;
   Integer whole_radius;
   const std::array points =
       whole_points<4>({a.centre_, a.triangle_.a, a.triangle_.b, a.triangle_.c}, radius, whole_radius);
   const SquaredDistance distance =
       squared_distance({minus(points[1], points[0]), minus(points[2], points[0]), minus(points[3], points[0])});
-  return ordering(distance.compare({whole_radius * whole_radius, 1}));
+  return distance.compare({whole_radius * whole_radius, 1});
 }
 
 }  // namespace vestige

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <compare>
 #include <optional>
 #include <vector>
 
@@ -17,10 +16,11 @@ class StartDistance {
 
   const DistanceRange& range() const { return range_; }
 
-  /// Compares two distances. Sets `exact_arithmetic` if neither their ranges nor a shared nearest part decide.
-  static std::strong_ordering compare(const StartDistance& a, const StartDistance& b, bool& exact_arithmetic);
-  /// Compares with a radius.
-  static std::strong_ordering compare(const StartDistance& a, double radius, bool& exact_arithmetic);
+  /// Returns -1, 0 or 1 if `a` is less than, equal to or greater than `b`. Sets `exact_arithmetic` if neither their
+  /// ranges nor a shared nearest part decide.
+  static int compare(const StartDistance& a, const StartDistance& b, bool& exact_arithmetic);
+  /// The same for a distance and a radius.
+  static int compare(const StartDistance& a, double radius, bool& exact_arithmetic);
 
  private:
   /// Returns the corners whose hull is the nearest part of the triangle, sorted, if double precision proves which part

@@ -20,7 +20,7 @@ namespace {
 // Below: for every vector g, each point y of the triangle has y.g >= min(A.g, B.g, C.g), so |y| >= that / |g|. This is
 // sharp if g is the nearest point (Rockafellar 1970, Convex Analysis, theorem 11.4: two convex sets are as far apart as
 // two parallel planes between them). A product P.g errs by 4 u m |g| sqrt(3) from the corner, and by 3 u m |g| from its
-// own three roundings; dividing by the computed |g| adds 6 u m: less than 17 u m.
+// own three roundings; that the computed g / |g| has the length 1 up to 6 u adds 6 u m: less than 17 u m.
 constexpr double kDistanceError = 32 * kUnit;
 /// Below this square, the length of g may have lost bits to underflow, and the distance is at most 2^-450.
 constexpr double kLeastSquare = 0x1p-900;
@@ -29,14 +29,41 @@ bool is_share(double weight) {
   return weight >= 0 && weight <= 1;  // false for NaN
 }
 
-/// Returns a point of the triangle that is near the origin, usually the nearest one.
+/// Returns the point of the triangle that is nearest to the origin, but for rounding, if the triangle has an area.
+/// Otherwise some point of it.
 glm::dvec3 near_origin(const Corners& corners) {
   const glm::dvec3 weights = nearest_in_triangle(glm::dvec3(0), corners);
   const double excess = (weights.x + weights.y + weights.z) - 1;
   if (is_share(weights.x) && is_share(weights.y) && is_share(weights.z) && std::abs(excess) <= 4 * kUnit)
     return weights.x * corners.a + weights.y * corners.b + weights.z * corners.c;
+  return corners.a;
+}
+
+glm::dvec3 near_origin_on_edge(const glm::dvec3& from, const glm::dvec3& to) {
+  const glm::dvec3 edge = to - from;
+  const double length = glm::dot(edge, edge);
+  const double share = length > 0 ? std::clamp(-glm::dot(from, edge) / length, 0.0, 1.0) : 0.0;
+  return (1 - share) * from + share * to;
+}
+
+/// Returns the point of the triangle's edges that is nearest to the origin, but for rounding.
+glm::dvec3 near_origin_on_edges(const Corners& corners) {
   const auto is_nearer = [](const glm::dvec3& p, const glm::dvec3& q) { return glm::dot(p, p) < glm::dot(q, q); };
-  return std::min({corners.a, corners.b, corners.c}, is_nearer);
+  return std::min({near_origin_on_edge(corners.a, corners.b), near_origin_on_edge(corners.b, corners.c),
+                   near_origin_on_edge(corners.c, corners.a)},
+                  is_nearer);
+}
+
+/// Returns the range that a point of the triangle proves, by itself and as a direction.
+Separation proven_by(const glm::dvec3& point, const Corners& corners, double reach) {
+  const double square = glm::dot(point, point);
+  const double length = std::sqrt(square);
+  const double error = kDistanceError * reach;
+  if (square < kLeastSquare) return {{0, length + error}, glm::dvec3(0)};
+  const glm::dvec3 direction = point / length;
+  const double least =
+      std::min({glm::dot(corners.a, direction), glm::dot(corners.b, direction), glm::dot(corners.c, direction)});
+  return {{std::max(0.0, least - error), length + error}, direction};
 }
 
 }  // namespace
@@ -52,15 +79,18 @@ bool is_in_range(double reach) {
   return reach >= 0x1p-300 && reach <= 0x1p300;
 }
 
-DistanceRange distance_to(const Corners& corners, double reach) {
-  const glm::dvec3 nearest = near_origin(corners);
-  const double square = glm::dot(nearest, nearest);
-  const double length = std::sqrt(square);
-  const double error = kDistanceError * reach;
-  if (square < kLeastSquare) return {0, length + error};
-  const double least =
-      std::min({glm::dot(corners.a, nearest), glm::dot(corners.b, nearest), glm::dot(corners.c, nearest)});
-  return {std::max(0.0, least / length - error), length + error};
+Separation separation_from(const Corners& corners, double reach) {
+  constexpr double kWide = 64;  // in units of the error of a range that is as narrow as rounding lets it be
+  const Separation by_face = proven_by(near_origin(corners), corners, reach);
+  if (by_face.range.high - by_face.range.low <= kWide * kDistanceError * reach) return by_face;
+  // A needle's plane is hardly known, but its edges are.
+  Separation by_edges = proven_by(near_origin_on_edges(corners), corners, reach);
+  by_edges.range.high = std::min(by_edges.range.high, by_face.range.high);
+  if (by_face.range.low > by_edges.range.low) {
+    by_edges.range.low = by_face.range.low;
+    by_edges.direction = by_face.direction;
+  }
+  return by_edges;
 }
 
 }  // namespace vestige

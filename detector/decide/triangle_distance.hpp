@@ -10,6 +10,13 @@ struct DistanceRange {
   double high = 0;
 };
 
+/// A proven range of a distance, and the unit vector, up to rounding, along which the triangle is that far away. The
+/// vector is zero if the point is on the triangle, or nearly so.
+struct Separation {
+  DistanceRange range;
+  glm::dvec3 direction;
+};
+
 /// Returns how far corners are from the origin at most, in the sum of their coordinates' sizes, rounded up. Holds for
 /// corners that `corners` approximates by 2 kUnit in each coordinate, too.
 double reach_of(const Corners& corners);
@@ -21,6 +28,6 @@ bool is_in_range(double reach);
 /// `corners` approximates: each computed coordinate errs by at most 4 kUnit * `reach`. No corner, exact or computed, is
 /// farther from the origin than `reach`, in the sum of its coordinates' sizes. The range is about 1e-14 * `reach` wide,
 /// however degenerate the triangle is. Requires is_in_range(reach).
-DistanceRange distance_to(const Corners& corners, double reach);
+Separation separation_from(const Corners& corners, double reach);
 
 }  // namespace vestige

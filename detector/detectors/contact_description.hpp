@@ -4,8 +4,11 @@
 #include <glm/vec3.hpp>
 
 #include "detector/actuator_map.hpp"
+#include "detector/broad/skin_motion.hpp"
 #include "detector/contact.hpp"
 #include "detector/decision.hpp"
+#include "detector/frame.hpp"
+#include "detector/method.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
@@ -25,5 +28,21 @@ struct Meeting {
 /// Returns everything about a contact that follows from the pair and t. All detectors use this one fp64 function
 /// (detector/CONTRACT.md, 7 and 8). `duration_s` is the duration of the frame.
 Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, const Meeting& meeting, double duration_s);
+
+/// A sphere and a triangle, moving as the method takes them: for `static` and `carried`, the triangle rests, and for
+/// `carried` the centre's start is moved with the skin.
+struct SpherePair {
+  std::uint32_t triangle;
+  MovingSphere sphere;
+  Corners before;
+  Corners now;
+};
+
+SpherePair sphere_pair(const Segment& segment, const MovingCorners& corners, std::uint32_t triangle, Method method);
+
+/// Does the same as `describe_contact` for a sphere: u, v and position are those of the skin's point nearest to the
+/// centre at time t, and the speed is along the line between the two (detector/CONTRACT.md, Spheres).
+Contact describe_touch(const Avatar& avatar, const ActuatorMap& map, const SpherePair& pair, const FirstTouch& touch,
+                       double duration_s);
 
 }  // namespace vestige

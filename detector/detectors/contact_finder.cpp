@@ -9,6 +9,10 @@ namespace vestige {
 
 void ContactFinder::offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment,
                           std::uint32_t triangle, Contact& winner) {
+  if (segment.is_sphere()) {
+    spheres_.offer(frame, corners, segment, triangle);
+    return;
+  }
   const auto& [before, now] = corners;
   Way way = {glm::dvec3(segment.start), glm::dvec3(segment.end)};
   if (method_ == Method::kCarried) way.start = glm::dvec3(carried_start(segment.start, before, now));
@@ -26,12 +30,10 @@ void ContactFinder::offer(const DetectorFrame& frame, const MovingCorners& corne
   winner = contact;
 }
 
-std::uint64_t ContactFinder::take_meeting() {
-  return std::exchange(meeting_, 0);
-}
-
-std::uint64_t ContactFinder::take_unsure() {
-  return std::exchange(unsure_, 0);
+void ContactFinder::finish(const DetectorFrame& frame, ContactRow& row, DetectorWork& work) {
+  const SphereCounts spheres = spheres_.finish(frame, row);
+  work.pairs_meeting = std::exchange(meeting_, 0) + spheres.meeting;
+  work.unsure = std::exchange(unsure_, 0) + spheres.unsure;
 }
 
 }  // namespace vestige

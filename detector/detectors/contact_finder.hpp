@@ -6,6 +6,7 @@
 #include "detector/broad/skin_motion.hpp"
 #include "detector/contact.hpp"
 #include "detector/detector.hpp"
+#include "detector/detectors/sphere_finder.hpp"
 #include "detector/frame.hpp"
 #include "traces/scene/avatar.hpp"
 
@@ -16,26 +17,28 @@ namespace vestige {
 class ContactFinder {
  public:
   ContactFinder(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options)
-      : avatar_(avatar), map_(map), surface_(options.surface), method_(options.method) {}
+      : avatar_(avatar),
+        map_(map),
+        surface_(options.surface),
+        method_(options.method),
+        spheres_(avatar, map, options) {}
 
   /// Decides a pair, given the triangle's corners. `winner` is the best contact of this segment so far; a better
-  /// contact replaces it.
+  /// contact replaces it. That of a sphere is known after `finish`.
   void offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment, std::uint32_t triangle,
              Contact& winner);
 
-  /// Returns the number of offered pairs, since the last call, that really meet.
-  std::uint64_t take_meeting();
-
-  /// Returns the number of pairs, since the last call, that needed exact arithmetic.
-  std::uint64_t take_unsure();
+  /// Completes a frame, after all its pairs were offered: writes the contacts of spheres, and counts pairs.
+  void finish(const DetectorFrame& frame, ContactRow& row, DetectorWork& work);
 
  private:
   const Avatar& avatar_;
   const ActuatorMap& map_;
   Surface surface_;
   Method method_;
-  std::uint64_t meeting_ = 0;
-  std::uint64_t unsure_ = 0;
+  SphereFinder spheres_;
+  std::uint64_t meeting_ = 0;  ///< offered pairs that really meet
+  std::uint64_t unsure_ = 0;   ///< pairs that needed exact arithmetic
 };
 
 }  // namespace vestige

@@ -40,10 +40,11 @@ class CpuDetector final : public Detector {
         finder_.offer(frame, moving_corners(avatar_, skin_, method_, triangle), segment, triangle, row[segment.column]);
         enter(Stage::kTest);
       });
-    return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
-            .triangles_tested = avatar_.triangles.size(),
-            .pairs_meeting = finder_.take_meeting(),
-            .unsure = finder_.take_unsure()};
+    DetectorWork work = {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
+                         .triangles_tested = avatar_.triangles.size()};
+    enter(Stage::kDecision);
+    finder_.finish(frame, row, work);
+    return work;
   }
 
   void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
@@ -86,8 +87,8 @@ class SkippingCpuDetector final : public Detector {
       work.pairs_tested += triangles * touched.count;
       test(frame, touched, row);
     }
-    work.pairs_meeting = finder_.take_meeting();
-    work.unsure = finder_.take_unsure();
+    enter(Stage::kDecision);
+    finder_.finish(frame, row, work);
     return work;
   }
 

@@ -24,7 +24,8 @@ class ExactDetector final : public Detector {
     enter(Stage::kSkinning);
     skin_.skin(avatar_, frame, options_.method);
     enter(Stage::kDecision);
-    for (const Segment& segment : frame.segments) row[segment.column] = first_contact(frame, segment);
+    for (const Segment& segment : frame.segments)
+      row[segment.column] = segment.is_sphere() ? first_touch(frame, segment) : first_contact(frame, segment);
     const std::uint64_t pairs = frame.segments.size() * avatar_.triangles.size();
     return {.pairs_tested = pairs, .triangles_tested = avatar_.triangles.size()};
   }
@@ -60,6 +61,29 @@ class ExactDetector final : public Detector {
     }
     if (!found) return {};
     return describe_contact(avatar_, map_, {triangle, way, at_contact, *found}, frame.duration_s);
+  }
+
+  Contact first_touch(const DetectorFrame& frame, const Segment& segment) const {
+    struct Touch {
+      Contact contact;
+      boost::multiprecision::cpp_rational squared_distance;  ///< at the exact first time
+    };
+    std::optional<Touch> best;
+    for (std::uint32_t triangle = 0; triangle < avatar_.triangles.size(); ++triangle) {
+      const Corners now = corners_of(avatar_, skin_.now, triangle);
+      const Corners before = options_.method == Method::kStatic ? now : corners_of(avatar_, skin_.before, triangle);
+      const SpherePair pair = sphere_pair(segment, {before, now}, triangle, options_.method);
+      const std::optional<FirstTouch> touch = exact::sphere_contact(pair.sphere, pair.before, pair.now);
+      if (!touch || (best && touch->t > best->contact.t)) continue;
+      const boost::multiprecision::cpp_rational radius(pair.sphere.radius);
+      Touch candidate = {describe_touch(avatar_, map_, pair, *touch, frame.duration_s), radius * radius};
+      if (options_.surface == Surface::kMapped && candidate.contact.actuator == 0) continue;
+      if (touch->at_start) candidate.squared_distance = exact::squared_distance(pair.sphere.centre.start, pair.before);
+      // Triangles ascend, so the smallest number wins a tie.
+      if (!best || candidate.contact.t < best->contact.t || candidate.squared_distance < best->squared_distance)
+        best = std::move(candidate);
+    }
+    return best ? best->contact : Contact();
   }
 
   const Avatar& avatar_;

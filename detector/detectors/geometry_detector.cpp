@@ -34,11 +34,11 @@ static_assert(static_cast<int>(Method::kStatic) == VESTIGE_METHOD_STATIC);
 static_assert(static_cast<int>(Method::kCarried) == VESTIGE_METHOD_CARRIED);
 static_assert(static_cast<int>(Method::kCcd) == VESTIGE_METHOD_CCD);
 
-/// std140 layout of the shader's GpuSegment; the fourth components are padding.
+/// std140 layout of the shader's GpuSegment; the other fourth components are padding.
 struct GpuSegment {
   glm::vec4 low;
   glm::vec4 high;
-  glm::vec4 start;
+  glm::vec4 start;  ///< w: bounding_radius_m
   glm::vec4 end;
 };
 static_assert(sizeof(GpuSegment) == 64);
@@ -119,11 +119,12 @@ class GeometryDetector final : public Detector {
           finder_.offer(frame, corners, segment, pair.triangle, row[segment.column]);
           ++pairs_captured;
         });
-    return {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
-            .triangles_tested = avatar_.triangles.size(),
-            .pairs_captured = pairs_captured,
-            .pairs_meeting = finder_.take_meeting(),
-            .unsure = finder_.take_unsure()};
+    DetectorWork work = {.pairs_tested = frame.segments.size() * avatar_.triangles.size(),
+                         .triangles_tested = avatar_.triangles.size(),
+                         .pairs_captured = pairs_captured};
+    enter(Stage::kDecision);
+    finder_.finish(frame, row, work);
+    return work;
   }
 
   void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
@@ -173,10 +174,11 @@ class GeometryDetector final : public Detector {
   void upload_segments(const DetectorFrame& frame) {
     gpu_segments_.clear();
     gpu_segments_.reserve(frame.segments.size());
-    for (const Segment& segment : frame.segments)
-      gpu_segments_.push_back({glm::vec4(glm::min(segment.start, segment.end), 0),
-                               glm::vec4(glm::max(segment.start, segment.end), 0), glm::vec4(segment.start, 0),
-                               glm::vec4(segment.end, 0)});
+    for (const Segment& segment : frame.segments) {
+      const SegmentBox box = box_of(segment);
+      gpu_segments_.push_back({glm::vec4(box.low, 0), glm::vec4(box.high, 0),
+                               glm::vec4(segment.start, bounding_radius_m(segment)), glm::vec4(segment.end, 0)});
+    }
     // Allocate whole blocks, because a uniform block must be backed to its end.
     const std::size_t blocks = (gpu_segments_.size() + kBlockSegments - 1) / kBlockSegments;
     segments_.upload(nullptr, blocks * kUniformBlockBytes, GL_STREAM_DRAW);

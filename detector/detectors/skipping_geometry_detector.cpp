@@ -41,7 +41,7 @@ struct Slot {
   std::uint32_t offset = 0;
 };
 struct GpuSegment {
-  glm::vec4 start;  ///< w is padding
+  glm::vec4 start;  ///< w: bounding_radius_m
   glm::vec4 end;
 };
 struct Block {
@@ -129,8 +129,8 @@ class SkippingGeometryDetector final : public Detector {
         stage_clock(), draws_.size(), kBlockSegments * kMeshletTriangles,
         [this](std::size_t first, std::size_t count) { draw(first, count); },
         [&](const CapturedPair& pair) { work.pairs_captured += decide(frame, pair, row); });
-    work.pairs_meeting = finder_.take_meeting();
-    work.unsure = finder_.take_unsure();
+    enter(Stage::kDecision);
+    finder_.finish(frame, row, work);
     return work;
   }
 
@@ -191,7 +191,8 @@ class SkippingGeometryDetector final : public Detector {
                                      static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(offset)};
         for (const std::uint32_t number : numbers.subspan(offset, count)) {
           const Segment& segment = frame.segments[number];
-          block.segments[draw.segments++] = {glm::vec4(segment.start, 0), glm::vec4(segment.end, 0)};
+          block.segments[draw.segments++] = {glm::vec4(segment.start, bounding_radius_m(segment)),
+                                             glm::vec4(segment.end, 0)};
         }
         add_corners(i);
         offset += count;

@@ -155,10 +155,11 @@ Bernstein bernstein(const Polynomial& polynomial, const Interval& interval) {
       for (int power = degree - 1; power >= i; --power) c[index_of(power)] += c[index_of(power + 1)] * interval.low;
   const Whole width = interval.high - interval.low;
   Whole stretch = 1;
-  // sum_j c_j s^j has the Bernstein coefficients b_i = sum_j (i over j) / (n over j) c_j. All are multiplied by 3 for n
-  // = 3 and by 2 for n = 2, so that they are integers. The sums are Pascal's triangle: repeated sums of neighbours.
+  // sum_j c_j s^j has the Bernstein coefficients b_i = sum_j (i over j) / (n over j) c_j. All are multiplied by the
+  // least common multiple of the (n over j), so that they are integers. The sums are Pascal's triangle: repeated sums
+  // of neighbours.
   constexpr std::array<std::array<int, kMaxDegree + 1>, kMaxDegree + 1> kFactor = {
-      {{1}, {1, 1}, {2, 1, 2}, {3, 1, 1, 3}}};
+      {{1}, {1, 1}, {2, 1, 2}, {3, 1, 1, 3}, {12, 3, 2, 3, 12}, {10, 2, 1, 1, 2, 10}, {60, 10, 4, 3, 4, 10, 60}}};
   for (int power = 0; power <= degree; ++power) {
     c[index_of(power)] *= stretch;
     c[index_of(power)] *= kFactor[index_of(degree)][index_of(power)];

@@ -7,7 +7,7 @@
 
 namespace vestige::exact {
 
-inline constexpr int kMaxDegree = 3;
+inline constexpr int kMaxDegree = 6;
 
 /// A polynomial in time with integer coefficients, of degree `kMaxDegree` at most.
 class Polynomial {

@@ -1,7 +1,6 @@
-// The deciding code against the slow truth on as many seeded pairs as one likes: agreement --method static|ccd --pairs
-// N
-// --seed K --threads N [--family NAME]. Prints JSON; exits 4 where anything differs. Which pairs are asked about
-// depends on --seed, --pairs and --family alone.
+// The deciding code against the slow truth on as many seeded pairs as one likes:
+// agreement --method static|ccd [--spheres] --pairs N --seed K --threads N [--family NAME]. Prints JSON; exits 4 where
+// anything differs. Which pairs are asked about depends on --seed, --pairs and --family alone.
 
 #include "tests/support/pairs/agreement.hpp"
 
@@ -23,6 +22,7 @@ using vestige::test::Agreement;
 
 struct Settings {
   vestige::Method method = vestige::Method::kStatic;
+  bool spheres = false;
   std::uint64_t pairs = 1'000'000;
   std::uint64_t seed = 1;
   unsigned threads = 1;
@@ -51,8 +51,9 @@ std::map<std::string, Agreement> compare(const Settings& settings) {
       const std::string& family = family_of(part, settings);
       const std::uint64_t pairs = std::min(kPart, settings.pairs - part * kPart);
       constexpr std::uint64_t kMostParts = std::uint64_t{1} << 32;
-      const Agreement agreement =
-          vestige::test::compare_with_truth(settings.method, family, settings.seed * kMostParts + part, pairs);
+      const auto compare_part =
+          settings.spheres ? vestige::test::compare_spheres_with_truth : vestige::test::compare_with_truth;
+      const Agreement agreement = compare_part(settings.method, family, settings.seed * kMostParts + part, pairs);
       const std::lock_guard lock(mutex);
       by_family[family].add(agreement);
     }
@@ -81,6 +82,7 @@ int main(int argc, char** argv) {
   const std::map<std::string, vestige::Method> methods = {{"static", vestige::Method::kStatic},
                                                           {"ccd", vestige::Method::kCcd}};
   app.add_option("--method", settings.method)->transform(CLI::CheckedTransformer(methods));
+  app.add_flag("--spheres", settings.spheres);
   app.add_option("--pairs", settings.pairs)->check(CLI::PositiveNumber);
   app.add_option("--seed", settings.seed);
   app.add_option("--threads", settings.threads)->check(CLI::Range(1, 1024));
@@ -91,6 +93,7 @@ int main(int argc, char** argv) {
   arguments.front() = "agreement";  // not where it happens to lie
   nlohmann::ordered_json report = vestige::provenance(arguments);
   report["method"] = vestige::name_of(settings.method);
+  if (settings.spheres) report["colliders"] = "spheres";
   report["seed"] = settings.seed;
   Agreement total;
   for (const auto& [family, agreement] : compare(settings)) {

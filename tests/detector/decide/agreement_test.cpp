@@ -27,6 +27,15 @@ TEST_P(Agreement, OfContinuousDecisionsWithTheTruthIsComplete) {
   EXPECT_GT(agreement.contacts, pairs / 20);
 }
 
+TEST_P(Agreement, OfSpheresWithTheTruthIsComplete) {
+  for (const Method method : {Method::kStatic, Method::kCcd}) {
+    const std::uint64_t pairs = GetParam() == "extreme" ? 40 : (method == Method::kCcd ? 1000 : 4000);
+    const test::Agreement agreement = test::compare_spheres_with_truth(method, GetParam(), 1, pairs);
+    EXPECT_EQ(agreement.differences, 0U) << ::testing::PrintToString(agreement.examples);
+    EXPECT_GT(agreement.contacts, pairs / 20);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Each, Agreement, ::testing::ValuesIn(test::case_families()),
                          [](const auto& test) { return std::string(test.param); });
 

@@ -40,6 +40,7 @@ struct Settings {
   ContextKind context = ContextKind::kAuto;
   int device = -1;
   bool skip = false;
+  ColliderShape shape = ColliderShape::kPoints;
 };
 
 /// A detector and what it did otherwise than the `cpu` that skips nothing.
@@ -77,7 +78,7 @@ nlohmann::ordered_json compare(Method method, const Settings& settings) {
     add_geometry(Skip::kOn);
     contestants.push_back({.detector = make_cpu_detector(avatar, map, options(Skip::kOn)), .skips = true});
   }
-  test::AdversarialSource source(settings.seed);
+  test::AdversarialSource source(settings.seed, settings.shape);
   ContactRow expected;
   std::uint64_t done = 0;
   std::uint64_t meeting = 0;
@@ -124,6 +125,7 @@ int run(int argc, char** argv) {
   app.add_option("--method", method)->check(CLI::IsMember({"static", "carried", "ccd"}));
   app.add_option("--device", settings.device)->check(CLI::Range(0, 1023));
   app.add_flag("--skip", settings.skip);
+  app.add_flag_callback("--spheres", [&settings] { settings.shape = vestige::ColliderShape::kSpheres; });
   CLI11_PARSE(app, argc, argv);
   if (!method.empty())
     std::erase_if(settings.methods, [&](vestige::Method one) { return vestige::name_of(one) != method; });
@@ -132,6 +134,7 @@ int run(int argc, char** argv) {
   arguments.front() = "geometry_agreement";  // not where it happens to lie
   nlohmann::ordered_json report = vestige::provenance(arguments);
   report["seed"] = settings.seed;
+  if (settings.shape == vestige::ColliderShape::kSpheres) report["colliders"] = "spheres";
   bool same = true;
   for (const vestige::Method each : settings.methods) {
     for (nlohmann::ordered_json& row : vestige::compare(each, settings)) {

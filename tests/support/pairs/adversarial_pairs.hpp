@@ -23,7 +23,8 @@ struct AdversarialPairs {
 /// there, or within a few ulp.
 class AdversarialSource {
  public:
-  explicit AdversarialSource(std::uint64_t seed) : random_(seed) {}
+  explicit AdversarialSource(std::uint64_t seed, ColliderShape shape = ColliderShape::kPoints)
+      : random_(seed), shape_(shape) {}
 
   AdversarialPairs draw(std::size_t triangles, std::size_t segments) {
     const auto scale = std::ldexp(1.0F, pick<int>({-140, -60, -20, -7, -7, -7, -7, 0, 0, 20, 38, 40, 42, 44, 60}));
@@ -54,6 +55,7 @@ class AdversarialSource {
       segment.column = i;
       nudge(segment.start);
       nudge(segment.end);
+      if (shape_ == ColliderShape::kSpheres) make_sphere(segment, target, scale);
       pairs.segments.push_back(segment);
     }
     return pairs;
@@ -135,7 +137,22 @@ class AdversarialSource {
     }
   }
 
+  /// Gives the segment a radius, and mostly moves it so far that the sphere's surface is where the segment was.
+  void make_sphere(Segment& segment, const LooseTriangle& triangle, float scale) {
+    segment.radius_m = scale * pick<float>({1e-6F, 0.01F, 0.1F, 1, 3, unit()});
+    if (segment.radius_m == 0 || random_() % 4 == 0) return;
+    glm::dvec3 out = glm::cross(glm::dvec3(triangle[1] - triangle[0]), glm::dvec3(triangle[2] - triangle[0]));
+    if (random_() % 3 == 0) out = glm::dvec3(any_vector());
+    const double length = glm::length(out);
+    if (!(length > 0)) return;
+    const glm::vec3 shift(double{segment.radius_m} / length * out);
+    segment.start += shift;
+    segment.end += shift;
+    nudge(segment.end);
+  }
+
   std::mt19937_64 random_;
+  ColliderShape shape_;
 };
 
 }  // namespace vestige::test

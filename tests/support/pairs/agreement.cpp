@@ -4,6 +4,7 @@
 
 #include <bit>
 
+#include "detector/decide/start_distance.hpp"
 #include "detector/decision.hpp"
 #include "detector/truth/truth.hpp"
 #include "tests/support/pairs/contact_cases.hpp"
@@ -19,6 +20,10 @@ std::string text_of(const glm::dvec3& x) {
 }
 std::string text_of(const Corners& triangle) {
   return fmt::format("{{{}, {}, {}}}", text_of(triangle.a), text_of(triangle.b), text_of(triangle.c));
+}
+std::string text_of(const std::optional<FirstTouch>& touch) {
+  return touch ? fmt::format("t = {:a} side {}{}", touch->t, int{touch->side}, touch->at_start ? " at start" : "")
+               : "no touch";
 }
 std::string text_of(const std::optional<FirstContact>& contact) {
   return contact ? fmt::format("t = {:a} side {}", contact->t, int{contact->side}) : "no contact";
@@ -57,6 +62,33 @@ Agreement compare_with_truth(Method method, std::string_view family, std::uint64
       agreement.examples.push_back(fmt::format(
           "{} {}: way {{{}, {}}}, before {}, after {}: {}, truth {}", name_of(method), family, text_of(c.way.start),
           text_of(c.way.end), text_of(c.before), text_of(c.after), text_of(decision.contact), text_of(truth)));
+  }
+  return agreement;
+}
+
+Agreement compare_spheres_with_truth(Method method, std::string_view family, std::uint64_t seed, std::uint64_t pairs) {
+  Agreement agreement;
+  agreement.pairs = pairs;
+  CaseGenerator generator(family, seed);
+  for (std::uint64_t i = 0; i < pairs; ++i) {
+    const SphereCase c = generator.next_sphere();
+    const Corners& before = method == Method::kCcd ? c.before : c.after;
+    const SphereDecision decision = decide_sphere(c.sphere, before, c.after);
+    const auto truth = exact::sphere_contact(c.sphere, before, c.after);
+    if (truth) ++agreement.contacts;
+    if (decision.exact_arithmetic) ++agreement.exact_arithmetic;
+    bool unused = false;
+    const int order =
+        StartDistance::compare({c.sphere.centre.start, c.before}, {c.sphere.centre.start, c.after}, unused);
+    const auto difference = exact::squared_distance(c.sphere.centre.start, c.before) -
+                            exact::squared_distance(c.sphere.centre.start, c.after);
+    if (decision.touch == truth && order == difference.sign()) continue;
+    ++agreement.differences;
+    if (agreement.examples.size() < kMostExamples)
+      agreement.examples.push_back(fmt::format("{} {}: way {{{}, {}}}, radius {:a}, before {}, after {}: {}, truth {}",
+                                               name_of(method), family, text_of(c.sphere.centre.start),
+                                               text_of(c.sphere.centre.end), c.sphere.radius, text_of(before),
+                                               text_of(c.after), text_of(decision.touch), text_of(truth)));
   }
   return agreement;
 }

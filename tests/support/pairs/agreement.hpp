@@ -23,4 +23,7 @@ struct Agreement {
 /// Compares `decide_static` or `decide_ccd` with `exact::` on `pairs` cases of a family (contact_cases.hpp).
 Agreement compare_with_truth(Method method, std::string_view family, std::uint64_t seed, std::uint64_t pairs);
 
+/// The same for `decide_sphere`, and for the comparison of two distances at the start.
+Agreement compare_spheres_with_truth(Method method, std::string_view family, std::uint64_t seed, std::uint64_t pairs);
+
 }  // namespace vestige::test

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "detector/nearest_in_triangle.hpp"
+
 namespace vestige::test {
 
 namespace {
@@ -357,6 +359,38 @@ void round_to_fp32(ContactCase& c) {
   });
 }
 
+double distance_to(const glm::dvec3& x, const Corners& triangle) {
+  const glm::dvec3 weights = nearest_in_triangle(x, triangle);
+  const glm::dvec3 nearest = weights.x * triangle.a + weights.y * triangle.b + weights.z * triangle.c;
+  return glm::distance(x, nearest);
+}
+
+double radius_of(Random& random, const ContactCase& c) {
+  const double size = std::max(glm::distance(c.before.a, c.before.b), glm::distance(c.after.a, c.after.c));
+  switch (whole(random, 0, 8)) {
+    case 0:
+      return glm::distance(c.way.start, c.before.a);
+    case 1:
+      return glm::distance(c.way.end, c.after.b);
+    case 2:
+      return distance_to(c.way.start, c.before);
+    case 3:
+      return distance_to(c.way.end, c.after);
+    case 4:
+      return std::numeric_limits<float>::denorm_min();
+    case 5:
+      return 1000 * size;
+    case 6:
+      return whole(random, 1, 6) / 2.0;
+    default:
+      return size * power_of_ten(whole(random, -4, 0)) * share(random);
+  }
+}
+
+bool is_radius(double radius) {
+  return radius > 0 && std::isfinite(radius);
+}
+
 }  // namespace
 
 std::span<const std::string_view> case_families() {
@@ -389,6 +423,27 @@ ContactCase CaseGenerator::next() {
   if (fp32) round_to_fp32(c);
   if (family_ == kUlp) nudge(random, c, fp32);
   return c;
+}
+
+SphereCase CaseGenerator::next_sphere() {
+  ContactCase c = next();
+  Random& random = random_;
+  double radius = radius_of(random, c);
+  if (one_in(random, 4)) radius = std::nextafter(radius, one_in(random, 2) ? 0 : HUGE_VAL);
+  if (one_in(random, 2)) radius = double{static_cast<float>(radius)};
+  if (!is_radius(radius)) radius = whole(random, 1, 4) / 2.0;
+  const glm::dvec3 normal = glm::cross(c.after.b - c.after.a, c.after.c - c.after.a);
+  const double length = glm::length(normal);
+  if (one_in(random, 2) && is_radius(length)) {
+    const glm::dvec3 shift = radius / length * normal;
+    c.way = {c.way.start + shift, c.way.end + shift};
+  }
+  const auto is_finite = [](const glm::dvec3& x) {
+    return std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z);
+  };
+  if (!is_finite(c.way.start)) c.way.start = glm::dvec3(0);
+  if (!is_finite(c.way.end)) c.way.end = c.way.start;
+  return {{c.way, radius}, c.before, c.after};
 }
 
 }  // namespace vestige::test

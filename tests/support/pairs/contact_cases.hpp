@@ -16,6 +16,13 @@ struct ContactCase {
   Corners after;
 };
 
+/// The same for a sphere.
+struct SphereCase {
+  MovingSphere sphere;
+  Corners before;
+  Corners after;
+};
+
 /// Returns the names of the case families. A family says what makes its cases hard. The families ulp, scale and offset
 /// change cases of other families.
 std::span<const std::string_view> case_families();
@@ -28,6 +35,11 @@ class CaseGenerator {
   CaseGenerator(std::string_view family, std::uint64_t seed);
 
   ContactCase next();
+
+  /// Returns a case of the family with a radius: any, the distance at the start or at the end, or within an ulp of it,
+  /// far too small, or larger than everything. Often the way is shifted by the radius, so that the sphere's surface
+  /// passes where the point would.
+  SphereCase next_sphere();
 
  private:
   std::size_t family_;

@@ -1,0 +1,86 @@
+#include "detector/detectors/sphere_finder.hpp"
+
+#include <utility>
+
+namespace vestige {
+
+bool SphereFinder::touches_at_start(const StartDistance& distance, double radius) {
+  bool exact_arithmetic = false;
+  const bool touches = StartDistance::compare(distance, radius, exact_arithmetic) <= 0;
+  if (exact_arithmetic) ++counts_.unsure;
+  return touches;
+}
+
+/// Compares by t, then by the exact squared distance at the exact first time, then by the triangle's number.
+bool SphereFinder::is_better(const Best& candidate, const Best& best) {
+  if (candidate.touch.t != best.touch.t) return candidate.touch.t < best.touch.t;
+  int order = 0;  // both at the radius
+  bool exact_arithmetic = false;
+  const double radius = candidate.pair.sphere.radius;
+  if (candidate.start && best.start)
+    order = StartDistance::compare(*candidate.start, *best.start, exact_arithmetic);
+  else if (candidate.start)
+    order = StartDistance::compare(*candidate.start, radius, exact_arithmetic);
+  else if (best.start)
+    order = -StartDistance::compare(*best.start, radius, exact_arithmetic);
+  if (exact_arithmetic) ++counts_.unsure;
+  return order != 0 ? order < 0 : candidate.pair.triangle < best.pair.triangle;
+}
+
+bool SphereFinder::is_on_surface(const DetectorFrame& frame, const SpherePair& pair, const FirstTouch& touch) const {
+  return surface_ == Surface::kAll || describe_touch(avatar_, map_, pair, touch, frame.duration_s).actuator != 0;
+}
+
+std::optional<SphereFinder::Best>& SphereFinder::best_of(std::uint32_t column) {
+  if (best_.size() <= column) best_.resize(column + 1);
+  return best_[column];
+}
+
+void SphereFinder::take(const DetectorFrame& frame, std::uint32_t column, Best candidate) {
+  std::optional<Best>& best = best_of(column);
+  if (best && !is_better(candidate, *best)) return;
+  if (!is_on_surface(frame, candidate.pair, candidate.touch)) return;
+  if (!best) columns_.push_back(column);
+  best = std::move(candidate);
+}
+
+void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment,
+                         std::uint32_t triangle) {
+  const SpherePair pair = sphere_pair(segment, corners, triangle, method_);
+  const StartDistance distance(pair.sphere.centre.start, pair.before);
+  if (!touches_at_start(distance, pair.sphere.radius)) {
+    waiting_.push_back({segment.column, pair});
+    return;
+  }
+  ++counts_.meeting;
+  // The side is found later, for the winner only.
+  take(frame, segment.column, {pair, {0, 0, true}, distance});
+}
+
+SphereCounts SphereFinder::finish(const DetectorFrame& frame, ContactRow& row) {
+  for (const Waiting& waiting : waiting_) {
+    const std::optional<Best>& best = best_of(waiting.column);
+    // A distance below the radius cannot tie with a later touch, whose t may be rounded to 0.
+    if (best && best->start && best->start->range().high < waiting.pair.sphere.radius) continue;
+    const SphereDecision decision = decide_sphere(waiting.pair.sphere, waiting.pair.before, waiting.pair.now);
+    if (decision.exact_arithmetic) ++counts_.unsure;
+    if (!decision.touch) continue;
+    ++counts_.meeting;
+    take(frame, waiting.column, {waiting.pair, *decision.touch, {}});
+  }
+  waiting_.clear();
+  for (const std::uint32_t column : columns_) {
+    std::optional<Best>& best = best_[column];
+    if (best->start) {
+      const SphereDecision decision = decide_sphere(best->pair.sphere, best->pair.before, best->pair.now);
+      if (decision.exact_arithmetic) ++counts_.unsure;
+      best->touch = *decision.touch;
+    }
+    row[column] = describe_touch(avatar_, map_, best->pair, best->touch, frame.duration_s);
+    best.reset();
+  }
+  columns_.clear();
+  return std::exchange(counts_, {});
+}
+
+}  // namespace vestige

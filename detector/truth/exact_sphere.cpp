@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "detector/truth/algebraic_time.hpp"
+#include "detector/truth/truth.hpp"
+
+namespace vestige::exact {
+
+namespace {
+
+using Rational = boost::multiprecision::cpp_rational;
+using RationalVector = std::array<Rational, 3>;
+
+RationalVector rational(const glm::dvec3& v) {
+  return {Rational(v.x), Rational(v.y), Rational(v.z)};
+}
+RationalVector operator-(const RationalVector& a, const RationalVector& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Rational dot(const RationalVector& a, const RationalVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// Returns the squared distance from the origin to the segment between two points.
+Rational squared_distance_to_edge(const RationalVector& from, const RationalVector& to) {
+  const RationalVector edge = to - from;
+  const Rational length = dot(edge, edge);
+  const Rational along = -dot(from, edge);
+  if (along <= 0) return dot(from, from);
+  if (along >= length) return dot(to, to);
+  return dot(from, from) - along * along / length;
+}
+
+/// A vertex, an edge or the face of the moving triangle, by least squares: x - a is approximated by a combination of
+/// no, one or two edges from a. The sphere overlaps the part if the residue is at most the radius and the combination
+/// lies within the part.
+struct Part {
+  Polynomial excess;               ///< (squared residue - squared radius) times `size`
+  Polynomial size;                 ///< determinant of the edges' Gram matrix; the part exists where it is positive
+  std::vector<Polynomial> within;  ///< none may be negative
+};
+
+struct SphereScene {
+  std::vector<Part> parts;
+  Polynomial height;  ///< f
+};
+
+Polynomial constant(const Whole& value) {
+  return Polynomial::moving(value, value);
+}
+
+SphereScene sphere_scene(const MovingSphere& sphere, const Corners& before, const Corners& after) {
+  std::array<double, 25> values = {};
+  std::size_t next = 0;
+  for (const glm::dvec3* point :
+       {&sphere.centre.start, &sphere.centre.end, &before.a, &after.a, &before.b, &after.b, &before.c, &after.c})
+    for (int axis = 0; axis < 3; ++axis) values[next++] = (*point)[axis];
+  values[next] = sphere.radius;
+  const std::array<Whole, 25> whole = whole_multiples(values);
+  const auto difference = [&whole](std::size_t from, std::size_t to) {
+    MovingVector vector;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      vector[axis] = Polynomial::moving(whole[6 * to + axis] - whole[6 * from + axis],
+                                        whole[6 * to + 3 + axis] - whole[6 * from + 3 + axis]);
+    return vector;
+  };
+  const Polynomial squared_radius = constant(whole[24] * whole[24]);
+  SphereScene scene;
+  for (std::size_t corner = 1; corner <= 3; ++corner) {
+    const MovingVector away = difference(corner, 0);
+    scene.parts.push_back({dot(away, away) - squared_radius, constant(1), {}});
+    const MovingVector edge = difference(corner, corner % 3 + 1);
+    const Polynomial along = dot(away, edge);
+    const Polynomial length = dot(edge, edge);
+    scene.parts.push_back(
+        {(dot(away, away) - squared_radius) * length - along * along, length, {along, length - along}});
+  }
+  const MovingVector away = difference(1, 0);
+  const MovingVector first = difference(1, 2);
+  const MovingVector second = difference(1, 3);
+  const Polynomial first_first = dot(first, first);
+  const Polynomial second_second = dot(second, second);
+  const Polynomial first_second = dot(first, second);
+  const Polynomial on_first = dot(away, first);
+  const Polynomial on_second = dot(away, second);
+  const Polynomial gram = first_first * second_second - first_second * first_second;
+  const Polynomial b = on_first * second_second - on_second * first_second;  // the weight of b, times gram
+  const Polynomial c = on_second * first_first - on_first * first_second;
+  scene.parts.push_back(
+      {(dot(away, away) - squared_radius) * gram - b * on_first - c * on_second, gram, {b, c, gram - b - c}});
+  scene.height = dot(cross(first, second), away);
+  return scene;
+}
+
+bool overlaps(const SphereScene& scene, AlgebraicTime& time) {
+  return std::ranges::any_of(scene.parts, [&](const Part& part) {
+    return time.sign_of(part.size) > 0 && time.sign_of(part.excess) <= 0 &&
+           std::ranges::all_of(part.within, [&](const Polynomial& weight) { return time.sign_of(weight) >= 0; });
+  });
+}
+
+/// Returns the contract's side of a sphere: the sign of `height` at `time`. Where that is 0, the sign just before; at
+/// time 0, the opposite of the sign just after.
+int sphere_side(Polynomial height, AlgebraicTime& time) {
+  const bool at_start = time.is_zero();
+  int before = 1;
+  for (bool is_first = true; !height.vanishes(); is_first = false) {
+    const int sign = time.sign_of(height);
+    if (sign != 0) return at_start ? (is_first ? sign : -sign) : sign * before;
+    height = height.derivative();
+    before = -before;
+  }
+  return 0;
+}
+
+/// Whether the sphere stays beyond the triangle along some axis. The tolerance is far larger than the rounding.
+bool stays_apart(const MovingSphere& sphere, const Corners& before, const Corners& after) {
+  const double reach = sphere.radius * (1 + 0x1p-40);
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto [way_low, way_high] = std::minmax(sphere.centre.start[axis], sphere.centre.end[axis]);
+    const auto [low, high] =
+        std::minmax({before.a[axis], before.b[axis], before.c[axis], after.a[axis], after.b[axis], after.c[axis]});
+    if (low - way_high > reach || way_low - high > reach) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+boost::multiprecision::cpp_rational squared_distance(const glm::dvec3& point, const Corners& triangle) {
+  const RationalVector x = rational(point);
+  const RationalVector a = rational(triangle.a) - x;
+  const RationalVector b = rational(triangle.b) - x;
+  const RationalVector c = rational(triangle.c) - x;
+  const RationalVector ab = b - a;
+  const RationalVector ac = c - a;
+  const Rational gram = dot(ab, ab) * dot(ac, ac) - dot(ab, ac) * dot(ab, ac);
+  if (gram > 0) {
+    const Rational on_ab = -dot(a, ab);
+    const Rational on_ac = -dot(a, ac);
+    const Rational weight_b = (on_ab * dot(ac, ac) - on_ac * dot(ab, ac)) / gram;
+    const Rational weight_c = (on_ac * dot(ab, ab) - on_ab * dot(ab, ac)) / gram;
+    if (weight_b >= 0 && weight_c >= 0 && weight_b + weight_c <= 1)
+      return dot(a, a) - weight_b * on_ab - weight_c * on_ac;
+  }
+  return std::min({squared_distance_to_edge(a, b), squared_distance_to_edge(b, c), squared_distance_to_edge(c, a)});
+}
+
+// Something that overlaps begins to do so at a root of the excess of the part that is met first, or of a weight at
+// which the nearest point enters the part, or of a size at which the part comes into being. All of these are tried in
+// order.
+std::optional<FirstTouch> sphere_contact(const MovingSphere& sphere, const Corners& before, const Corners& after) {
+  if (stays_apart(sphere, before, after)) return std::nullopt;
+  const SphereScene scene = sphere_scene(sphere, before, after);
+  const auto touch_at = [&scene](AlgebraicTime& time) {
+    return FirstTouch{time.rounded(), static_cast<std::int8_t>(sphere_side(scene.height, time)), time.is_zero()};
+  };
+  AlgebraicTime start(0, 0U);
+  if (overlaps(scene, start)) return touch_at(start);
+  std::optional<AlgebraicTime> first;
+  const auto try_roots = [&](const Polynomial& polynomial) {
+    if (polynomial.vanishes()) return;
+    for (AlgebraicTime& time : roots_within_frame(polynomial)) {
+      if (first && time.compare(*first) >= 0) return;
+      if (!overlaps(scene, time)) continue;
+      first = time;
+      return;
+    }
+  };
+  for (const Part& part : scene.parts) {
+    try_roots(part.excess);
+    try_roots(part.size);
+    for (const Polynomial& weight : part.within) try_roots(weight);
+  }
+  if (!first) return std::nullopt;
+  return touch_at(*first);
+}
+
+}  // namespace vestige::exact
