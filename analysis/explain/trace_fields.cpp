@@ -29,6 +29,7 @@ constexpr Field kColliders[] = {
     {"x", "m", "its place in the world"},
     {"y", "m", "its place in the world; up"},
     {"z", "m", "its place in the world"},
+    {"radius_m", "m", "its radius, 0: a point; only in traces with radii"},
     {"teleported", "", "1: it jumped here, so that no segment leads to it; 0: it moved"},
 };
 
@@ -41,6 +42,7 @@ constexpr Field kFrameLine[] = {
      "parent"},
     {"colliders/id", "", "id of a collider; one that is not listed is absent"},
     {"colliders/position", "m", "its place in the world: x, y, z"},
+    {"colliders/radius", "m", "its radius; without it, it is a point"},
     {"teleported", "", "ids of colliders that jumped here, so that no segment leads to them"},
 };
 
@@ -52,10 +54,11 @@ constexpr Field kTraceHdf5[] = {
     {"pose/rotation", "", "frames x nodes x 4, float32: x, y, z, w, relative to the parent"},
     {"pose/scale", "", "frames x nodes x 3, float32: relative to the parent"},
     {"pose/node_names", "", "names of the nodes, in the avatar's order"},
-    {"colliders/id", "", "ids of the colliders, ascending: the columns of the next three; uint32"},
+    {"colliders/id", "", "ids of the colliders, ascending: the columns of the other tables; uint32"},
     {"colliders/position", "m", "frames x colliders x 3, float64: place in the world; NaN: absent"},
     {"colliders/present", "", "frames x colliders, uint8: 0 absent, 1 present"},
     {"colliders/teleported", "", "frames x colliders, uint8: 1: it jumped here"},
+    {"colliders/radius", "m", "frames x colliders, float32: 0: a point; NaN: absent; only in traces with radii"},
     {"avatar.glb", "", "the avatar's file, byte by byte"},
     {"actuator_map.png", "", "the actuator map's file, byte by byte"},
     {"actuator_map.json", "", "the actuator map's names, byte by byte"},

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-#include "detector/decide/scaled_integers.hpp"
+#include "detector/algebra/scaled_integers.hpp"
 
 namespace vestige {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "detector/decide/moving_polynomials.hpp"
-#include "detector/decide/unit_roots.hpp"
+#include "detector/algebra/moving_polynomials.hpp"
+#include "detector/algebra/unit_roots.hpp"
 
 namespace vestige {
 

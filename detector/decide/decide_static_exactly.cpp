@@ -4,8 +4,8 @@
 #include <array>
 #include <optional>
 
-#include "detector/decide/integer_vector.hpp"
-#include "detector/decide/nearest_float.hpp"
+#include "detector/algebra/integer_vector.hpp"
+#include "detector/algebra/nearest_float.hpp"
 
 namespace vestige {
 

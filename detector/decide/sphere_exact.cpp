@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "detector/decide/moving_polynomials.hpp"
-#include "detector/decide/unit_roots.hpp"
+#include "detector/algebra/moving_polynomials.hpp"
+#include "detector/algebra/unit_roots.hpp"
 
 namespace vestige {
 

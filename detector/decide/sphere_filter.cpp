@@ -24,7 +24,7 @@ constexpr double kShortestStep = 0x1p-45;
 constexpr double kShortStep = 0x1p-20;
 
 constexpr SphereProof kNoTouch = {SphereProof::Verdict::kNoTouch, {}};
-constexpr SphereProof kGivenUp = {SphereProof::Verdict::kUnsure, {}};
+constexpr SphereProof kNotProven = {SphereProof::Verdict::kUnsure, {}};
 
 Corners relative_to(const glm::dvec3& centre, const Corners& triangle) {
   return {triangle.a - centre, triangle.b - centre, triangle.c - centre};
@@ -56,14 +56,14 @@ class ConservativeAdvance {
     double t = 0;
     for (int step = 0; step < kMostSteps; ++step) {
       const double wait = time_apart(t, separation);
-      if (!(wait >= kShortestStep)) return kGivenUp;
+      if (!(wait >= kShortestStep)) return kNotProven;
       t += wait - kShortestStep / 2;  // not beyond t + wait, even when rounded: the gap still lasts at this time
       if (t >= 1) return kNoTouch;
       if (wait <= kShortStep)
         if (const auto proof = touch_after(t)) return *proof;
       separation = separation_at(t);
     }
-    return kGivenUp;
+    return kNotProven;
   }
 
  private:
@@ -109,7 +109,7 @@ class ConservativeAdvance {
     // Within (to - from), each coordinate changes by 2 (to - from) of its greatest size at most, and each of the six
     // products of three coordinates by less than 7 (to - from) of the greatest.
     const double error = (kVolumeError + 48 * (to - from)) * (most.x * most.y * most.z);
-    if (!(std::abs(volume) > error) || error < kLeastVolumeError) return kGivenUp;
+    if (!(std::abs(volume) > error) || error < kLeastVolumeError) return kNotProven;
     touch.side = volume > 0 ? 1 : -1;
     return {SphereProof::Verdict::kTouch, touch};
   }
@@ -128,7 +128,7 @@ class ConservativeAdvance {
 
 SphereProof filter_sphere(const MovingSphere& sphere, const Corners& before, const Corners& after) {
   const ConservativeAdvance advance(sphere, before, after);
-  return advance.in_range() ? advance.run() : kGivenUp;
+  return advance.in_range() ? advance.run() : kNotProven;
 }
 
 }  // namespace vestige

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "detector/algebra/integer_vector.hpp"
 #include "detector/decide/bounded.hpp"
-#include "detector/decide/integer_vector.hpp"
 
 namespace vestige {
 

@@ -36,6 +36,13 @@ std::optional<SphereFinder::Best>& SphereFinder::best_of(std::uint32_t column) {
   return best_[column];
 }
 
+/// Returns whether no later touch can win any more. A distance below the radius cannot tie with one either, whose t may
+/// be rounded to 0.
+bool SphereFinder::surely_touches_at_start(std::uint32_t column) {
+  const std::optional<Best>& best = best_of(column);
+  return best && best->start && best->start->range().high < best->pair.sphere.radius;
+}
+
 void SphereFinder::take(const DetectorFrame& frame, std::uint32_t column, Best candidate) {
   std::optional<Best>& best = best_of(column);
   if (best && !is_better(candidate, *best)) return;
@@ -49,7 +56,7 @@ void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corner
   const SpherePair pair = sphere_pair(segment, corners, triangle, method_);
   const StartDistance distance(pair.sphere.centre.start, pair.before);
   if (!touches_at_start(distance, pair.sphere.radius)) {
-    waiting_.push_back({segment.column, pair});
+    if (!surely_touches_at_start(segment.column)) waiting_.push_back({segment.column, pair});
     return;
   }
   ++counts_.meeting;
@@ -59,9 +66,7 @@ void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corner
 
 SphereCounts SphereFinder::finish(const DetectorFrame& frame, ContactRow& row) {
   for (const Waiting& waiting : waiting_) {
-    const std::optional<Best>& best = best_of(waiting.column);
-    // A distance below the radius cannot tie with a later touch, whose t may be rounded to 0.
-    if (best && best->start && best->start->range().high < waiting.pair.sphere.radius) continue;
+    if (surely_touches_at_start(waiting.column)) continue;
     const SphereDecision decision = decide_sphere(waiting.pair.sphere, waiting.pair.before, waiting.pair.now);
     if (decision.exact_arithmetic) ++counts_.unsure;
     if (!decision.touch) continue;

@@ -53,6 +53,7 @@ class SphereFinder {
   bool is_on_surface(const DetectorFrame& frame, const SpherePair& pair, const FirstTouch& touch) const;
   void take(const DetectorFrame& frame, std::uint32_t column, Best candidate);
   std::optional<Best>& best_of(std::uint32_t column);
+  bool surely_touches_at_start(std::uint32_t column);
 
   const Avatar& avatar_;
   const ActuatorMap& map_;

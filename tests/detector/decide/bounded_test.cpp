@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "detector/algebra/nearest_float.hpp"
 #include "detector/decide/ccd_formulas.hpp"
-#include "detector/decide/nearest_float.hpp"
 
 namespace vestige {
 namespace {

@@ -1,4 +1,4 @@
-#include "detector/decide/nearest_float.hpp"
+#include "detector/algebra/nearest_float.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Roots that are asked, not approximated.
 
-#include "detector/decide/unit_roots.hpp"
+#include "detector/algebra/unit_roots.hpp"
 
 #include <gtest/gtest.h>
 

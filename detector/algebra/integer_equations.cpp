@@ -1,4 +1,4 @@
-#include "detector/decide/integer_equations.hpp"
+#include "detector/algebra/integer_equations.hpp"
 
 #include <cstddef>
 #include <cstdint>

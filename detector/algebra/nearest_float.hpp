@@ -1,6 +1,6 @@
 #pragma once
 
-#include "detector/decide/scaled_integers.hpp"
+#include "detector/algebra/scaled_integers.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "detector/decide/polynomial.hpp"
+#include "detector/algebra/polynomial.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -8,7 +8,7 @@
 #include <limits>
 #include <utility>
 
-#include "detector/decide/exact_quotient.hpp"
+#include "detector/algebra/exact_quotient.hpp"
 
 namespace vestige {
 

@@ -1,6 +1,6 @@
 // Remainder sequences: their signs, and how slowly their coefficients grow.
 
-#include "detector/decide/remainder_sequence.hpp"
+#include "detector/algebra/remainder_sequence.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "detector/decide/exact_quotient.hpp"
+#include "detector/algebra/exact_quotient.hpp"
 
 namespace vestige {
 namespace {

@@ -1,8 +1,8 @@
-#include "detector/decide/remainder_sequence.hpp"
+#include "detector/algebra/remainder_sequence.hpp"
 
 #include <utility>
 
-#include "detector/decide/exact_quotient.hpp"
+#include "detector/algebra/exact_quotient.hpp"
 
 namespace vestige {
 

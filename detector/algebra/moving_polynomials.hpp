@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "detector/decide/polynomial.hpp"
+#include "detector/algebra/polynomial.hpp"
 
 namespace vestige {
 

@@ -1,9 +1,9 @@
-#include "detector/decide/unit_roots.hpp"
+#include "detector/algebra/unit_roots.hpp"
 
 #include <algorithm>
 #include <bit>
 
-#include "detector/decide/remainder_sequence.hpp"
+#include "detector/algebra/remainder_sequence.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "detector/decide/exact_quotient.hpp"
+#include "detector/algebra/exact_quotient.hpp"
 
 #include <algorithm>
 #include <limits>

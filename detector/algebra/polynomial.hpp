@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "detector/decide/scaled_integers.hpp"
+#include "detector/algebra/scaled_integers.hpp"
 
 namespace vestige {
 

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "detector/decide/scaled_integers.hpp"
+#include "detector/algebra/scaled_integers.hpp"
 
 namespace vestige {
 

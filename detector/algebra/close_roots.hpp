@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "detector/decide/polynomial.hpp"
+#include "detector/algebra/polynomial.hpp"
 
 namespace vestige {
 

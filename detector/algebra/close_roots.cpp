@@ -1,12 +1,12 @@
-#include "detector/decide/close_roots.hpp"
+#include "detector/algebra/close_roots.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <numeric>
 #include <utility>
 
-#include "detector/decide/integer_equations.hpp"
-#include "detector/decide/remainder_sequence.hpp"
+#include "detector/algebra/integer_equations.hpp"
+#include "detector/algebra/remainder_sequence.hpp"
 
 namespace vestige {
 

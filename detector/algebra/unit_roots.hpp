@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "detector/decide/close_roots.hpp"
-#include "detector/decide/polynomial.hpp"
+#include "detector/algebra/close_roots.hpp"
+#include "detector/algebra/polynomial.hpp"
 
 namespace vestige {
 
