@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <filesystem>
 #include <glm/common.hpp>
@@ -17,6 +16,7 @@
 #include "tests/support/builtin_map.hpp"
 #include "tests/support/gl/gl_context.hpp"
 #include "tests/support/pairs/adversarial_pairs.hpp"
+#include "tests/support/same_contact.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"
@@ -27,15 +27,10 @@ namespace {
 
 using test::builtin_avatar;
 using test::builtin_map;
+using test::same;
 
 DetectorOptions options(Method method, Skip skip = Skip::kOff) {
   return {Surface::kAll, PlaneSet::all(), method, skip};
-}
-
-bool same(const Contact& a, const Contact& b) {
-  return a.triangle == b.triangle && std::bit_cast<std::uint32_t>(a.t) == std::bit_cast<std::uint32_t>(b.t) &&
-         a.actuator == b.actuator && a.side == b.side && a.barycentric == b.barycentric &&
-         a.texture_coordinate == b.texture_coordinate && a.position == b.position && a.speed_m_per_s == b.speed_m_per_s;
 }
 
 /// "gl" is the context of all tests.

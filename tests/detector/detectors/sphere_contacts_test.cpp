@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <memory>
 #include <string>
 #include <tuple>
@@ -13,6 +12,8 @@
 #include "detector/detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "tests/support/builtin_avatar.hpp"
+#include "tests/support/builtin_map.hpp"
+#include "tests/support/same_contact.hpp"
 #include "tests/support/scene_run.hpp"
 
 namespace vestige {
@@ -20,12 +21,7 @@ namespace {
 
 using test::builtin_avatar;
 using test::builtin_map;
-
-bool same(const Contact& a, const Contact& b) {
-  return a.triangle == b.triangle && std::bit_cast<std::uint32_t>(a.t) == std::bit_cast<std::uint32_t>(b.t) &&
-         a.actuator == b.actuator && a.side == b.side && a.barycentric == b.barycentric && a.position == b.position &&
-         a.speed_m_per_s == b.speed_m_per_s;
-}
+using test::same;
 
 std::vector<TraceFrame> scene_of_spheres(std::string_view scenario, std::uint32_t colliders, int frames,
                                          float radius_m) {
@@ -126,14 +122,14 @@ TEST(SphereContact, IsWithTheNearestTriangleAtTheStart) {
 
 TEST(SphereContact, IsWithTheFirstTriangleThatItMeets) {
   const Floors floors;
-  const Contact falling = floors.contact({1, 1, 2.25F}, {1, 1, 0.25F}, 1);
+  const Contact falling = floors.contact({1.5F, 1, 2.25F}, {1.5F, 1, 0.25F}, 1);
   EXPECT_EQ(falling.triangle, 1U);
   EXPECT_EQ(falling.t, 0.5F);
   EXPECT_EQ(falling.side, 1);
   EXPECT_DOUBLE_EQ(falling.speed_m_per_s, 2 / 0.01) << "the whole way in a frame of 10 ms";
-  const Contact oblique = floors.contact({2, 1, 2.25F}, {1, 1, 0.25F}, 1);
+  const Contact oblique = floors.contact({2.5F, 1, 2.25F}, {1.5F, 1, 0.25F}, 1);
   EXPECT_DOUBLE_EQ(oblique.speed_m_per_s, 2 / 0.01) << "only what is along the line to the centre";
-  EXPECT_FALSE(floors.contact({1, 1, 3}, {1, 1, 1.5F}, 1).hit());
+  EXPECT_FALSE(floors.contact({1.5F, 1, 3}, {1.5F, 1, 1.5F}, 1).hit());
 }
 
 TEST(SphereContact, OfAPointIsThatOfTheSegment) {
