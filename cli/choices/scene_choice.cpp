@@ -110,6 +110,7 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
       ->type_name("SCENARIO|FILE.csv|FILE.glb");
   verb.add_option("--nodes", choice.nodes, kNodesHelp)->type_name("PATTERN");
   add_collider_convention(verb, choice.convention);
+  add_radius_option(verb, choice.radius);
   verb.add_option("--count", choice.count, describe_count())->check(help::whole_number(1, 1000000));
 }
 

@@ -49,8 +49,8 @@ inline constexpr const char* kNodesHelp =
 /// Returns the help of --count, for the number of colliders of a scenario.
 std::string describe_count();
 
-/// Adds --avatar, --facing, --animation, --ignore-morphs, --unit, --up, --map, --colliders, --nodes, --count, and how a
-/// file of colliders measures.
+/// Adds --avatar, --facing, --animation, --ignore-morphs, --unit, --up, --map, --colliders, --nodes, --radius, --count,
+/// and how a file of colliders measures.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
 /// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit and --up without motion

@@ -217,7 +217,6 @@ void add_record(CLI::App& program, Invocation& invocation) {
                             "  vestige record -o man.mcap\n"
                             "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n");
   add_scene_options(*verb, options->scene);
-  add_radius_option(*verb, options->scene.radius);
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")
       ->type_name("HZ")
       ->capture_default_str()

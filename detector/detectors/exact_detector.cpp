@@ -63,25 +63,35 @@ class ExactDetector final : public Detector {
     return describe_contact(avatar_, map_, {triangle, way, at_contact, *found}, frame.duration_s);
   }
 
+  /// What first_touch compares: a contact, and the pair whose distance at the start counts if it touches there.
+  struct SphereTouch {
+    Contact contact;
+    SpherePair pair;
+    bool at_start = false;
+
+    exact::Apart apart() const { return {pair.sphere.centre.start, pair.before}; }
+  };
+
+  /// Compares contacts at the same t by the distance at the exact first time, which is the radius except at the start.
+  static bool is_nearer(const SphereTouch& a, const SphereTouch& b) {
+    const double radius = a.pair.sphere.radius;
+    if (a.at_start && b.at_start) return exact::compare_distances(a.apart(), b.apart()) < 0;
+    return a.at_start && exact::compare_distance(a.apart(), radius) < 0;
+  }
+
   Contact first_touch(const DetectorFrame& frame, const Segment& segment) const {
-    struct Touch {
-      Contact contact;
-      boost::multiprecision::cpp_rational squared_distance;  ///< at the exact first time
-    };
-    std::optional<Touch> best;
+    std::optional<SphereTouch> best;
     for (std::uint32_t triangle = 0; triangle < avatar_.triangles.size(); ++triangle) {
       const Corners now = corners_of(avatar_, skin_.now, triangle);
       const Corners before = options_.method == Method::kStatic ? now : corners_of(avatar_, skin_.before, triangle);
       const SpherePair pair = sphere_pair(segment, {before, now}, triangle, options_.method);
       const std::optional<FirstTouch> touch = exact::sphere_contact(pair.sphere, pair.before, pair.now);
       if (!touch || (best && touch->t > best->contact.t)) continue;
-      const boost::multiprecision::cpp_rational radius(pair.sphere.radius);
-      Touch candidate = {describe_touch(avatar_, map_, pair, *touch, frame.duration_s), radius * radius};
+      const SphereTouch candidate = {describe_touch(avatar_, map_, pair, *touch, frame.duration_s), pair,
+                                     touch->at_start};
       if (options_.surface == Surface::kMapped && candidate.contact.actuator == 0) continue;
-      if (touch->at_start) candidate.squared_distance = exact::squared_distance(pair.sphere.centre.start, pair.before);
       // Triangles ascend, so the smallest number wins a tie.
-      if (!best || candidate.contact.t < best->contact.t || candidate.squared_distance < best->squared_distance)
-        best = std::move(candidate);
+      if (!best || candidate.contact.t < best->contact.t || is_nearer(candidate, *best)) best = candidate;
     }
     return best ? best->contact : Contact();
   }

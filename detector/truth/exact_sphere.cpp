@@ -10,27 +10,65 @@ namespace vestige::exact {
 
 namespace {
 
-using Rational = boost::multiprecision::cpp_rational;
-using RationalVector = std::array<Rational, 3>;
+using WholeVector = std::array<Whole, 3>;
 
-RationalVector rational(const glm::dvec3& v) {
-  return {Rational(v.x), Rational(v.y), Rational(v.z)};
-}
-RationalVector operator-(const RationalVector& a, const RationalVector& b) {
+WholeVector operator-(const WholeVector& a, const WholeVector& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-Rational dot(const RationalVector& a, const RationalVector& b) {
+Whole dot(const WholeVector& a, const WholeVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// numerator / denominator; the denominator is positive.
+struct Square {
+  Whole numerator;
+  Whole denominator = 1;
+
+  int compare(const Square& other) const {
+    return sign_of(numerator * other.denominator - other.numerator * denominator);
+  }
+};
+
 /// Returns the squared distance from the origin to the segment between two points.
-Rational squared_distance_to_edge(const RationalVector& from, const RationalVector& to) {
-  const RationalVector edge = to - from;
-  const Rational length = dot(edge, edge);
-  const Rational along = -dot(from, edge);
-  if (along <= 0) return dot(from, from);
-  if (along >= length) return dot(to, to);
-  return dot(from, from) - along * along / length;
+Square distance_to_edge(const WholeVector& from, const WholeVector& to) {
+  const WholeVector edge = to - from;
+  const Whole length = dot(edge, edge);
+  const Whole along = -dot(from, edge);
+  if (along <= 0) return {dot(from, from)};
+  if (along >= length) return {dot(to, to)};
+  return {dot(from, from) * length - along * along, length};
+}
+
+/// Returns the squared distance from the origin to a triangle, by least squares.
+Square distance_to_triangle(const WholeVector& a, const WholeVector& b, const WholeVector& c) {
+  const WholeVector ab = b - a;
+  const WholeVector ac = c - a;
+  const Whole ab_ab = dot(ab, ab);
+  const Whole ac_ac = dot(ac, ac);
+  const Whole ab_ac = dot(ab, ac);
+  const Whole gram = ab_ab * ac_ac - ab_ac * ab_ac;
+  const Whole on_ab = -dot(a, ab);
+  const Whole on_ac = -dot(a, ac);
+  const Whole weight_b = on_ab * ac_ac - on_ac * ab_ac;  // times gram
+  const Whole weight_c = on_ac * ab_ab - on_ab * ab_ac;
+  if (gram > 0 && weight_b >= 0 && weight_c >= 0 && weight_b + weight_c <= gram)
+    return {dot(a, a) * gram - weight_b * on_ab - weight_c * on_ac, gram};
+  const std::array edges = {distance_to_edge(a, b), distance_to_edge(b, c), distance_to_edge(c, a)};
+  return *std::ranges::min_element(edges, [](const Square& x, const Square& y) { return x.compare(y) < 0; });
+}
+
+/// Returns the squared distance of a point and a triangle whose coordinates are at `first` and following.
+template <std::size_t Count>
+Square distance_among(const std::array<Whole, Count>& whole, std::size_t first) {
+  const auto point = [&](std::size_t i) -> WholeVector {
+    return {whole[first + 3 * i], whole[first + 3 * i + 1], whole[first + 3 * i + 2]};
+  };
+  return distance_to_triangle(point(1) - point(0), point(2) - point(0), point(3) - point(0));
+}
+
+void put(const Apart& apart, double* values) {
+  for (const glm::dvec3* point : {&apart.point, &apart.triangle.a, &apart.triangle.b, &apart.triangle.c})
+    for (int axis = 0; axis < 3; ++axis) *values++ = (*point)[axis];
 }
 
 /// A vertex, an edge or the face of the moving triangle, by least squares: x - a is approximated by a combination of
@@ -129,23 +167,20 @@ bool stays_apart(const MovingSphere& sphere, const Corners& before, const Corner
 
 }  // namespace
 
-boost::multiprecision::cpp_rational squared_distance(const glm::dvec3& point, const Corners& triangle) {
-  const RationalVector x = rational(point);
-  const RationalVector a = rational(triangle.a) - x;
-  const RationalVector b = rational(triangle.b) - x;
-  const RationalVector c = rational(triangle.c) - x;
-  const RationalVector ab = b - a;
-  const RationalVector ac = c - a;
-  const Rational gram = dot(ab, ab) * dot(ac, ac) - dot(ab, ac) * dot(ab, ac);
-  if (gram > 0) {
-    const Rational on_ab = -dot(a, ab);
-    const Rational on_ac = -dot(a, ac);
-    const Rational weight_b = (on_ab * dot(ac, ac) - on_ac * dot(ab, ac)) / gram;
-    const Rational weight_c = (on_ac * dot(ab, ab) - on_ab * dot(ab, ac)) / gram;
-    if (weight_b >= 0 && weight_c >= 0 && weight_b + weight_c <= 1)
-      return dot(a, a) - weight_b * on_ab - weight_c * on_ac;
-  }
-  return std::min({squared_distance_to_edge(a, b), squared_distance_to_edge(b, c), squared_distance_to_edge(c, a)});
+int compare_distances(const Apart& a, const Apart& b) {
+  std::array<double, 24> values = {};
+  put(a, values.data());
+  put(b, values.data() + 12);
+  const std::array<Whole, 24> whole = whole_multiples(values);
+  return distance_among(whole, 0).compare(distance_among(whole, 12));
+}
+
+int compare_distance(const Apart& a, double length) {
+  std::array<double, 13> values = {};
+  put(a, values.data());
+  values[12] = length;
+  const std::array<Whole, 13> whole = whole_multiples(values);
+  return distance_among(whole, 0).compare({whole[12] * whole[12]});
 }
 
 // Something that overlaps begins to do so at a root of the excess of the part that is met first, or of a weight at

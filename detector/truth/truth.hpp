@@ -1,6 +1,5 @@
 #pragma once
 
-#include <boost/multiprecision/cpp_int.hpp>
 #include <optional>
 
 #include "detector/decision.hpp"
@@ -19,7 +18,15 @@ std::optional<FirstContact> ccd_contact(const Way& way, const Corners& before, c
 /// Returns what `decide_sphere` must return.
 std::optional<FirstTouch> sphere_contact(const MovingSphere& sphere, const Corners& before, const Corners& after);
 
-/// Returns the exact squared distance from a point to a closed triangle.
-boost::multiprecision::cpp_rational squared_distance(const glm::dvec3& point, const Corners& triangle);
+/// A point and a closed triangle, for their distance.
+struct Apart {
+  glm::dvec3 point;
+  Corners triangle;
+};
+
+/// Returns -1, 0 or 1 if the distance of `a` is less than, equal to or greater than that of `b`.
+int compare_distances(const Apart& a, const Apart& b);
+/// The same for a distance and a length >= 0.
+int compare_distance(const Apart& a, double length);
 
 }  // namespace vestige::exact

@@ -80,9 +80,9 @@ Agreement compare_spheres_with_truth(Method method, std::string_view family, std
     bool unused = false;
     const int order =
         StartDistance::compare({c.sphere.centre.start, c.before}, {c.sphere.centre.start, c.after}, unused);
-    const auto difference = exact::squared_distance(c.sphere.centre.start, c.before) -
-                            exact::squared_distance(c.sphere.centre.start, c.after);
-    if (decision.touch == truth && order == difference.sign()) continue;
+    const int true_order =
+        exact::compare_distances({c.sphere.centre.start, c.before}, {c.sphere.centre.start, c.after});
+    if (decision.touch == truth && order == true_order) continue;
     ++agreement.differences;
     if (agreement.examples.size() < kMostExamples)
       agreement.examples.push_back(fmt::format("{} {}: way {{{}, {}}}, radius {:a}, before {}, after {}: {}, truth {}",
