@@ -43,12 +43,12 @@ bool SphereFinder::surely_touches_at_start(std::uint32_t column) {
   return best && best->start && best->start->range().high < best->pair.sphere.radius;
 }
 
-void SphereFinder::take(const DetectorFrame& frame, std::uint32_t column, Best candidate) {
+void SphereFinder::take(const DetectorFrame& frame, std::uint32_t column, const Best& candidate) {
   std::optional<Best>& best = best_of(column);
   if (best && !is_better(candidate, *best)) return;
   if (!is_on_surface(frame, candidate.pair, candidate.touch)) return;
   if (!best) columns_.push_back(column);
-  best = std::move(candidate);
+  best = candidate;
 }
 
 void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment,

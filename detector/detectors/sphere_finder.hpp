@@ -51,7 +51,7 @@ class SphereFinder {
   bool touches_at_start(const StartDistance& distance, double radius);
   bool is_better(const Best& candidate, const Best& best);
   bool is_on_surface(const DetectorFrame& frame, const SpherePair& pair, const FirstTouch& touch) const;
-  void take(const DetectorFrame& frame, std::uint32_t column, Best candidate);
+  void take(const DetectorFrame& frame, std::uint32_t column, const Best& candidate);
   std::optional<Best>& best_of(std::uint32_t column);
   bool surely_touches_at_start(std::uint32_t column);
 
