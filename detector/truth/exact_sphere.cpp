@@ -5,19 +5,11 @@
 
 #include "detector/truth/algebraic_time.hpp"
 #include "detector/truth/truth.hpp"
+#include "detector/truth/whole_vector.hpp"
 
 namespace vestige::exact {
 
 namespace {
-
-using WholeVector = std::array<Whole, 3>;
-
-WholeVector operator-(const WholeVector& a, const WholeVector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Whole dot(const WholeVector& a, const WholeVector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// numerator / denominator; the denominator is positive.
 struct Square {
@@ -30,8 +22,8 @@ struct Square {
 };
 
 /// Returns the squared distance from the origin to the segment between two points.
-Square distance_to_edge(const WholeVector& from, const WholeVector& to) {
-  const WholeVector edge = to - from;
+Square distance_to_edge(const Vector& from, const Vector& to) {
+  const Vector edge = minus(to, from);
   const Whole length = dot(edge, edge);
   const Whole along = -dot(from, edge);
   if (along <= 0) return {dot(from, from)};
@@ -40,9 +32,9 @@ Square distance_to_edge(const WholeVector& from, const WholeVector& to) {
 }
 
 /// Returns the squared distance from the origin to a triangle, by least squares.
-Square distance_to_triangle(const WholeVector& a, const WholeVector& b, const WholeVector& c) {
-  const WholeVector ab = b - a;
-  const WholeVector ac = c - a;
+Square distance_to_triangle(const Vector& a, const Vector& b, const Vector& c) {
+  const Vector ab = minus(b, a);
+  const Vector ac = minus(c, a);
   const Whole ab_ab = dot(ab, ab);
   const Whole ac_ac = dot(ac, ac);
   const Whole ab_ac = dot(ab, ac);
@@ -60,10 +52,10 @@ Square distance_to_triangle(const WholeVector& a, const WholeVector& b, const Wh
 /// Returns the squared distance of a point and a triangle whose coordinates are at `first` and following.
 template <std::size_t Count>
 Square distance_among(const std::array<Whole, Count>& whole, std::size_t first) {
-  const auto point = [&](std::size_t i) -> WholeVector {
+  const auto point = [&](std::size_t i) -> Vector {
     return {whole[first + 3 * i], whole[first + 3 * i + 1], whole[first + 3 * i + 2]};
   };
-  return distance_to_triangle(point(1) - point(0), point(2) - point(0), point(3) - point(0));
+  return distance_to_triangle(minus(point(1), point(0)), minus(point(2), point(0)), minus(point(3), point(0)));
 }
 
 void put(const Apart& apart, double* values) {

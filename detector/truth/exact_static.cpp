@@ -4,26 +4,11 @@
 #include <utility>
 
 #include "detector/truth/truth.hpp"
-#include "detector/truth/whole_number.hpp"
+#include "detector/truth/whole_vector.hpp"
 
 namespace vestige::exact {
 
 namespace {
-
-using Vector = std::array<Whole, 3>;
-
-Vector minus(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Whole dot(const Vector& a, const Vector& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vector cross(const Vector& a, const Vector& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-bool is_zero(const Vector& v) {
-  return v[0] == 0 && v[1] == 0 && v[2] == 0;
-}
 
 /// A time as numerator / denominator; the denominator is positive.
 struct Fraction {
