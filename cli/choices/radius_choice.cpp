@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <cstdlib>
 #include <utility>
 
 #include "traces/base/error.hpp"
@@ -12,14 +13,15 @@ namespace vestige::cli {
 
 std::optional<float> RadiusChoice::radius_m() const {
   if (text.empty() || text == "mesh") return {};
-  float radius_m = 0;
+  double radius_m = 0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), radius_m);
-  if (failure != std::errc() || end != text.data() + text.size())
+  if (failure == std::errc::result_out_of_range) radius_m = std::strtod(text.c_str(), nullptr);
+  if (failure == std::errc::invalid_argument || end != text.data() + text.size())
     throw UsageError("--radius", fmt::format("'{}' is neither a number nor mesh", text),
                      "give a number of metres from 0 to 10, or mesh for nodes of a glTF file");
-  if (const std::string_view fault = radius_fault(double{radius_m}); !fault.empty())
+  if (const std::string_view fault = radius_fault(radius_m); !fault.empty())
     throw UsageError("--radius", fmt::format("'{}' {}", text, fault), "give a number of metres from 0 to 10");
-  return radius_m;
+  return static_cast<float>(radius_m);
 }
 
 std::unique_ptr<ColliderSource> RadiusChoice::apply(std::unique_ptr<ColliderSource> source) const {

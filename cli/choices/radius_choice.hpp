@@ -16,7 +16,10 @@ struct RadiusChoice {
 
   /// Returns the radius that all colliders have; nothing without one.
   std::optional<float> radius_m() const;
-  GltfRadius of_gltf() const { return text == "mesh" ? GltfRadius::kMesh : GltfRadius::kExtras; }
+  GltfRadius of_gltf() const {
+    if (text.empty()) return GltfRadius::kExtras;
+    return text == "mesh" ? GltfRadius::kMesh : GltfRadius::kNone;
+  }
   /// Gives the colliders of a source the radius that was chosen, if one was.
   std::unique_ptr<ColliderSource> apply(std::unique_ptr<ColliderSource> source) const;
 };

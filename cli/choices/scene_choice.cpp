@@ -45,7 +45,8 @@ void check_span(const TimeSpan& span, const SceneChoice& choice, double duration
     throw Error(choice.colliders, "no sample lies within the scene: " + times,
                 "make the file's times begin at 0, or raise --duration");
   if (!std::isfinite(span.last_s)) return;
-  if (span.first_s < 0 || span.last_s > duration_s)
+  // A glTF has its times in fp32.
+  if (span.first_s < 0 || static_cast<float>(span.last_s) > static_cast<float>(duration_s))
     warn(fmt::format("{}: {}; samples outside the scene are left out (--duration)", choice.colliders, times),
          verbosity);
   if (const std::string doubt = describe_small_overlap(span, duration_s); !doubt.empty())

@@ -20,7 +20,7 @@ namespace {
 constexpr int kMostSteps = 64;
 /// Shorter steps are lost in the rounding of t.
 constexpr double kShortestStep = 0x1p-45;
-/// Before the steps are this short, a time of contact is not looked for.
+/// Once steps are this short, a time of contact is looked for.
 constexpr double kShortStep = 0x1p-20;
 
 constexpr SphereProof kNoTouch = {SphereProof::Verdict::kNoTouch, {}};

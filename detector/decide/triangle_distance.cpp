@@ -13,9 +13,10 @@ namespace {
 
 // Let u = kUnit and m = reach. Every coordinate of a computed corner errs by at most 4 u m.
 //
-// Above: the point q = w0 A + w1 B + w2 C, for weights that are not negative and sum to 1 within 4 u, is in the
-// triangle but for rounding. The weights' sum moves it by 4 u m, three products and two sums by 5 u m, the corners' own
-// errors by 4 u m in each coordinate, so by less than 7 u m. Its length is computed with at most 4 u m more: 20 u m.
+// Above: the point q = w0 A + w1 B + w2 C is in the triangle, but for rounding, if the weights are not negative and sum
+// to 1 within 4 u. The sum of the weights moves it by 4 u m at most. Three products and two sums err by 5 u m. The
+// corners err by 4 u m in each coordinate, so by 7 u m in length. The computed length of q errs by 4 u m: 20 u m in
+// all.
 //
 // Below: for every vector g, each point y of the triangle has y.g >= min(A.g, B.g, C.g), so |y| >= that / |g|. This is
 // sharp if g is the nearest point (Rockafellar 1970, Convex Analysis, theorem 11.4: two convex sets are as far apart as

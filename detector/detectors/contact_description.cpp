@@ -130,7 +130,9 @@ Contact describe_touch(const Avatar& avatar, const ActuatorMap& map, const Spher
   describe_place(avatar, map, contact);
   const glm::dvec3 moved = (way.end - way.start) - (weighed(weights, pair.now) - weighed(weights, pair.before));
   glm::dvec3 line = centre - contact.position;
-  if (line == glm::dvec3(0)) line = glm::cross(at_contact.b - at_contact.a, at_contact.c - at_contact.a);
+  constexpr double kCoincident = 1e-6;  // of the radius: a shorter line is little but rounding
+  if (glm::length(line) < kCoincident * pair.sphere.radius)
+    line = glm::cross(at_contact.b - at_contact.a, at_contact.c - at_contact.a);
   const double length = glm::length(line);
   if (duration_s > 0 && length > 0) contact.speed_m_per_s = std::abs(glm::dot(moved, line)) / length / duration_s;
   return contact;

@@ -4,6 +4,13 @@
 
 namespace vestige {
 
+namespace {
+
+/// Some 50 MB of pairs.
+constexpr std::size_t kMostWaiting = std::size_t{1} << 18;
+
+}  // namespace
+
 bool SphereFinder::touches_at_start(const StartDistance& distance, double radius) {
   bool exact_arithmetic = false;
   const bool touches = StartDistance::compare(distance, radius, exact_arithmetic) <= 0;
@@ -56,7 +63,9 @@ void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corner
   const SpherePair pair = sphere_pair(segment, corners, triangle, method_);
   const StartDistance distance(pair.sphere.centre.start, pair.before);
   if (!touches_at_start(distance, pair.sphere.radius)) {
-    if (!surely_touches_at_start(segment.column)) waiting_.push_back({segment.column, pair});
+    if (surely_touches_at_start(segment.column)) return;
+    if (waiting_.size() == kMostWaiting) make_room(frame);
+    waiting_.push_back({segment.column, pair});
     return;
   }
   ++counts_.meeting;
@@ -64,7 +73,13 @@ void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corner
   take(frame, segment.column, {pair, {0, 0, true}, distance});
 }
 
-SphereCounts SphereFinder::finish(const DetectorFrame& frame, ContactRow& row) {
+/// Forgets the pairs that no longer matter. If most still do, decides them.
+void SphereFinder::make_room(const DetectorFrame& frame) {
+  std::erase_if(waiting_, [this](const Waiting& waiting) { return surely_touches_at_start(waiting.column); });
+  if (waiting_.size() > kMostWaiting / 2) decide_waiting(frame);
+}
+
+void SphereFinder::decide_waiting(const DetectorFrame& frame) {
   for (const Waiting& waiting : waiting_) {
     if (surely_touches_at_start(waiting.column)) continue;
     const SphereDecision decision = decide_sphere(waiting.pair.sphere, waiting.pair.before, waiting.pair.now);
@@ -74,6 +89,10 @@ SphereCounts SphereFinder::finish(const DetectorFrame& frame, ContactRow& row) {
     take(frame, waiting.column, {waiting.pair, *decision.touch, {}});
   }
   waiting_.clear();
+}
+
+SphereCounts SphereFinder::finish(const DetectorFrame& frame, ContactRow& row) {
+  decide_waiting(frame);
   for (const std::uint32_t column : columns_) {
     std::optional<Best>& best = best_[column];
     if (best->start) {

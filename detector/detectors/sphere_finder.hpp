@@ -53,6 +53,8 @@ class SphereFinder {
   bool is_on_surface(const DetectorFrame& frame, const SpherePair& pair, const FirstTouch& touch) const;
   void take(const DetectorFrame& frame, std::uint32_t column, const Best& candidate);
   std::optional<Best>& best_of(std::uint32_t column);
+  void make_room(const DetectorFrame& frame);
+  void decide_waiting(const DetectorFrame& frame);
   bool surely_touches_at_start(std::uint32_t column);
 
   const Avatar& avatar_;

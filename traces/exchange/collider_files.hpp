@@ -18,9 +18,9 @@ namespace vestige {
 std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path, const Convention& convention = {});
 
 /// Where the radius of a glTF's node comes from. kExtras: `extras.radius_m`, the radius in metres at scale 1, 0 if
-/// absent. kMesh: half of the longest side of the box around its mesh, 0 if it has none. The node's scale in the world
-/// multiplies both.
-enum class GltfRadius { kExtras, kMesh };
+/// absent. kMesh: half of the longest side of the box around its mesh, 0 if it has none; the sphere stands at the
+/// node's origin, wherever the mesh is. The node's scale in the world multiplies both. kNone: all are points.
+enum class GltfRadius { kExtras, kMesh, kNone };
 
 /// Reads colliders that are nodes of a glTF file. The file's animations (all of them, from time 0) move them in the
 /// world. A collider is absent while its scale is 0 and after the last key. `pattern` selects nodes by name, as a shell

@@ -52,14 +52,16 @@ struct Scene {
   std::string name;  ///< of the file
 };
 
+constexpr std::string_view kRadiusRemedy = "a radius is a number of metres from 0 to 10; --radius M gives another one";
+
 /// Returns the radius that the node's `extras.radius_m` says; 0 if it says none.
 double radius_in_extras(const gltf::Document& document, Index node, const gltf::Report& report) {
   const nlohmann::json extras = document.json.extras("nodes", node);
   if (!extras.is_object() || !extras.contains("radius_m")) return 0;
   const std::string path = fmt::format("nodes[{}].extras.radius_m", node);
-  if (!extras["radius_m"].is_number()) report.fail(path, "is not a number");
+  if (!extras["radius_m"].is_number()) report.fail(path, "is not a number", kRadiusRemedy);
   const auto radius_m = extras["radius_m"].get<double>();
-  if (const std::string_view fault = radius_fault(radius_m); !fault.empty()) report.fail(path, std::string(fault));
+  if (const std::string_view fault = radius_fault(radius_m); !fault.empty()) report.fail(path, fault, kRadiusRemedy);
   return radius_m;
 }
 
@@ -74,7 +76,8 @@ double radius_of_mesh(const gltf::Document& document, Index node, const gltf::Re
     if (position == primitive.attributes.end()) continue;
     const gltf::Accessor& accessor = document.accessors[static_cast<Index>(position->second)];
     if (!accessor.min || !accessor.max || accessor.normalized)
-      report.fail(fmt::format("meshes[{}]", mesh), "does not tell its size by the bounds of its positions");
+      report.fail(fmt::format("meshes[{}]", mesh), "does not tell its size by the bounds of its positions",
+                  "give the radius as a number: --radius M");
     low = glm::min(low, glm::dvec3((*accessor.min)[0], (*accessor.min)[1], (*accessor.min)[2]));
     high = glm::max(high, glm::dvec3((*accessor.max)[0], (*accessor.max)[1], (*accessor.max)[2]));
   }
@@ -92,9 +95,10 @@ Scene load(const std::filesystem::path& path, GltfRadius radius) {
   gltf::MorphTargets no_skin(document, report);
   gltf::read_animations(document, no_skin, scene.nodes, report);
   scene.joints = joints_of(document);
-  for (Index node = 0; node < scene.nodes.nodes.size(); ++node)
-    scene.radii.push_back(radius == GltfRadius::kMesh ? radius_of_mesh(document, node, report)
-                                                      : radius_in_extras(document, node, report));
+  scene.radii.resize(scene.nodes.nodes.size());
+  for (Index node = 0; node < scene.radii.size() && radius != GltfRadius::kNone; ++node)
+    scene.radii[node] =
+        radius == GltfRadius::kMesh ? radius_of_mesh(document, node, report) : radius_in_extras(document, node, report);
   std::set<std::pair<int, AnimatedProperty>> animated;
   for (Animation& animation : scene.nodes.animations)
     for (AnimationChannel& channel : animation.channels) {
@@ -148,28 +152,25 @@ class GltfColliders final : public ColliderSource {
       colliders_.push_back(
           {are_numbered ? *number_at_end(scene_.nodes.nodes[static_cast<Index>(chosen[i])].name) : i, chosen[i]});
     std::ranges::sort(colliders_, {}, &Collider::id);
+    for (const AnimationChannel& channel : scene_.animation.channels)
+      keys_s_.insert(keys_s_.end(), channel.times_s.begin(), channel.times_s.end());
+    std::ranges::sort(keys_s_);
+    keys_s_.erase(std::unique(keys_s_.begin(), keys_s_.end()), keys_s_.end());
+    if (has_radii_) check_radii();
+    if (radius == GltfRadius::kMesh) count_meshes(chosen);
   }
 
   void sample(double exact_s, std::vector<ColliderSample>& out) override {
-    const double time_s = double{static_cast<float>(exact_s)};  // as keys have it: on them, nothing is interpolated
     out.clear();
+    const double time_s = key_at(exact_s);
     if (time_s > span_s().last_s) return;
     world_matrices(scene_.nodes, sample_animation(scene_.nodes, scene_.animation, time_s), matrices_);
     for (const Collider& collider : colliders_) {
       const glm::dmat4& matrix = matrices_[static_cast<Index>(collider.node)];
       const bool is_hidden =
           glm::dvec3(matrix[0]) == glm::dvec3(0) && glm::dvec3(matrix[1]) == glm::dvec3(0) && matrix[2].z == 0;
-      if (is_hidden) continue;
-      // Where axes differ in their scale, the longest counts.
-      const double scale = std::max(
-          {glm::length(glm::dvec3(matrix[0])), glm::length(glm::dvec3(matrix[1])), glm::length(glm::dvec3(matrix[2]))});
-      const auto radius_m = static_cast<float>(scale * scene_.radii[static_cast<Index>(collider.node)]);
-      if (const std::string_view fault = radius_fault(double{radius_m}); !fault.empty())
-        throw Error(scene_.name,
-                    fmt::format("at {} s, the radius of node '{}', {} m, {}", time_s,
-                                scene_.nodes.nodes[static_cast<Index>(collider.node)].name, radius_m, fault),
-                    "check the node's scale and size");
-      out.push_back({collider.id, convention_.position_m(glm::dvec3(matrix[3])), radius_m});
+      if (!is_hidden)
+        out.push_back({collider.id, convention_.position_m(glm::dvec3(matrix[3])), radius_of(collider, exact_s)});
     }
   }
 
@@ -185,10 +186,50 @@ class GltfColliders final : public ColliderSource {
     std::uint32_t id;
     int node;
   };
+
+  /// Returns the time of a key if it rounds to that in fp32, as keys have it: on them, nothing is interpolated.
+  double key_at(double exact_s) const {
+    const auto rounded_s = static_cast<float>(exact_s);
+    return std::ranges::binary_search(keys_s_, rounded_s) ? double{rounded_s} : exact_s;
+  }
+
+  /// Returns the radius in the scene of `matrices_`. Where axes differ in their scale, the longest counts.
+  float radius_of(const Collider& collider, double time_s) const {
+    const glm::dmat4& matrix = matrices_[static_cast<Index>(collider.node)];
+    const double scale = std::max(
+        {glm::length(glm::dvec3(matrix[0])), glm::length(glm::dvec3(matrix[1])), glm::length(glm::dvec3(matrix[2]))});
+    const double radius_m = scale * scene_.radii[static_cast<Index>(collider.node)];
+    if (const std::string_view fault = radius_fault(radius_m); !fault.empty())
+      throw Error(scene_.name,
+                  fmt::format("at {} s, the radius of node '{}', {:g} m, {}", time_s,
+                              scene_.nodes.nodes[static_cast<Index>(collider.node)].name, radius_m, fault),
+                  "check the node's scale, or give --radius M");
+    return static_cast<float>(radius_m);
+  }
+
+  /// Looks at the radii at all keys, before any of them is recorded.
+  void check_radii() {
+    std::vector<ColliderSample> unused;
+    if (keys_s_.empty()) sample(0, unused);
+    for (const float key_s : keys_s_) sample(double{key_s}, unused);
+  }
+
+  void count_meshes(const std::vector<int>& chosen) {
+    const auto without =
+        std::ranges::count_if(chosen, [&](int node) { return scene_.radii[static_cast<Index>(node)] == 0; });
+    if (without == std::ssize(chosen))
+      throw Error(scene_.name, "none of the chosen nodes has a mesh, so --radius mesh tells no radius",
+                  "give the radius as a number of metres: --radius M");
+    if (without > 0)
+      scene_.warnings.push_back(
+          fmt::format("{} of {} chosen nodes have no mesh, so they are points", without, chosen.size()));
+  }
+
   Scene scene_;
   Convention convention_;
   std::vector<Collider> colliders_;
   std::vector<glm::dmat4> matrices_;
+  std::vector<float> keys_s_;  ///< the times of all keys, ascending
   bool has_radii_ = false;
 };
 

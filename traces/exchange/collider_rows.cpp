@@ -106,6 +106,7 @@ void ColliderRows::take_fields(ColliderRow& row) {
   const bool has_frames = columns_ == ColliderColumns::kFrames;
   const bool has_radii = shape_ == ColliderShape::kSpheres;
   int teleported = 0;
+  double radius_m = 0;
   const auto wrong_count = [&] {
     constexpr std::array kCounts = {"five", "six", "seven", "eight"};
     return lines_.error(fmt::format("is not {} numbers", kCounts.at((has_frames ? 2U : 0U) + (has_radii ? 1U : 0U))));
@@ -114,15 +115,16 @@ void ColliderRows::take_fields(ColliderRow& row) {
   if (!lines_.take(row.time_s)) throw lines_.error("time_s is not a number");
   if (!lines_.take(row.sample.id)) throw lines_.error("id is not a whole number from 0 to 4294967295");
   if (!lines_.take(position.x) || !lines_.take(position.y) || !lines_.take(position.z)) throw wrong_count();
-  if (has_radii && !lines_.take(row.sample.radius_m)) throw lines_.error("radius_m is not a number");
+  if (has_radii && !lines_.take(radius_m)) throw lines_.error("radius_m is not a number");
   if (has_frames && (!lines_.take(teleported) || (teleported != 0 && teleported != 1)))
     throw lines_.error("teleported is neither 0 nor 1");
   if (!lines_.at_end()) throw wrong_count();
   if (!std::isfinite(row.time_s) || !std::isfinite(position.x) || !std::isfinite(position.y) ||
       !std::isfinite(position.z))
     throw lines_.error("a number is not finite");
-  if (const std::string_view fault = radius_fault(double{row.sample.radius_m}); !fault.empty())
+  if (const std::string_view fault = radius_fault(radius_m); !fault.empty())
     throw lines_.error(fmt::format("radius_m {}", fault), "a radius is a number of metres from 0 to 10");
+  row.sample.radius_m = static_cast<float>(radius_m);
   row.teleported = teleported == 1;
 }
 

@@ -96,9 +96,9 @@ std::uint32_t id_of(const Json& json) {
   return json.get<std::uint32_t>();
 }
 
-/// Reads the line again, as floats. If a number that is no float of a node or a radius exceeds float, the line is
-/// converted from double instead. That rounds about one in some hundred million numbers twice, by one bit, which hardly
-/// matters so far out.
+/// Reads the line again, with floats in place of doubles. If a position exceeds float, the line is converted from
+/// double instead. That rounds about one in some hundred million numbers twice, by one bit, which hardly matters so far
+/// out.
 FloatJson in_floats(std::string_view line, const Json& json) {
   try {
     return FloatJson::parse(line);
@@ -133,11 +133,11 @@ void read_joint(const FloatJson& joint, NodeLocal& node) {
   }
 }
 
-float radius_of(const FloatJson& collider) {
-  const auto radius_m = number_of<float>(collider["radius"], "radius");
-  if (const std::string_view fault = radius_fault(double{radius_m}); !fault.empty())
+float radius_of(const Json& collider, const FloatJson& in_float) {
+  const auto radius_m = number_of<double>(collider["radius"], "radius");
+  if (const std::string_view fault = radius_fault(radius_m); !fault.empty())
     throw Malformed(fmt::format("a collider's radius, {} m, {}", radius_m, fault));
-  return radius_m;
+  return number_of<float>(in_float["radius"], "radius");
 }
 
 std::vector<ColliderSample> colliders_of(const Json& json, const FloatJson& floats) {
@@ -148,7 +148,7 @@ std::vector<ColliderSample> colliders_of(const Json& json, const FloatJson& floa
     if (!one.is_object() || !one.contains("id") || !one.contains("position"))
       throw Malformed("a collider has no id or no position");
     colliders.push_back({.id = id_of(one["id"]), .position_m = position_of(one["position"], "position")});
-    if (one.contains("radius")) colliders.back().radius_m = radius_of(floats[colliders.size() - 1]);
+    if (one.contains("radius")) colliders.back().radius_m = radius_of(one, floats[colliders.size() - 1]);
   }
   std::vector<std::uint32_t> ids;
   ids.reserve(colliders.size());

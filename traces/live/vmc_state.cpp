@@ -45,10 +45,10 @@ double number(const OscMessage& message, std::size_t at) {
 float radius(const OscMessage& message) {
   constexpr std::size_t kPlace = 4;
   if (message.arguments.size() <= kPlace) return 0;
-  const auto radius_m = static_cast<float>(number(message, kPlace));
-  if (const std::string_view fault = radius_fault(double{radius_m}); !fault.empty())
+  const double radius_m = number(message, kPlace);
+  if (const std::string_view fault = radius_fault(radius_m); !fault.empty())
     throw Malformed(fmt::format("{}: its radius, {} m, {}", message.address, radius_m, fault));
-  return radius_m;
+  return static_cast<float>(radius_m);
 }
 
 std::uint32_t id(const OscMessage& message) {

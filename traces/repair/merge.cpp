@@ -81,6 +81,16 @@ void require_same(const Identity& known, const Identity& added, const ByteSource
   if (added.map_text != known.map_text) refuse("actuator map's description");
 }
 
+void require_same_version(const std::optional<int>& known, const TraceIndex& added, const ByteSource& first,
+                          const ByteSource& other) {
+  const std::optional<int> own = added.streams.version_of_schemas();
+  if (!known || !own || *known == *own) return;
+  throw Error(other.name(),
+              fmt::format("has format version {}, and {} has {}: 1 is of points, 2 of colliders with radii", *own,
+                          first.name(), *known),
+              kOneRecording);
+}
+
 /// Returns the keys that only one session has, or whose values differ.
 std::vector<std::string> differing_keys(const Session& a, const Session& b) {
   std::set<std::string> keys;
@@ -100,6 +110,7 @@ Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
   const ByteSource& first = *sources.front();
   std::optional<Identity> identity;
   Session session;
+  std::optional<int> version;
   Common common;
   Definitions& all = common.definitions;
   for (const auto& source : sources) {
@@ -111,6 +122,7 @@ Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
     const Identity own = identity_of(index);
     if (!identity) {
       identity = own;
+      version = index.streams.version_of_schemas();
       session = std::move(index.session);
       all = std::move(definitions);
       continue;
@@ -120,6 +132,7 @@ Common find_common(const std::vector<std::unique_ptr<ByteSource>>& sources) {
     std::vector<std::string> keys = differing_keys(session, index.session);
     if (!keys.empty() && !session.empty() && !index.session.empty())
       common.other_sessions.push_back({.file = source->name(), .keys = std::move(keys)});
+    require_same_version(version, index, first, *source);
     require_same(all.schemas, definitions.schemas, "schema", first, *source);
     require_same(all.channels, definitions.channels, "channel", first, *source);
     all.schemas.merge(definitions.schemas);

@@ -42,10 +42,8 @@ bool is_rebuilt(Opcode opcode) {
 
 std::string profile_of(const Definitions& definitions) {
   if (definitions.header) return definitions.header->profile;
-  StreamTable streams;
-  for (const auto& [id, schema] : definitions.schemas) streams.add(schema);
-  for (const auto& [id, channel] : definitions.channels) streams.add(channel);
-  return streams.find(Stream::kPose) == nullptr ? std::string() : std::string(trace_format::kProfile);
+  const bool has_poses = streams_of(definitions).find(Stream::kPose) != nullptr;
+  return has_poses ? std::string(trace_format::kProfile) : std::string();
 }
 
 Definitions without_contradictions(Definitions definitions, PoseNodes& pose_nodes) {

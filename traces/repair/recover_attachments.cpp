@@ -45,23 +45,14 @@ void Recoverer::drop_facing(mcap::StringMap& session) {
   if (!is_axis || is_other) session.erase(facing);
 }
 
-/// Mends a format version that is not known, if the file has the schemas of a known one: then a bit of it was damaged.
+/// Mends a format version that is not the one whose schemas the file has: then a bit of it was damaged.
 void Recoverer::mend_version(mcap::StringMap& session) {
   const auto text = session.find(std::string(trace_format::kVersionKey));
-  if (text == session.end()) return;
-  const std::optional<int> said = trace_format::parse_version(text->second);
-  if (said && *said <= trace_format::kNewestVersion) return;
-  const auto& schemas = output_.definitions().schemas;
-  for (int version = trace_format::kPointsVersion; version <= trace_format::kNewestVersion; ++version) {
-    const mcap::Schema known = trace_format::schema_of(Stream::kColliders, version);
-    const bool has_it = std::ranges::any_of(
-        schemas, [&](const auto& entry) { return entry.second.name == known.name && entry.second.data == known.data; });
-    if (!has_it) continue;
-    repaired(
-        fmt::format("the session's format version '{}' became {}, whose schemas the file has", text->second, version));
-    text->second = fmt::format("{}", version);
-    return;
-  }
+  const std::optional<int> version = streams_of(output_.definitions()).version_of_schemas();
+  if (text == session.end() || !version || text->second == fmt::format("{}", *version)) return;
+  repaired(
+      fmt::format("the session's format version '{}' became {}, whose schemas the file has", text->second, *version));
+  text->second = fmt::format("{}", *version);
 }
 
 AttachmentFacts Recoverer::facts() const {

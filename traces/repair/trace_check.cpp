@@ -191,6 +191,7 @@ class Contents {
 
 void Contents::finish(std::optional<std::size_t> pose_nodes, const StreamTable& streams) {
   claims_.pose = pose_metadata(streams);
+  claims_.version_of_schemas = streams.version_of_schemas();
   const std::string avatar(trace_format::kAvatarName);
   if (!sha256_.contains(avatar) && recorded_sha256(claims_, avatar).empty())
     report(0, fmt::format("there is no undamaged attachment {}", avatar),

@@ -107,6 +107,7 @@ void Gatherer::take(const mcap::Message& message) {
 
 void Gatherer::check_attachments() {
   claims_.pose = pose_metadata(streams_);
+  claims_.version_of_schemas = streams_.version_of_schemas();
   if (summary_.session) claims_.session = *summary_.session;
   std::map<std::string, std::string> sha256;
   for (McapSummary::Attachment& attachment : summary_.attachments) {

@@ -75,4 +75,11 @@ Definitions gather_definitions(const mcap::ByteSource& source) {
   return definitions;
 }
 
+StreamTable streams_of(const Definitions& definitions) {
+  StreamTable streams;
+  for (const auto& [id, schema] : definitions.schemas) streams.add(schema);
+  for (const auto& [id, channel] : definitions.channels) streams.add(channel);
+  return streams;
+}
+
 }  // namespace vestige

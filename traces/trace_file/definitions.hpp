@@ -6,6 +6,7 @@
 #include "traces/mcap/byte_source.hpp"
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/record.hpp"
+#include "traces/trace_file/message_stream.hpp"
 
 namespace vestige {
 
@@ -17,6 +18,9 @@ struct Definitions {
   std::optional<mcap::Statistics> statistics;         ///< from a summary whose CRC matches
   std::optional<mcap::Compression> compression = {};  ///< of the first chunk; nothing: the file has no chunk
 };
+
+/// Returns which of the channels are Vestige's own.
+StreamTable streams_of(const Definitions& definitions);
 
 /// Gathers definitions outside chunks from the whole file, damaged or not. A summary whose CRC matches takes precedence
 /// over the data section, where no CRC covers a single definition. Throws `Error` if the source is empty or reading

@@ -22,7 +22,8 @@ void StreamTable::add(mcap::Schema schema) {
   const auto known = schemas_.find(id);
   if (known != schemas_.end() && trace_format::is_ours(known->second)) return;
   const bool is_ours = trace_format::is_ours(schema);
-  schema.data = {};  // dropped, because it may have any size
+  constexpr std::size_t kMostBytes = 65536;  // far more than Vestige's own have; a foreign one may have any size
+  if (!is_ours || schema.data.size() > kMostBytes) schema.data = {};
   schemas_.insert_or_assign(id, std::move(schema));
   // A file may define 65535 schemas and as many channels. So a channel is only looked at again if a Vestige schema with
   // its schema id comes after it.
@@ -47,6 +48,20 @@ void StreamTable::update(const mcap::Channel& channel) {
   if (stream == Stream::kForeign) return;
   const auto [first, is_new] = channel_of_.try_emplace(stream, channel.id);
   first->second = std::min(first->second, channel.id);
+}
+
+std::optional<int> StreamTable::version_of_schemas() const {
+  for (int version = trace_format::kPointsVersion; version <= trace_format::kNewestVersion; ++version) {
+    const auto is_of_version = [&](Stream stream) {
+      const mcap::Channel* channel = find(stream);
+      if (channel == nullptr) return stream == Stream::kEvents;
+      const auto schema = schemas_.find(channel->schema_id);
+      return schema != schemas_.end() && schema->second.data == trace_format::schema_of(stream, version).data;
+    };
+    if (is_of_version(Stream::kPose) && is_of_version(Stream::kColliders) && is_of_version(Stream::kEvents))
+      return version;
+  }
+  return {};
 }
 
 const mcap::Channel* StreamTable::find(Stream stream) const {

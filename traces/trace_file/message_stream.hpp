@@ -25,6 +25,8 @@ class StreamTable {
   trace_format::Stream stream_of(std::uint16_t channel_id) const { return streams_[channel_id]; }
   /// Returns the stream's channel, or null until it is known.
   const mcap::Channel* find(trace_format::Stream stream) const;
+  /// Returns the format version that has all schemas of Vestige's own channels; nothing if none has.
+  std::optional<int> version_of_schemas() const;
 
  private:
   void update(const mcap::Channel& channel);

@@ -81,15 +81,21 @@ void AttachmentCheck::present(std::string_view name, const std::string& sha256) 
   }
 }
 
-std::optional<SessionProblem> check_version(const Session& session) {
+std::optional<SessionProblem> check_version(const AttachmentClaims& claims) {
+  const Session& session = claims.session;
   const auto text = session.find(std::string(trace_format::kVersionKey));
   if (text == session.end()) return {};
   const std::optional<int> version = trace_format::parse_version(text->second);
   if (!version)
     return SessionProblem{fmt::format("its format version is '{}', which is no version", text->second),
                           "its frames are read as far as they fit; `vestige recover` mends the number"};
-  if (*version <= trace_format::kNewestVersion) return {};
-  return SessionProblem{unknown_version(text->second), "`vestige replay` refuses the file"};
+  if (*version > trace_format::kNewestVersion)
+    return SessionProblem{unknown_version(text->second), "`vestige replay` refuses the file"};
+  if (claims.version_of_schemas && *version != *claims.version_of_schemas)
+    return SessionProblem{fmt::format("its format version is {}, but its schemas are those of version {}", *version,
+                                      *claims.version_of_schemas),
+                          "the schemas count; `vestige recover` mends the number"};
+  return {};
 }
 
 }  // namespace
@@ -134,7 +140,7 @@ std::vector<SessionProblem> check_session(std::string_view file, const Attachmen
   for (const std::string_view name : trace_format::kAttachmentNames)
     if (!sha256.contains(std::string(name))) check.missing(name);
   std::vector<SessionProblem> problems = check.take_problems();
-  if (auto problem = check_version(claims.session)) problems.insert(problems.begin(), *std::move(problem));
+  if (auto problem = check_version(claims)) problems.insert(problems.begin(), *std::move(problem));
   const auto facing = claims.session.find(std::string(trace_format::kFacingKey));
   if (facing != claims.session.end() && !facing_named(facing->second))
     problems.push_back({fmt::format("the session records the facing '{}', which is no axis", facing->second),

@@ -18,6 +18,7 @@ struct AttachmentClaims {
   Session session;
   mcap::StringMap pose;      ///< metadata of the channel /pose, which repeats the SHA-256s of the session
   mcap::StringMap replaced;  ///< metadata record `replaced`
+  std::optional<int> version_of_schemas = {};  ///< the format version whose schemas the file has, if they are of one
 };
 
 /// Returns the metadata of the channel /pose; empty if the table has no such channel.

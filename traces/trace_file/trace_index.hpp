@@ -28,7 +28,12 @@ struct TraceIndex {
   bool has_footer = false;
   mcap::DamageList damages;
 
-  AttachmentClaims claims() const { return {.session = session, .pose = pose_metadata(streams), .replaced = replaced}; }
+  AttachmentClaims claims() const {
+    return {.session = session,
+            .pose = pose_metadata(streams),
+            .replaced = replaced,
+            .version_of_schemas = streams.version_of_schemas()};
+  }
 };
 
 /// Reads the index from the summary if that is complete, otherwise by scanning the file. Throws `Error` if the file is

@@ -27,12 +27,14 @@ constexpr std::size_t kMostWarnings = 1000;
 constexpr std::size_t kMostColliders = 1'000'000;  ///< in a trace; also the most teleports in a frame
 constexpr std::string_view kRecover = "run `vestige recover`, which may still find a part of it";
 
-/// A session that was damaged says nothing, so its colliders may have radii.
-ColliderShape recorded_shape(const Session& session) {
-  const auto text = session.find(std::string(trace_format::kVersionKey));
-  const bool is_first =
-      text != session.end() && trace_format::parse_version(text->second) == trace_format::kPointsVersion;
-  return is_first ? ColliderShape::kPoints : ColliderShape::kSpheres;
+/// The schemas count; where they are foreign, what the session says. A damaged session says nothing, so its colliders
+/// may have radii.
+ColliderShape recorded_shape(const TraceIndex& index) {
+  std::optional<int> version = index.streams.version_of_schemas();
+  if (const auto text = index.session.find(std::string(trace_format::kVersionKey));
+      !version && text != index.session.end())
+    version = trace_format::parse_version(text->second);
+  return version == trace_format::kPointsVersion ? ColliderShape::kPoints : ColliderShape::kSpheres;
 }
 
 }  // namespace
@@ -40,13 +42,11 @@ ColliderShape recorded_shape(const Session& session) {
 class TraceReader::Implementation {
  public:
   explicit Implementation(const std::filesystem::path& path)
-      : source_(path),
-        index_(index_trace(source_)),
-        shape_(recorded_shape(index_.session)),
-        frames_(*this, PoseDecoding::kFull) {
+      : source_(path), index_(index_trace(source_)), frames_(*this, PoseDecoding::kFull) {
     if (index_.recovered) recovered_ = describe_recovered(*index_.recovered);
     for (const mcap::Damage& damage : index_.damages.kept()) warn(damage);
     require_trace();
+    shape_ = recorded_shape(index_);
   }
 
   const TraceIndex& index() const { return index_; }
@@ -109,7 +109,7 @@ class TraceReader::Implementation {
 
   mcap::FileSource source_;
   TraceIndex index_;
-  ColliderShape shape_;
+  ColliderShape shape_ = ColliderShape::kPoints;
   std::vector<std::string> node_names_;
   std::vector<std::string> warnings_;
   std::string recovered_;
@@ -245,7 +245,7 @@ void TraceReader::Implementation::Frames::take(TraceFrame& frame) {
   if (owner_.shape_ == ColliderShape::kPoints &&
       std::ranges::any_of(frame.colliders, [](const ColliderSample& collider) { return collider.radius_m != 0; })) {
     frame.colliders.clear();
-    throw Malformed("its colliders have radii, which format version 1 does not have");
+    throw Malformed("its colliders have radii, which its schema does not have");
   }
   colliders_taken_ = true;
 }

@@ -116,6 +116,9 @@ TEST_F(Radius, ThatNoneCanHaveIsRefusedWithItsPlace) {
   refused(head + "0.1,4,0,1,1,-0.05\n", {"c.csv, line 3", "radius_m is negative"});
   refused(head + "0.1,4,0,1,1,nan\n", {"c.csv, line 3", "radius_m is not finite"});
   refused(head + "0.1,4,0,1,1,10.5\n", {"c.csv, line 3", "radius_m is larger than 10 m"});
+  refused(head + "0.1,4,0,1,1,-1e-50\n", {"c.csv, line 3", "radius_m is negative"});
+  refused(head + "0.1,4,0,1,1,1e300\n", {"c.csv, line 3", "radius_m is larger than 10 m"});
+  refused(head + "0.1,4,0,1,1,10.0000001\n", {"c.csv, line 3", "radius_m is larger than 10 m"});
   refused(head + "0.1,4,0,1,1,large\n", {"c.csv, line 3", "radius_m is not a number"});
   refused(head + "0.1,4,0,1,1\n", {"c.csv, line 3", "radius_m is not a number"});
   refused(head + "0.1,4,0,1,1,0.05,0\n", {"c.csv, line 3", "is not six numbers"});
@@ -136,7 +139,21 @@ TEST_F(Radius, OfANodeThatNoneCanHaveIsRefusedWithItsPlace) {
   refused(R"({"radius_m":11})", {"nodes[0].extras.radius_m", "is larger than 10 m"});
   write("c.gltf",
         R"({"asset":{"version":"2.0"},"nodes":[{"name":"collider 1","scale":[9,9,9],"extras":{"radius_m":2}}]})");
-  expect_failure("vestige record --colliders c.gltf --duration 0.1 -o c.mcap", 1, {"collider 1", "18 m"});
+  expect_failure("vestige record --colliders c.gltf --duration 0.1 -o c.mcap", 1, {"collider 1", "18 m", "--radius"});
+  EXPECT_EQ(run("vestige record --colliders c.gltf --duration 0.1 --radius 0.1 -o d.mcap").exit_code, 0)
+      << "what the file says does not matter then";
+  expect_failure("vestige record --colliders c.gltf --duration 0.1 --radius mesh -o c.mcap", 1,
+                 {"none of the chosen nodes has a mesh", "--radius M"}, "c.mcap");
+}
+
+TEST_F(Radius, ThatAGltfReachesLateLeavesTheOldRecordingAlone) {
+  write("c.csv", "time_s,id,x,y,z,radius_m\n0,4,0,1,1,1\n0.1,4,0,1,1,9\n");
+  ASSERT_EQ(run("vestige record --colliders c.csv --duration 0.1 --rate 100 -o c.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige export c.mcap -o c.glb && sed 's/\"radius_m\":1/\"radius_m\":2/' c.glb > d.glb").exit_code, 0);
+  const std::string before = run("sha256sum c.mcap").standard_output;
+  expect_failure("vestige record --colliders d.glb --duration 0.1 --rate 100 --force -o c.mcap", 1,
+                 {"d.glb", "collider 4", "is larger than 10 m"});
+  EXPECT_EQ(run("sha256sum c.mcap").standard_output, before);
 }
 
 TEST_F(Radius, OfALiveCollider) {

@@ -16,7 +16,7 @@
 #include "tests/support/builtin_map.hpp"
 #include "tests/support/gl/gl_context.hpp"
 #include "tests/support/pairs/adversarial_pairs.hpp"
-#include "tests/support/same_contact.hpp"
+#include "tests/support/pairs/same_contact.hpp"
 #include "tests/support/scene_run.hpp"
 #include "tests/support/small_avatar.hpp"
 #include "tests/support/test_data.hpp"

@@ -13,7 +13,7 @@
 #include "detector/detectors/make_detectors.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
-#include "tests/support/same_contact.hpp"
+#include "tests/support/pairs/same_contact.hpp"
 #include "tests/support/scene_run.hpp"
 
 namespace vestige {

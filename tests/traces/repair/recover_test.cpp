@@ -98,7 +98,7 @@ TEST_P(RecoverCompressed, MendsAFormatVersionThatIsNotThatOfTheSchemas) {
                                  [](std::byte byte, char letter) { return byte == static_cast<std::byte>(letter); });
   ASSERT_NE(found, bytes.end());
   std::byte& digit = found[static_cast<std::ptrdiff_t>(key.size() + 4)];  // behind the length of the value
-  for (const char wrong : {'9', 'x', '0'}) {
+  for (const char wrong : {'9', 'x', '0', '2'}) {
     digit = static_cast<std::byte>(wrong);
     auto outcome = recover(bytes);
     ASSERT_TRUE(outcome) << wrong;
