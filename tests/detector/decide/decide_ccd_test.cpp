@@ -11,6 +11,7 @@
 #include "detector/decide/ccd_exact.hpp"
 #include "detector/decide/ccd_filter.hpp"
 #include "detector/decision.hpp"
+#include "tests/detector/decide/floor.hpp"
 
 namespace vestige {
 
@@ -22,11 +23,8 @@ namespace {
 
 using Contact = std::optional<FirstContact>;
 
-constexpr Corners kFloor = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};  // its front is up
-
-Corners moved(const Corners& triangle, const glm::dvec3& way) {
-  return {triangle.a + way, triangle.b + way, triangle.c + way};
-}
+using test::kFloor;
+using test::moved;
 
 Way scaled(const Way& way, double scale) {
   return {scale * way.start, scale * way.end};

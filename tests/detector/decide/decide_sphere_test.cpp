@@ -13,6 +13,7 @@
 #include "detector/decide/triangle_distance.hpp"
 #include "detector/decision.hpp"
 #include "detector/truth/truth.hpp"
+#include "tests/detector/decide/floor.hpp"
 
 namespace vestige {
 
@@ -24,11 +25,8 @@ namespace {
 
 using Touch = std::optional<FirstTouch>;
 
-constexpr Corners kFloor = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}};  // its front is up
-
-Corners moved(const Corners& triangle, const glm::dvec3& way) {
-  return {triangle.a + way, triangle.b + way, triangle.c + way};
-}
+using test::kFloor;
+using test::moved;
 
 /// Expects the deciding code, its exact part and the truth to agree, and returns their answer.
 Touch decide(const MovingSphere& sphere, const Corners& before, const Corners& after) {
