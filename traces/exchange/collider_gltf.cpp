@@ -56,11 +56,11 @@ constexpr std::string_view kRadiusRemedy = "a radius is a number of metres from 
 
 /// Returns the radius that the node's `extras.radius_m` says; 0 if it says none.
 double radius_in_extras(const gltf::Document& document, Index node, const gltf::Report& report) {
-  const nlohmann::json extras = document.json.extras("nodes", node);
-  if (!extras.is_object() || !extras.contains("radius_m")) return 0;
+  const nlohmann::json radius = document.json.extra("nodes", node, "radius_m");
+  if (radius.is_null()) return 0;
   const std::string path = fmt::format("nodes[{}].extras.radius_m", node);
-  if (!extras["radius_m"].is_number()) report.fail(path, "is not a number", kRadiusRemedy);
-  const auto radius_m = extras["radius_m"].get<double>();
+  if (!radius.is_number()) report.fail(path, "is not a number", kRadiusRemedy);
+  const auto radius_m = radius.get<double>();
   if (const std::string_view fault = radius_fault(radius_m); !fault.empty()) report.fail(path, fault, kRadiusRemedy);
   return radius_m;
 }

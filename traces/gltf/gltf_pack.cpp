@@ -135,8 +135,8 @@ class Packer {
   /// Of all extras, only that of nodes that are colliders is ever read.
   void keep_radius(json& element, std::string_view list, std::size_t index) const {
     if (list != "nodes") return;
-    const json extras = source_.extras(list, index);
-    if (extras.is_object() && extras.contains("radius_m")) element["extras"]["radius_m"] = extras["radius_m"];
+    const json radius = source_.extra(list, index, "radius_m");
+    if (!radius.is_null()) element["extras"]["radius_m"] = radius;
   }
 
   template <typename Change>

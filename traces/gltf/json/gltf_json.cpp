@@ -54,9 +54,24 @@ std::string_view Json::buffer_uri(std::size_t index, const json& buffer, const R
   return uri == "data:" ? find_data_uri(outline_.lists.find("buffers")->second[index], report) : uri;
 }
 
-json Json::extras(std::string_view list, std::size_t index) const {
-  const json element = json::parse(outline_.lists.find(list)->second[index]);
-  return element.value("extras", json());
+json Json::extra(std::string_view list, std::size_t index, std::string_view name) const {
+  // Extras may be larger than all else: what is not asked for is never kept.
+  const auto is_kept = [name](int depth, json::parse_event_t event, const json& parsed) {
+    switch (event) {
+      case json::parse_event_t::key:
+        return parsed == (depth == 1 ? "extras" : name);
+      case json::parse_event_t::object_start:
+        return depth <= 1;
+      case json::parse_event_t::array_start:
+        return false;
+      default:
+        return true;
+    }
+  };
+  const json element = json::parse(outline_.lists.find(list)->second[index], is_kept);
+  if (!element.is_object() || !element.contains("extras") || !element["extras"].is_object()) return {};
+  const auto found = element["extras"].find(name);
+  return found == element["extras"].end() || found->is_discarded() ? json() : *found;
 }
 
 json Json::element(std::string_view list, std::size_t index, Report& report) const {

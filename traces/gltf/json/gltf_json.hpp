@@ -32,8 +32,9 @@ class Json {
   /// Returns one element of a list, checked by `check_element`. Precondition: index < count(list).
   nlohmann::json element(std::string_view list, std::size_t index, Report& report) const;
 
-  /// Returns the `extras` of one element, unchecked; null if it has none. Precondition: index < count(list).
-  nlohmann::json extras(std::string_view list, std::size_t index) const;
+  /// Returns a member of the `extras` of one element, unchecked; null if it has none, or one that is no plain value.
+  /// Precondition: index < count(list).
+  nlohmann::json extra(std::string_view list, std::size_t index, std::string_view name) const;
 
   /// Returns the full `uri` of a buffer. `buffer` is `element("buffers", index)`, in which a data URI is shortened to
   /// "data:".
