@@ -1,6 +1,10 @@
 #include "detector/nearest_in_triangle.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <glm/geometric.hpp>
+#include <limits>
 
 namespace vestige {
 
@@ -28,6 +32,37 @@ glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const Corners& triangle) {
   }
   const double sum = va + vb + vc;
   return {va / sum, vb / sum, vc / sum};
+}
+
+glm::dvec3 nearest_on_edges(const glm::dvec3& p, const Corners& triangle) {
+  const std::array corner = {triangle.a, triangle.b, triangle.c};
+  glm::dvec3 nearest(0);
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 3; ++i) {
+    const int next = (i + 1) % 3;
+    const glm::dvec3& from = corner[static_cast<std::size_t>(i)];
+    const glm::dvec3 edge = corner[static_cast<std::size_t>(next)] - from;
+    const double length = glm::dot(edge, edge);
+    const double share = length > 0 ? std::clamp(glm::dot(p - from, edge) / length, 0.0, 1.0) : 0.0;
+    const glm::dvec3 away = from + share * edge - p;
+    if (const double distance = glm::dot(away, away); distance < least) {
+      least = distance;
+      nearest = glm::dvec3(0);
+      nearest[i] = 1 - share;
+      nearest[next] = share;
+    }
+  }
+  return nearest;
+}
+
+bool are_shares(const glm::dvec3& weights) {
+  for (int i = 0; i < 3; ++i)
+    if (!(weights[i] >= 0 && weights[i] <= 1)) return false;  // NaN is none, either
+  return true;
+}
+
+glm::dvec3 weighed(const glm::dvec3& weights, const Corners& triangle) {
+  return weights.x * triangle.a + weights.y * triangle.b + weights.z * triangle.c;
 }
 
 }  // namespace vestige

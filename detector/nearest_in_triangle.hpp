@@ -10,4 +10,13 @@ namespace vestige {
 /// Detection, 5.1.5).
 glm::dvec3 nearest_in_triangle(const glm::dvec3& p, const Corners& triangle);
 
+/// Does the same for the triangle's edges alone, whatever their lengths.
+glm::dvec3 nearest_on_edges(const glm::dvec3& p, const Corners& triangle);
+
+/// Returns whether each weight is from 0 to 1. Those of `nearest_in_triangle` may not be if a triangle has no area.
+bool are_shares(const glm::dvec3& weights);
+
+/// Returns the point of a triangle with these weights.
+glm::dvec3 weighed(const glm::dvec3& weights, const Corners& triangle);
+
 }  // namespace vestige

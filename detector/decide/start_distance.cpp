@@ -77,7 +77,7 @@ StartDistance::StartDistance(const glm::dvec3& centre, const Corners& triangle) 
   range_ = is_in_range(reach) ? separation_from(relative, reach).range : DistanceRange{0, HUGE_VAL};
 }
 
-std::optional<std::vector<glm::dvec3>> StartDistance::nearest_part() const {
+std::optional<std::array<glm::dvec3, 2>> StartDistance::nearest_edge() const {
   const std::array corner = {triangle_.a, triangle_.b, triangle_.c};
   std::array<glm::dvec3, 3> relative = {};
   for (std::size_t i = 0; i < 3; ++i) relative[i] = corner[i] - centre_;
@@ -89,7 +89,7 @@ std::optional<std::vector<glm::dvec3>> StartDistance::nearest_part() const {
     return glm::dot(relative[to] - relative[from], -relative[from]);  // of the foot on the edge, as seen from `from`
   };
   for (std::size_t i = 0; i < 3; ++i)
-    if (along(i, (i + 1) % 3) < -error && along(i, (i + 2) % 3) < -error) return std::vector{corner[i]};
+    if (along(i, (i + 1) % 3) < -error && along(i, (i + 2) % 3) < -error) return std::array{corner[i], corner[i]};
   const glm::dvec3 normal = glm::cross(relative[1] - relative[0], relative[2] - relative[0]);
   // Two more factors of twice the reach at most, each with its own rounding.
   const double area_error = 64 * error * reach * reach;
@@ -97,7 +97,7 @@ std::optional<std::vector<glm::dvec3>> StartDistance::nearest_part() const {
     const std::size_t to = (i + 1) % 3;
     const double outward = glm::dot(glm::cross(relative[to] - relative[i], normal), -relative[i]);
     if (!(along(i, to) > error && along(to, i) > error && outward > area_error)) continue;
-    return is_less(corner[i], corner[to]) ? std::vector{corner[i], corner[to]} : std::vector{corner[to], corner[i]};
+    return is_less(corner[i], corner[to]) ? std::array{corner[i], corner[to]} : std::array{corner[to], corner[i]};
   }
   return {};
 }
@@ -106,8 +106,8 @@ int StartDistance::compare(const StartDistance& a, const StartDistance& b, bool&
   if (a.range_.high < b.range_.low) return -1;
   if (b.range_.high < a.range_.low) return 1;
   if (a.centre_ == b.centre_) {
-    const auto part = a.nearest_part();
-    if (part && part == b.nearest_part()) return 0;
+    const auto edge = a.nearest_edge();
+    if (edge && edge == b.nearest_edge()) return 0;
   }
   exact_arithmetic = true;
   Integer unused;

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <optional>
-#include <vector>
 
 #include "detector/decide/triangle_distance.hpp"
 #include "detector/decision.hpp"
@@ -23,9 +23,9 @@ class StartDistance {
   static int compare(const StartDistance& a, double radius, bool& exact_arithmetic);
 
  private:
-  /// Returns the corners whose hull is the nearest part of the triangle, sorted, if double precision proves which part
-  /// that is. Triangles that share an edge or a corner share it, too, so their distances are equal.
-  std::optional<std::vector<glm::dvec3>> nearest_part() const;
+  /// Returns the ends of the edge that is the nearest part of the triangle, sorted, if double precision proves that it
+  /// is; a corner is an edge with two equal ends. Triangles that share it have equal distances.
+  std::optional<std::array<glm::dvec3, 2>> nearest_edge() const;
 
   glm::dvec3 centre_;
   Corners triangle_;

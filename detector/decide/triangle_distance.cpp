@@ -26,33 +26,12 @@ constexpr double kDistanceError = 32 * kUnit;
 /// Below this square, the length of g may have lost bits to underflow, and the distance is at most 2^-450.
 constexpr double kLeastSquare = 0x1p-900;
 
-bool is_share(double weight) {
-  return weight >= 0 && weight <= 1;  // false for NaN
-}
-
 /// Returns the point of the triangle that is nearest to the origin, but for rounding, if the triangle has an area.
 /// Otherwise some point of it.
 glm::dvec3 near_origin(const Corners& corners) {
   const glm::dvec3 weights = nearest_in_triangle(glm::dvec3(0), corners);
   const double excess = (weights.x + weights.y + weights.z) - 1;
-  if (is_share(weights.x) && is_share(weights.y) && is_share(weights.z) && std::abs(excess) <= 4 * kUnit)
-    return weights.x * corners.a + weights.y * corners.b + weights.z * corners.c;
-  return corners.a;
-}
-
-glm::dvec3 near_origin_on_edge(const glm::dvec3& from, const glm::dvec3& to) {
-  const glm::dvec3 edge = to - from;
-  const double length = glm::dot(edge, edge);
-  const double share = length > 0 ? std::clamp(-glm::dot(from, edge) / length, 0.0, 1.0) : 0.0;
-  return (1 - share) * from + share * to;
-}
-
-/// Returns the point of the triangle's edges that is nearest to the origin, but for rounding.
-glm::dvec3 near_origin_on_edges(const Corners& corners) {
-  const auto is_nearer = [](const glm::dvec3& p, const glm::dvec3& q) { return glm::dot(p, p) < glm::dot(q, q); };
-  return std::min({near_origin_on_edge(corners.a, corners.b), near_origin_on_edge(corners.b, corners.c),
-                   near_origin_on_edge(corners.c, corners.a)},
-                  is_nearer);
+  return are_shares(weights) && std::abs(excess) <= 4 * kUnit ? weighed(weights, corners) : corners.a;
 }
 
 /// Returns the range that a point of the triangle proves, by itself and as a direction.
@@ -85,7 +64,7 @@ Separation separation_from(const Corners& corners, double reach) {
   const Separation by_face = proven_by(near_origin(corners), corners, reach);
   if (by_face.range.high - by_face.range.low <= kWide * kDistanceError * reach) return by_face;
   // A needle's plane is hardly known, but its edges are.
-  Separation by_edges = proven_by(near_origin_on_edges(corners), corners, reach);
+  Separation by_edges = proven_by(weighed(nearest_on_edges(glm::dvec3(0), corners), corners), corners, reach);
   by_edges.range.high = std::min(by_edges.range.high, by_face.range.high);
   if (by_face.range.low > by_edges.range.low) {
     by_edges.range.low = by_face.range.low;

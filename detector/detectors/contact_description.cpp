@@ -1,11 +1,8 @@
 #include "detector/detectors/contact_description.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <glm/geometric.hpp>
-#include <limits>
 
 #include "detector/nearest_in_triangle.hpp"
 
@@ -54,39 +51,6 @@ void describe_place(const Avatar& avatar, const ActuatorMap& map, Contact& conta
   contact.actuator = map.at(contact.triangle, contact.texture_coordinate);
 }
 
-bool is_share_of_corner(double weight) {
-  return weight >= 0 && weight <= 1;  // false for NaN
-}
-
-/// Returns the weights of the point of a triangle that is nearest to `x`. A triangle without area is the union of its
-/// edges, and an edge without length its first end.
-glm::dvec3 nearest_weights(const glm::dvec3& x, const Corners& triangle) {
-  const glm::dvec3 weights = nearest_in_triangle(x, triangle);
-  if (is_share_of_corner(weights.x) && is_share_of_corner(weights.y) && is_share_of_corner(weights.z)) return weights;
-  const std::array corner = {triangle.a, triangle.b, triangle.c};
-  glm::dvec3 nearest(0);
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 3; ++i) {
-    const int next = (i + 1) % 3;
-    const glm::dvec3& from = corner[static_cast<std::size_t>(i)];
-    const glm::dvec3 edge = corner[static_cast<std::size_t>(next)] - from;
-    const double length = glm::dot(edge, edge);
-    const double share = length > 0 ? std::clamp(glm::dot(x - from, edge) / length, 0.0, 1.0) : 0.0;
-    const glm::dvec3 away = from + share * edge - x;
-    if (const double distance = glm::dot(away, away); distance < least) {
-      least = distance;
-      nearest = glm::dvec3(0);
-      nearest[i] = 1 - share;
-      nearest[next] = share;
-    }
-  }
-  return nearest;
-}
-
-glm::dvec3 weighed(const glm::dvec3& weights, const Corners& corners) {
-  return weights.x * corners.a + weights.y * corners.b + weights.z * corners.c;
-}
-
 }  // namespace
 
 Contact describe_contact(const Avatar& avatar, const ActuatorMap& map, const Meeting& meeting, double duration_s) {
@@ -120,7 +84,8 @@ Contact describe_touch(const Avatar& avatar, const ActuatorMap& map, const Spher
   const Way& way = pair.sphere.centre;
   const Corners at_contact = corners_at(pair.before, pair.now, touch.t);
   const glm::dvec3 centre = way.start + static_cast<double>(touch.t) * (way.end - way.start);
-  const glm::dvec3 weights = nearest_weights(centre, at_contact);
+  glm::dvec3 weights = nearest_in_triangle(centre, at_contact);
+  if (!are_shares(weights)) weights = nearest_on_edges(centre, at_contact);  // a triangle without area has only edges
   Contact contact;
   contact.triangle = pair.triangle;
   contact.t = touch.t;

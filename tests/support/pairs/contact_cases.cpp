@@ -360,9 +360,7 @@ void round_to_fp32(ContactCase& c) {
 }
 
 double distance_to(const glm::dvec3& x, const Corners& triangle) {
-  const glm::dvec3 weights = nearest_in_triangle(x, triangle);
-  const glm::dvec3 nearest = weights.x * triangle.a + weights.y * triangle.b + weights.z * triangle.c;
-  return glm::distance(x, nearest);
+  return glm::distance(x, weighed(nearest_in_triangle(x, triangle), triangle));
 }
 
 double radius_of(Random& random, const ContactCase& c) {
