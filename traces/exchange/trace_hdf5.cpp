@@ -77,7 +77,7 @@ class TraceHdf5::Implementation {
   }
 
   double share() const { return static_cast<double>(row_) / static_cast<double>(frames_); }
-  ColliderShape shape() const { return has_radii() ? ColliderShape::kSpheres : ColliderShape::kPoints; }
+  ColliderShape shape() const { return radius_ ? ColliderShape::kSpheres : ColliderShape::kPoints; }
 
   std::vector<std::string> node_names;
   std::string facing;
@@ -115,12 +115,8 @@ class TraceHdf5::Implementation {
     position_.emplace(file_.id(), path_, "colliders/position").expect({frames, colliders, 3});
     present_.emplace(file_.id(), path_, "colliders/present").expect({frames, colliders});
     teleported_.emplace(file_.id(), path_, "colliders/teleported").expect({frames, colliders});
-    if (has_radii()) radius_.emplace(file_.id(), path_, "colliders/radius").expect({frames, colliders});
-  }
-
-  bool has_radii() const {
-    return hdf5().link_exists(file_.id(), "colliders", H5P_DEFAULT) > 0 &&
-           hdf5().link_exists(file_.id(), "colliders/radius", H5P_DEFAULT) > 0;
+    if (hdf5().link_exists(file_.id(), "colliders/radius", H5P_DEFAULT) > 0)
+      radius_.emplace(file_.id(), path_, "colliders/radius").expect({frames, colliders});
   }
 
   /// Empty if there are none.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "traces/base/nanoseconds.hpp"
@@ -140,7 +141,9 @@ float radius_of(const Json& collider, const FloatJson& in_float) {
   return number_of<float>(in_float["radius"], "radius");
 }
 
-std::vector<ColliderSample> colliders_of(const Json& json, const FloatJson& floats) {
+/// `floats` returns the whole line in floats, which takes as long as reading it.
+template <typename Floats>
+std::vector<ColliderSample> colliders_of(const Json& json, const Floats& floats) {
   if (!json.is_array()) throw Malformed("'colliders' is not an array");
   std::vector<ColliderSample> colliders;
   colliders.reserve(json.size());
@@ -148,7 +151,7 @@ std::vector<ColliderSample> colliders_of(const Json& json, const FloatJson& floa
     if (!one.is_object() || !one.contains("id") || !one.contains("position"))
       throw Malformed("a collider has no id or no position");
     colliders.push_back({.id = id_of(one["id"]), .position_m = position_of(one["position"], "position")});
-    if (one.contains("radius")) colliders.back().radius_m = radius_of(one, floats[colliders.size() - 1]);
+    if (one.contains("radius")) colliders.back().radius_m = radius_of(one, floats()["colliders"][colliders.size() - 1]);
   }
   std::vector<std::uint32_t> ids;
   ids.reserve(colliders.size());
@@ -248,12 +251,15 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     const auto time = json.find("time_s");
     frame.time_ns = time == json.end() ? std::max(now_ns, last_ns_) : time_of(*time, last_ns_);
     frame.pose = pose_;
-    FloatJson floats = in_floats(line, json);
+    std::optional<FloatJson> read_floats;
+    const auto floats = [&]() -> FloatJson& {
+      return read_floats ? *read_floats : read_floats.emplace(in_floats(line, json));
+    };
     if (const auto pose = json.find("pose"); pose != json.end()) {
       if (!pose->is_object()) throw Malformed("'pose' is not an object");
       note_unknown(*pose, {"origin", "nodes", "joints"});
       frame.pose.origin_m = pose->contains("origin") ? position_of((*pose)["origin"], "origin") : glm::dvec3(0);
-      const FloatJson& in_float = floats["pose"];
+      const FloatJson& in_float = floats()["pose"];
       if (const auto nodes = in_float.find("nodes"); nodes != in_float.end()) {
         read_nodes(*nodes, frame.pose);
       } else if (const auto joints = in_float.find("joints"); joints != in_float.end() && joints->is_object()) {
@@ -269,7 +275,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
       }
     }
     if (const auto colliders = json.find("colliders"); colliders != json.end()) {
-      frame.colliders = colliders_of(*colliders, floats["colliders"]);
+      frame.colliders = colliders_of(*colliders, floats);
       for (const Json& collider : *colliders) note_unknown(collider, {"id", "position", "radius"});
     }
     if (const auto teleported = json.find("teleported"); teleported != json.end())

@@ -164,12 +164,19 @@ const TraceReader::Implementation::Census& TraceReader::Implementation::census()
   TraceFrame frame;
   std::vector<std::uint32_t> previous;
   std::vector<std::uint32_t> current;
+  std::vector<std::uint32_t> previous_spheres;
+  std::vector<std::uint32_t> spheres;
   while (frames.next(frame)) {
     ++census.frames;
     current.clear();
+    spheres.clear();
     for (const ColliderSample& collider : frame.colliders) {
       current.push_back(collider.id);
-      if (collider.radius_m > 0) sphere_ids.insert(collider.id);
+      if (collider.radius_m > 0) spheres.push_back(collider.id);
+    }
+    if (spheres != previous_spheres) {
+      previous_spheres = spheres;
+      sphere_ids.insert(spheres.begin(), spheres.end());
     }
     if (current == previous) continue;
     previous = current;
