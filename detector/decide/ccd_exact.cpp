@@ -46,7 +46,7 @@ Motion make_motion(const Way& way, const Corners& before, const Corners& after) 
     const PolynomialVector& to = corner[(i + 1) % 3];
     motion.edges[i] = {cross(from, to), dot(from, to)};
   }
-  motion.above = Polynomial() - dot(corner[0], motion.edges[1].cross);
+  motion.above = -dot(corner[0], motion.edges[1].cross);
   return motion;
 }
 

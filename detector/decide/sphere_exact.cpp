@@ -49,20 +49,19 @@ SphereMotion sphere_motion(const MovingSphere& sphere, const Corners& before, co
   }
   const std::array<PolynomialVector, 3> edge = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
   const PolynomialVector normal = cross(edge[0], edge[1]);
-  const Polynomial zero;
   SphereMotion motion;
-  motion.above = zero - dot(normal, corner[0]);
+  motion.above = -dot(normal, corner[0]);
 
   Part face = {motion.above * motion.above - squared_radius * dot(normal, normal), {}, {}};
   face.nonzero.assign(normal.begin(), normal.end());
-  for (std::size_t i = 0; i < 3; ++i) face.not_negative.push_back(zero - dot(cross(normal, edge[i]), corner[i]));
+  for (std::size_t i = 0; i < 3; ++i) face.not_negative.push_back(-dot(cross(normal, edge[i]), corner[i]));
   motion.parts.push_back(std::move(face));
   for (std::size_t i = 0; i < 3; ++i) {
     const PolynomialVector& to = corner[(i + 1) % 3];
     const PolynomialVector moment = cross(corner[i], to);
     Part part = {dot(moment, moment) - squared_radius * dot(edge[i], edge[i]), {}, {}};
     part.nonzero.assign(edge[i].begin(), edge[i].end());
-    part.not_negative = {zero - dot(edge[i], corner[i]), dot(edge[i], to)};
+    part.not_negative = {-dot(edge[i], corner[i]), dot(edge[i], to)};
     motion.parts.push_back(std::move(part));
     motion.parts.push_back({dot(corner[i], corner[i]) - squared_radius, {}, {}});
   }
