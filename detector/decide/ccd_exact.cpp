@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "detector/algebra/moving_polynomials.hpp"
 #include "detector/algebra/unit_roots.hpp"
+#include "detector/decide/relative_triangle.hpp"
 
 namespace vestige {
 
@@ -24,22 +24,7 @@ struct Motion {
 };
 
 Motion make_motion(const Way& way, const Corners& before, const Corners& after) {
-  constexpr std::size_t kPoints = 4;
-  std::array<double, 6 * kPoints> values = {};
-  std::size_t next = 0;
-  for (const glm::dvec3* point : {&way.start, &before.a, &before.b, &before.c, &way.end, &after.a, &after.b, &after.c})
-    for (int axis = 0; axis < 3; ++axis) values[next++] = (*point)[axis];
-  const std::array<Integer, 6 * kPoints> whole = scaled_integers(values);
-
-  std::array<PolynomialVector, 3> corner;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t place = 3 * (i + 1) + axis;
-      const Integer at_0 = whole[place] - whole[axis];
-      const Integer at_1 = whole[place + 3 * kPoints] - whole[axis + 3 * kPoints];
-      corner[i][axis] = Polynomial({at_0, Integer(at_1 - at_0)});
-    }
-  }
+  const std::array<PolynomialVector, 3> corner = relative_triangle({way, 0}, before, after).corner;
   Motion motion;
   for (std::size_t i = 0; i < 3; ++i) {
     const PolynomialVector& from = corner[i];

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "detector/algebra/moving_polynomials.hpp"
 #include "detector/algebra/unit_roots.hpp"
+#include "detector/decide/relative_triangle.hpp"
 
 namespace vestige {
 
@@ -28,25 +28,8 @@ struct SphereMotion {
 };
 
 SphereMotion sphere_motion(const MovingSphere& sphere, const Corners& before, const Corners& after) {
-  constexpr std::size_t kPoints = 4;
-  std::array<double, 6 * kPoints + 1> values = {};
-  std::size_t next = 0;
-  for (const glm::dvec3* point :
-       {&sphere.centre.start, &before.a, &before.b, &before.c, &sphere.centre.end, &after.a, &after.b, &after.c})
-    for (int axis = 0; axis < 3; ++axis) values[next++] = (*point)[axis];
-  values[next] = sphere.radius;
-  const std::array<Integer, 6 * kPoints + 1> whole = scaled_integers(values);
-  const Polynomial squared_radius({Integer(whole[next] * whole[next])});
-
-  std::array<PolynomialVector, 3> corner;  // relative to the centre
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const std::size_t place = 3 * (i + 1) + axis;
-      const Integer at_0 = whole[place] - whole[axis];
-      const Integer at_1 = whole[place + 3 * kPoints] - whole[axis + 3 * kPoints];
-      corner[i][axis] = Polynomial({at_0, Integer(at_1 - at_0)});
-    }
-  }
+  const auto [corner, radius] = relative_triangle(sphere, before, after);
+  const Polynomial squared_radius({Integer(radius * radius)});
   const std::array<PolynomialVector, 3> edge = {corner[1] - corner[0], corner[2] - corner[1], corner[0] - corner[2]};
   const PolynomialVector normal = cross(edge[0], edge[1]);
   SphereMotion motion;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "detector/truth/algebraic_time.hpp"
+#include "detector/truth/moving_points.hpp"
 #include "detector/truth/truth.hpp"
 
 namespace vestige::exact {
@@ -18,20 +19,9 @@ struct Scene {
 };
 
 Scene scene_of(const Way& way, const Corners& before, const Corners& after) {
-  std::array<double, 24> values = {};
-  std::size_t next = 0;
-  for (const glm::dvec3* point : {&way.start, &way.end, &before.a, &after.a, &before.b, &after.b, &before.c, &after.c})
-    for (int axis = 0; axis < 3; ++axis) values[next++] = (*point)[axis];
-  const std::array<Whole, 24> whole = whole_multiples(values);
-  const auto difference = [&whole](std::size_t from, std::size_t to) {
-    MovingVector vector;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      vector[axis] = Polynomial::moving(whole[6 * to + axis] - whole[6 * from + axis],
-                                        whole[6 * to + 3 + axis] - whole[6 * from + 3 + axis]);
-    return vector;
-  };
-  return {{difference(1, 2), difference(2, 3), difference(3, 1)},
-          {difference(1, 0), difference(2, 0), difference(3, 0)}};
+  const MovingPoints points({way, 0}, before, after);
+  return {{points.difference(1, 2), points.difference(2, 3), points.difference(3, 1)},
+          {points.difference(1, 0), points.difference(2, 0), points.difference(3, 0)}};
 }
 
 /// Returns, for each edge, twice the area, as a vector, of the triangle that the point and the edge span.

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "detector/truth/algebraic_time.hpp"
+#include "detector/truth/moving_points.hpp"
 #include "detector/truth/truth.hpp"
 #include "detector/truth/whole_vector.hpp"
 
@@ -82,34 +83,21 @@ Polynomial constant(const Whole& value) {
 }
 
 SphereScene sphere_scene(const MovingSphere& sphere, const Corners& before, const Corners& after) {
-  std::array<double, 25> values = {};
-  std::size_t next = 0;
-  for (const glm::dvec3* point :
-       {&sphere.centre.start, &sphere.centre.end, &before.a, &after.a, &before.b, &after.b, &before.c, &after.c})
-    for (int axis = 0; axis < 3; ++axis) values[next++] = (*point)[axis];
-  values[next] = sphere.radius;
-  const std::array<Whole, 25> whole = whole_multiples(values);
-  const auto difference = [&whole](std::size_t from, std::size_t to) {
-    MovingVector vector;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      vector[axis] = Polynomial::moving(whole[6 * to + axis] - whole[6 * from + axis],
-                                        whole[6 * to + 3 + axis] - whole[6 * from + 3 + axis]);
-    return vector;
-  };
-  const Polynomial squared_radius = constant(whole[24] * whole[24]);
+  const MovingPoints points(sphere, before, after);
+  const Polynomial squared_radius = constant(points.radius() * points.radius());
   SphereScene scene;
   for (std::size_t corner = 1; corner <= 3; ++corner) {
-    const MovingVector away = difference(corner, 0);
+    const MovingVector away = points.difference(corner, 0);
     scene.parts.push_back({dot(away, away) - squared_radius, constant(1), {}});
-    const MovingVector edge = difference(corner, corner % 3 + 1);
+    const MovingVector edge = points.difference(corner, corner % 3 + 1);
     const Polynomial along = dot(away, edge);
     const Polynomial length = dot(edge, edge);
     scene.parts.push_back(
         {(dot(away, away) - squared_radius) * length - along * along, length, {along, length - along}});
   }
-  const MovingVector away = difference(1, 0);
-  const MovingVector first = difference(1, 2);
-  const MovingVector second = difference(1, 3);
+  const MovingVector away = points.difference(1, 0);
+  const MovingVector first = points.difference(1, 2);
+  const MovingVector second = points.difference(1, 3);
   const Polynomial first_first = dot(first, first);
   const Polynomial second_second = dot(second, second);
   const Polynomial first_second = dot(first, second);
