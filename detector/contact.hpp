@@ -22,6 +22,7 @@ struct Contact {
   glm::dvec2 texture_coordinate = glm::dvec2(0);  ///< as in the file: not wrapped into [0, 1]
   glm::dvec3 position = glm::dvec3(0);            ///< metres, relative to the frame's origin
   double speed_m_per_s = 0;                       ///< speed of the collider along the triangle's normal, never negative
+  double depth_m = 0;                             ///< how deep a sphere is in the body at the frame's end; 0 … 2 r
 
   bool hit() const { return triangle != kNoTriangle; }
 };
@@ -41,6 +42,7 @@ enum class Plane : unsigned {
   kSpeed = 1U << 6,
   kSide = 1U << 7,
   kPressure = 1U << 8,  ///< pressure for a pneumatic cell, derived from the speed (`pressure_of`)
+  kDepth = 1U << 9,     ///< of spheres (`with_depth`)
 };
 
 class PlaneSet {
@@ -55,15 +57,17 @@ class PlaneSet {
     both.bits_ = a.bits_ | b.bits_;
     return both;
   }
-  /// The first `count` planes in the order of `Plane`. Precondition: 1 <= count <= 9.
+  /// The first `count` planes in the order of `Plane`. Precondition: 1 <= count <= 10.
   static constexpr PlaneSet first(unsigned count) {
     PlaneSet set;
     set.bits_ = (1U << count) - 1;
     return set;
   }
-  static constexpr PlaneSet all() {
+  static constexpr PlaneSet all() { return first(10); }
+  /// All of these planes but one, which is not `kActuator`.
+  constexpr PlaneSet without(Plane plane) const {
     PlaneSet set;
-    set.bits_ = 0x1FF;
+    set.bits_ = bits_ & ~static_cast<unsigned>(plane);
     return set;
   }
   friend constexpr bool operator==(PlaneSet, PlaneSet) = default;

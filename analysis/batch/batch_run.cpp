@@ -22,6 +22,7 @@
 #include "analysis/scoring/contact_recording.hpp"
 #include "analysis/scoring/contact_recording_file.hpp"
 #include "analysis/scoring/scores.hpp"
+#include "detector/actuators/law_maker.hpp"
 #include "detector/frame.hpp"
 #include "traces/base/sha256.hpp"
 #include "traces/base/system_error.hpp"
@@ -184,6 +185,7 @@ class BatchRun {
     const std::uint32_t count = plan_.recording.count.value_or(trace.scenario->default_count);
     const auto colliders = trace.scenario->make(plan_.avatar, animation, {count, trace.seed});
     TraceWriterOptions writing;
+    writing.shape = colliders->shape();
     writing.overwrite = Overwrite::kAllow;
     writing.chunk_s = std::numeric_limits<double>::infinity();  // gives the same bytes, however long recording takes
     const std::string growing = folder_.growing_trace(trace.name);
@@ -247,10 +249,12 @@ class BatchRun {
     if (!plan_.takes_radii && !reader.sphere_ids().empty())
       throw Error(path, fmt::format("has colliders with a radius, of which {} tests only the centres", plan_.detector),
                   "choose --detector cpu, geometry, exact or decimated");
+    require_radii(plan_.laws, reader.shape(), path);
     const std::vector<std::uint32_t>& ids = reader.collider_ids();
     const auto frame_count = static_cast<double>(reader.frame_count());
     RecordedTrace recorded;
     recorded.collider_ids = ids;
+    recorded.shape = reader.shape();
     ContactRecording& recording = recorded.contacts;
     DetectionRun detection(plan_.avatar, ids, detector);
     TraceFrame trace_frame;

@@ -46,16 +46,16 @@ class Run {
     for (auto now = Clock::now(); now < until; now = Clock::now()) {
       if (!calls_.go_on(share)) return false;
       const double now_s = first_s_ + seconds(now - begin_) * rate_;
-      if (now_s > last_s_ + kGap_s && now_s < time_s) calls_.take(law_(now_s + offset_s_, nothing_), now);
+      if (now_s > last_s_ + kGap_s && now_s < time_s) calls_.take(law_(now_s + offset_s_, nothing_, nullptr), now);
       std::this_thread::sleep_until(std::min(until, now + kSlice));
     }
     return calls_.go_on(share);
   }
 
-  void take(double time_s, const ContactRow& row) {
+  void take(double time_s, const ContactRow& row, const DetectorFrame& frame) {
     ++frames_;
     last_s_ = time_s;
-    calls_.take(law_(time_s + offset_s_, row), due(time_s));
+    calls_.take(law_(time_s + offset_s_, row, &frame), due(time_s));
   }
 
   std::uint64_t frames() const { return frames_; }
@@ -107,7 +107,7 @@ PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector
       result.most_late_s = std::max(result.most_late_s, seconds(Clock::now() - run->due(time_s)));
       if (result.fell_behind() && !was_behind) calls.fell_behind();
       detection.step(trace_frame);
-      run->take(time_s, detection.row());
+      run->take(time_s, detection.row(), detection.frame());
       ++result.frames;
       result.contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(), &Contact::hit));
     }

@@ -33,8 +33,9 @@ struct PlaybackResult {
 struct PlaybackCalls {
   using Clock = std::chrono::steady_clock;
 
-  /// Turns the contacts of a frame into what the vest is told. The reference is valid until the next call.
-  using Law = std::function<const ActuatorFrame&(double time_s, const ContactRow& row)>;
+  /// Turns the contacts of a frame into what the vest is told. `frame` is null in a gap of the trace. The reference is
+  /// valid until the next call.
+  using Law = std::function<const ActuatorFrame&(double time_s, const ContactRow& row, const DetectorFrame* frame)>;
 
   /// Makes the law for one run through the trace.
   std::function<Law()> make_law;

@@ -176,7 +176,7 @@ class Replay {
     const ReplayOutputs& outputs = plan_.outputs;
     if (outputs.contacts != nullptr) outputs.contacts->write(frame, row, trace_.collider_ids());
     if (outputs.textures != nullptr) outputs.textures->add(frame, row);
-    if (outputs.timeline != nullptr) outputs.timeline->write(outputs.drive->next(frame.time_s, row));
+    if (outputs.timeline != nullptr) outputs.timeline->write(outputs.drive->next(frame.time_s, row, &frame));
     if (plan_.expectation.contacts != nullptr) result_.comparison->add(row, recorded_.row_of(frame.index));
     ++result_.frames;
   }

@@ -24,6 +24,6 @@ struct ContactRecording {
 
 /// The planes that the rows must carry.
 inline constexpr PlaneSet kRecordedPlanes =
-    kHashedPlanes | Plane::kBarycentric | Plane::kTextureCoordinate | Plane::kSpeed | Plane::kSide;
+    kHashedPlanes | Plane::kBarycentric | Plane::kTextureCoordinate | Plane::kSpeed | Plane::kSide | Plane::kDepth;
 
 }  // namespace vestige

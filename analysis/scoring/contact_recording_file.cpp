@@ -15,17 +15,19 @@ namespace vestige {
 namespace {
 
 constexpr std::string_view kHeader = "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,side,speed_m_per_s";
+constexpr std::string_view kHeaderOfSpheres =
+    "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,side,speed_m_per_s,depth_m";
 constexpr std::string_view kNoContact = ",,,,,,,,,";
 constexpr std::string_view kRemedy = "run 'vestige batch' again: it writes this file into contacts/";
 constexpr std::size_t kFieldsOfContact = 9;
 static_assert(kNoContact.size() == kFieldsOfContact);
 
 /// Reads the fields after the time. Returns false for a frame without contacts.
-bool take_contact(CsvLines& lines, std::uint32_t& collider, Contact& contact) {
+bool take_contact(CsvLines& lines, ColliderShape shape, std::uint32_t& collider, Contact& contact) {
   std::string_view first;
   if (!lines.take_text(first)) throw lines.error("is not a row of contacts");
   if (first.empty()) {
-    for (std::size_t i = 1; i < kFieldsOfContact; ++i)
+    for (std::size_t i = 1; i < kFieldsOfContact + (shape == ColliderShape::kSpheres ? 1 : 0); ++i)
       if (std::string_view field; !lines.take_text(field) || !field.empty())
         throw lines.error("has only some of the fields of a contact");
     return false;
@@ -35,7 +37,9 @@ bool take_contact(CsvLines& lines, std::uint32_t& collider, Contact& contact) {
   if (failure != std::errc() || end != first.data() + first.size() || !lines.take(contact.triangle) ||
       !lines.take(contact.t) || !lines.take(contact.barycentric.x) || !lines.take(contact.barycentric.y) ||
       !lines.take(contact.texture_coordinate.x) || !lines.take(contact.texture_coordinate.y) || !lines.take(side) ||
-      !lines.take(contact.speed_m_per_s) || side < -1 || side > 1 || !contact.hit())
+      !lines.take(contact.speed_m_per_s) ||
+      (shape == ColliderShape::kSpheres && !(lines.take(contact.depth_m) && contact.depth_m >= 0)) || side < -1 ||
+      side > 1 || !contact.hit())
     throw lines.error("is not a row of contacts");
   contact.side = static_cast<std::int8_t>(side);
   return true;
@@ -46,17 +50,20 @@ bool take_contact(CsvLines& lines, std::uint32_t& collider, Contact& contact) {
 void write_contact_recording(const std::string& path, const RecordedTrace& trace) {
   const ContactRecording& recording = trace.contacts;
   OutputFile file(path, Overwrite::kAllow);
-  std::string text = fmt::format("{}\n", kHeader);
+  const bool has_depths = trace.shape == ColliderShape::kSpheres;
+  std::string text = fmt::format("{}\n", has_depths ? kHeaderOfSpheres : kHeader);
   const auto out = std::back_inserter(text);
   for (std::size_t frame = 0; frame < recording.frames(); ++frame) {
     const double time_s = recording.time_s[frame];
     if (recording.first[frame] == recording.first[frame + 1])
-      fmt::format_to(out, "{},{}{}\n", frame, time_s, kNoContact);
+      fmt::format_to(out, "{},{}{}{}\n", frame, time_s, kNoContact, has_depths ? "," : "");
     for (std::size_t i = recording.first[frame]; i < recording.first[frame + 1]; ++i) {
       const Contact& contact = recording.contacts[i];
-      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{}\n", frame, time_s, trace.collider_ids[recording.column[i]],
+      fmt::format_to(out, "{},{},{},{},{},{},{},{},{},{},{}", frame, time_s, trace.collider_ids[recording.column[i]],
                      contact.triangle, contact.t, contact.barycentric.x, contact.barycentric.y,
                      contact.texture_coordinate.x, contact.texture_coordinate.y, contact.side, contact.speed_m_per_s);
+      if (has_depths) fmt::format_to(out, ",{}", contact.depth_m);
+      text += '\n';
     }
     file.write(text);
     text.clear();
@@ -67,8 +74,9 @@ void write_contact_recording(const std::string& path, const RecordedTrace& trace
 
 RecordedTrace read_contact_recording(const std::string& path) {
   const std::string text = read_text_file(path);
-  CsvLines lines(text, path, kHeader, kRemedy);
   RecordedTrace trace;
+  if (CsvLines::has_header(text, kHeaderOfSpheres)) trace.shape = ColliderShape::kSpheres;
+  CsvLines lines(text, path, trace.shape == ColliderShape::kSpheres ? kHeaderOfSpheres : kHeader, kRemedy);
   ContactRecording& recording = trace.contacts;
   std::vector<std::uint32_t> colliders;  // of each contact
   recording.first.push_back(0);
@@ -83,7 +91,7 @@ RecordedTrace read_contact_recording(const std::string& path) {
       throw lines.error("has a time that does not fit its frame");
     std::uint32_t collider = 0;
     Contact contact;
-    const bool hit = take_contact(lines, collider, contact);
+    const bool hit = take_contact(lines, trace.shape, collider, contact);
     if (!lines.at_end()) throw lines.error("has too many fields");
     if (!same_frame) {
       recording.time_s.push_back(time_s);

@@ -8,6 +8,7 @@
 #include "cli/help/validators.hpp"
 #include "detector/actuators/mapped_skin.hpp"
 #include "detector/approximate/approximate_detectors.hpp"
+#include "detector/depth/depth_detector.hpp"
 #include "detector/detectors/embree_detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "traces/base/error.hpp"
@@ -176,8 +177,9 @@ std::unique_ptr<Detector> make_detector(const std::string& name, const std::stri
     return make_on_whole_skin(name, context, choice, skin, skin_map, planes);
   };
   // The slow truth takes no short cut.
-  if (choice.surface_kind() == Surface::kAll || name == "exact") return make(avatar, map);
-  return on_mapped_skin(avatar, map, make);
+  const bool on_whole_skin = choice.surface_kind() == Surface::kAll || name == "exact";
+  auto detector = on_whole_skin ? make(avatar, map) : on_mapped_skin(avatar, map, make);
+  return planes.has(Plane::kDepth) ? with_depth(std::move(detector), avatar) : std::move(detector);
 }
 
 }  // namespace vestige::cli

@@ -86,7 +86,7 @@ std::string describe_detectors(const char* verb, const std::vector<std::string>&
 std::string describe_methods(const char* verb);
 
 /// Makes a detector: one of `detector_names`, or "auto", which is "cpu". `context` is "auto", "egl" or "osmesa". Throws
-/// `std::logic_error` for any other name of a detector.
+/// `std::logic_error` for any other name of a detector. The detector finds depths only if `planes` has them.
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes);

@@ -34,7 +34,8 @@ void ExportedContacts::write(hid_t file, const std::filesystem::path& path) cons
   if (next_ < contacts_.size()) refuse_frame(contacts_[next_].frame);
   const Hdf5Handle group(hdf5().create_group(file, "contacts", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                          hdf5().close_group, path, "make a group");
-  ContactColumns columns(group.id(), path);
+  const bool has_depths = !contacts_.empty() && contacts_.front().depth_m.has_value();
+  ContactColumns columns(group.id(), path, has_depths ? ColliderShape::kSpheres : ColliderShape::kPoints);
   for (const RecordedContact& contact : contacts_) columns.append(contact);
   columns.close();
 }

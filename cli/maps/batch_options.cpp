@@ -88,12 +88,27 @@ std::vector<std::uint64_t> seeds_of(const BatchOptions& options) {
   return {seeds.begin(), seeds.end()};
 }
 
+/// The laws that every trace can be judged under.
+std::vector<std::string> laws_for_points() {
+  std::vector<std::string> names = law_names();
+  std::erase_if(names, [](const std::string& name) { return law_named(name).needs_radii; });
+  return names;
+}
+
+/// A batch keeps the contacts of a trace, and not the poses in which a sphere covers actuators.
+void refuse_patch(const std::vector<std::string>& laws) {
+  if (std::ranges::find(laws, "patch") == laws.end()) return;
+  throw UsageError("--laws", "'patch' needs the poses of a trace, and a batch keeps only its contacts",
+                   "leave it out; 'vestige replay --law patch --timeline FILE.csv' takes it");
+}
+
 void refuse_unused_parameters(const LawFlags& flags, const std::vector<std::string>& laws) {
   for (std::size_t i = 0; i < flags.parameters.size(); ++i) {
     const LawParameter& known = law_parameters()[i];
-    if (flags.parameters[i] && std::ranges::find(laws, known.law) == laws.end())
+    if (flags.parameters[i] &&
+        std::ranges::none_of(laws, [&](const std::string& law) { return known.belongs_to(law); }))
       throw UsageError(known.flag, "no law in --laws uses this flag",
-                       fmt::format("add {} to --laws, or leave the flag out", known.law));
+                       fmt::format("add {} to --laws, or leave the flag out", known.owners()));
   }
 }
 
@@ -112,7 +127,7 @@ void add_batch_options(CLI::App& verb, BatchOptions& options) {
   add_list("--traces", options.traces,
            fmt::format("The traces: files, or scenarios to record on the avatar ({})", scenario_names()))
       ->type_name("FILE|SCENARIO");
-  options.laws = fmt::format("{}", fmt::join(law_names(), ","));
+  options.laws = fmt::format("{}", fmt::join(laws_for_points(), ","));
   verb.add_option_function<std::vector<std::string>>(
           "--laws",
           [&options](const std::vector<std::string>& words) {
@@ -195,6 +210,7 @@ BatchPlan plan_of(const BatchOptions& options) {
   BatchPlan plan;
   plan.traces = name_traces(options.traces, seeds_of(options));
   plan.laws = parse_names(options.laws, law_names(), "--laws");
+  refuse_patch(plan.laws);
   refuse_unused_parameters(options.law_parameters, plan.laws);
   plan.law_options = options.law_parameters.options();
   if (options.unfelt_mm) plan.unfelt_m = *options.unfelt_mm / 1e3;

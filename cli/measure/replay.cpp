@@ -60,6 +60,7 @@ constexpr NamedPlane kPlaneNames[] = {
     {"speed", Plane::kSpeed},
     {"side", Plane::kSide},
     {"pressure", Plane::kPressure},
+    {"depth", Plane::kDepth},
 };
 
 PlaneSet parse_planes(const std::string& text) {
@@ -379,9 +380,14 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
   PlaneSet planes = kHashedPlanes;
   if (!options.textures.empty()) planes = planes | texture_planes;
-  if (!options.contacts.empty()) planes = PlaneSet::all();
+  const ColliderShape shape = trace.reader.shape();
+  if (!options.contacts.empty())
+    planes = planes | (shape == ColliderShape::kSpheres ? PlaneSet::all() : PlaneSet::all().without(Plane::kDepth));
   std::optional<DriveMaker> drives;
-  if (!options.timeline.empty()) drives.emplace(options.law, trace.avatar, trace.map);
+  if (!options.timeline.empty()) {
+    require_radii(std::span(&options.law.law, 1), shape, options.trace);
+    drives.emplace(options.law, trace.avatar, trace.map);
+  }
   if (drives) planes = planes | drives->planes();
   const std::vector<MapChange> changes = read_maps(timed_maps, trace, drives ? &*drives : nullptr, options);
   const PlaneSet verified = changes.empty() ? kHashedPlanes : kHashedPlanes | Plane::kTextureCoordinate;
@@ -405,7 +411,8 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   std::optional<OutputFile> texture_file;
   std::unique_ptr<TimelineFile> timeline;
   if (!options.contacts.empty())
-    contacts = make_contacts_file(options.contacts, options.common.overwrite(), attributes_of(options, run.detector));
+    contacts =
+        make_contacts_file(options.contacts, options.common.overwrite(), attributes_of(options, run.detector), shape);
   if (!options.timeline.empty())
     timeline = make_timeline(options.timeline, options.common.overwrite(), trace.map.names);
   if (!options.textures.empty()) {

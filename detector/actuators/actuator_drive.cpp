@@ -20,8 +20,8 @@ ActuatorDrive::ActuatorDrive(std::unique_ptr<IntensityLaw> law, std::vector<Moto
   frame_.duty.resize(law_->actuator_count());
 }
 
-const ActuatorFrame& ActuatorDrive::next(double time_s, std::span<const Contact> row) {
-  const std::vector<double>& amplitude = law_->next(time_s, row);
+const ActuatorFrame& ActuatorDrive::next(double time_s, std::span<const Contact> row, const DetectorFrame* frame) {
+  const std::vector<double>& amplitude = law_->next(time_s, row, frame);
   frame_.time_s = time_s;
   for (std::size_t i = 0; i < amplitude.size(); ++i)
     frame_.duty[i] = motors_.empty() ? static_cast<std::uint8_t>(std::lround(255 * amplitude[i]))

@@ -18,7 +18,7 @@ class ActuatorDrive {
   explicit ActuatorDrive(std::unique_ptr<IntensityLaw> law, std::vector<Motor> motors = {});
 
   /// Arguments as for `IntensityLaw::next`. The reference is valid until the next call.
-  const ActuatorFrame& next(double time_s, std::span<const Contact> row);
+  const ActuatorFrame& next(double time_s, std::span<const Contact> row, const DetectorFrame* frame = nullptr);
 
   IntensityLaw& law() { return *law_; }
 

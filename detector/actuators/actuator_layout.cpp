@@ -171,6 +171,7 @@ ActuatorLayout::ActuatorLayout(const Avatar& avatar, ActuatorMap map)
       surface_(skin_at_rest(avatar), avatar.triangles, SurfaceDistance::Gaps::kBridged) {
   for (std::uint32_t i = 0; i < avatar.triangles.size(); ++i) skin_area_m2_ += area_of(surface_, i);
   place_actuators(avatar);
+  posed_places_ = PosedPlaces(avatar, place_);
   measure_distances();
   find_neighbours();
 }
@@ -352,6 +353,7 @@ void ActuatorLayout::locate(const Contact& contact, LocatedContact& located) con
   locate(SkinPoint{contact.triangle, glm::dvec3(1 - uv.x - uv.y, uv.x, uv.y)}, located);
   located.actuator = map_.at(contact.triangle, contact.texture_coordinate);
   located.speed_m_per_s = contact.speed_m_per_s;
+  located.depth_m = contact.depth_m;
 }
 
 void ActuatorLayout::locate(const SkinPoint& point, LocatedContact& located) const {
@@ -382,6 +384,8 @@ void ActuatorLayout::locate(const SkinPoint& point, LocatedContact& located) con
 
   located.actuator = 0;
   located.speed_m_per_s = 0;
+  located.depth_m = 0;
+  located.covered.clear();
   located.count_ = actuator_count();
   located.distance_.resize(stride_);
   const auto x = static_cast<float>(located.position_m.x);

@@ -12,16 +12,26 @@
 #include <vector>
 
 #include "detector/actuator_map.hpp"
+#include "detector/actuators/posed_places.hpp"
 #include "detector/actuators/surface_distance.hpp"
 #include "detector/contact.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
 
+/// An actuator whose place on the skin a sphere covers at the end of the frame.
+struct CoveredPlace {
+  std::uint32_t actuator = 0;  ///< from 0
+  double depth_m = 0;          ///< the sphere's radius minus the distance from its centre; above 0
+};
+
 /// A contact relative to a layout of actuators: its place on the body, and its distance to each actuator.
 struct LocatedContact {
   std::uint16_t actuator = 0;  ///< by the layout's map; 0 if no actuator covers the skin
   double speed_m_per_s = 0;
+  double depth_m = 0;  ///< of a sphere
+  /// The actuators whose places on the posed skin are within a sphere, and how deep; only for a law that asks for them.
+  std::vector<CoveredPlace> covered;
   glm::dvec3 position_m = glm::dvec3(0);  ///< on the body at rest, wherever the body was in the trace
   /// Distances along the surface to the actuators, in metres, from actuator 0 on.
   std::span<const float> distance_m() const { return {distance_.data(), count_}; }
@@ -55,6 +65,8 @@ class ActuatorLayout {
   /// position, the place is the point of the actuator's region nearest to the region's middle (by area). Returns
   /// nothing for an actuator with neither a region nor a position; such an actuator can never fire.
   const std::optional<SkinPoint>& place(std::size_t actuator) const { return place_[actuator]; }
+  /// The places, to be moved with the skin.
+  const PosedPlaces& posed_places() const { return posed_places_; }
   /// The place in metres, on the body at rest; (0, 0, 0) for an actuator without a place.
   const glm::dvec3& position_m(std::size_t actuator) const { return position_m_[actuator]; }
   /// Area of the skin that fires one actuator, that fires any actuator, and of the whole skin, in square metres.
@@ -102,6 +114,7 @@ class ActuatorLayout {
   Facing facing_;
   SurfaceDistance surface_;
   std::vector<std::optional<SkinPoint>> place_;
+  PosedPlaces posed_places_;
   std::vector<glm::dvec3> position_m_;
   std::vector<double> area_m2_;
   double skin_area_m2_ = 0;

@@ -174,42 +174,89 @@ class Gaussian final : public IntensityLaw {
   static constexpr double kLogOfSteps = 6.24;  // a little more than -ln(kLeastAmplitude)
 };
 
+/// Returns the amplitude of something that is `depth_m` deep.
+double amplitude_of(double depth_m, const LawOptions& options) {
+  return std::min(depth_m / options.full_depth_m.value(), 1.0);
+}
+
+class Depth final : public IntensityLaw {
+ public:
+  Depth(std::size_t actuator_count, const LawOptions& options)
+      : IntensityLaw(nullptr, actuator_count, options, Rule::kLatestOfCollider) {}
+  const char* name() const override { return "depth"; }
+  PlaneSet planes() const override { return kOwnActuator | Plane::kDepth; }
+  void spread(const LocatedContact& contact, std::vector<Share>& out) const override {
+    out.clear();
+    if (contact.actuator == 0 || !(contact.depth_m > 0)) return;
+    out.push_back({contact.actuator - 1U, amplitude_of(contact.depth_m, options())});
+  }
+};
+
+class Patch final : public IntensityLaw {
+ public:
+  Patch(const Layout& layout, const LawOptions& options)
+      : IntensityLaw(layout, layout->actuator_count(), options, Rule::kLatestOfCollider) {}
+  const char* name() const override { return "patch"; }
+  PlaneSet planes() const override { return kOwnActuator; }
+  bool asks_for_covered() const override { return true; }
+  void spread(const LocatedContact& contact, std::vector<Share>& out) const override {
+    out.clear();
+    for (const CoveredPlace& place : contact.covered)
+      out.push_back({place.actuator, amplitude_of(place.depth_m, options())});
+  }
+};
+
 using MadeLaw = std::unique_ptr<IntensityLaw>;
 
-constexpr std::array<LawInfo, 5> kLaws = {{
+constexpr std::array<LawInfo, 7> kLaws = {{
     {"binary", "the contact's actuator, fully (the published law)",
-     "A contact switches the actuator of its skin fully on (Spanlang et al. 2010, HAVE).", false,
+     "A contact switches the actuator of its skin fully on (Spanlang et al. 2010, HAVE).", false, false,
      [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Binary>(count, options);
      }},
     {"speed", "the contact's actuator, by the speed of the impact",
      "The amplitude rises with the collider's speed along the skin's normal, up to a speed of full amplitude.", false,
+     false,
      [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Speed>(count, options);
      }},
     {"phantom", "the actuators around the contact share its strength, so that it is felt between them",
      "The actuators around a contact share its amplitude at constant energy: for two, A₁ = √(1−β) A and A₂ = √β A "
      "(Israr & Poupyrev 2011, Tactile Brush).",
-     true,
+     true, false,
      [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Phantom>(layout, options, Energy::kEven);
      }},
     {"gaussian", "all actuators near the contact, by their distance along the skin",
      "Every actuator vibrates, with an amplitude that falls with its distance along the body: exp(−d²/2σ²).", true,
+     false,
      [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Gaussian>(layout, options);
      }},
     {"linear", "",
      "The actuators share the amplitude as with phantom, but linearly, so the energy drops between them; for "
      "comparison.",
-     true,
+     true, false,
      [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Phantom>(layout, options, Energy::kSagging);
+     }},
+    {"depth", "the contact's actuator, by how deep a sphere is in the body",
+     "The amplitude rises with how deep a sphere is in the body, up to a depth of full amplitude.", false, true,
+     [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
+       return std::make_unique<Depth>(count, options);
+     }},
+    {"patch", "all actuators that a sphere covers, by how deep",
+     "Every actuator vibrates that a touching sphere covers, with an amplitude that rises with how deep its place is "
+     "in "
+     "the sphere.",
+     true, true,
+     [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
+       return std::make_unique<Patch>(layout, options);
      }},
 }};
 
 constexpr LawParameter kParameters[] = {
-    {.law = "speed",
+    {.laws = {"speed"},
      .flag = "--full-speed",
      .field = "full_speed_m_per_s",
      .type_name = "SPEED",
@@ -218,7 +265,15 @@ constexpr LawParameter kParameters[] = {
      .per_unit = 1,
      .option = &LawOptions::full_speed_m_per_s,
      .used = [](const LawOptions& options, const ActuatorLayout*) { return options.full_speed_m_per_s.value(); }},
-    {.law = "gaussian",
+    {.laws = {"depth", "patch"},
+     .flag = "--full-depth",
+     .field = "full_depth_mm",
+     .type_name = "MM",
+     .help = "With the laws depth and patch: the depth that drives an actuator fully, in mm [default: 10]",
+     .per_unit = 1e3,
+     .option = &LawOptions::full_depth_m,
+     .used = [](const LawOptions& options, const ActuatorLayout*) { return options.full_depth_m.value(); }},
+    {.laws = {"gaussian"},
      .flag = "--sigma",
      .field = "sigma_mm",
      .type_name = "MM",
@@ -242,16 +297,34 @@ IntensityLaw::IntensityLaw(Layout layout, std::size_t actuator_count, const LawO
       hold_rule_(hold_rule),
       held_(actuator_count, options.hold_s, hold_rule) {}
 
-const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Contact> row) {
+void IntensityLaw::find_covered(const DetectorFrame& frame, std::uint32_t column) {
+  located_.covered.clear();
+  const auto segment = std::ranges::lower_bound(frame.segments, column, {}, &Segment::column);
+  const glm::dvec3 centre(segment->end);
+  const std::vector<std::optional<glm::dvec3>>& places = places_.now();
+  for (std::uint32_t i = 0; i < places.size(); ++i) {
+    if (!places[i]) continue;
+    const double depth_m = segment->radius_m - glm::distance(centre, *places[i]);
+    if (depth_m > 0) located_.covered.push_back({i, depth_m});
+  }
+}
+
+const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Contact> row, const DetectorFrame* frame) {
   held_.begin(time_s);
   const bool asks_where = planes().has(Plane::kBarycentric);
+  const bool asks_for_covered = this->asks_for_covered();
+  if (asks_for_covered && frame != nullptr) places_.move(frame->palette);
+  located_.covered.clear();
   for (std::uint32_t column = 0; column < row.size(); ++column) {
     const Contact& contact = row[column];
-    if (!contact.hit() || contact.actuator == 0) continue;
-    if (asks_where) {
+    if (!contact.hit() || (contact.actuator == 0 && !asks_for_covered)) continue;
+    if (asks_for_covered) {
+      if (frame != nullptr) find_covered(*frame, column);
+    } else if (asks_where) {
       layout_->locate(contact, located_);
     } else {
       located_.speed_m_per_s = contact.speed_m_per_s;
+      located_.depth_m = contact.depth_m;
     }
     located_.actuator = contact.actuator;
     spread(located_, shares_);
@@ -266,6 +339,10 @@ std::span<const LawParameter> law_parameters() {
 
 std::span<const LawInfo> laws() {
   return kLaws;
+}
+
+std::string LawParameter::owners() const {
+  return laws[1].empty() ? std::string(laws[0]) : fmt::format("{} or {}", laws[0], laws[1]);
 }
 
 std::vector<std::string> law_names() {

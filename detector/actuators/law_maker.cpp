@@ -23,15 +23,23 @@ LawOptions LawFlags::options(double hold_rate) const {
 void LawFlags::check() const {
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const LawParameter& known = law_parameters()[i];
-    if (parameters[i] && law != known.law)
+    if (parameters[i] && !known.belongs_to(law))
       throw UsageError(known.flag, fmt::format("has no effect with the law '{}'", law),
-                       fmt::format("add --law {}, or leave this flag out", known.law));
+                       fmt::format("add --law {}, or leave this flag out", known.owners()));
   }
 }
 
 bool LawFlags::any() const {
   return law != "binary" || !actuator.empty() ||
          std::ranges::any_of(parameters, [](const std::optional<double>& given) { return given.has_value(); });
+}
+
+void require_radii(std::span<const std::string> laws, ColliderShape shape, const std::string& trace) {
+  if (shape == ColliderShape::kSpheres) return;
+  const auto law = std::ranges::find_if(laws, [](const std::string& name) { return law_named(name).needs_radii; });
+  if (law == laws.end()) return;
+  throw Error(trace, fmt::format("its colliders are points, and under the law {} only spheres are felt", *law),
+              "choose another law, or record the colliders with a --radius");
 }
 
 DriveMaker::DriveMaker(const LawFlags& flags, const Avatar& avatar, const ActuatorMap& map, double hold_rate)
@@ -60,7 +68,7 @@ std::shared_ptr<const ActuatorLayout> DriveMaker::layout_of(const ActuatorMap& m
 nlohmann::ordered_json DriveMaker::to_json() const {
   nlohmann::ordered_json json = {{"name", flags_.law}, {"hold_ms", flags_.hold_ms}};
   for (const LawParameter& known : law_parameters()) {
-    if (flags_.law != known.law) continue;
+    if (!known.belongs_to(flags_.law)) continue;
     const double value = known.used(options_, layout_.get());
     if (std::isfinite(value)) json[known.field] = known.per_unit * value;
   }
@@ -72,13 +80,13 @@ LawMaker::Law LawMaker::make() {
   if (!drives_) {
     pressure_ = std::make_shared<PressureLaw>(actuator_count_, hold_s_);
     pressure_->change_map(firing_);
-    return [law = pressure_](double time_s, const ContactRow& row) -> const ActuatorFrame& {
+    return [law = pressure_](double time_s, const ContactRow& row, const DetectorFrame*) -> const ActuatorFrame& {
       return law->next(time_s, row);
     };
   }
   drive_ = drives_->make();
-  return [drive = drive_](double time_s, const ContactRow& row) -> const ActuatorFrame& {
-    return drive->next(time_s, row);
+  return [drive = drive_](double time_s, const ContactRow& row, const DetectorFrame* frame) -> const ActuatorFrame& {
+    return drive->next(time_s, row, frame);
   };
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/actuators/pressure.hpp"
 #include "traces/scene/avatar.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 
@@ -30,6 +32,10 @@ struct LawFlags {
   /// Returns whether any flag, except --hold, differs from its default.
   bool any() const;
 };
+
+/// Throws `Error` that quotes `trace` if one of the laws lets only spheres be felt, and the trace's colliders are
+/// points.
+void require_radii(std::span<const std::string> laws, ColliderShape shape, const std::string& trace);
 
 /// Makes `ActuatorDrive`s: a law over a map, and the motors.
 class DriveMaker {
@@ -64,8 +70,8 @@ class DriveMaker {
 /// Makes a law for each run through a trace: its contacts become duties of motors, or pressures.
 class LawMaker {
  public:
-  /// A law of one run. The reference it returns stays good until the next call.
-  using Law = std::function<const ActuatorFrame&(double time_s, const ContactRow& row)>;
+  /// A law of one run; arguments as for `IntensityLaw::next`. The reference it returns stays good until the next call.
+  using Law = std::function<const ActuatorFrame&(double time_s, const ContactRow& row, const DetectorFrame* frame)>;
 
   explicit LawMaker(DriveMaker drives) : drives_(std::move(drives)) {}
   /// For pressures, each held for `hold_s`.

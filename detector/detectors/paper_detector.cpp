@@ -237,7 +237,8 @@ class PaperDetector final : public Detector {
       case Plane::kSide:
         contact.side = static_cast<std::int8_t>(value(0));
         return;
-      case Plane::kPressure:  // no texture carries it
+      case Plane::kPressure:  // no texture carries these
+      case Plane::kDepth:
         return;
     }
   }

@@ -27,9 +27,11 @@ struct ContactFault {
 std::optional<ContactFault> fault_of(const RecordedContact& contact, const ContactLimits& limits);
 
 // The two formats, for `make_contacts_file` and `read_contacts`.
-std::unique_ptr<ContactsFile> make_contacts_csv(const std::filesystem::path& path, Overwrite overwrite);
+std::unique_ptr<ContactsFile> make_contacts_csv(const std::filesystem::path& path, Overwrite overwrite,
+                                                ColliderShape shape);
 std::unique_ptr<ContactsFile> make_contacts_hdf5(const std::filesystem::path& path, Overwrite overwrite,
-                                                 const std::map<std::string, std::string>& attributes);
+                                                 const std::map<std::string, std::string>& attributes,
+                                                 ColliderShape shape);
 std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path, const ContactLimits& limits);
 std::vector<RecordedContact> read_contacts_hdf5(const std::filesystem::path& path, const ContactLimits& limits);
 

@@ -6,9 +6,10 @@
 namespace vestige {
 
 std::unique_ptr<ContactsFile> make_contacts_file(const std::filesystem::path& path, Overwrite overwrite,
-                                                 const std::map<std::string, std::string>& attributes) {
-  if (has_hdf5_name(path)) return make_contacts_hdf5(path, overwrite, attributes);
-  return make_contacts_csv(path, overwrite);
+                                                 const std::map<std::string, std::string>& attributes,
+                                                 ColliderShape shape) {
+  if (has_hdf5_name(path)) return make_contacts_hdf5(path, overwrite, attributes, shape);
+  return make_contacts_csv(path, overwrite, shape);
 }
 
 }  // namespace vestige

@@ -10,6 +10,7 @@
 #include "detector/contact.hpp"
 #include "detector/frame.hpp"
 #include "traces/files/output_file.hpp"
+#include "traces/scene/trace.hpp"
 
 namespace vestige {
 
@@ -23,7 +24,7 @@ class ContactsFile {
   ContactsFile& operator=(const ContactsFile&) = delete;
 
   /// Writes the contacts of a frame in the order of the colliders. `collider_ids` are those in the trace. The row must
-  /// carry all planes except speed and pressure.
+  /// carry all planes except speed and pressure; depth only if the file's colliders are spheres.
   virtual void write(const DetectorFrame& frame, const ContactRow& row,
                      const std::vector<std::uint32_t>& collider_ids) = 0;
   virtual void commit() = 0;
@@ -32,10 +33,12 @@ class ContactsFile {
 /// Writes HDF5 if the name ends in .h5 or .hdf5, otherwise CSV. "-" is standard output, as CSV.
 ///
 /// CSV has the header `frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z`, and one row for
-/// each contact. x, y, z are world metres. Floats have the shortest form that reads back to the same bits. HDF5 has a
-/// list for each column of the CSV, with the same name and values to the bit; `attributes`, which CSV does without,
-/// become texts of the whole file. Throws `Error` if the library of HDF5 is not installed.
+/// each contact; if some colliders are spheres, also `depth`. x, y, z are world metres. Floats have the shortest form
+/// that reads back to the same bits. HDF5 has a list for each column of the CSV, with the same name and values to the
+/// bit; `attributes`, which CSV does without, become texts of the whole file. Throws `Error` if the library of HDF5 is
+/// not installed.
 std::unique_ptr<ContactsFile> make_contacts_file(const std::filesystem::path& path, Overwrite overwrite,
-                                                 const std::map<std::string, std::string>& attributes);
+                                                 const std::map<std::string, std::string>& attributes,
+                                                 ColliderShape shape);
 
 }  // namespace vestige

@@ -16,17 +16,18 @@ namespace {
 
 constexpr const char* kFormat = "vestige contacts";
 constexpr const char* kVersion = "1";
+constexpr const char* kDepth = "depth";  // only where colliders are spheres
 constexpr hsize_t kBlockRows = 65536;
 
 class ContactsHdf5 final : public ContactsFile {
  public:
   ContactsHdf5(const std::filesystem::path& path, Overwrite overwrite,
-               const std::map<std::string, std::string>& attributes)
+               const std::map<std::string, std::string>& attributes, ColliderShape shape)
       : file_(path, overwrite) {
     write_hdf5_attribute(file_.id(), "format", kFormat, path);
     write_hdf5_attribute(file_.id(), "format_version", kVersion, path);
     for (const auto& [key, value] : attributes) write_hdf5_attribute(file_.id(), key, value, path);
-    columns_.emplace(file_.id(), path);
+    columns_.emplace(file_.id(), path, shape);
   }
 
   void write(const DetectorFrame& frame, const ContactRow& row,
@@ -57,7 +58,8 @@ class ContactTables {
     if (version != kVersion)
       throw Error(path.string(), fmt::format("its format version is '{}', not {}", version, kVersion),
                   "use the later version of vestige that wrote it");
-    for (const Hdf5Column::Description& column : contact_columns())
+    if (hdf5().link_exists(file_.id(), kDepth, H5P_DEFAULT) > 0) shape_ = ColliderShape::kSpheres;
+    for (const Hdf5Column::Description& column : contact_columns(shape_))
       tables_.emplace_back(file_.id(), path, column.name, kContactsRemedy);
     for (const Hdf5Table& table : tables_) table.expect({rows()});
     // Deflate packs at most 1032 bytes into one.
@@ -83,6 +85,7 @@ class ContactTables {
     tables_[11].read(first, count, x_m_);
     tables_[12].read(first, count, y_m_);
     tables_[13].read(first, count, z_m_);
+    if (shape_ == ColliderShape::kSpheres) tables_[14].read(first, count, depth_m_);
     for (std::size_t i = 0; i < count; ++i) {
       constexpr std::int64_t kNoSide = 2;  // is refused
       contacts.push_back({.frame = frame_[i],
@@ -95,6 +98,7 @@ class ContactTables {
                           .actuator = actuator_[i],
                           .side = static_cast<std::int8_t>(std::clamp(side_[i], -kNoSide, kNoSide)),
                           .position_m = {x_m_[i], y_m_[i], z_m_[i]}});
+      if (shape_ == ColliderShape::kSpheres) contacts.back().depth_m = depth_m_[i];
       if (const auto fault = fault_of(contacts.back(), limits))
         throw Error(path_.string(), fmt::format("its table {}, row {}: {}", fault->column, first + i, fault->cause),
                     fault->remedy);
@@ -104,7 +108,8 @@ class ContactTables {
  private:
   std::filesystem::path path_;
   Hdf5Handle file_;
-  std::vector<Hdf5Table> tables_;  ///< in the order of `columns`
+  ColliderShape shape_ = ColliderShape::kPoints;
+  std::vector<Hdf5Table> tables_;  ///< in the order of `contact_columns`
   std::vector<std::uint64_t> frame_;
   std::vector<double> time_s_;
   std::vector<std::uint32_t> collider_;
@@ -119,6 +124,7 @@ class ContactTables {
   std::vector<double> x_m_;
   std::vector<double> y_m_;
   std::vector<double> z_m_;
+  std::vector<double> depth_m_;  ///< only of spheres
 };
 
 std::vector<RecordedContact> read_all(const std::filesystem::path& path, const ContactLimits& limits) {
@@ -131,8 +137,9 @@ std::vector<RecordedContact> read_all(const std::filesystem::path& path, const C
 }  // namespace
 
 std::unique_ptr<ContactsFile> make_contacts_hdf5(const std::filesystem::path& path, Overwrite overwrite,
-                                                 const std::map<std::string, std::string>& attributes) {
-  return std::make_unique<ContactsHdf5>(path, overwrite, attributes);
+                                                 const std::map<std::string, std::string>& attributes,
+                                                 ColliderShape shape) {
+  return std::make_unique<ContactsHdf5>(path, overwrite, attributes, shape);
 }
 
 std::vector<RecordedContact> read_contacts_hdf5(const std::filesystem::path& path, const ContactLimits& limits) {

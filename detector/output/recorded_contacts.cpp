@@ -22,7 +22,8 @@ RecordedContact recorded(const DetectorFrame& frame, const Contact& contact, std
           .texture_coordinate = contact.texture_coordinate,
           .actuator = contact.actuator,
           .side = contact.side,
-          .position_m = frame.origin_m + contact.position};
+          .position_m = frame.origin_m + contact.position,
+          .depth_m = contact.depth_m};
 }
 
 std::optional<ContactFault> fault_of(const RecordedContact& contact, const ContactLimits& limits) {
@@ -34,7 +35,8 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
                                                    {"texture_v", texture.y},
                                                    {"x", place.x},
                                                    {"y", place.y},
-                                                   {"z", place.z}};
+                                                   {"z", place.z},
+                                                   {"depth", contact.depth_m.value_or(0)}};
   for (const auto& [column, number] : finite)
     if (!std::isfinite(number))
       return ContactFault{column, fmt::format("{} must be finite, and is {}", column, number), kContactsRemedy};
@@ -46,6 +48,7 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
   for (const auto& [column, weight] : {std::pair("u", weights.x), std::pair("v", weights.y)})
     if (!(weight >= 0 && weight <= 1))
       return ContactFault{column, "u and v must be weights from 0 to 1", kContactsRemedy};
+  if (contact.depth_m.value_or(0) < 0) return ContactFault{"depth", "depth must not be negative", kContactsRemedy};
   if (contact.side < -1 || contact.side > 1) return ContactFault{"side", "side must be -1, 0 or 1", kContactsRemedy};
   if (contact.frame >= limits.frames) return beyond("frame", contact.frame, limits.frames);
   if (contact.triangle >= limits.triangles) return beyond("triangle", contact.triangle, limits.triangles);

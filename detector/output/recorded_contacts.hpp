@@ -6,6 +6,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace vestige {
@@ -22,6 +23,7 @@ struct RecordedContact {
   std::uint16_t actuator = 0;
   std::int8_t side = 0;
   glm::dvec3 position_m = glm::dvec3(0);  ///< in the world
+  std::optional<double> depth_m = {};     ///< of a sphere; empty if the file has no depths
 };
 
 /// The numbers of triangles, actuators and frames that the contacts of a file can refer to.

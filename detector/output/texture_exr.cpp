@@ -31,7 +31,7 @@ std::uint32_t float_bits(double value) {
   return std::bit_cast<std::uint32_t>(static_cast<float>(value));
 }
 
-constexpr std::array<ChannelFormat, 13> kChannels = {{
+constexpr std::array<ChannelFormat, 14> kChannels = {{
     {"actuator", Plane::kActuator, Imf::FLOAT, [](const Contact& c) { return float_bits(c.actuator); }},
     {"t", Plane::kTime, Imf::FLOAT, [](const Contact& c) { return std::bit_cast<std::uint32_t>(c.t); }},
     {"triangle", Plane::kTriangle, Imf::UINT, [](const Contact& c) { return c.triangle; }},
@@ -47,6 +47,7 @@ constexpr std::array<ChannelFormat, 13> kChannels = {{
     {"speed", Plane::kSpeed, Imf::FLOAT, [](const Contact& c) { return float_bits(c.speed_m_per_s); }},
     {"side", Plane::kSide, Imf::FLOAT, [](const Contact& c) { return float_bits(c.side); }},
     {"pressure", Plane::kPressure, Imf::FLOAT, [](const Contact& c) { return float_bits(pressure_of(c)); }},
+    {"depth", Plane::kDepth, Imf::FLOAT, [](const Contact& c) { return float_bits(c.depth_m); }},
 }};
 
 /// OpenEXR writes into memory, and `OutputFile` writes to the disk. So a full disk is reported in the same way

@@ -16,7 +16,7 @@ namespace vestige {
 /// +inf and uint channels have 0xFFFFFFFF.
 ///
 /// Channels: actuator, t, triangle (uint), u, v, texture_u, texture_v, x, y, z (world metres, rounded to float), speed
-/// (m/s), side, pressure (0 … 1, `pressure_of`).
+/// (m/s), side, pressure (0 … 1, `pressure_of`), depth (m).
 class TextureExr {
  public:
   /// `attributes` become strings in the file's header.

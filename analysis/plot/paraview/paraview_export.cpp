@@ -95,7 +95,7 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
                                   contact.actuator, contact.side, contact.speed_m_per_s});
     }
     if (law != nullptr) {
-      const std::vector<double>& amplitude = law->next(built.time_s, row);
+      const std::vector<double>& amplitude = law->next(built.time_s, row, &built);
       for (std::size_t i = 0; i < actuators; ++i)
         pending.amplitude[i] = std::max(pending.amplitude[i], static_cast<float>(amplitude[i]));
     }

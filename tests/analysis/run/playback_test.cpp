@@ -63,7 +63,9 @@ class PlaybackTest : public ::testing::Test {
       ActuatorMap map;
       map.actuator_count = 1;
       return [law = std::make_shared<ActuatorDrive>(make_law("binary", map, {}))](
-                 double time_s, const ContactRow& row) -> const ActuatorFrame& { return law->next(time_s, row); };
+                 double time_s, const ContactRow& row, const DetectorFrame*) -> const ActuatorFrame& {
+        return law->next(time_s, row);
+      };
     };
     calls.go_on = [&](double) { return taken.size() < frames; };
     calls.fell_behind = [&] { ++fell_behind; };

@@ -42,6 +42,42 @@ TEST_F(Radius, ATraceOfPointsSaysVersion1AndOneOfSpheresVersion2) {
   EXPECT_EQ(version_of("c.mcap"), "1");
 }
 
+TEST_F(Radius, OfCollidersGivesContactsADepthAndPointsHaveNone) {
+  ASSERT_EQ(run("vestige record --colliders rest --duration 0.8 --rate 100 -o rest.mcap").exit_code, 0);
+  for (const char* detector : {"cpu", "exact"})
+    ASSERT_EQ(run(fmt::format("vestige replay rest.mcap --detector {0} --contacts {0}.csv", detector)).exit_code, 0);
+  EXPECT_EQ(run("head -1 cpu.csv").standard_output,
+            "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z,depth\n");
+  EXPECT_EQ(run("cmp cpu.csv exact.csv").exit_code, 0);
+  const std::string deepest = run("tail -n +2 cpu.csv | cut -d, -f15 | sort -g | tail -1").standard_output;
+  EXPECT_GT(std::stod(deepest), 0.004);
+  EXPECT_LT(std::stod(deepest), 0.008);
+  ASSERT_EQ(run("vestige replay rest.mcap --contacts c.h5").exit_code, 0);
+  EXPECT_EQ(run("vestige replay rest.mcap --verify c.h5").exit_code, 0);
+  EXPECT_EQ(run("vestige replay rest.mcap --verify cpu.csv").exit_code, 0);
+  ASSERT_EQ(run("vestige replay a.mcap --contacts a.csv").exit_code, 0);
+  EXPECT_EQ(run("head -1 a.csv").standard_output,
+            "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,actuator,side,x,y,z\n");
+}
+
+TEST_F(Radius, IsNeededByLawsUnderWhichOnlySpheresAreFelt) {
+  for (const char* law : {"depth", "patch"}) {
+    const auto refused = run(fmt::format("vestige replay a.mcap --law {} --timeline t.csv", law));
+    EXPECT_EQ(refused.exit_code, 1) << law;
+    EXPECT_THAT(refused.standard_error, HasSubstr("only spheres are felt")) << law;
+  }
+  ASSERT_EQ(run("vestige record --colliders brush --duration 2.4 --rate 100 --map body -o brush.mcap").exit_code, 0);
+  for (const char* law : {"depth", "patch"}) {
+    ASSERT_EQ(run(fmt::format("vestige replay brush.mcap --law {0} --timeline {0}.csv", law)).exit_code, 0) << law;
+    EXPECT_THAT(
+        run(fmt::format("tail -n +2 {}.csv | cut -d, -f2- | tr ',' '\n' | sort -n | tail -1", law)).standard_output,
+        ::testing::Not("0\n"))
+        << law;
+  }
+  EXPECT_THAT(run("vestige batch --maps paper6 --traces a.mcap --laws patch -o b").standard_error,
+              HasSubstr("needs the poses of a trace"));
+}
+
 TEST_F(Radius, InCsvIsInterpolatedAsThePositionIs) {
   record_growing();
   EXPECT_EQ(version_of("growing.mcap"), "2");

@@ -194,6 +194,63 @@ TEST(GaussianLaw, LeavesActuatorsAloneThatAreNowhere) {
               ElementsAre(1, 0, 0));
 }
 
+/// A sphere that touches the flat body at (x, y) and ends so far above it, in a frame.
+struct Pressed {
+  DetectorFrame frame;
+  ContactRow row;
+
+  Pressed(const std::shared_ptr<const ActuatorLayout>& layout, double x, double y, float above_m, float radius_m)
+      : frame(test::frame_of(test::flat_body(kCells), {})), row{contact_on(layout, x, y)} {
+    const glm::vec3 centre(x, y, above_m);
+    frame.segments = {{0, centre, centre, radius_m}};
+    frame.columns = 1;
+  }
+};
+
+TEST(PatchLaw, FiresEveryActuatorThatTheSphereCovers) {
+  const auto layout = layout_of(kThree);
+  const auto law = make_law("patch", layout, {.hold_s = 0.05, .full_depth_m = 0.125});
+  const Pressed wide(layout, 0.5, 0.25, 0, 0.3125F);
+  EXPECT_THAT(law->next(0, wide.row, &wide.frame), ElementsAre(0.5, 0.5, 0)) << "(5/16 - 1/4) m of 1/8 m";
+  const Pressed above(layout, 0.25, 0.25, 0.1875F, 0.25F);
+  EXPECT_THAT(law->next(0.01, above.row, &above.frame), ElementsAre(0.5, 0, 0)) << "it replaces what was before";
+  const Pressed deep(layout, 0.25, 0.25, -0.0625F, 0.25F);
+  EXPECT_THAT(law->next(0.02, deep.row, &deep.frame), ElementsAre(1, 0, 0)) << "no more than fully";
+  EXPECT_THAT(law->next(0.06, ContactRow{Contact()}, &deep.frame), ElementsAre(1, 0, 0)) << "held";
+  EXPECT_THAT(law->next(0.08, ContactRow{Contact()}, nullptr), ElementsAre(0, 0, 0));
+}
+
+TEST(PatchLaw, FiresActuatorsFromSkinThatNoneCovers) {
+  const auto layout =
+      std::make_shared<ActuatorLayout>(test::flat_body(kCells), test::nearest_map({{0.25, 0.25}}, 128, 0.0625));
+  const auto law = make_law("patch", layout, {.full_depth_m = 0.125});
+  const Pressed beside(layout, 0.5, 0.25, 0, 0.375F);
+  EXPECT_EQ(beside.row[0].actuator, 0);
+  EXPECT_THAT(law->next(0, beside.row, &beside.frame), ElementsAre(1));
+}
+
+TEST(PatchLaw, FollowsTheSkinAsItIsPosed) {
+  const auto layout = layout_of(kTwo);
+  const auto law = make_law("patch", layout, {.full_depth_m = 0.125});
+  Pressed moved(layout, 0.25, 0.5, 0, 0.125F);
+  moved.frame.palette[0].column[3].x = -0.5F;  // the body moves half a metre to the left
+  EXPECT_THAT(law->next(0, moved.row, &moved.frame), ElementsAre(0, 1));
+}
+
+TEST(DepthLaw, OfASphereDrivesTheContactsActuator) {
+  const auto law = make_law("depth", map_of(2), {.hold_s = 0.05, .full_depth_m = 0.01});
+  ContactRow row = {contact_on(2)};
+  EXPECT_THAT(law->next(0, row), ElementsAre(0, 0)) << "a point is never deep";
+  row[0].depth_m = 0.0025;
+  EXPECT_THAT(law->next(0.001, row), ElementsAre(0, 0.25));
+  row[0].depth_m = 0.02;
+  EXPECT_THAT(law->next(0.002, row), ElementsAre(0, 1));
+  row[0].depth_m = 0.005;
+  EXPECT_THAT(law->next(0.003, row), ElementsAre(0, 0.5)) << "what is felt follows the depth";
+  EXPECT_THAT(law->next(0.05, ContactRow{Contact()}), ElementsAre(0, 0.5)) << "held from the last frame of the touch";
+  EXPECT_THAT(law->next(0.06, ContactRow{Contact()}), ElementsAre(0, 0));
+}
+
 TEST(IntensityLaws, LetSkinThatNoActuatorCoversFireNothing) {
   const auto layout = std::make_shared<ActuatorLayout>(test::flat_body(kCells), test::nearest_map(kTwo, 128, 0.1));
   for (const LawInfo& law : laws()) {
