@@ -32,7 +32,7 @@ std::unique_ptr<ColliderSource> RadiusChoice::apply(std::unique_ptr<ColliderSour
 void add_radius_option(CLI::App& verb, RadiusChoice& choice) {
   verb.add_option("--radius", choice.text,
                   "The radius of every collider in metres, 0 for points; mesh: half of the size of a glTF node's mesh "
-                  "[default: what the file says; points in a scenario]")
+                  "[default: what the file says; 0.05 in the scenarios rest and brush, points in all others]")
       ->type_name("M|mesh");
 }
 

@@ -12,7 +12,7 @@ namespace vestige::cli {
 
 /// How large colliders are, in every verb that takes them from a scenario or a file.
 struct RadiusChoice {
-  std::string text;  ///< as --radius has it; empty: as the file says, and points in a scenario
+  std::string text;  ///< as --radius has it; empty: as the file or the scenario says
 
   /// Returns the radius that all colliders have; nothing without one.
   std::optional<float> radius_m() const;

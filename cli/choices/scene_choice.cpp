@@ -141,7 +141,8 @@ std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const 
       return read_collider_gltf(choice.colliders, choice.nodes, choice.convention.of_colliders(),
                                 choice.radius.of_gltf());
     if (choice.from_file()) return read_collider_csv(choice.colliders, choice.convention.of_colliders());
-    return find_scenario(choice.colliders)->make(avatar, animation, {choice.collider_count(), seed});
+    return find_scenario(choice.colliders)
+        ->make(avatar, animation, {choice.collider_count(), seed, choice.radius.radius_m()});
   };
   return choice.radius.apply(make());
 }

@@ -24,5 +24,9 @@ std::unique_ptr<ColliderSource> make_hug(const Avatar& avatar, const Animation* 
                                          const ScenarioSettings& settings);
 std::unique_ptr<ColliderSource> make_still(const Avatar& avatar, const Animation* animation,
                                            const ScenarioSettings& settings);
+std::unique_ptr<ColliderSource> make_rest(const Avatar& avatar, const Animation* animation,
+                                          const ScenarioSettings& settings);
+std::unique_ptr<ColliderSource> make_brush(const Avatar& avatar, const Animation* animation,
+                                           const ScenarioSettings& settings);
 
 }  // namespace vestige

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -13,10 +14,12 @@ namespace vestige {
 struct ScenarioSettings {
   std::uint32_t count = 100;
   std::uint64_t seed = 1;
+  std::optional<float> radius_m = {};  ///< of every collider, for scenarios of spheres; empty: the scenario's own
 };
 
-/// A built-in scenario. The same avatar, animation, count and seed give the same positions at the same times, at any
-/// sampling rate. Another seed gives others. 100 colliders stay within 3 m of the avatar.
+/// A built-in scenario. Its colliders are points, or in some scenarios spheres. The same avatar, animation, count and
+/// seed give the same positions at the same times, at any sampling rate. Another seed gives others. 100 colliders stay
+/// within 3 m of the avatar.
 struct Scenario {
   std::string_view name;
   std::string_view summary;  ///< at most 63 characters: one line of help, behind the name

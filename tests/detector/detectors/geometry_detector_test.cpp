@@ -88,9 +88,10 @@ TEST_P(GeometryDetector, GivesTheBitsOfTheCpuInEveryScenario) {
   const auto geometry = make_geometry(builtin_avatar(), builtin_map());
   const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options(method(), skip()));
   for (const Scenario& scenario : scenarios()) {
-    const bool moves = scenario.name != "still" || method() != Method::kStatic;  // a point rarely rests on the skin
-    EXPECT_EQ(compare(*geometry, *cpu, scenario, 0) > 0, moves) << scenario.name;
-    EXPECT_GT(compare(*geometry, *cpu, scenario, 0.03F), 0U) << scenario.name;
+    const bool of_spheres = scenario.name == "rest" || scenario.name == "brush";  // their centres stay outside
+    const bool moves = scenario.name != "still" || method() != Method::kStatic;   // a point rarely rests on the skin
+    EXPECT_EQ(compare(*geometry, *cpu, scenario, 0) > 0, moves && !of_spheres) << scenario.name;
+    EXPECT_GT(compare(*geometry, *cpu, scenario, of_spheres ? 0.05F : 0.03F), 0U) << scenario.name;
   }
 }
 

@@ -33,8 +33,8 @@ struct Counts {
 };
 
 constexpr Counts kCounts[] = {
-    {"swarm", 385, 968}, {"rain", 1305, 1164}, {"orbit", 1040, 547}, {"punch", 466, 468},
-    {"slide", 100, 82},  {"hug", 2026, 1789},  {"still", 0, 0},
+    {"swarm", 385, 968}, {"rain", 1305, 1164}, {"orbit", 1040, 547}, {"punch", 466, 468}, {"slide", 100, 82},
+    {"hug", 2026, 1789}, {"still", 0, 0},      {"rest", 148, 113},   {"brush", 123, 124},
 };
 
 struct Touch {
@@ -91,6 +91,10 @@ TEST_P(ScenarioContacts, GoInAndComeOutOfABodyAtRest) {
   EXPECT_EQ(touches.empty(), GetParam() == "still");
   const auto entering = std::ranges::count_if(touches, [](const Touch& touch) { return touch.side > 0; });
   const auto leaving = std::ranges::count_if(touches, [](const Touch& touch) { return touch.side < 0; });
+  if (GetParam() == "rest" || GetParam() == "brush") {  // spheres, whose centres stay outside
+    EXPECT_EQ(entering, std::ssize(touches));
+    return;
+  }
   EXPECT_GE(entering, std::ssize(touches) / 3);
   EXPECT_GE(leaving, std::ssize(touches) / 3);
 }
@@ -119,6 +123,27 @@ TEST(HugContacts, ComeToEveryCollider) {
   std::set<std::uint32_t> touched;
   for (const Touch& touch : touches_of("hug", builtin_avatar(), nullptr)) touched.insert(touch.collider);
   EXPECT_EQ(touched.size(), 100U);
+}
+
+TEST(RestContacts, LastWhileTheHandIsLaidOnTheShoulder) {
+  std::vector<int> frames;
+  for (const Touch& touch : touches_of("rest", builtin_avatar(), nullptr)) {
+    frames.push_back(touch.frame);
+    EXPECT_GT(touch.place_m.y, 0.75 * 1.75) << "on the shoulder";
+    EXPECT_GT(touch.place_m.x, 0.1) << "on the left";
+  }
+  ASSERT_FALSE(frames.empty());
+  int breaks = 0;
+  for (std::size_t i = 1; i < frames.size(); ++i) breaks += frames[i] == frames[i - 1] + 1 ? 0 : 1;
+  EXPECT_LE(breaks, 1) << "in two seconds there are at most two touches, each without a gap";
+  EXPECT_GT(frames.size(), 80U);
+}
+
+TEST(BrushContacts, LieAllAlongTheArm) {
+  std::set<int> places;  // every 2 cm
+  for (const Touch& touch : touches_of("brush", builtin_avatar(), nullptr))
+    places.insert(static_cast<int>(std::floor(touch.place_m.y / 0.02)));
+  EXPECT_GT(places.size(), 12U);
 }
 
 TEST(RainContacts, ComeFromAboveOnly) {
