@@ -1,5 +1,8 @@
 #include "detector/detectors/sphere_finder.hpp"
 
+#include <algorithm>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <utility>
 
 namespace vestige {
@@ -8,6 +11,21 @@ namespace {
 
 /// Some 50 MB of pairs.
 constexpr std::size_t kMostWaiting = std::size_t{1} << 18;
+
+/// For the squares of lengths, whose few roundings err by less.
+constexpr double kRoundedDown = 1 - 0x1p-40;
+
+double squared_distance_to_corners(const glm::dvec3& point, const Corners& triangle) {
+  const auto squared = [&](const glm::dvec3& corner) { return glm::dot(corner - point, corner - point); };
+  return std::min({squared(triangle.a), squared(triangle.b), squared(triangle.c)});
+}
+
+double squared_distance_to_box(const glm::dvec3& point, const Corners& triangle) {
+  const glm::dvec3 low = glm::min(glm::min(triangle.a, triangle.b), triangle.c);
+  const glm::dvec3 high = glm::max(glm::max(triangle.a, triangle.b), triangle.c);
+  const glm::dvec3 away = glm::max(glm::max(low - point, point - high), glm::dvec3(0));
+  return glm::dot(away, away);
+}
 
 }  // namespace
 
@@ -58,9 +76,27 @@ void SphereFinder::take(const DetectorFrame& frame, std::uint32_t column, const 
   best = candidate;
 }
 
+/// Returns whether a pair cannot win, because its triangle is farther from the centre at the start than the best one so
+/// far. Takes little time, and leaves doubtful pairs to the caller. Counts the pair if it touches at the start.
+bool SphereFinder::surely_loses(std::uint32_t column, const SpherePair& pair) {
+  const std::optional<Best>& best = best_of(column);
+  if (!best || !best->start) return false;
+  const glm::dvec3& centre = pair.sphere.centre.start;
+  const double radius = pair.sphere.radius;
+  const double best_at_most = best->start->range().high;
+  const double at_least = kRoundedDown * squared_distance_to_box(centre, pair.before);
+  if (at_least <= best_at_most * best_at_most) return false;
+  if (squared_distance_to_corners(centre, pair.before) <= kRoundedDown * (radius * radius)) {
+    ++counts_.meeting;
+    return true;
+  }
+  return at_least > radius * radius && best_at_most < radius;
+}
+
 void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment,
                          std::uint32_t triangle) {
   const SpherePair pair = sphere_pair(segment, corners, triangle, method_);
+  if (surely_loses(segment.column, pair)) return;
   const StartDistance distance(pair.sphere.centre.start, pair.before);
   if (!touches_at_start(distance, pair.sphere.radius)) {
     if (surely_touches_at_start(segment.column)) return;

@@ -56,6 +56,7 @@ class SphereFinder {
   void make_room(const DetectorFrame& frame);
   void decide_waiting(const DetectorFrame& frame);
   bool surely_touches_at_start(std::uint32_t column);
+  bool surely_loses(std::uint32_t column, const SpherePair& pair);
 
   const Avatar& avatar_;
   const ActuatorMap& map_;
