@@ -10,6 +10,7 @@
 
 #include "detector/broad/skin_motion.hpp"
 #include "detector/detectors/contact_description.hpp"
+#include "detector/detectors/make_detectors.hpp"
 #include "detector/truth/truth.hpp"
 
 namespace vestige {
@@ -109,7 +110,7 @@ class Stress {
       if (scene.judge == StressJudge::kMustHit && method != Method::kStatic) continue;
       const std::vector<ContactRow> truths = truths_of(subject, scene, method);
       for (std::size_t i = 0; i < contestants_.size(); ++i) {
-        if (contestants_[i].method != method) continue;
+        if (contestants_[i].method != method || (family.has_spheres && !contestants_[i].takes_radii)) continue;
         StressCount& count = counts.emplace_back();
         count.family = family;
         count.magnitude = magnitude;
@@ -178,7 +179,7 @@ class Stress {
 
 std::vector<StressFamily> stress_families() {
   std::vector<StressFamily> all;
-  for (const auto& families : {triangle_families(), pose_families(), watertight_families()})
+  for (const auto& families : {triangle_families(), pose_families(), watertight_families(), sphere_families()})
     all.insert(all.end(), families.begin(), families.end());
   return all;
 }
@@ -186,6 +187,11 @@ std::vector<StressFamily> stress_families() {
 void stress_truth(const StressSubject& subject, const DetectorFrame& frame, Method method, ContactRow& row) {
   row.assign(frame.columns, Contact());
   if (frame.segments.empty()) return;
+  if (std::ranges::any_of(frame.segments, &Segment::is_sphere)) {
+    const DetectorOptions options = {Surface::kAll, PlaneSet::all(), method};
+    make_exact_detector(subject.avatar, subject.map, options)->detect(frame, row);
+    return;
+  }
   const Truth truth(subject, frame, method);
   for (const Segment& segment : frame.segments) row[segment.column] = truth.winner(segment);
 }

@@ -14,8 +14,8 @@ namespace vestige {
 /// Returns all families, in the order of the tables.
 std::vector<StressFamily> stress_families();
 
-/// Fills `row` with the true winner of each column, found by `exact::` pair by pair. Pairs that some axis separates all
-/// the time are skipped. The row carries all planes.
+/// Fills `row` with the true winner of each column, found by `exact::` pair by pair. Pairs of a point and a triangle
+/// that some axis separates all the time are skipped. The row carries all planes.
 void stress_truth(const StressSubject& subject, const DetectorFrame& frame, Method method, ContactRow& row);
 
 /// A detector with a method. `make` is called once for each body.
@@ -23,6 +23,7 @@ struct StressContestant {
   std::string detector;
   Method method = Method::kStatic;
   std::function<std::unique_ptr<Detector>(const StressSubject&)> make;
+  bool takes_radii = true;  ///< it tests spheres, and not only their centres
 };
 
 /// How one detector answered one family at one magnitude.

@@ -16,12 +16,14 @@ struct StressFamily {
   std::span<const double> magnitudes;
   StressBody body;
   StressScene (*make)(StressOrder order);
+  bool has_spheres = false;  ///< detectors that test only the centres of spheres are left out
 };
 
 /// All families, in the order in which they run: loose triangles (stress_triangles.cpp), a posed avatar
-/// (stress_poses.cpp), and the ladder (watertight.cpp).
+/// (stress_poses.cpp), the ladder (watertight.cpp), and loose triangles with spheres (stress_spheres.cpp).
 std::span<const StressFamily> triangle_families();
 std::span<const StressFamily> pose_families();
 std::span<const StressFamily> watertight_families();
+std::span<const StressFamily> sphere_families();
 
 }  // namespace vestige

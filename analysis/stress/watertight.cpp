@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/stress/stress_families.hpp"
-#include "analysis/stress/winding_number.hpp"
+#include "detector/algebra/winding_number.hpp"
 #include "detector/skinning.hpp"
 
 namespace vestige {

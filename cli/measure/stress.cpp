@@ -73,7 +73,7 @@ Contestants make_contestants(const StressOptions& options, Verbosity verbosity) 
         warn(fmt::format("'{}' is left out: {}", detector, error.what()), verbosity);
         break;
       }
-      contestants.list.push_back({detector, choice.method_kind(), make});
+      contestants.list.push_back({detector, choice.method_kind(), make, takes_radii(detector)});
     }
   if (contestants.list.empty())
     throw Error("--detector", "none of the listed detectors can run here with these methods",

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "analysis/stress/stress_report.hpp"
-#include "analysis/stress/winding_number.hpp"
+#include "detector/algebra/winding_number.hpp"
 #include "detector/detectors/embree_detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
 #include "detector/skinning.hpp"
@@ -96,9 +96,11 @@ TEST(Stress, FamiliesAreThoseOfTheNotes) {
     EXPECT_TRUE(one.meaning.ends_with('.')) << one.name;
     EXPECT_FALSE(one.magnitudes.empty()) << one.name;
   }
-  EXPECT_THAT(names, UnorderedElementsAre("vertex", "edge", "coplanar", "grazing", "needle", "zero_length", "endpoint",
-                                          "ulp", "offset", "scale", "degenerate", "denormal", "non_finite", "collapse",
-                                          "spin", "teleport", "texel_border", "mirrored", "watertight"));
+  EXPECT_THAT(
+      names, UnorderedElementsAre("vertex", "edge", "coplanar", "grazing", "needle", "zero_length", "endpoint", "ulp",
+                                  "offset", "scale", "degenerate", "denormal", "non_finite", "collapse", "spin",
+                                  "teleport", "texel_border", "mirrored", "watertight", "sphere_tangent", "sphere_rest",
+                                  "sphere_tie", "sphere_size", "sphere_offset", "sphere_degenerate"));
 }
 
 TEST(Stress, CasesTouchWhatTheyAimAt) {
@@ -106,6 +108,13 @@ TEST(Stress, CasesTouchWhatTheyAimAt) {
   std::map<std::string_view, std::uint64_t> contacts;
   for (const StressCount& count : counts) contacts[count.family.name] += count.contacts;
   for (const StressFamily& one : stress_families()) EXPECT_GT(contacts[one.name], 10U) << one.name;
+}
+
+TEST(Stress, LeavesOutOfSpheresWhoTestsOnlyTheirCentres) {
+  StressContestant centres = cpu(Method::kStatic);
+  centres.takes_radii = false;
+  EXPECT_TRUE(run_stress(family("sphere_rest"), {centres}, {8, 1}, keep_going).empty());
+  EXPECT_EQ(run_stress(family("edge"), {centres}, {8, 1}, keep_going).front().cases, 8U);
 }
 
 TEST(Stress, EachKindOfErrorIsCounted) {

@@ -1,4 +1,4 @@
-#include "analysis/stress/winding_number.hpp"
+#include "detector/algebra/winding_number.hpp"
 
 #include <array>
 #include <cstddef>
