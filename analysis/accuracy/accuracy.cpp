@@ -72,8 +72,12 @@ class RateMeasurement {
     const double until_s = static_cast<double>(last_) * frame_s;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       points_[i].contacts = runs_[i].finder.contacts();
-      const std::vector<ContactEvent> events = runs_[i].finder.take();
+      std::vector<ContactEvent> events = runs_[i].finder.take();
       const std::size_t colliders = scene_.collider_ids.size();
+      if (scene_.shape == ColliderShape::kSpheres) {
+        points_[i].touches = score_touches(truth.by_actuator, events, {colliders, rate_hz_, last_, truth.rate_hz});
+        events = touches_of(events);
+      }
       points_[i].score = score_events(truth.events, events, colliders, {EventMatch::kOverlap, frame_s}, until_s);
       points_[i].tolerated = score_events(truth.events, events, colliders, {EventMatch::kImpact, tolerance_s}, until_s);
     }
@@ -155,6 +159,7 @@ AccuracyPoint& AccuracyPoint::operator+=(const AccuracyPoint& other) {
   contacts += other.contacts;
   score += other.score;
   tolerated += other.tolerated;
+  if (touches && other.touches) *touches += *other.touches;
   skinning += other.skinning;
   frame_us.insert(frame_us.end(), other.frame_us.begin(), other.frame_us.end());
   seeds += other.seeds;
@@ -172,6 +177,7 @@ AccuracyScene& AccuracyScene::operator+=(const AccuracyScene& other) {
   half_contacts += other.half_contacts;
   half_events += other.half_events;
   half_score += other.half_score;
+  if (other.inside_s) inside_s = inside_s.value_or(0) + *other.inside_s;
   if (points.empty()) {
     points = other.points;
     return *this;

@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/accuracy/event_score.hpp"
 #include "analysis/accuracy/moving_scene.hpp"
+#include "analysis/accuracy/touch_score.hpp"
 #include "analysis/accuracy/true_contacts.hpp"
 #include "analysis/base/statistics.hpp"
 #include "analysis/run/skinning_error.hpp"
@@ -28,10 +30,11 @@ struct AccuracyPoint {
   double rate_hz = 0;
   std::uint64_t frames = 0;  ///< of one pass
   std::uint64_t contacts = 0;
-  EventScore score;              ///< by the rule of one test frame
-  EventScore tolerated;          ///< by the tolerance on the time of impact
-  SkinningError skinning;        ///< of a few frames, evenly spread
-  std::vector<double> frame_us;  ///< duration of every frame of every pass
+  EventScore score;                        ///< by the rule of one test frame
+  EventScore tolerated;                    ///< by the tolerance on the time of impact
+  std::optional<TouchScore> touches = {};  ///< only of spheres
+  SkinningError skinning;                  ///< of a few frames, evenly spread
+  std::vector<double> frame_us;            ///< duration of every frame of every pass
   std::size_t seeds = 1;
   std::vector<Repetition> passes;            ///< all passes of one seed, then those of the next
   std::vector<Repetition> processor_passes;  ///< the same passes by the processor time of all threads
@@ -56,7 +59,8 @@ struct AccuracyScene {
   std::uint64_t checked_frames = 0;  ///< of the truth, by `exact`: all agree
   std::uint64_t half_contacts = 0;   ///< at half the truth's rate
   std::uint64_t half_events = 0;
-  EventScore half_score;  ///< of the events at half the rate, as if a detector had found them
+  std::optional<double> inside_s = {};  ///< only of spheres in a closed body (`inside_s`)
+  EventScore half_score;                ///< of the events at half the rate, as if a detector had found them
   std::vector<AccuracyPoint> points;
 
   /// Adds what was measured with another seed, perhaps for some of the points only. But if this has no points yet, it

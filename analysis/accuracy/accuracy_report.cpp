@@ -129,19 +129,27 @@ nlohmann::ordered_json truth_json(const AccuracyScene& scene, const std::string&
   nlohmann::ordered_json halved = {
       {"rate_hz", scene.truth_rate_hz / 2}, {"contacts", scene.half_contacts}, {"events", scene.half_events}};
   halved.update(to_json(scene.half_score));
-  return {{"detector", detector},
-          {"method", "ccd"},
-          {"rate_hz", scene.truth_rate_hz},
-          {"contacts", scene.true_contacts},
-          {"events", scene.true_events},
-          {"frames_checked_by_exact", scene.checked_frames},
-          {"halved", halved}};
+  nlohmann::ordered_json json = {{"detector", detector},
+                                 {"method", "ccd"},
+                                 {"rate_hz", scene.truth_rate_hz},
+                                 {"contacts", scene.true_contacts},
+                                 {"events", scene.true_events},
+                                 {"frames_checked_by_exact", scene.checked_frames},
+                                 {"halved", halved}};
+  if (scene.inside_s) json["inside_s"] = *scene.inside_s;
+  return json;
 }
 
 nlohmann::ordered_json point_errors_json(const AccuracyPoint& point) {
   nlohmann::ordered_json json = {{"rate_hz", point.rate_hz}, {"frames", point.frames}, {"contacts", point.contacts}};
   json.update(to_json(point.score));
   json["within_tolerance"] = counts_json(point.tolerated);
+  if (point.touches)
+    json["touches"] = {{"frames_within", point.touches->within},
+                       {"reported", point.touches->reported},
+                       {"wrong_actuator", point.touches->wrong_actuator},
+                       {"frames_outside", point.touches->outside},
+                       {"false", point.touches->false_frames}};
   json["skinning_error_m"] = point.skinning.largest_m;
   return json;
 }
@@ -208,6 +216,22 @@ std::string per_100_text(const EventScore& score) {
   return fmt::format("{:.1f} ({:.1f} to {:.1f})", 100 * rate.value, 100 * rate.interval.low, 100 * rate.interval.high);
 }
 
+/// What the events of spheres do not say: a touch may be found and still have holes.
+std::string touch_table(const AccuracyScene& scene, const std::vector<AccuracyContestant>& contestants) {
+  constexpr const char* kLine = "{:<26} {:>6} {:>14} {:>13} {:>8} {:>15} {:>13}\n";
+  std::string table = fmt::format(kLine, "while a sphere touches", "rate", "frames within", "not reported", "wrong",
+                                  "frames outside", "reported");
+  fmt::format_to(std::back_inserter(table), kLine, "", "Hz", "a touch", "", "motor", "touches", "falsely");
+  for (std::size_t i = 0; i < contestants.size(); ++i)
+    for (const AccuracyPoint& point : scene.points)
+      if (point.contestant == i)
+        fmt::format_to(std::back_inserter(table), kLine,
+                       fmt::format("{}, {}", contestants[i].detector, name_of(contestants[i].method)), point.rate_hz,
+                       point.touches->within, point.touches->within - point.touches->reported,
+                       point.touches->wrong_actuator, point.touches->outside, point.touches->false_frames);
+  return table;
+}
+
 std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyContestant>& contestants,
                         double tolerance_s) {
   constexpr const char* kLine = "{:<26} {:>6} {:>6} {:>6} {:>6} {:>6}  {:>20} {:>20}  {:>13} {:>13}  {:>10}\n";
@@ -236,7 +260,11 @@ std::string scene_table(const AccuracyScene& scene, const std::vector<AccuracyCo
                      pair_ms(point.score.onset_error_s),
                      fmt::format("{}{:.3g}", is_on_front(point) ? "* " : "", load_ms(point)));
     }
+  if (!scene.points.empty() && scene.points.front().touches) table += touch_table(scene, contestants);
   const EventCounts& halved = scene.half_score.all;
+  if (scene.inside_s && *scene.inside_s > 0)
+    fmt::format_to(std::back_inserter(table), "Spheres are wholly inside the body for {:.2f} s, and touch nothing.\n",
+                   *scene.inside_s);
   const std::string checked = scene.checked_frames == 0
                                   ? "no frame of them was checked"
                                   : fmt::format("exact agrees in all {} frames that it checked", scene.checked_frames);

@@ -52,6 +52,11 @@ std::vector<ContactEvent> ContactEventFinder::take() {
   return std::exchange(ended_, {});
 }
 
+std::span<const ContactEvent> events_of(std::span<const ContactEvent> events, std::uint32_t column) {
+  return {std::ranges::lower_bound(events, column, {}, &ContactEvent::column),
+          std::ranges::upper_bound(events, column, {}, &ContactEvent::column)};
+}
+
 std::vector<ContactEvent> join_events(std::span<const std::vector<ContactEvent>> parts) {
   std::vector<ContactEvent> all;
   for (const std::vector<ContactEvent>& part : parts) all.insert(all.end(), part.begin(), part.end());

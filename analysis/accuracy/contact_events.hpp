@@ -45,6 +45,9 @@ class ContactEventFinder {
   std::uint64_t contacts_ = 0;
 };
 
+/// Returns the events of one collider. `events` are in the order of `ContactEventFinder::take`.
+std::span<const ContactEvent> events_of(std::span<const ContactEvent> events, std::uint32_t column);
+
 /// Joins the events of consecutive parts of one trace. If the end of a part cuts an event in two, the two become one.
 /// `parts` are in order of time. Returns the events in the order of `ContactEventFinder::take`.
 std::vector<ContactEvent> join_events(std::span<const std::vector<ContactEvent>> parts);

@@ -12,11 +12,6 @@ constexpr double kTimeRounding_s = 1e-9;
 
 using Events = std::span<const ContactEvent>;
 
-Events of_column(Events events, std::uint32_t column) {
-  return {std::ranges::lower_bound(events, column, {}, &ContactEvent::column),
-          std::ranges::upper_bound(events, column, {}, &ContactEvent::column)};
-}
-
 /// Returns the events of one collider that meet `event`. They do not overlap, since a frame has at most one contact of
 /// a collider. So their beginnings and their ends both ascend.
 Events meeting(Events of_collider, const ContactEvent& event, double reach_s) {
@@ -45,7 +40,7 @@ EventScore score(Events truth, Events test, std::size_t colliders, double rule_r
   is_right.reserve(test.size());
   for (const ContactEvent& event : test) {
     EventCounts& counts = score.of_collider[event.column];
-    const Events met = meeting(of_column(truth, event.column), event, reach_s);
+    const Events met = meeting(events_of(truth, event.column), event, reach_s);
     const ContactEvent* nearest = nullptr;
     for (const ContactEvent& one : met)
       if (one.actuator == event.actuator && (nearest == nullptr || std::abs(one.impact_s - event.impact_s) <
@@ -65,7 +60,7 @@ EventScore score(Events truth, Events test, std::size_t colliders, double rule_r
   for (const ContactEvent& event : truth) {
     if (event.impact_s > until_s) continue;
     EventCounts& counts = score.of_collider[event.column];
-    const Events met = meeting(of_column(test, event.column), event, reach_s);
+    const Events met = meeting(events_of(test, event.column), event, reach_s);
     const auto is_wrong = [&](const ContactEvent& one) {
       return !is_right[static_cast<std::size_t>(&one - test.data())];
     };

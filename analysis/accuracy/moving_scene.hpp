@@ -19,6 +19,7 @@ struct MovingScene {
   std::function<std::unique_ptr<ColliderSource>()> make_colliders;
   std::vector<std::uint32_t> collider_ids;  ///< ascending
   double duration_s = 0;
+  ColliderShape shape = ColliderShape::kPoints;
 };
 
 /// Samples a scene at a rate, beginning with frame `first`.

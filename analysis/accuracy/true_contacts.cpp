@@ -10,6 +10,7 @@
 #include <set>
 #include <thread>
 
+#include "analysis/accuracy/touch_score.hpp"
 #include "analysis/run/detection_run.hpp"
 #include "detector/frame.hpp"
 #include "traces/base/error.hpp"
@@ -87,6 +88,9 @@ TrueContacts find_true_contacts(const MovingScene& scene, double rate_hz,
     events.push_back(std::move(part.events));
   }
   truth.events = join_events(events);
+  if (scene.shape != ColliderShape::kSpheres) return truth;
+  truth.by_actuator = std::move(truth.events);
+  truth.events = touches_of(truth.by_actuator);
   return truth;
 }
 

@@ -16,7 +16,9 @@ namespace vestige {
 struct TrueContacts {
   double rate_hz = 0;
   std::uint64_t contacts = 0;  ///< contacts in all rows; a sliding collider has one in every frame
+  /// If the colliders are spheres, whole touches (`touches_of`).
   std::vector<ContactEvent> events;
+  std::vector<ContactEvent> by_actuator;  ///< only of spheres: the parts of the touches, each with its actuator
 };
 
 /// Finds the true contacts on several threads. `make` returns a detector for each thread, and the detectors' rows must

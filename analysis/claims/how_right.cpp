@@ -135,15 +135,20 @@ void add_skinning(const std::vector<Result>& run, std::vector<Claim>& claims) {
   claims.back().links = skinnings.size();
 }
 
+/// "pairs", or "pairs with spheres".
+std::string with_colliders(const nlohmann::json& agreement, const std::string& what) {
+  return agreement.value("colliders", "points") == "points" ? what : what + " with spheres";
+}
+
 void add_agreement(const std::vector<Result>& run, std::vector<Claim>& claims) {
   struct Sum {
     std::uint64_t pairs = 0;
     std::uint64_t differences = 0;
     std::vector<std::string> files;
   };
-  std::map<std::string, Sum> sums;
+  std::map<std::pair<std::string, std::string>, Sum> sums;  // what, method
   for_each(ResultKind::kAgreement, run, [&](const nlohmann::json& agreement, const std::string& file) {
-    Sum& sum = sums[agreement.at("method").get<std::string>()];
+    Sum& sum = sums[{with_colliders(agreement, "pairs"), agreement.at("method").get<std::string>()}];
     sum.files.push_back(file);
     for (const auto& family : agreement.at("families")) {
       sum.pairs += family.at("pairs").get<std::uint64_t>();
@@ -153,8 +158,8 @@ void add_agreement(const std::vector<Result>& run, std::vector<Claim>& claims) {
   if (sums.empty()) return;
   std::vector<std::string> texts;
   std::vector<std::string> files;
-  for (const auto& [method, sum] : sums) {
-    texts.push_back(fmt::format("{} of {} pairs by `{}`", sum.differences, in_words(sum.pairs), method));
+  for (const auto& [what, sum] : sums) {
+    texts.push_back(fmt::format("{} of {} {} by `{}`", sum.differences, in_words(sum.pairs), what.first, what.second));
     files.insert(files.end(), sum.files.begin(), sum.files.end());
   }
   claims.push_back(claim_of(
@@ -181,9 +186,9 @@ void add_geometry_agreement(const std::vector<Result>& run, std::vector<Claim>& 
     Rows rows;
     for (const auto& [who, sum] : sums)
       add_to(rows,
-             fmt::format("{} by {}, against `cpu` on {} adversarial pairs: {} missed, {} winners differ",
-                         std::get<2>(who) ? " with skipping" : "", listed(sum.methods), in_words(sum.pairs), sum.missed,
-                         sum.winners_differing),
+             fmt::format("{} by {}, against `cpu` on {} adversarial {}: {} missed, {} winners differ",
+                         std::get<2>(who) ? " with skipping" : "", listed(sum.methods), in_words(sum.pairs),
+                         with_colliders(agreement, "pairs"), sum.missed, sum.winners_differing),
              {std::get<0>(who), std::get<1>(who)});
     for (const auto& [text, contestants] : rows) claims.push_back(claim_of(listed(contestants) + text, {file}));
   });
@@ -338,9 +343,34 @@ void add_wrong(const nlohmann::json& accuracy, const std::string& file, std::vec
   }
 }
 
+/// Whether touches of spheres are reported in every frame of theirs, and in no other.
+void add_touches(const nlohmann::json& accuracy, const std::string& file, std::vector<Claim>& claims) {
+  for (const auto& scene : accuracy.at("scenes")) {
+    Rows rows;
+    for (const auto& series : scene.at("series"))
+      for (const auto& point : series.at("points")) {
+        if (!point.contains("touches")) continue;
+        const auto& touches = point["touches"];
+        const auto count = [&touches](const char* field) { return touches.at(field).get<std::uint64_t>(); };
+        add_to(rows,
+               fmt::format(" by {} at {} Hz: {} of {} frames within a touch reported, {} of {} frames outside reported "
+                           "falsely",
+                           code(series.at("method")), point.at("rate_hz").get<double>(), count("reported"),
+                           count("frames_within"), count("false"), count("frames_outside")),
+               {series.at("detector").get<std::string>(), ""});
+      }
+    for (const auto& [text, contestants] : rows)
+      claims.push_back({Question::kHowRight,
+                        "Frames of spheres, more than one frame from a touch's beginning and end",
+                        fmt::format("{}, {}{}", scene.at("colliders").get<std::string>(), listed(contestants), text),
+                        {file}});
+  }
+}
+
 void add_accuracy(const nlohmann::json& accuracy, const std::string& file, std::vector<Claim>& claims) {
   if (accuracy.contains("tolerance_ms")) {
     add_wrong(accuracy, file, claims);
+    add_touches(accuracy, file, claims);
   } else {
     add_missed(accuracy, file, claims);
   }

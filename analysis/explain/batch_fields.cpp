@@ -101,6 +101,7 @@ constexpr Field kBatch[] = {
     {"batch/laws", "", "intensity laws"},
     {"batch/options/hold_ms", "ms", "how long an actuator runs on after a contact"},
     {"batch/options/full_speed_m_per_s", "m/s", "speed that drives an actuator fully; null: the default"},
+    {"batch/options/full_depth_mm", "mm", "depth that drives an actuator fully; null: the default"},
     {"batch/options/sigma_mm", "mm", "width of a contact; null: the default, by map"},
     {"batch/options/unfelt_mm", "mm", "a contact that is not felt counts as so many; null: it does not count"},
     {"batch/options/actuator", "", "null: ideal actuators"},
@@ -198,6 +199,7 @@ constexpr Field kContactRecording[] = {
     {"texture_v", "", "texture coordinate, not wrapped"},
     {"side", "", "+1 entering, -1 leaving, 0 in the triangle's plane"},
     {"speed_m_per_s", "m/s", "speed of the collider along the triangle's normal, 0 or more"},
+    {"depth_m", "m", "how deep the sphere is in the body at the frame's end; only if colliders have a radius"},
 };
 
 /// The metrics' names and meanings as texts that last, for `Field` only refers to texts.

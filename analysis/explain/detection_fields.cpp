@@ -19,6 +19,7 @@ constexpr Field kContacts[] = {
     {"x", "m", "place of the contact in the world"},
     {"y", "m", "place of the contact in the world; up"},
     {"z", "m", "place of the contact in the world"},
+    {"depth", "m", "how deep the sphere is in the body at the frame's end, 0 to 2 r; only if colliders have a radius"},
 };
 
 constexpr Field kTexture[] = {
@@ -35,6 +36,7 @@ constexpr Field kTexture[] = {
     {"speed", "m/s", "speed of the collider along the triangle's normal, 0 or more; +inf: no contact"},
     {"side", "", "+1 entering, -1 leaving, 0 in the triangle's plane; +inf: no contact"},
     {"pressure", "", "pressure for a pneumatic cell, from the speed: 0 to 1; +inf: no contact"},
+    {"depth", "m", "how deep a sphere is in the body at the frame's end; 0 for a point; +inf: no contact"},
 };
 
 constexpr Field kTimeline[] = {
@@ -92,6 +94,7 @@ constexpr Field kLaw[] = {
     {"name", "", "intensity law"},
     {"hold_ms", "ms", "how long an actuator runs on after a contact"},
     {"full_speed_m_per_s", "m/s", "speed along the normal that drives an actuator fully; only with speed"},
+    {"full_depth_mm", "mm", "depth that drives an actuator fully; only with depth and patch"},
     {"sigma_mm", "mm", "width of a contact along the skin; only with gaussian"},
     {"actuator", "", "the file of the actuator's model"},
 };

@@ -26,6 +26,9 @@ constexpr Field kAccuracy[] = {
     {"scenes/truth/events", "",
      "true events: maximal runs of contact of one collider with one actuator, or with skin without any"},
     {"scenes/truth/frames_checked_by_exact", "", "frames of the truth that exact confirmed"},
+    {"scenes/truth/inside_s", "s",
+     "time, summed over the colliders, in which spheres are wholly inside a closed body and so touch nothing; only if "
+     "colliders have a radius"},
     {"scenes/truth/halved/rate_hz", "Hz", "half the rate of the truth"},
     {"scenes/truth/halved/contacts", "", "contacts at that rate"},
     {"scenes/truth/halved/events", "", "events at that rate"},
@@ -42,6 +45,14 @@ constexpr Field kErrorPoint[] = {
     {"rate_hz", "Hz", "frames per second of the scene"},
     {"frames", "", "frames of all seeds"},
     {"contacts", "", "contacts in them"},
+    {"touches/frames_within", "",
+     "frames of a sphere that touches, more than one frame from the touch's beginning and end; only if colliders have "
+     "a "
+     "radius"},
+    {"touches/reported", "", "of these, frames in which the detector reports a contact"},
+    {"touches/wrong_actuator", "", "of these, frames with an actuator that no true contact of that time has"},
+    {"touches/frames_outside", "", "frames of a sphere that touches nothing, more than one frame from every touch"},
+    {"touches/false", "", "of these, frames in which the detector reports a contact"},
     {"skinning_error_m", "m", "largest distance of a vertex from skinning in double precision"},
 };
 

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "analysis/accuracy/accuracy_report.hpp"
+#include "analysis/accuracy/inside_time.hpp"
 #include "analysis/base/provenance.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/scene.hpp"
@@ -190,6 +191,7 @@ class Measurement {
     const std::unique_ptr<ColliderSource> colliders = moving.make_colliders();
     check_colliders(choice, *colliders, options_.duration_s, options_.common.verbosity());
     moving.collider_ids = collider_ids(options_, choice, *colliders);
+    moving.shape = colliders->shape();
     AccuracyScene result;
     result.colliders = choice.colliders;
     result.truth_rate_hz = options_.truth_rate_hz;
@@ -223,6 +225,7 @@ class Measurement {
     result.checked_frames = check_true_contacts(
         moving, {rate_hz, options_.checked_frames, result.seeds.front(), make, [&] { return make_truth("exact"); }},
         [&](double share) { return progress.update((share + 3) / 4); });
+    if (moving.shape == ColliderShape::kSpheres) result.inside_s = inside_s(moving, truth);
     result.true_contacts = truth.contacts;
     result.true_events = truth.events.size();
     result.half_contacts = half.contacts;

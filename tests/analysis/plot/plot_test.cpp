@@ -214,6 +214,12 @@ TEST_F(PlotTest, ATimelineNamesItsActuatorsAsTheMapDoes) {
   const std::string words = words_of(folder_ / "six.svg");
   EXPECT_THAT(words, HasSubstr("1 upper torso, right"));
   EXPECT_THAT(words, HasSubstr("2 upper torso, left"));
+  ASSERT_EQ(run("timeline six.csv --map builtin --actuators 2,4:5 -o some").exit_code, 0);
+  const std::string some = words_of(folder_ / "some.svg");
+  EXPECT_THAT(some, HasSubstr("2 upper torso, left"));
+  EXPECT_THAT(some, HasSubstr("5 "));
+  EXPECT_THAT(some, Not(HasSubstr("1 upper torso, right")));
+  EXPECT_THAT(run("timeline six.csv --actuators 3,7 -o none").standard_error, HasSubstr("there is no actuator 7"));
   write_text(folder_ / "one.csv", "time_s,actuator_1\n0,255\n");
   const Outcome other = run("timeline one.csv --map builtin");
   EXPECT_EQ(other.exit_code, 1);

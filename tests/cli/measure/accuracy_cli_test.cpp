@@ -57,6 +57,24 @@ TEST_F(AccuracyCommandLine, AMethodThatSeesOnlyTheCollidersOwnWaysMissesWhatTheB
   EXPECT_EQ(result["run"]["scenes"][0]["series"][0]["points"][1]["frames"], 25);
 }
 
+TEST_F(AccuracyCommandLine, HandsThatAreLaidOnTheSkinAreFeltForAsLongAsTheyTouch) {
+  const std::string flags =
+      "vestige accuracy --detector cpu --rate 90 --truth-rate 4000 --duration 1.2 --events 1 --check-frames 5 "
+      "--passes 1 --no-figure --colliders rest --count 12 --method ccd -o rest ";
+  const auto rest = json_of(flags + "--json -")["scenes"][0];
+  const auto& found = point(rest, "ccd", 0);
+  EXPECT_GT(found["touches"]["frames_within"], 300);
+  EXPECT_EQ(found["touches"]["reported"], found["touches"]["frames_within"]);
+  EXPECT_GT(found["touches"]["frames_outside"], 200);
+  EXPECT_EQ(found["touches"]["false"], 0);
+  EXPECT_EQ(found["missed"], 0);
+  EXPECT_EQ(found["wrong_actuator"], 0) << "actuators are judged apart";
+  EXPECT_TRUE(rest["truth"].contains("inside_s"));
+  const test::Outcome table = run(flags + "--force");
+  EXPECT_THAT(table.standard_output, HasSubstr("while a sphere touches"));
+  EXPECT_THAT(json_of(std::string(kSmall) + "--colliders still -o still --json -").dump(), Not(HasSubstr("touches")));
+}
+
 TEST_F(AccuracyCommandLine, AddsSeedsUntilThereAreEnoughEventsAndComparesApproximateDetectors) {
   const test::Outcome outcome = run(
       "vestige accuracy --detector cpu,boxes,capsules,decimated --method static,ccd --rate 60,250 --truth-rate 4000 "
