@@ -25,6 +25,7 @@ struct Options {
   std::string map;
   std::filesystem::path contacts;
   std::filesystem::path measured;
+  std::string actuators;
   std::string animation;
   std::size_t poses = 6;
   MomentChoice moments;

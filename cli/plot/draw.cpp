@@ -118,6 +118,16 @@ int draw_stress(const Options& options) {
                       [](const std::filesystem::path& folder) { return stress_figure(read_stress(folder)); });
 }
 
+Timeline chosen(const Timeline& timeline, const std::string& actuators) {
+  const std::vector<std::uint32_t> numbers = cli::parse_counts(actuators, "--actuators");
+  const std::uint32_t last = numbers.back();  // they ascend
+  if (last > timeline.actuator_count)
+    throw UsageError("--actuators",
+                     fmt::format("there is no actuator {}: the timeline has {}", last, timeline.actuator_count),
+                     "name actuators by their numbers, from 1");
+  return only(timeline, numbers);
+}
+
 int draw_timeline(const Options& options) {
   return write_figure(options, stem_of(options), [&] {
     Timeline timeline = read_timeline(options.inputs.front());
@@ -132,7 +142,7 @@ int draw_timeline(const Options& options) {
     }
     if (!options.measured.empty())
       return measured_figure(std::move(timeline), read_timeline(options.measured), options.measured.string());
-    return timeline_figure(std::move(timeline));
+    return timeline_figure(options.actuators.empty() ? std::move(timeline) : chosen(timeline, options.actuators));
   });
 }
 

@@ -91,6 +91,9 @@ CLI::App& add_timeline(CLI::App& app, Options& options) {
       .add_option("--measured", options.measured,
                   "The duties that were measured at a board's pins meanwhile, as CSV like a timeline")
       ->type_name("CSV");
+  timeline.add_option("--actuators", options.actuators, "Draw only these actuators, such as 3,11:13 [default: all]")
+      ->excludes("--measured")
+      ->type_name("LIST");
   add_common_options(timeline, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
   return timeline;
 }

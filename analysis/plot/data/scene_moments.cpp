@@ -49,6 +49,7 @@ class Trails {
       Path& trail = trails_[collider.id];
       trail.collider = collider.id;
       trail.is_current = true;
+      trail.radius_m = collider.radius_m;
       thin(trail);
       trail.stops.push_back({time_s, at});
     }

@@ -30,6 +30,7 @@ struct Path {
   };
   std::uint32_t collider = 0;  ///< its id
   bool is_current = false;     ///< the collider exists at the moment
+  float radius_m = 0;          ///< at its last stop; 0: a point
   std::vector<Stop> stops;     ///< oldest first; thinned out if there are many
 };
 

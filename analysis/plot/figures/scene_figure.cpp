@@ -33,6 +33,8 @@ constexpr Colour kSkin = {206, 203, 199};
 constexpr Colour kPathColour = kBlue;
 constexpr Colour kContactColour = kVermillion;
 constexpr double kHidden = 0.18;
+constexpr Colour kSphereColour = {40, 70, 110};
+constexpr double kSphere = 0.85;  ///< opacity of a sphere's rim
 constexpr double kContactPt = 3.2;
 
 /// Where the avatar stands in the world.
@@ -181,20 +183,25 @@ class SceneFigure : public Figure {
     view.bottom = seen.y;
     const StudioShot shot(surface, view, ground_y_);
 
-    std::vector<StudioShot::Overlay> overlays;  // paths by colour, segments, rings, contacts by colour
+    std::vector<StudioShot::Overlay> overlays;  // spheres, paths by colour, segments, rings, contacts by colour
     const std::size_t colours = path_colours_.size();
-    overlays.reserve(2 * colours + 2);
+    overlays.reserve(2 * colours + 3);
+    StudioShot::Overlay& spheres = overlays.emplace_back(shot, kSphereColour);
+    for (const Path& path : moment.paths)
+      if (path.is_current && path.radius_m > 0)
+        spheres.sphere(path.stops.back().position_m - origin_m, double{path.radius_m}, kSphere, kHidden);
     for (const Colour& colour : path_colours_) overlays.emplace_back(shot, colour);
     StudioShot::Overlay& segments = overlays.emplace_back(shot, kInk);
     StudioShot::Overlay& rings = overlays.emplace_back(shot, kWhite);
     for (const Colour& colour : contact_colours_) overlays.emplace_back(shot, colour);
     const bool many = moment.paths.size() > kManyColliders;
-    for (const Path& path : moment.paths) draw_path(path, origin_m, many, overlays[colour_of(path.collider)], segments);
+    for (const Path& path : moment.paths)
+      draw_path(path, origin_m, many, overlays[1 + colour_of(path.collider)], segments);
     const double dot = dots_of(kContactPt);
     for (const RecordedContact& contact : moment.contacts) {
       const glm::dvec3 at = surface.point(contact.triangle, contact.barycentric.x, contact.barycentric.y);
       rings.dot(at, 1.5 * dot, 1, 0, 0.01 * extent_);
-      overlays[colours + 2 + colour_of(contact.collider)].dot(at, dot, 1, 0.35, 0.01 * extent_);
+      overlays[colours + 3 + colour_of(contact.collider)].dot(at, dot, 1, 0.35, 0.01 * extent_);
     }
     const std::size_t count = scene.subject.map.actuator_count;
     const Paint paint = [&](std::uint32_t triangle, double u, double v) {
@@ -225,7 +232,7 @@ class SceneFigure : public Figure {
     }
     if (!path.is_current) return;
     const glm::dvec3 head = path.stops.back().position_m - origin_m;
-    segments.dot(head, dots_of(many ? 1.2 : 2.2), 1, kHidden, tolerance);
+    if (!(path.radius_m > 0)) segments.dot(head, dots_of(many ? 1.2 : 2.2), 1, kHidden, tolerance);
     if (path.stops.size() < 2) return;
     const glm::dvec3 tail = path.stops[path.stops.size() - 2].position_m - origin_m;
     segments.line({tail, 1}, {head, 1}, dots_of(many ? 0.8 : 1.4), kHidden, tolerance);

@@ -93,7 +93,8 @@ class TimelineFigure : public Figure {
     for (std::size_t actuator = 1; actuator <= timeline_.actuator_count; ++actuator) {
       const auto number = static_cast<double>(actuator);
       if (actuator != 1 && actuator % step != 0) continue;
-      std::string label = grouped(number);
+      std::string label =
+          grouped(timeline_.numbers.empty() ? number : static_cast<double>(timeline_.numbers[actuator - 1]));
       if (!timeline_.names.empty()) label += " " + timeline_.names[actuator - 1];
       ticks.push_back({number, shortened(std::move(label), kLabelStyle, kMostLabelPt)});
     }
@@ -181,6 +182,20 @@ Timeline read_timeline(const std::filesystem::path& path) {
   }
   if (timeline.time_s.empty()) throw Error(path.string(), "holds no frame", kRemedy);
   return timeline;
+}
+
+Timeline only(const Timeline& timeline, const std::vector<std::uint32_t>& numbers) {
+  Timeline part;
+  part.time_s = timeline.time_s;
+  part.actuator_count = numbers.size();
+  part.numbers = numbers;
+  if (!timeline.names.empty())
+    for (const std::uint32_t number : numbers) part.names.push_back(timeline.names[number - 1]);
+  part.duty.reserve(part.time_s.size() * numbers.size());
+  for (std::size_t frame = 0; frame < part.time_s.size(); ++frame)
+    for (const std::uint32_t number : numbers)
+      part.duty.push_back(timeline.duty[frame * timeline.actuator_count + number - 1]);
+  return part;
 }
 
 std::unique_ptr<Figure> timeline_figure(Timeline timeline) {

@@ -246,6 +246,35 @@ void StudioShot::Overlay::dot(const glm::dvec3& centre, double width_dots, doubl
   line({centre, opacity}, {centre, opacity}, width_dots, hidden, tolerance);
 }
 
+void StudioShot::Overlay::sphere(const glm::dvec3& centre, double radius, double opacity, double hidden) {
+  constexpr double kMiddle = 0.3;  // of the opacity at the rim
+  const View& fine = shot_.fine_;
+  const glm::dvec3 seen = fine.camera.seen(centre);
+  const auto column_of = [&](double x) { return (x - fine.left) / fine.unit_per_dot; };
+  const auto row_of = [&](double y) {
+    return static_cast<double>(fine.height) - (y - fine.bottom) / fine.unit_per_dot;
+  };
+  const double left = std::max(0.0, std::floor(column_of(seen.x - radius)));
+  const double right = std::min(static_cast<double>(fine.width) - 1, std::ceil(column_of(seen.x + radius)));
+  const double top = std::max(0.0, std::floor(row_of(seen.y + radius)));
+  const double bottom = std::min(static_cast<double>(fine.height) - 1, std::ceil(row_of(seen.y - radius)));
+  if (!(left <= right && top <= bottom)) return;
+  if (opacity_.empty()) opacity_.assign(shot_.samples_.size(), 0.0F);
+  for (auto row = static_cast<std::size_t>(top); row <= static_cast<std::size_t>(bottom); ++row) {
+    for (auto column = static_cast<std::size_t>(left); column <= static_cast<std::size_t>(right); ++column) {
+      const double x = (static_cast<double>(column) + 0.5 - column_of(seen.x)) * fine.unit_per_dot / radius;
+      const double y = (static_cast<double>(row) + 0.5 - row_of(seen.y)) * fine.unit_per_dot / radius;
+      const double beside = x * x + y * y;
+      if (beside > 1) continue;
+      const double towards = std::sqrt(1 - beside);
+      const std::size_t i = row * fine.width + column;
+      double here = opacity * std::lerp(1.0, kMiddle, towards);
+      if (seen.z + radius * towards < double{shot_.samples_[i].depth}) here *= hidden;
+      opacity_[i] = std::max(opacity_[i], static_cast<float>(here));
+    }
+  }
+}
+
 Raster StudioShot::picture(const Paint& paint, const std::vector<Overlay>& overlays) const {
   Raster raster(view_.width, view_.height, kWhite);
   for (std::size_t row = 0; row < view_.height; ++row) {

@@ -47,6 +47,9 @@ class StudioShot {
     /// nearest is drawn.
     void dot(const glm::dvec3& centre, double width_dots, double opacity, double hidden, double tolerance);
 
+    /// Draws a sphere as if of glass: its rim is the most opaque. What lies behind the surface is drawn as with `line`.
+    void sphere(const glm::dvec3& centre, double radius, double opacity, double hidden);
+
    private:
     friend class StudioShot;
     const StudioShot& shot_;
