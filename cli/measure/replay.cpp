@@ -359,6 +359,14 @@ std::map<std::string, std::string> attributes_of(const ReplayOptions& options, c
   return attributes;
 }
 
+/// The planes that contacts and textures hold. Only spheres have a depth.
+PlaneSet planes_of_outputs(const ReplayOptions& options, PlaneSet texture_planes, ColliderShape shape) {
+  PlaneSet planes = kHashedPlanes;
+  if (!options.textures.empty()) planes = planes | texture_planes;
+  if (options.contacts.empty()) return planes;
+  return planes | (shape == ColliderShape::kSpheres ? PlaneSet::all() : PlaneSet::all().without(Plane::kDepth));
+}
+
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
@@ -378,11 +386,8 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     throw UsageError("--timeline", fmt::format("there is no actuator in {}, so nothing to write", options.trace),
                      "give the trace an actuator map with 'vestige record --map', or leave --timeline out");
   const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
-  PlaneSet planes = kHashedPlanes;
-  if (!options.textures.empty()) planes = planes | texture_planes;
   const ColliderShape shape = trace.reader.shape();
-  if (!options.contacts.empty())
-    planes = planes | (shape == ColliderShape::kSpheres ? PlaneSet::all() : PlaneSet::all().without(Plane::kDepth));
+  PlaneSet planes = planes_of_outputs(options, texture_planes, shape);
   std::optional<DriveMaker> drives;
   if (!options.timeline.empty()) {
     require_radii(std::span(&options.law.law, 1), shape, options.trace);
