@@ -14,8 +14,8 @@ std::span<const Scenario> scenarios() {
       {"slide", "one object that slides over the chest, dipping 4 mm into it", 1, make_slide},
       {"hug", "points that wander in and out, always within 2 cm of the skin", 100, make_hug},
       {"still", "points at rest that the moving body runs into", 100, make_still},
-      {"rest", "hands (5 cm) laid on the skin, the first on a shoulder", 1, make_rest},
-      {"brush", "a hand (5 cm) that strokes an arm, from shoulder to wrist", 1, make_brush},
+      {"rest", "hands of 5 cm laid on the skin, the first on a shoulder", 1, make_rest},
+      {"brush", "a hand of 5 cm that strokes an arm from shoulder to wrist", 1, make_brush},
   };
   return kScenarios;
 }

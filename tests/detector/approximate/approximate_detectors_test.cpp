@@ -239,8 +239,9 @@ TEST_P(ApproximateDetector, RunsThroughEveryScenario) {
     const std::uint32_t colliders = find_scenario(scenario)->default_count;
     const auto scene = test::scene(scenario, builtin_avatar(), colliders, 60, 30);
     const std::size_t contacts = test::run_scene(scene, builtin_avatar(), colliders, *detector).contacts();
-    // The 4 mm of slide may stay within one shape.
-    EXPECT_TRUE(contacts > 0 || scenario == "slide") << scenario;
+    // The 4 mm of slide may stay within one shape. Of spheres, boxes and capsules see only the centres, which stay
+    // outside.
+    EXPECT_TRUE(contacts > 0 || scenario == "slide" || scenario == "rest" || scenario == "brush") << scenario;
   }
 }
 
