@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -59,6 +60,11 @@ bool are_shares(const glm::dvec3& weights) {
   for (int i = 0; i < 3; ++i)
     if (!(weights[i] >= 0 && weights[i] <= 1)) return false;  // NaN is none, either
   return true;
+}
+
+double squared_distance_to_box(const glm::dvec3& point, const glm::dvec3& low, const glm::dvec3& high) {
+  const glm::dvec3 away = glm::max(glm::max(low - point, point - high), glm::dvec3(0));
+  return glm::dot(away, away);
 }
 
 glm::dvec3 weighed(const glm::dvec3& weights, const Corners& triangle) {

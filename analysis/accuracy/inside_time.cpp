@@ -1,7 +1,6 @@
 #include "analysis/accuracy/inside_time.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -20,10 +19,7 @@ constexpr double kLooks_hz = 60;
 
 /// Whether every edge occurs as often in one direction as in the other.
 bool is_closed(const Avatar& avatar) {
-  const std::vector<std::uint32_t> place = weld(avatar.position_bind.size(), [&](std::uint32_t vertex) {
-    const glm::vec3& at = avatar.position_bind[vertex];
-    return std::array{at.x, at.y, at.z};
-  });
+  const std::vector<std::uint32_t> place = weld_places(avatar.position_bind);
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> surplus;  // of the direction to the larger number
   for (const glm::uvec3& corner : avatar.triangles)
     for (int i = 0; i < 3; ++i) {

@@ -17,21 +17,15 @@ glm::dvec3 across(Random& random, const glm::dvec3& direction) {
   }
 }
 
-/// Returns the middle of a way so that a sphere of `radius` just reaches the target from a random side.
-glm::dvec3 just_reaching(TriangleScene& scene, const Target& target, double radius, glm::dvec3& from) {
-  from = scene.random().direction();
-  return scene.place_of(target) + radius * from;
-}
-
 /// Spheres that pass a corner, an edge or a face at the distance of their radius, as nearly as floats can.
 StressScene sphere_tangent(StressOrder order) {
   TriangleScene scene(order);
   return scene.build([&] { return scene.any_fan(); },
                      [&](const Fan& fan) {
                        const double radius = scene.random().uniform(0.02, 0.5);
-                       glm::dvec3 from;
-                       const glm::dvec3 middle =
-                           scene.nudged(just_reaching(scene, scene.any_target(fan), radius, from), order.magnitude);
+                       const Target target = scene.any_target(fan);
+                       const glm::dvec3 from = scene.random().direction();
+                       const glm::dvec3 middle = scene.nudged(scene.place_of(target) + radius * from, order.magnitude);
                        const glm::dvec3 half = scene.random().uniform(0.05, 1) * across(scene.random(), from);
                        return Line{middle - half, middle + half, radius};
                      });
@@ -42,9 +36,9 @@ StressScene sphere_rest(StressOrder order) {
   TriangleScene scene(order);
   return scene.build([&] { return scene.any_fan(); },
                      [&](const Fan& fan) {
-                       glm::dvec3 from;
                        const double distance = order.magnitude * scene.random().uniform(0, 1.2);
-                       const glm::dvec3 place = just_reaching(scene, scene.any_target(fan), distance, from);
+                       const Target target = scene.any_target(fan);
+                       const glm::dvec3 place = scene.place_of(target) + distance * scene.random().direction();
                        return Line{place, place, order.magnitude};
                      });
 }
@@ -74,10 +68,7 @@ StressScene sphere_mixture(const StressOrder& order, const StressStage& stage, d
   TriangleScene scene(order, stage);
   return scene.build([&] { return scene.any_fan(); },
                      [&](const Fan& fan) {
-                       const Target target = scene.any_target(fan);
-                       const bool ends = scene.random().index(4) == 0;
-                       const Line line = ends ? (scene.is_ccd() ? scene.ending_at(target) : scene.ending_at_now(target))
-                                              : scene.through(target);
+                       const Line line = scene.mixture(fan);
                        return with_radius(line, scene.random().uniform(low, high));
                      });
 }
@@ -95,11 +86,8 @@ StressScene sphere_degenerate(StressOrder order) {
   const auto make_fan = [&] {
     Fan fan = scene.flat_fan({{1, 0, 0}, {0, 1, 0}});
     // Of moving triangles, some lose their area only on the way.
-    for (FanCorners* corners : {&fan.before, &fan.now}) {
-      const glm::dvec3 hub = corners->front();
-      if (scene.is_ccd() && scene.random().index(2) == 0) continue;
-      for (glm::dvec3& corner : *corners) corner = order.magnitude == 0 ? hub : glm::dvec3(corner.x, hub.y, hub.z);
-    }
+    for (FanCorners* corners : {&fan.before, &fan.now})
+      if (!scene.is_ccd() || scene.random().index(2) != 0) flatten(*corners, order.magnitude);
     return fan;
   };
   return scene.build(make_fan, [&](const Fan& fan) {
@@ -127,8 +115,8 @@ constexpr std::array<StressFamily, 6> kSphereFamilies = {{
      true},
     {"sphere_size", "", "Spheres on their way through corners, edges and faces.", kRadius, kSizes_m, kFans, sphere_size,
      true},
-    {"sphere_offset", "", "The same cases far from the origin.", "metres from the origin, as fp32 coordinates", kFar_m,
-     kFans, sphere_offset, true},
+    {"sphere_offset", "", "Spheres of any size up to the triangles' on such ways, far from the origin.",
+     "metres from the origin, as fp32 coordinates", kFar_m, kFans, sphere_offset, true},
     {"sphere_degenerate", "", "Spheres at triangles without area.", "0: all corners in one point, 1: on one line",
      kShapes, kFans, sphere_degenerate, true},
 }};

@@ -75,20 +75,10 @@ StressScene zero_length(StressOrder order) {
   return scene.build([&] { return scene.any_fan(); }, make_line);
 }
 
-Line ending(TriangleScene& scene, const Target& target) {
-  return scene.is_ccd() ? scene.ending_at(target) : scene.ending_at_now(target);
-}
-
 StressScene endpoint(StressOrder order) {
   TriangleScene scene(order, {1, order.magnitude});
   return scene.build([&] { return scene.any_fan(); },
-                     [&](const Fan& fan) { return ending(scene, scene.any_target(fan)); });
-}
-
-/// Ways through corners, edges and faces, and ones that end there.
-Line mixture(TriangleScene& scene, const Fan& fan) {
-  const Target target = scene.any_target(fan);
-  return scene.random().index(4) == 0 ? ending(scene, target) : scene.through(target);
+                     [&](const Fan& fan) { return scene.ending_at(scene.any_target(fan)); });
 }
 
 StressScene ulp(StressOrder order) {
@@ -101,7 +91,7 @@ StressScene ulp(StressOrder order) {
     return flat ? scene.flat_fan(plane) : scene.any_fan();
   };
   const auto make_line = [&](const Fan& fan) {
-    Line line = flat ? scene.line_in(plane, scene.any_corner(fan)) : mixture(scene, fan);
+    Line line = flat ? scene.line_in(plane, scene.any_corner(fan)) : scene.mixture(fan);
     glm::dvec3& end = scene.random().index(2) == 0 ? line.start : line.end;
     end = scene.nudged(end, order.magnitude);
     return line;
@@ -111,25 +101,23 @@ StressScene ulp(StressOrder order) {
 
 StressScene offset(StressOrder order) {
   TriangleScene scene(order, {1, order.magnitude});
-  return scene.build([&] { return scene.any_fan(); }, [&](const Fan& fan) { return mixture(scene, fan); });
+  return scene.build([&] { return scene.any_fan(); }, [&](const Fan& fan) { return scene.mixture(fan); });
 }
 
 StressScene scale(StressOrder order) {
   TriangleScene scene(order, {order.magnitude, 0});
-  return scene.build([&] { return scene.any_fan(); }, [&](const Fan& fan) { return mixture(scene, fan); });
+  return scene.build([&] { return scene.any_fan(); }, [&](const Fan& fan) { return scene.mixture(fan); });
 }
 
 StressScene degenerate(StressOrder order) {
   TriangleScene scene(order);
   const auto make_fan = [&] {
     Fan fan = scene.flat_fan({{1, 0, 0}, {0, 1, 0}});
-    for (FanCorners* corners : {&fan.before, &fan.now}) {
-      const glm::dvec3 hub = corners->front();
-      for (glm::dvec3& corner : *corners) corner = order.magnitude == 0 ? hub : glm::dvec3(corner.x, hub.y, hub.z);
-    }
+    flatten(fan.before, order.magnitude);
+    flatten(fan.now, order.magnitude);
     return fan;
   };
-  return scene.build(make_fan, [&](const Fan& fan) { return mixture(scene, fan); });
+  return scene.build(make_fan, [&](const Fan& fan) { return scene.mixture(fan); });
 }
 
 /// Aims exactly at the borders between texels, which are lines within each triangle, or at places a few ulps beside

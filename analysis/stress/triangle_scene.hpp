@@ -205,16 +205,19 @@ class TriangleScene {
   }
   Line through(const Target& target) { return through(target, stage_.size_m * reach(random_, 0.05, 1)); }
 
-  /// Returns a way that begins or ends at the target.
+  /// Returns a way that begins or ends at the target. A triangle that moves is there where it was before at the
+  /// beginning.
   Line ending_at(const Target& target) {
     const glm::dvec3 way = stage_.size_m * reach(random_, 0.05, 1);
-    if (random_.index(2) == 0) return {as_floats(target.before), as_floats(target.before) + way};
-    return {as_floats(target.now) + way, as_floats(target.now)};
+    const bool begins = random_.index(2) == 0;
+    const glm::dvec3 end = as_floats(begins && is_ccd() ? target.before : target.now);
+    return begins ? Line{end, end + way} : Line{end + way, end};
   }
-  Line ending_at_now(const Target& target) {
-    const glm::dvec3 way = stage_.size_m * reach(random_, 0.05, 1);
-    const glm::dvec3 end = as_floats(target.now);
-    return random_.index(2) == 0 ? Line{end, end + way} : Line{end + way, end};
+
+  /// Returns a way through a corner, an edge or a face, or one that ends there.
+  Line mixture(const Fan& fan) {
+    const Target target = any_target(fan);
+    return random_.index(4) == 0 ? ending_at(target) : through(target);
   }
 
   /// One coordinate moved by so many units in its last place, up or down.
@@ -253,5 +256,11 @@ class TriangleScene {
   StressStage stage_;
   bool snapped_ = false;
 };
+
+/// Moves all corners of a fan to its hub (0 dimensions), or onto a line through it (1).
+inline void flatten(FanCorners& corners, double dimensions) {
+  const glm::dvec3 hub = corners.front();
+  for (glm::dvec3& corner : corners) corner = dimensions == 0 ? hub : glm::dvec3(corner.x, hub.y, hub.z);
+}
 
 }  // namespace vestige

@@ -62,7 +62,8 @@ Contestants make_contestants(const StressOptions& options, Verbosity verbosity) 
       choice.method = method;
       choice.device = options.device;
       const auto make = [detector, choice, context = options.context](const StressSubject& subject) {
-        return make_detector(detector, context, choice, subject.avatar, subject.map, PlaneSet::all());
+        return make_detector(detector, context, choice, subject.avatar, subject.map,
+                             PlaneSet::all().without(Plane::kDepth));
       };
       try {
         const auto made = make(probe);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 
@@ -13,11 +12,6 @@
 namespace vestige {
 
 namespace {
-
-double squared_distance_m2(const glm::dvec3& point, const SkinBox& box) {
-  const glm::dvec3 away = glm::max(glm::max(glm::dvec3(box.low) - point, point - glm::dvec3(box.high)), glm::dvec3(0));
-  return glm::dot(away, away);
-}
 
 /// How a point lies to a triangle's plane.
 struct PlaneSide {
@@ -60,7 +54,9 @@ double SkinDistance::signed_m(const glm::dvec3& point) {
 }
 
 SkinDistance::Nearest SkinDistance::nearest_to(const glm::dvec3& point) {
-  const auto bound_of = [&](const SkinBox& box) { return squared_distance_m2(point, box); };
+  const auto bound_of = [&](const SkinBox& box) {
+    return squared_distance_to_box(point, glm::dvec3(box.low), glm::dvec3(box.high));
+  };
   const auto first = static_cast<std::size_t>(std::ranges::min_element(boxes_, {}, bound_of) - boxes_.begin());
   Nearest best = {std::numeric_limits<double>::infinity(), 0, glm::dvec3(0)};
   look_into(first, point, best);

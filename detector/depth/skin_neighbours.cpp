@@ -1,8 +1,6 @@
 #include "detector/depth/skin_neighbours.hpp"
 
-#include <array>
 #include <cstddef>
-#include <glm/vec3.hpp>
 #include <numeric>
 #include <utility>
 
@@ -26,12 +24,7 @@ void for_each_place(const std::vector<std::uint32_t>& welded, const glm::uvec3& 
 }  // namespace
 
 SkinNeighbours::SkinNeighbours(const Avatar& avatar)
-    : welded_(weld(avatar.position_bind.size(),
-                   [&](std::uint32_t vertex) {
-                     const glm::vec3& place = avatar.position_bind[vertex];
-                     return std::array{place.x, place.y, place.z};
-                   })),
-      first_(avatar.position_bind.size() + 1, 0) {
+    : welded_(weld_places(avatar.position_bind)), first_(avatar.position_bind.size() + 1, 0) {
   for (const glm::uvec3& corner : avatar.triangles)
     for_each_place(welded_, corner, [&](std::uint32_t place) { ++first_[place + 1]; });
   std::partial_sum(first_.begin(), first_.end(), first_.begin());

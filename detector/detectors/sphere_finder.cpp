@@ -5,6 +5,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "detector/nearest_in_triangle.hpp"
+
 namespace vestige {
 
 namespace {
@@ -20,11 +22,9 @@ double squared_distance_to_corners(const glm::dvec3& point, const Corners& trian
   return std::min({squared(triangle.a), squared(triangle.b), squared(triangle.c)});
 }
 
-double squared_distance_to_box(const glm::dvec3& point, const Corners& triangle) {
-  const glm::dvec3 low = glm::min(glm::min(triangle.a, triangle.b), triangle.c);
-  const glm::dvec3 high = glm::max(glm::max(triangle.a, triangle.b), triangle.c);
-  const glm::dvec3 away = glm::max(glm::max(low - point, point - high), glm::dvec3(0));
-  return glm::dot(away, away);
+double squared_distance_to_box_of(const glm::dvec3& point, const Corners& triangle) {
+  return squared_distance_to_box(point, glm::min(glm::min(triangle.a, triangle.b), triangle.c),
+                                 glm::max(glm::max(triangle.a, triangle.b), triangle.c));
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ bool SphereFinder::surely_loses(std::uint32_t column, const SpherePair& pair) {
   const glm::dvec3& centre = pair.sphere.centre.start;
   const double radius = pair.sphere.radius;
   const double best_at_most = best->start->range().high;
-  const double at_least = kRoundedDown * squared_distance_to_box(centre, pair.before);
+  const double at_least = kRoundedDown * squared_distance_to_box_of(centre, pair.before);
   if (at_least <= best_at_most * best_at_most) return false;
   if (squared_distance_to_corners(centre, pair.before) <= kRoundedDown * (radius * radius)) {
     ++counts_.meeting;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <numeric>
 #include <vector>
@@ -24,6 +25,14 @@ std::vector<std::uint32_t> weld(std::size_t count, const Key& key) {
     welded[order[i]] = same ? welded[order[i - 1]] : order[i];
   }
   return welded;
+}
+
+/// Returns, for each of these positions, the first one that is equal to it.
+template <typename Position>
+std::vector<std::uint32_t> weld_places(const std::vector<Position>& positions) {
+  return weld(positions.size(), [&](std::uint32_t i) {
+    return std::array{positions[i].x, positions[i].y, positions[i].z};
+  });
 }
 
 }  // namespace vestige
