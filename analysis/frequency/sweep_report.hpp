@@ -11,9 +11,9 @@ namespace vestige {
 
 /// Returns `series[…]` of a sweep's JSON (for the fields, see the comments of each struct). Medians and percentiles are
 /// of single frames, in microseconds. hz is frames over total time of all passes but the first; hz_low and hz_high are
-/// its 95 % bootstrap interval. cold_hz is that of the first pass. empty_share is the share of frames without a
-/// contact. times_paper and times_embree are hz over the hz of the fastest `paper` or Embree detector at the same
-/// count, where one was measured.
+/// its 95 % bootstrap interval, null where passes are too few or scatter too much. cold_hz is that of the first pass.
+/// empty_share is the share of frames without a contact. times_paper and times_embree are hz over the hz of the fastest
+/// `paper` or Embree detector at the same count, where one was measured.
 nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_t seed);
 
 /// Returns the durations of frames as CSV: `detector,context,skip,planes,renderer,colliders,repetition,frame,us`. Of

@@ -45,8 +45,12 @@ TEST_F(SweepCommandLine, MeasuresEverySeriesAndKeepsEveryFrame) {
       EXPECT_GE(point["empty_share"], 0);
       EXPECT_LE(point["empty_share"], 1);
       EXPECT_EQ(point["contacts"] == 0, point["empty_share"] == 1);
-      EXPECT_LE(point["hz_low"], point["hz"]);
-      EXPECT_GE(point["hz_high"], point["hz"]);
+      // passes that scatter too much, as on a busy machine, have no interval
+      ASSERT_EQ(point["hz_low"].is_null(), point["hz_high"].is_null());
+      if (!point["hz_low"].is_null()) {
+        EXPECT_LE(point["hz_low"], point["hz"]);
+        EXPECT_GE(point["hz_high"], point["hz"]);
+      }
       EXPECT_LE(point["us_median"], point["us_p99"]);
       EXPECT_EQ(point["pairs_tested"], 4998 * 20 * point["colliders"].get<int>());
     }
