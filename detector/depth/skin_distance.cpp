@@ -11,25 +11,6 @@
 
 namespace vestige {
 
-namespace {
-
-/// How a point lies to a triangle's plane.
-struct PlaneSide {
-  bool has_plane = false;
-  double height = 0;  ///< times the length of the normal; negative behind
-  double squared_m2 = 0;
-};
-
-PlaneSide side_of(const glm::dvec3& point, const Corners& triangle) {
-  const glm::dvec3 normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
-  const double area = glm::dot(normal, normal);
-  if (!(area > 0)) return {};
-  const double height = glm::dot(point - triangle.a, normal);
-  return {true, height, height * height / area};
-}
-
-}  // namespace
-
 SkinDistance::SkinDistance(const Avatar& avatar)
     : avatar_(avatar),
       neighbours_(avatar),
@@ -45,6 +26,24 @@ void SkinDistance::begin(const DetectorFrame& frame) {
   bounds_.boxes(0, 0, boxes_);
   for (const std::size_t meshlet : looked_into_) slot_[meshlet] = 0;
   looked_into_.clear();
+}
+
+namespace {
+
+double squared_distance_to_segment(const glm::dvec3& point, const glm::dvec3& from, const glm::dvec3& to) {
+  const Corners segment = {from, to, to};
+  const glm::dvec3 away = weighed(nearest_on_edges(point, segment), segment) - point;
+  return glm::dot(away, away);
+}
+
+}  // namespace
+
+SkinDistance::PlaneSide SkinDistance::side_of(const glm::dvec3& point, const Corners& triangle) {
+  const glm::dvec3 normal = glm::cross(triangle.b - triangle.a, triangle.c - triangle.a);
+  const double area = glm::dot(normal, normal);
+  if (!(area > 0)) return {};
+  const double height = glm::dot(point - triangle.a, normal);
+  return {true, height, height * height / area};
 }
 
 double SkinDistance::signed_m(const glm::dvec3& point) {
@@ -93,7 +92,7 @@ Corners SkinDistance::corners_of(std::uint32_t triangle) const {
   return skin_corners(avatar_, *frame_, Method::kStatic, triangle).now;
 }
 
-bool SkinDistance::is_behind(const glm::dvec3& point, const Nearest& nearest) const {
+bool SkinDistance::is_behind(const glm::dvec3& point, const Nearest& nearest) {
   const glm::uvec3& corner = avatar_.triangles[nearest.triangle];
   const std::array places = {neighbours_.welded(corner.x), neighbours_.welded(corner.y), neighbours_.welded(corner.z)};
   std::array<std::uint32_t, 3> used = {};
@@ -104,22 +103,45 @@ bool SkinDistance::is_behind(const glm::dvec3& point, const Nearest& nearest) co
   return count == 2 ? is_behind_edge(point, used[0], used[1]) : is_behind_corner(point, used[0]);
 }
 
-bool SkinDistance::is_behind_edge(const glm::dvec3& point, std::uint32_t from, std::uint32_t to) const {
+bool SkinDistance::is_behind_edge(const glm::dvec3& point, std::uint32_t from, std::uint32_t to) {
   PlaneSide farthest;
-  std::size_t sides = 0;
-  for (const std::uint32_t triangle : neighbours_.triangles_around(from)) {
-    const glm::uvec3& corner = avatar_.triangles[triangle];
-    if (neighbours_.welded(corner.x) != to && neighbours_.welded(corner.y) != to && neighbours_.welded(corner.z) != to)
-      continue;
-    const PlaneSide side = side_of(point, corners_of(triangle));
-    if (!side.has_plane) continue;
-    ++sides;
-    if (side.squared_m2 > farthest.squared_m2) farthest = side;
-  }
-  return sides > 1 && farthest.height < 0;
+  crossed_.clear();
+  return look_at_edge(point, from, to, farthest) && farthest.height < 0;
 }
 
-bool SkinDistance::is_behind_corner(const glm::dvec3& point, std::uint32_t corner) const {
+/// Takes the farthest plane among the triangles on an edge. Returns whether skin goes on at both sides: whether the
+/// edge runs forth in one triangle and back in another, however many there are.
+bool SkinDistance::look_at_edge(const glm::dvec3& point, std::uint32_t from, std::uint32_t to, PlaneSide& farthest) {
+  bool forth = false;
+  bool back = false;
+  for (const std::uint32_t triangle : neighbours_.triangles_around(from)) {
+    const glm::uvec3& number = avatar_.triangles[triangle];
+    const std::array numbers = {neighbours_.welded(number.x), neighbours_.welded(number.y),
+                                neighbours_.welded(number.z)};
+    const auto here = static_cast<std::size_t>(std::ranges::find(numbers, from) - numbers.begin());
+    const std::uint32_t next = numbers[(here + 1) % 3];
+    const std::uint32_t last = numbers[(here + 2) % 3];
+    if ((next != to && last != to) || next == last || next == from || last == from) continue;
+    const Corners corners = corners_of(triangle);
+    const PlaneSide side = side_of(point, corners);
+    if (side.squared_m2 > farthest.squared_m2) farthest = side;
+    bool goes_on = true;
+    if (!side.has_plane && std::ranges::find(crossed_, triangle) == crossed_.end()) {
+      crossed_.push_back(triangle);
+      const std::array places = {corners.a, corners.b, corners.c};
+      const std::size_t third = (here + (next == to ? 2 : 1)) % 3;
+      const std::size_t end = (here + (next == to ? 1 : 2)) % 3;
+      const bool is_near_from = squared_distance_to_segment(point, places[here], places[third]) <=
+                                squared_distance_to_segment(point, places[third], places[end]);
+      goes_on = is_near_from ? look_at_edge(point, from, numbers[third], farthest)
+                             : look_at_edge(point, numbers[third], to, farthest);
+    }
+    if (goes_on) (next == to ? forth : back) = true;
+  }
+  return forth && back;
+}
+
+bool SkinDistance::is_behind_corner(const glm::dvec3& point, std::uint32_t corner) {
   double steepest = -std::numeric_limits<double>::infinity();
   std::uint32_t towards = corner;
   for (const std::uint32_t triangle : neighbours_.triangles_around(corner)) {

@@ -21,7 +21,8 @@ namespace vestige {
 /// The distance is that to the nearest triangle, in fp64. The sign is that of the side which the point sees: of the
 /// nearest face; of the triangle on the nearest edge whose plane is farthest away; at a corner, of the edge there that
 /// makes the smallest angle with the direction to the point. A plane that is farther away is seen less obliquely, so
-/// the sign is right where several sheets of skin meet, and where a triangle is there twice. (Baerentzen & Aanaes 2005
+/// the sign is right where several sheets of skin meet, and where a triangle is there twice. Beyond a triangle without
+/// area, the next one is seen. (Baerentzen & Aanaes 2005
 /// weigh the normals around a corner by their angles instead, which counts a triangle that is there twice two times.)
 class SkinDistance {
  public:
@@ -43,13 +44,22 @@ class SkinDistance {
     glm::dvec3 weights;
   };
 
+  /// How a point lies to a triangle's plane.
+  struct PlaneSide {
+    bool has_plane = false;
+    double height = 0;  ///< times the length of the normal; negative behind
+    double squared_m2 = 0;
+  };
+
+  static PlaneSide side_of(const glm::dvec3& point, const Corners& triangle);
   Nearest nearest_to(const glm::dvec3& point);
   void look_into(std::size_t meshlet, const glm::dvec3& point, Nearest& best);
   const MeshletCorners& skinned(std::size_t meshlet);
   Corners corners_of(std::uint32_t triangle) const;
-  bool is_behind(const glm::dvec3& point, const Nearest& nearest) const;
-  bool is_behind_edge(const glm::dvec3& point, std::uint32_t from, std::uint32_t to) const;
-  bool is_behind_corner(const glm::dvec3& point, std::uint32_t corner) const;
+  bool is_behind(const glm::dvec3& point, const Nearest& nearest);
+  bool is_behind_edge(const glm::dvec3& point, std::uint32_t from, std::uint32_t to);
+  bool look_at_edge(const glm::dvec3& point, std::uint32_t from, std::uint32_t to, PlaneSide& farthest);
+  bool is_behind_corner(const glm::dvec3& point, std::uint32_t corner);
 
   const Avatar& avatar_;
   SkinNeighbours neighbours_;
@@ -61,6 +71,7 @@ class SkinDistance {
   std::vector<MeshletCorners> skinned_;  ///< those that were looked into
   std::vector<std::uint32_t> slot_;      ///< of each meshlet in `skinned_`, from 1; 0: not there
   std::vector<std::size_t> looked_into_;
+  std::vector<std::uint32_t> crossed_;  ///< triangles without area beyond which `look_at_edge` looked
 };
 
 }  // namespace vestige

@@ -82,6 +82,35 @@ TEST(SkinDistance, PassesOverTrianglesWithoutArea) {
   EXPECT_EQ(signed_m(mesh.avatar(), {3, 3, 2}), 3);
 }
 
+/// A sharp edge from P to Q. The face above it ends there in one piece, that below in two, which meet halfway at M. The
+/// triangle P, M, Q without area closes the gap of no width.
+TEST(SkinDistance, SeesTheNextTriangleBeyondOneWithoutArea) {
+  enum : unsigned { kP, kQ, kM, kAboveP, kAboveQ, kBelowP, kBelowQ };
+  const Avatar wedge = test::rigid_avatar(
+      {{0, -1, 0}, {0, 1, 0}, {0, 0, 0}, {-2, -1, 0.3F}, {-2, 1, 0.3F}, {-2, -1, -0.3F}, {-2, 1, -0.3F}},
+      {{kP, kQ, kAboveQ},
+       {kP, kAboveQ, kAboveP},
+       {kP, kM, kQ},
+       {kM, kP, kBelowP},
+       {kM, kBelowP, kBelowQ},
+       {kQ, kM, kBelowQ},
+       {kQ, kBelowQ, kAboveQ},
+       {kP, kAboveP, kBelowP},
+       {kAboveP, kAboveQ, kBelowQ},
+       {kAboveP, kBelowQ, kBelowP}});
+  for (const double y : {-0.6, -0.2, 0.2, 0.6})
+    for (const double z : {-0.1, 0.1})
+      EXPECT_NEAR(signed_m(wedge, {0.1, y, z}), std::sqrt(0.02), 1e-6)
+          << "in front of the edge, behind one of the faces";
+  EXPECT_LT(signed_m(wedge, {-1, 0.2, 0.01}), 0);
+}
+
+TEST(SkinDistance, IsPositiveAtABorderThatIsThereTwice) {
+  const Avatar sheet = test::rigid_avatar({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 2}});
+  EXPECT_EQ(signed_m(sheet, {0.25, 0.25, -2}), -2) << "behind it";
+  EXPECT_EQ(signed_m(sheet, {-4, 0.5, -3}), 5) << "beside it";
+}
+
 TEST(SkinDistance, IsPositiveAtTheBorderOfAnOpenSkin) {
   const Avatar sheet = test::rigid_avatar({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}});
   EXPECT_EQ(signed_m(sheet, {0.25, 0.25, 2}), 2);
