@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "detector/actuators/portable_math.hpp"
@@ -49,16 +50,13 @@ class Speed final : public IntensityLaw {
   }
 };
 
-double cross(const glm::dvec2& a, const glm::dvec2& b) {
-  return a.x * b.y - a.y * b.x;
-}
-
-/// The actuators around a contact, and their weights, which add up to 1.
+/// The actuators around a contact, and their weights, which add up to 1. They follow from distances along the surface
+/// alone, which change smoothly even where the shortest way to an actuator jumps to the other side of a limb.
 class Between {
  public:
-  Between(const ActuatorLayout& layout, const LocatedContact& contact) : layout_(layout), contact_(contact) {
-    const std::span<const float> distance_m = contact.distance_m();
-    nearest_ = static_cast<std::uint16_t>(std::ranges::min_element(distance_m) - distance_m.begin());
+  Between(const ActuatorLayout& layout, const LocatedContact& contact)
+      : layout_(layout), distance_m_(contact.distance_m()) {
+    nearest_ = static_cast<std::uint16_t>(std::ranges::min_element(distance_m_) - distance_m_.begin());
     if (!find_triangle()) find_edge();
   }
 
@@ -72,58 +70,68 @@ class Between {
     std::pair<float, float> best_m = {kInfinity, kInfinity};
     for (const std::uint32_t number : layout_.neighbours_of(nearest_)) {
       const std::array<std::uint16_t, 3>& corner = layout_.neighbours()[number];
-      const float a_m = contact_.distance_m()[corner[0]];
-      const float b_m = contact_.distance_m()[corner[1]];
-      const float c_m = contact_.distance_m()[corner[2]];
+      const float a_m = distance_m_[corner[0]];
+      const float b_m = distance_m_[corner[1]];
+      const float c_m = distance_m_[corner[2]];
       const std::pair<float, float> away_m = {std::max({a_m, b_m, c_m}), a_m + b_m + c_m};
       if (away_m >= best_m) continue;
-      const std::array<glm::dvec2, 3> to = {towards(corner[0]), towards(corner[1]), towards(corner[2])};
-      const std::array<double, 3> part = {cross(to[1], to[2]), cross(to[2], to[0]), cross(to[0], to[1])};
-      const double whole = part[0] + part[1] + part[2];
-      if (!(std::abs(whole) > 0)) continue;
-      const std::array<double, 3> weight = {part[0] / whole, part[1] / whole, part[2] / whole};
-      if (!(weight[0] >= 0 && weight[1] >= 0 && weight[2] >= 0)) continue;
+      const std::optional<std::array<double, 3>> weight = weights_in(corner);
+      if (!weight || std::ranges::any_of(*weight, [](double share) { return !(share >= 0); })) continue;
       best_m = away_m;
       count_ = 0;
       for (std::size_t i = 0; i < 3; ++i)
-        if (weight[i] > 0) weight_[count_++] = {corner[i], weight[i]};
+        if ((*weight)[i] > 0) weight_[count_++] = {corner[i], (*weight)[i]};
     }
     return count_ != 0;
   }
 
+  /// Lays the triangle flat, with its sides as long as they are along the surface, and finds the point that differs
+  /// from the corners in squared distance as the contact does: on flat skin, the contact. Nothing if the corners are on
+  /// a line.
+  std::optional<std::array<double, 3>> weights_in(const std::array<std::uint16_t, 3>& corner) const {
+    const double ab_m2 = squared_between_m2(corner[0], corner[1]);
+    const double ac_m2 = squared_between_m2(corner[0], corner[2]);
+    const double along = 0.5 * (ab_m2 + ac_m2 - squared_between_m2(corner[1], corner[2]));  // b . c, with a at 0
+    const double area = ab_m2 * ac_m2 - along * along;
+    if (!(area > 0)) return {};
+    const double on_b = 0.5 * (squared_m2(corner[0]) - squared_m2(corner[1]) + ab_m2);  // the point . b
+    const double on_c = 0.5 * (squared_m2(corner[0]) - squared_m2(corner[2]) + ac_m2);
+    const double b = (on_b * ac_m2 - on_c * along) / area;
+    const double c = (on_c * ab_m2 - on_b * along) / area;
+    return {{1 - b - c, b, c}};
+  }
+
   void find_edge() {
-    const glm::dvec2 from = towards(nearest_);
     weight_[0] = {nearest_, 1};
     count_ = 1;
-    double least = glm::dot(from, from);
+    const double from_m2 = squared_m2(nearest_);
+    double least_m2 = from_m2;
     for (const std::uint16_t other : layout_.beside(nearest_)) {
-      const glm::dvec2 way = towards(other) - from;
-      const double length_squared = glm::dot(way, way);
-      if (!(length_squared > 0)) continue;
-      const double share = std::clamp(-glm::dot(from, way) / length_squared, 0.0, 1.0);
-      const glm::dvec2 there = from + share * way;
-      if (!(glm::dot(there, there) < least)) continue;
-      least = glm::dot(there, there);
+      const double to_m2 = squared_m2(other);
+      const double length_m2 = squared_between_m2(nearest_, other);
+      if (!(length_m2 > 0)) continue;
+      const double share = std::clamp(0.5 * (from_m2 - to_m2 + length_m2) / length_m2, 0.0, 1.0);
+      const double there_m2 = (1 - share) * from_m2 + share * to_m2 - share * (1 - share) * length_m2;
+      if (!(there_m2 < least_m2)) continue;
+      least_m2 = there_m2;
       count_ = 0;
       if (share < 1) weight_[count_++] = {nearest_, 1 - share};
       if (share > 0) weight_[count_++] = {other, share};
     }
   }
 
-  /// Triangles share corners, so look up each corner once.
-  glm::dvec2 towards(std::uint16_t actuator) {
-    for (std::size_t i = 0; i < known_count_; ++i)
-      if (known_[i].first == actuator) return known_[i].second;
-    const glm::dvec2 way = layout_.towards_m(contact_, actuator);
-    if (known_count_ < known_.size()) known_[known_count_++] = {actuator, way};
-    return way;
+  double squared_m2(std::uint16_t actuator) const {
+    const auto distance_m = static_cast<double>(distance_m_[actuator]);
+    return distance_m * distance_m;
+  }
+  double squared_between_m2(std::uint16_t a, std::uint16_t b) const {
+    const double distance_m = layout_.between_m(a, b);
+    return distance_m * distance_m;
   }
 
   const ActuatorLayout& layout_;
-  const LocatedContact& contact_;
+  std::span<const float> distance_m_;
   std::uint16_t nearest_ = 0;
-  std::array<std::pair<std::uint16_t, glm::dvec2>, 12> known_;  // the first known_count_ of them
-  std::size_t known_count_ = 0;
   std::array<Share, 3> weight_ = {};
   std::size_t count_ = 0;
 };
@@ -209,48 +217,59 @@ class Patch final : public IntensityLaw {
 using MadeLaw = std::unique_ptr<IntensityLaw>;
 
 constexpr std::array<LawInfo, 7> kLaws = {{
-    {"binary", "the contact's actuator, fully (the published law)",
-     "A contact switches the actuator of its skin fully on (Spanlang et al. 2010, HAVE).", false, false,
-     [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
+    {.name = "binary",
+     .summary = "the contact's actuator, fully (the published law)",
+     .explanation = "A contact switches the actuator of its skin fully on (Spanlang et al. 2010, HAVE).",
+     .make = [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Binary>(count, options);
      }},
-    {"speed", "the contact's actuator, by the speed of the impact",
-     "The amplitude rises with the collider's speed along the skin's normal, up to a speed of full amplitude.", false,
-     false,
-     [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
+    {.name = "speed",
+     .summary = "the contact's actuator, by the speed of the impact",
+     .explanation =
+         "The amplitude rises with the collider's speed along the skin's normal, up to a speed of full amplitude.",
+     .make = [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Speed>(count, options);
      }},
-    {"phantom", "the actuators around the contact share its strength, so that it is felt between them",
-     "The actuators around a contact share its amplitude at constant energy: for two, A₁ = √(1−β) A and A₂ = √β A "
-     "(Israr & Poupyrev 2011, Tactile Brush).",
-     true, false,
-     [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
+    {.name = "phantom",
+     .summary = "the actuators around the contact share its strength, so that it is felt between them",
+     .explanation = "The actuators around a contact share its amplitude at constant energy: for two, A₁ = √(1−β) A and "
+                    "A₂ = √β A (Israr & Poupyrev 2011, Tactile Brush).",
+     .needs_layout = true,
+     .make = [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Phantom>(layout, options, Energy::kEven);
      }},
-    {"gaussian", "all actuators near the contact, by their distance along the skin",
-     "Every actuator vibrates, with an amplitude that falls with its distance along the body: exp(−d²/2σ²).", true,
-     false,
-     [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
+    {.name = "gaussian",
+     .summary = "all actuators near the contact, by their distance along the skin",
+     .explanation =
+         "Every actuator vibrates, with an amplitude that falls with its distance along the body: exp(−d²/2σ²).",
+     .needs_layout = true,
+     .make = [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Gaussian>(layout, options);
      }},
-    {"linear", "",
-     "The actuators share the amplitude as with phantom, but linearly, so the energy drops between them; for "
-     "comparison.",
-     true, false,
-     [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
+    {.name = "linear",
+     .summary = "",
+     .explanation =
+         "The actuators share the amplitude as with phantom, but linearly, so the energy drops between them; "
+         "for comparison.",
+     .needs_layout = true,
+     .make = [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Phantom>(layout, options, Energy::kSagging);
      }},
-    {"depth", "the contact's actuator, by how deep a sphere is in the body",
-     "The amplitude rises with how deep a sphere is in the body, up to a depth of full amplitude.", false, true,
-     [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
+    {.name = "depth",
+     .summary = "the contact's actuator, by how deep a sphere is in the body",
+     .explanation = "The amplitude rises with how deep a sphere is in the body, up to a depth of full amplitude.",
+     .needs_radii = true,
+     .make = [](Layout, std::size_t count, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Depth>(count, options);
      }},
-    {"patch", "all actuators that a sphere covers, by how deep",
-     "Every actuator vibrates that a touching sphere covers, with an amplitude that rises with how deep its place is "
-     "in "
-     "the sphere.",
-     true, true,
-     [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
+    {.name = "patch",
+     .summary = "all actuators whose places a sphere covers, by how deep",
+     .explanation = "Every actuator vibrates whose place on the body a touching sphere covers, with an amplitude that "
+                    "rises with how deep the place is in the sphere.",
+     .needs_layout = true,
+     .needs_radii = true,
+     .needs_poses = true,
+     .make = [](Layout layout, std::size_t, const LawOptions& options) -> MadeLaw {
        return std::make_unique<Patch>(layout, options);
      }},
 }};
@@ -297,29 +316,24 @@ IntensityLaw::IntensityLaw(Layout layout, std::size_t actuator_count, const LawO
       hold_rule_(hold_rule),
       held_(actuator_count, options.hold_s, hold_rule) {}
 
-void IntensityLaw::find_covered(const DetectorFrame& frame, std::uint32_t column) {
-  located_.covered.clear();
-  const auto segment = std::ranges::lower_bound(frame.segments, column, {}, &Segment::column);
-  const glm::dvec3 centre(segment->end);
-  const std::vector<std::optional<glm::dvec3>>& places = places_.now();
-  for (std::uint32_t i = 0; i < places.size(); ++i) {
-    if (!places[i]) continue;
-    const double depth_m = segment->radius_m - glm::distance(centre, *places[i]);
-    if (depth_m > 0) located_.covered.push_back({i, depth_m});
-  }
+const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Contact> row, const DetectorFrame* frame) {
+  if (asks_for_covered() && frame != nullptr) places_.move(frame->palette);
+  return next(time_s, row, [&](std::uint32_t column) {
+    covered_.clear();
+    if (frame != nullptr) places_.covered_by(column, *frame, covered_);
+    return std::span<const CoveredPlace>(covered_);
+  });
 }
 
-const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Contact> row, const DetectorFrame* frame) {
+const std::vector<double>& IntensityLaw::next(double time_s, std::span<const Contact> row, const CoveredBy& covered) {
   held_.begin(time_s);
   const bool asks_where = planes().has(Plane::kBarycentric);
   const bool asks_for_covered = this->asks_for_covered();
-  if (asks_for_covered && frame != nullptr) places_.move(frame->palette);
-  located_.covered.clear();
   for (std::uint32_t column = 0; column < row.size(); ++column) {
     const Contact& contact = row[column];
     if (!contact.hit() || (contact.actuator == 0 && !asks_for_covered)) continue;
     if (asks_for_covered) {
-      if (frame != nullptr) find_covered(*frame, column);
+      located_.covered = covered(column);
     } else if (asks_where) {
       layout_->locate(contact, located_);
     } else {
