@@ -164,11 +164,11 @@ void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Me
 }
 
 /// Returns a word whose bit k says whether triangle i + k may meet the segment.
-inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Segment& segment, std::size_t i) {
+inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Segment& segment, const SegmentBox& box,
+                               std::size_t i) {
   const D d;
   const auto number = [&](const MeshletTriangles::Numbers& numbers) { return hn::Load(d, &numbers[i]); };
   auto apart = hn::FirstN(d, 0);
-  const SegmentBox box = box_of(segment);
   for (int axis = 0; axis < 3; ++axis) {
     const auto place = static_cast<std::size_t>(axis);
     apart = hn::Or(apart, hn::Gt(number(bounds.low[place]), hn::Set(d, box.high[axis])));
@@ -195,8 +195,10 @@ void meet_triangles(const MeshletTriangles::Bounds& bounds, std::span<const Segm
                     std::span<const std::uint32_t> numbers, std::uint32_t* meets) {
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     meets[k] = 0;
+    const Segment& segment = segments[numbers[k]];
+    const SegmentBox box = box_of(segment);
     for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(D()))
-      meets[k] |= meet_some(bounds, segments[numbers[k]], i) << i;
+      meets[k] |= meet_some(bounds, segment, box, i) << i;
   }
 }
 

@@ -105,17 +105,22 @@ class SkippingCpuDetector final : public Detector {
     triangles_.bound(now_, before_, method_);
     const std::span<const std::uint32_t> numbers = candidates_.segments(touched);
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
+    const MeshletPlaces meshlet = {method_ == Method::kStatic ? now_ : before_, now_, triangles};
+    const auto existing = static_cast<std::uint32_t>((std::uint64_t{1} << triangles.size()) - 1);
     meets_.resize(numbers.size());
     triangles_.meet(frame.segments, numbers, meets_.data());
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       const Segment& segment = frame.segments[numbers[k]];
-      for (std::uint32_t bits = meets_[k]; bits != 0; bits &= bits - 1) {
+      std::uint32_t bits = meets_[k] & existing;
+      if (bits == 0) continue;
+      enter(Stage::kDecision);
+      if (segment.is_sphere()) {
+        finder_.offer(frame, meshlet, segment, bits);
+        continue;
+      }
+      for (; bits != 0; bits &= bits - 1) {
         const auto i = static_cast<std::size_t>(std::countr_zero(bits));
-        if (i >= triangles.size()) break;
-        enter(Stage::kDecision);
-        const Corners now = now_.corners(i);
-        const Corners before = method_ == Method::kStatic ? now : before_.corners(i);
-        finder_.offer(frame, {before, now}, segment, triangles[i], row[segment.column]);
+        finder_.offer(frame, meshlet.at(i), segment, triangles[i], row[segment.column]);
       }
     }
   }

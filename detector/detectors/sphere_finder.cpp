@@ -1,6 +1,8 @@
 #include "detector/detectors/sphere_finder.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <utility>
@@ -13,6 +15,9 @@ namespace {
 
 /// Some 50 MB of pairs.
 constexpr std::size_t kMostWaiting = std::size_t{1} << 18;
+
+/// With fewer triangles of a meshlet, bounds for all of them cost more than they save.
+constexpr int kFewPairs = 3;
 
 /// For the squares of lengths, whose few roundings err by less.
 constexpr double kRoundedDown = 1 - 0x1p-40;
@@ -77,27 +82,55 @@ void SphereFinder::take(const DetectorFrame& frame, std::uint32_t column, const 
 }
 
 /// Returns whether a pair cannot win, because its triangle is farther from the centre at the start than the best one so
-/// far. Takes little time, and leaves doubtful pairs to the caller. Counts the pair if it touches at the start.
-bool SphereFinder::surely_loses(std::uint32_t column, const SpherePair& pair) {
+/// far. The bounds are of squared distances at the start, to the triangle and to its nearest corner. Leaves doubtful
+/// pairs to the caller. Counts the pair if it touches at the start.
+bool SphereFinder::surely_loses(std::uint32_t column, double radius, double at_least, double to_a_corner_at_most) {
   const std::optional<Best>& best = best_of(column);
   if (!best || !best->start) return false;
-  const glm::dvec3& centre = pair.sphere.centre.start;
-  const double radius = pair.sphere.radius;
   const double best_at_most = best->start->range().high;
-  const double at_least = kRoundedDown * squared_distance_to_box_of(centre, pair.before);
   if (at_least <= best_at_most * best_at_most) return false;
-  if (squared_distance_to_corners(centre, pair.before) <= kRoundedDown * (radius * radius)) {
+  if (to_a_corner_at_most <= radius * radius) {
     ++counts_.meeting;
     return true;
   }
   return at_least > radius * radius && best_at_most < radius;
 }
 
+void SphereFinder::offer(const DetectorFrame& frame, const MeshletPlaces& meshlet, const Segment& segment,
+                         std::uint32_t bits) {
+  if (method_ == Method::kCarried || std::popcount(bits) < kFewPairs) {
+    for (; bits != 0; bits &= bits - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+      offer(frame, meshlet.at(i), segment, meshlet.triangles[i]);
+    }
+    return;
+  }
+  find_start_bounds(meshlet.before, segment.start, bounds_);
+  auto nearest = static_cast<std::size_t>(std::countr_zero(bits));
+  for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+    if (bounds_.at_least[i] < bounds_.at_least[nearest]) nearest = i;
+  }
+  offer(frame, meshlet.at(nearest), segment, meshlet.triangles[nearest]);
+  bits &= ~(1U << nearest);
+  for (; bits != 0; bits &= bits - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+    const float at_least = bounds_.at_least[i];
+    if (std::isfinite(at_least) &&
+        surely_loses(segment.column, segment.radius_m, at_least, bounds_.to_a_corner_at_most[i]))
+      continue;
+    offer(frame, meshlet.at(i), segment, meshlet.triangles[i]);
+  }
+}
+
 void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment,
                          std::uint32_t triangle) {
   const SpherePair pair = sphere_pair(segment, corners, triangle, method_);
-  if (surely_loses(segment.column, pair)) return;
-  const StartDistance distance(pair.sphere.centre.start, pair.before);
+  const glm::dvec3& centre = pair.sphere.centre.start;
+  if (surely_loses(segment.column, pair.sphere.radius, kRoundedDown * squared_distance_to_box_of(centre, pair.before),
+                   squared_distance_to_corners(centre, pair.before) / kRoundedDown))
+    return;
+  const StartDistance distance(centre, pair.before);
   if (!touches_at_start(distance, pair.sphere.radius)) {
     if (surely_touches_at_start(segment.column)) return;
     if (waiting_.size() == kMostWaiting) make_room(frame);

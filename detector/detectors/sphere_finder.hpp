@@ -3,10 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "detector/actuator_map.hpp"
+#include "detector/broad/meshlet_skin.hpp"
 #include "detector/broad/skin_motion.hpp"
+#include "detector/broad/start_bounds.hpp"
 #include "detector/contact.hpp"
 #include "detector/decide/start_distance.hpp"
 #include "detector/detector.hpp"
@@ -22,6 +25,15 @@ struct SphereCounts {
   std::uint64_t unsure = 0;   ///< pairs, and choices between two, that needed exact arithmetic
 };
 
+/// The triangles of a meshlet, in the places that `before` and `now` have. They are the same with `kStatic`.
+struct MeshletPlaces {
+  const MeshletCorners& before;
+  const MeshletCorners& now;
+  std::span<const std::uint32_t> triangles;
+
+  MovingCorners at(std::size_t i) const { return {before.corners(i), now.corners(i)}; }
+};
+
 /// The narrow phase for spheres (detector/CONTRACT.md, Spheres). A sphere that rests on the skin touches many triangles
 /// at the start of a frame, and then nothing that it touches later matters. So a pair is first tested at the start; all
 /// others wait until every pair of the frame is known.
@@ -32,6 +44,10 @@ class SphereFinder {
 
   /// Offers a pair, given the triangle's corners. The order of the pairs of a frame does not matter.
   void offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment, std::uint32_t triangle);
+
+  /// Offers the pairs of a sphere with the triangles of a meshlet whose bits are set. Of many that it touches at the
+  /// start, only the nearest are looked at closely.
+  void offer(const DetectorFrame& frame, const MeshletPlaces& meshlet, const Segment& segment, std::uint32_t bits);
 
   /// Writes the winners of all pairs that were offered since the last call into their columns of `row`.
   SphereCounts finish(const DetectorFrame& frame, ContactRow& row);
@@ -56,7 +72,7 @@ class SphereFinder {
   void make_room(const DetectorFrame& frame);
   void decide_waiting(const DetectorFrame& frame);
   bool surely_touches_at_start(std::uint32_t column);
-  bool surely_loses(std::uint32_t column, const SpherePair& pair);
+  bool surely_loses(std::uint32_t column, double radius, double at_least, double to_a_corner_at_most);
 
   const Avatar& avatar_;
   const ActuatorMap& map_;
@@ -65,6 +81,7 @@ class SphereFinder {
   std::vector<std::optional<Best>> best_;  ///< by column
   std::vector<std::uint32_t> columns_;     ///< those that have a best contact
   std::vector<Waiting> waiting_;           ///< pairs that do not touch at the start
+  StartBounds bounds_ = {};                ///< of the meshlet that is offered
   SphereCounts counts_;
 };
 

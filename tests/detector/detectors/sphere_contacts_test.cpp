@@ -60,8 +60,9 @@ TEST_P(SphereContacts, AreThoseOfTheExactDetectorToTheBit) {
       ContactRow row;
       ContactRow skipped;
       exact->detect(frame, expected);
-      cpu->detect(frame, row);
-      skipping->detect(frame, skipped);
+      const DetectorWork all = cpu->detect(frame, row);
+      const DetectorWork some = skipping->detect(frame, skipped);
+      EXPECT_EQ(some.pairs_meeting, all.pairs_meeting) << scenario << ", frame " << frame.index;
       for (std::size_t i = 0; i < expected.size(); ++i) {
         ASSERT_TRUE(same(row[i], expected[i])) << scenario << ", frame " << frame.index << ", column " << i;
         ASSERT_TRUE(same(skipped[i], expected[i])) << scenario << ", frame " << frame.index << ", column " << i;
@@ -70,6 +71,24 @@ TEST_P(SphereContacts, AreThoseOfTheExactDetectorToTheBit) {
     }
     if (scenario == std::string("hug")) {
       EXPECT_GT(contacts, 5);
+    }
+  }
+}
+
+TEST_P(SphereContacts, AreNoneWhereTheSphereIsWhollyInsideTheBody) {
+  std::vector<TraceFrame> scene = test::scene("swarm", builtin_avatar(), 1, 3, 15);
+  for (const float radius_m : {0.01F, 0.3F}) {
+    for (TraceFrame& frame : scene) frame.colliders = {{0, {0, 1.2, 0}, radius_m}};
+    for (const Skip skip : {Skip::kOff, Skip::kOn}) {
+      std::vector<std::unique_ptr<Detector>> detectors;
+      detectors.push_back(make_cpu_detector(builtin_avatar(), builtin_map(), options(skip)));
+      detectors.push_back(make_exact_detector(builtin_avatar(), builtin_map(), options(skip)));
+      for (const auto& detector : detectors) {
+        FrameBuilder builder = test::frame_builder(builtin_avatar(), 1, detector->method());
+        ContactRow row;
+        for (const TraceFrame& frame : scene) detector->detect(builder.next(frame), row);
+        EXPECT_EQ(row.at(0).hit(), radius_m > 0.1F) << detector->name();
+      }
     }
   }
 }
