@@ -57,6 +57,36 @@ nlohmann::ordered_json to_json(const ItemTimes& times) {
 /// Thrown if the user stops the run; not an error.
 struct Stopped {};
 
+/// Finds which actuators of the batch's maps the spheres of a trace cover.
+class CoverFinder {
+ public:
+  CoverFinder(const BatchPlan& plan, std::map<std::string, CoveredPlaces>& found) {
+    if (std::ranges::none_of(plan.laws, [](const std::string& law) { return law_named(law).needs_poses; })) return;
+    for (const BatchMap& map : plan.maps)
+      if (map.layout != nullptr) maps_.push_back({map.layout->posed_places(), found[map.name]});
+  }
+
+  /// Adds the contacts of a frame.
+  void add(const DetectorFrame& frame, std::span<const Contact> row) {
+    if (std::ranges::none_of(row, &Contact::hit)) return;
+    for (auto& [places, found] : maps_) {
+      places.move(frame.palette);
+      for (std::uint32_t column = 0; column < row.size(); ++column) {
+        if (!row[column].hit()) continue;
+        places.covered_by(column, frame, found.places);
+        found.first.push_back(found.places.size());
+      }
+    }
+  }
+
+ private:
+  struct OneMap {
+    PosedPlaces places;
+    CoveredPlaces& found;
+  };
+  std::vector<OneMap> maps_;
+};
+
 /// One batch under way.
 class BatchRun {
  public:
@@ -223,7 +253,7 @@ class BatchRun {
     computed.item = {{"schema_version", 1}, {"key", key_}, {"trace", trace.name}, {"trace_sha256", sha256}};
     computed.recording = detect(path, i, detector, computed.item, times);
     const double begin_s = thread_cpu_s();
-    computed.item["scores"] = score_maps(computed.recording->contacts);
+    computed.item["scores"] = score_maps(*computed.recording);
     times.scoring_s = thread_cpu_s() - begin_s;
     return computed;
   }
@@ -246,16 +276,17 @@ class BatchRun {
                   fmt::format("records that its avatar faces {}, and that of the batch faces {}", to_string(*recorded),
                               to_string(facing)),
                   "run one batch for each facing");
-    if (!plan_.takes_radii && !reader.sphere_ids().empty())
+    if (!plan_.takes_radii && reader.has_spheres())
       throw Error(path, fmt::format("has colliders with a radius, of which {} tests only the centres", plan_.detector),
                   "choose --detector cpu, geometry, exact or decimated");
-    require_radii(plan_.laws, reader.shape(), path);
+    require_spheres(plan_.laws, reader.has_spheres(), path);
     const std::vector<std::uint32_t>& ids = reader.collider_ids();
     const auto frame_count = static_cast<double>(reader.frame_count());
     RecordedTrace recorded;
     recorded.collider_ids = ids;
-    recorded.shape = reader.shape();
+    recorded.shape = reader.has_spheres() ? ColliderShape::kSpheres : ColliderShape::kPoints;
     ContactRecording& recording = recorded.contacts;
+    CoverFinder cover(plan_, recorded.covered);
     DetectionRun detection(plan_.avatar, ids, detector);
     TraceFrame trace_frame;
     std::uint64_t frames = 0;
@@ -265,6 +296,7 @@ class BatchRun {
       detection.step(trace_frame);
       contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(), &Contact::hit));
       recording.add(detection.frame().time_s, detection.row());
+      cover.add(detection.frame(), detection.row());
       times.detection_s += lap_s();
       ++frames;
       if (stop_) throw Stopped();
@@ -282,15 +314,16 @@ class BatchRun {
     return recorded;
   }
 
-  nlohmann::ordered_json score_maps(const ContactRecording& recording) const {
-    std::vector<const ActuatorLayout*> layouts;
+  nlohmann::ordered_json score_maps(const RecordedTrace& trace) const {
+    std::vector<ScoredLayout> layouts;
     std::vector<std::string> names;
     for (const BatchMap& map : plan_.maps) {
       if (map.layout == nullptr) continue;
-      layouts.push_back(map.layout.get());
+      const auto covered = trace.covered.find(map.name);
+      layouts.push_back({map.layout.get(), covered == trace.covered.end() ? nullptr : &covered->second});
       names.push_back(map.name);
     }
-    const std::vector<Scores> scores = score_all(recording, layouts, laws_);
+    const std::vector<Scores> scores = score_all(trace.contacts, layouts, laws_);
     nlohmann::ordered_json json = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < scores.size(); ++i) {
       nlohmann::ordered_json values;

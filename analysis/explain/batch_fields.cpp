@@ -200,6 +200,10 @@ constexpr Field kContactRecording[] = {
     {"side", "", "+1 entering, -1 leaving, 0 in the triangle's plane"},
     {"speed_m_per_s", "m/s", "speed of the collider along the triangle's normal, 0 or more"},
     {"depth_m", "m", "how deep the sphere is in the body at the frame's end; only if colliders have a radius"},
+    {"covered", "",
+     "MAP:ACTUATOR:DEPTH for each actuator of each map whose place on the skin the sphere covers, depth in metres; "
+     "only "
+     "with the law patch"},
 };
 
 /// The metrics' names and meanings as texts that last, for `Field` only refers to texts.

@@ -5,9 +5,21 @@
 #include <span>
 #include <vector>
 
+#include "detector/actuators/posed_places.hpp"
 #include "detector/contact.hpp"
 
 namespace vestige {
+
+/// For each contact of a recording, the actuators of one map whose places its sphere covers
+/// (`LocatedContact::covered`).
+struct CoveredPlaces {
+  std::vector<std::size_t> first = {0};  ///< contacts + 1: those of contact i are [first[i], first[i + 1])
+  std::vector<CoveredPlace> places;
+
+  std::span<const CoveredPlace> of(std::size_t contact) const {
+    return std::span(places).subspan(first[contact], first[contact + 1] - first[contact]);
+  }
+};
 
 /// All contacts of one trace, and nothing else of the trace. They are computed once and judged under every map and law.
 struct ContactRecording {

@@ -34,7 +34,8 @@ double middle_x_m(const ActuatorLayout& layout) {
 
 /// Goes through the recording once. Calls `told(law, contact, error in metres)` for every contact under every law.
 template <typename Told>
-void judge(const ContactRecording& recording, const ActuatorLayout& layout, std::deque<LawScore>& laws, Told&& told) {
+void judge(const ContactRecording& recording, const ScoredLayout& scored, std::deque<LawScore>& laws, Told&& told) {
+  const ActuatorLayout& layout = *scored.layout;
   const double midline_x_m = middle_x_m(layout);
   JudgedContact contact;
   SlideFinder slides;
@@ -45,6 +46,7 @@ void judge(const ContactRecording& recording, const ActuatorLayout& layout, std:
     for (std::size_t c = recording.first[k]; c < recording.first[k + 1]; ++c) {
       const Contact& found = recording.contacts[c];
       layout.locate(found, contact.located);
+      if (scored.covered != nullptr) contact.located.covered = scored.covered->of(c);
       contact.column = recording.column[c];
       contact.frame = k;
       contact.instant_s = time_s - step_s * (1 - static_cast<double>(found.t));
@@ -69,7 +71,7 @@ void judge(const ContactRecording& recording, const ActuatorLayout& layout, std:
 
 }  // namespace
 
-std::vector<Scores> score_all(const ContactRecording& recording, std::span<const ActuatorLayout* const> layouts,
+std::vector<Scores> score_all(const ContactRecording& recording, std::span<const ScoredLayout> layouts,
                               std::span<const LawChoice> choices) {
   const double frame_s = usual_step_s(recording);
   const std::size_t contacts = recording.contacts.size();
@@ -79,11 +81,11 @@ std::vector<Scores> score_all(const ContactRecording& recording, std::span<const
   std::vector<std::vector<float>> errors_m;  // of each layout and law, by contact
   errors_m.reserve(layouts.size() * choices.size());
   for (std::size_t l = 0; l < layouts.size(); ++l) {
-    for (const LawChoice& choice : choices) laws_of[l].emplace_back(*layouts[l], choice, frame_s);
+    for (const LawChoice& choice : choices) laws_of[l].emplace_back(*layouts[l].layout, choice, frame_s);
     const std::size_t first = errors_m.size();
     errors_m.resize(first + choices.size(), std::vector<float>(contacts, static_cast<float>(kMissing)));
-    if (layouts[l]->actuator_count() != 0)
-      judge(recording, *layouts[l], laws_of[l], [&](std::size_t law, std::size_t contact, double error_m) {
+    if (layouts[l].layout->actuator_count() != 0)
+      judge(recording, layouts[l], laws_of[l], [&](std::size_t law, std::size_t contact, double error_m) {
         errors_m[first + law][contact] = static_cast<float>(error_m);
       });
     for (std::size_t law = first; law < errors_m.size(); ++law)
@@ -101,22 +103,21 @@ std::vector<Scores> score_all(const ContactRecording& recording, std::span<const
   return scores;
 }
 
-std::vector<Scores> score_all(const ContactRecording& recording, const ActuatorLayout& layout,
+std::vector<Scores> score_all(const ContactRecording& recording, const ScoredLayout& layout,
                               std::span<const LawChoice> choices) {
-  const ActuatorLayout* const one = &layout;
-  return score_all(recording, {&one, 1}, choices);
+  return score_all(recording, {&layout, 1}, choices);
 }
 
-Scores score(const ContactRecording& recording, const ActuatorLayout& layout, const LawChoice& choice) {
+Scores score(const ContactRecording& recording, const ScoredLayout& layout, const LawChoice& choice) {
   return score_all(recording, layout, {&choice, 1}).front();
 }
 
-std::vector<float> contact_errors_mm(const ContactRecording& recording, const ActuatorLayout& layout,
+std::vector<float> contact_errors_mm(const ContactRecording& recording, const ScoredLayout& layout,
                                      const LawChoice& choice) {
   std::vector<float> errors_mm(recording.contacts.size(), static_cast<float>(kMissing));
-  if (layout.actuator_count() == 0) return errors_mm;
+  if (layout.layout->actuator_count() == 0) return errors_mm;
   std::deque<LawScore> laws;
-  laws.emplace_back(layout, choice, usual_step_s(recording));
+  laws.emplace_back(*layout.layout, choice, usual_step_s(recording));
   judge(recording, layout, laws, [&](std::size_t, std::size_t contact, double error_m) {
     errors_mm[contact] = static_cast<float>(1e3 * error_m);
   });

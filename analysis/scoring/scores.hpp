@@ -25,22 +25,28 @@ struct LawChoice {
   std::optional<double> unfelt_m;
 };
 
+/// A layout to score, and what the recording's contacts cover of its actuators; null if no law needs that.
+struct ScoredLayout {
+  const ActuatorLayout* layout = nullptr;
+  const CoveredPlaces* covered = nullptr;
+};
+
 /// Scores in the order of `metrics()`. A score is NaN if it is undefined, for example without contacts or slides.
 using Scores = std::vector<double>;
 
 /// Returns the scores of each layout under each of the laws, layout by layout. They are compared with each other: what
 /// `common_error_mm` covers are the contacts that all of them let feel. Throws what `make_law` and
 /// `ActuatorModel::motors` throw.
-std::vector<Scores> score_all(const ContactRecording& recording, std::span<const ActuatorLayout* const> layouts,
+std::vector<Scores> score_all(const ContactRecording& recording, std::span<const ScoredLayout> layouts,
                               std::span<const LawChoice> laws);
 /// As above, of one layout.
-std::vector<Scores> score_all(const ContactRecording& recording, const ActuatorLayout& layout,
+std::vector<Scores> score_all(const ContactRecording& recording, const ScoredLayout& layout,
                               std::span<const LawChoice> laws);
-Scores score(const ContactRecording& recording, const ActuatorLayout& layout, const LawChoice& law);
+Scores score(const ContactRecording& recording, const ScoredLayout& layout, const LawChoice& law);
 
 /// Returns for each contact of the recording the distance along the body from where the contact is to where it is felt,
 /// in millimetres, as in `localisation_error_mm`. NaN if no actuator is felt.
-std::vector<float> contact_errors_mm(const ContactRecording& recording, const ActuatorLayout& layout,
+std::vector<float> contact_errors_mm(const ContactRecording& recording, const ScoredLayout& layout,
                                      const LawChoice& law);
 
 }  // namespace vestige

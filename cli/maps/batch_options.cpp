@@ -95,13 +95,6 @@ std::vector<std::string> laws_for_points() {
   return names;
 }
 
-/// A batch keeps the contacts of a trace, and not the poses in which a sphere covers actuators.
-void refuse_patch(const std::vector<std::string>& laws) {
-  if (std::ranges::find(laws, "patch") == laws.end()) return;
-  throw UsageError("--laws", "'patch' needs the poses of a trace, and a batch keeps only its contacts",
-                   "leave it out; 'vestige replay --law patch --timeline FILE.csv' takes it");
-}
-
 void refuse_unused_parameters(const LawFlags& flags, const std::vector<std::string>& laws) {
   for (std::size_t i = 0; i < flags.parameters.size(); ++i) {
     const LawParameter& known = law_parameters()[i];
@@ -210,7 +203,6 @@ BatchPlan plan_of(const BatchOptions& options) {
   BatchPlan plan;
   plan.traces = name_traces(options.traces, seeds_of(options));
   plan.laws = parse_names(options.laws, law_names(), "--laws");
-  refuse_patch(plan.laws);
   refuse_unused_parameters(options.law_parameters, plan.laws);
   plan.law_options = options.law_parameters.options();
   if (options.unfelt_mm) plan.unfelt_m = *options.unfelt_mm / 1e3;

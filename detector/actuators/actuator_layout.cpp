@@ -385,7 +385,7 @@ void ActuatorLayout::locate(const SkinPoint& point, LocatedContact& located) con
   located.actuator = 0;
   located.speed_m_per_s = 0;
   located.depth_m = 0;
-  located.covered.clear();
+  located.covered = {};
   located.count_ = actuator_count();
   located.distance_.resize(stride_);
   const auto x = static_cast<float>(located.position_m.x);

@@ -19,19 +19,13 @@
 
 namespace vestige {
 
-/// An actuator whose place on the skin a sphere covers at the end of the frame.
-struct CoveredPlace {
-  std::uint32_t actuator = 0;  ///< from 0
-  double depth_m = 0;          ///< the sphere's radius minus the distance from its centre; above 0
-};
-
 /// A contact relative to a layout of actuators: its place on the body, and its distance to each actuator.
 struct LocatedContact {
   std::uint16_t actuator = 0;  ///< by the layout's map; 0 if no actuator covers the skin
   double speed_m_per_s = 0;
   double depth_m = 0;  ///< of a sphere
   /// The actuators whose places on the posed skin are within a sphere, and how deep; only for a law that asks for them.
-  std::vector<CoveredPlace> covered;
+  std::span<const CoveredPlace> covered;
   glm::dvec3 position_m = glm::dvec3(0);  ///< on the body at rest, wherever the body was in the trace
   /// Distances along the surface to the actuators, in metres, from actuator 0 on.
   std::span<const float> distance_m() const { return {distance_.data(), count_}; }

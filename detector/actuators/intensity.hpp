@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -54,7 +55,8 @@ struct LawOptions {
 ///
 /// `binary` and `speed` hold every contact: it is felt for `hold_s` more after the last frame of a touch. Under the
 /// other laws, a collider's next contact replaces the held one. Otherwise the energy would grow along the collider's
-/// way.
+/// way. A contact that requests nothing, such as one that leaves the actuators' skin, replaces none: what is held then
+/// fades out after `hold_s`.
 class IntensityLaw {
  public:
   virtual ~IntensityLaw() = default;
@@ -74,6 +76,11 @@ class IntensityLaw {
   /// unless there are none. Times must not decrease. The reference is valid until the next call.
   const std::vector<double>& next(double time_s, std::span<const Contact> row, const DetectorFrame* frame = nullptr);
 
+  /// Returns what the sphere of a column covers; only for columns with a contact.
+  using CoveredBy = std::function<std::span<const CoveredPlace>(std::uint32_t column)>;
+  /// As above, where what spheres cover is known without a frame.
+  const std::vector<double>& next(double time_s, std::span<const Contact> row, const CoveredBy& covered);
+
   /// Continues with another map of equally many actuators; the held amplitudes stay. `layout` is the map's, or null for
   /// a law that does not need one.
   void change_map(Firing firing, std::shared_ptr<const ActuatorLayout> layout) {
@@ -92,8 +99,6 @@ class IntensityLaw {
   const ActuatorLayout& layout() const { return *layout_; }
 
  private:
-  void find_covered(const DetectorFrame& frame, std::uint32_t column);
-
   std::shared_ptr<const ActuatorLayout> layout_;
   PosedPlaces places_;  ///< only of a law that asks for covered places
   std::size_t actuator_count_;
@@ -101,6 +106,7 @@ class IntensityLaw {
   HeldAmplitudes::Rule hold_rule_;
   HeldAmplitudes held_;
   LocatedContact located_;
+  std::vector<CoveredPlace> covered_;
   std::vector<Share> shares_;
   Firing firing_;
   std::vector<double> fired_;
@@ -139,6 +145,8 @@ struct LawInfo {
   bool needs_layout = false;
   /// Whether it lets only spheres be felt.
   bool needs_radii = false;
+  /// Whether it needs the frame that contacts are of (`IntensityLaw::asks_for_covered`).
+  bool needs_poses = false;
   /// Precondition: `layout` is not null if the law needs one.
   std::unique_ptr<IntensityLaw> (*make)(std::shared_ptr<const ActuatorLayout> layout, std::size_t actuator_count,
                                         const LawOptions& options) = nullptr;

@@ -34,8 +34,8 @@ bool LawFlags::any() const {
          std::ranges::any_of(parameters, [](const std::optional<double>& given) { return given.has_value(); });
 }
 
-void require_radii(std::span<const std::string> laws, ColliderShape shape, const std::string& trace) {
-  if (shape == ColliderShape::kSpheres) return;
+void require_spheres(std::span<const std::string> laws, bool has_spheres, const std::string& trace) {
+  if (has_spheres) return;
   const auto law = std::ranges::find_if(laws, [](const std::string& name) { return law_named(name).needs_radii; });
   if (law == laws.end()) return;
   throw Error(trace, fmt::format("its colliders are points, and under the law {} only spheres are felt", *law),

@@ -33,9 +33,8 @@ struct LawFlags {
   bool any() const;
 };
 
-/// Throws `Error` that quotes `trace` if one of the laws lets only spheres be felt, and the trace's colliders are
-/// points.
-void require_radii(std::span<const std::string> laws, ColliderShape shape, const std::string& trace);
+/// Throws `Error` that quotes `trace` if one of the laws lets only spheres be felt, and the trace has none.
+void require_spheres(std::span<const std::string> laws, bool has_spheres, const std::string& trace);
 
 /// Makes `ActuatorDrive`s: a law over a map, and the motors.
 class DriveMaker {

@@ -1,5 +1,8 @@
 #include "detector/actuators/posed_places.hpp"
 
+#include <algorithm>
+#include <glm/geometric.hpp>
+
 namespace vestige {
 
 PosedPlaces::PosedPlaces(const Avatar& avatar, std::span<const std::optional<SkinPoint>> places)
@@ -23,6 +26,17 @@ void PosedPlaces::move(std::span<const SkinMatrix> palette) {
     for (int k = 0; k < 3; ++k)
       place += (*weights_[i])[k] * glm::dvec3(skin_vertex(corners_, palette, 3 * i + static_cast<std::size_t>(k)));
     now_[i] = place;
+  }
+}
+
+void PosedPlaces::covered_by(std::uint32_t column, const DetectorFrame& frame,
+                             std::vector<CoveredPlace>& covered) const {
+  const auto segment = std::ranges::lower_bound(frame.segments, column, {}, &Segment::column);
+  const glm::dvec3 centre(segment->end);
+  for (std::uint32_t i = 0; i < now_.size(); ++i) {
+    if (!now_[i]) continue;
+    const double depth_m = segment->radius_m - glm::distance(centre, *now_[i]);
+    if (depth_m > 0) covered.push_back({i, depth_m});
   }
 }
 

@@ -42,12 +42,26 @@ struct Stopped {};
 struct Contacts {
   std::vector<RecordedContact> all;
   ContactRecording shown;  ///< of the trace with the most
+  std::map<std::string, CoveredPlaces> shown_covered;
   std::string shown_trace;
+
+  /// A map's layout, for scoring the contacts that are shown.
+  ScoredLayout scored(const ActuatorLayout& layout, const std::string& map) const {
+    const auto covered = shown_covered.find(map);
+    if (covered == shown_covered.end()) return {&layout};
+    for (const CoveredPlace& place : covered->second.places)
+      if (place.actuator >= layout.actuator_count())
+        throw Error(
+            "contacts/" + shown_trace + ".csv",
+            fmt::format("names actuator {} of {}, which has only {}", place.actuator + 1, map, layout.actuator_count()),
+            kFileRemedy);
+    return {&layout, &covered->second};
+  }
 };
 
-ContactRecording read_trace_contacts(const std::filesystem::path& file) {
+RecordedTrace read_trace_contacts(const std::filesystem::path& file) {
   try {
-    return read_contact_recording(file.string()).contacts;
+    return read_contact_recording(file.string());
   } catch (const Error& error) {
     if (!std::filesystem::exists(file))
       throw Error(file.string(), "is missing",
@@ -60,7 +74,8 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
   Contacts contacts;
   for (const ReportTrace& trace : data.traces) {
     const std::filesystem::path file = folder / "contacts" / (trace.name + ".csv");
-    ContactRecording recording = read_trace_contacts(file);
+    RecordedTrace recorded = read_trace_contacts(file);
+    ContactRecording& recording = recorded.contacts;
     for (std::size_t i = 0; i < recording.contacts.size(); ++i) {
       const Contact& contact = recording.contacts[i];
       if (contact.triangle >= avatar.triangles.size())
@@ -79,6 +94,7 @@ Contacts read_contacts(const std::filesystem::path& folder, const ReportData& da
     }
     if (recording.contacts.size() > contacts.shown.contacts.size()) {
       contacts.shown = std::move(recording);
+      contacts.shown_covered = std::move(recorded.covered);
       contacts.shown_trace = trace.name;
     }
   }
@@ -114,21 +130,27 @@ std::string fires_in_words(const ActuatorMap& map) {
 }
 
 /// What the actuators are told over the trace.
-Timeline timeline_of(const ContactRecording& recording, const ActuatorMap& map, IntensityLaw& law) {
+Timeline timeline_of(const ContactRecording& recording, const ScoredLayout& layout, IntensityLaw& law) {
+  const ActuatorMap& map = layout.layout->map();
   Timeline timeline;
   timeline.actuator_count = map.actuator_count;
   timeline.names = map.names;
   std::uint32_t columns = 0;
   for (const std::uint32_t column : recording.column) columns = std::max(columns, column + 1);
   ContactRow row;
+  std::vector<std::size_t> contact_of(columns);
+  const auto covered = [&](std::uint32_t column) {
+    return layout.covered == nullptr ? std::span<const CoveredPlace>() : layout.covered->of(contact_of[column]);
+  };
   for (std::size_t frame = 0; frame < recording.frames(); ++frame) {
     row.assign(columns, Contact());
     for (std::size_t i = recording.first[frame]; i < recording.first[frame + 1]; ++i) {
       Contact contact = recording.contacts[i];
       contact.actuator = map.at(contact.triangle, contact.texture_coordinate);
       row[recording.column[i]] = contact;
+      contact_of[recording.column[i]] = i;
     }
-    const std::vector<double>& amplitude = law.next(recording.time_s[frame], row);
+    const std::vector<double>& amplitude = law.next(recording.time_s[frame], row, covered);
     const bool again = !timeline.time_s.empty() && recording.time_s[frame] <= timeline.time_s.back();
     if (!again) {
       timeline.time_s.push_back(recording.time_s[frame]);
@@ -232,9 +254,10 @@ class Report {
     if (contacts.shown.contacts.empty() || map.actuator_count == 0) return section;
 
     const auto layout = std::make_shared<const ActuatorLayout>(avatar, std::move(map));
+    const ScoredLayout scored = contacts.scored(*layout, name);
     const LawOptions& law_options = data.law_options;
     std::vector<ErrorSeries> errors;
-    for (const std::string& law : data.laws) errors.push_back(errors_of(contacts.shown, *layout, data, law));
+    for (const std::string& law : data.laws) errors.push_back(errors_of(contacts.shown, scored, data, law));
     section.errors.push_back(draw(
         name + "-errors", *error_figure(std::move(errors), contacts.shown.time_s.front(), contacts.shown.time_s.back()),
         fmt::format("Localisation error of each contact of {} over time; line: median. Orange, below: not felt.",
@@ -244,15 +267,15 @@ class Report {
                           [&](const std::string& law) { return law == data.best_of(name).law; });
     for (const std::string& law : laws) {
       const std::unique_ptr<IntensityLaw> made = make_law(law, layout, law_options);
-      section.timelines.push_back(draw(
-          fmt::format("{}-timeline-{}", name, law), *timeline_figure(timeline_of(contacts.shown, layout->map(), *made)),
-          fmt::format("Amplitude of each actuator over {} under {} (duty 255 is full), contacts held for {:g} ms.",
-                      contacts.shown_trace, law, 1e3 * law_options.hold_s)));
+      section.timelines.push_back(
+          draw(fmt::format("{}-timeline-{}", name, law), *timeline_figure(timeline_of(contacts.shown, scored, *made)),
+               fmt::format("Amplitude of each actuator over {} under {} (duty 255 is full), contacts held for {:g} ms.",
+                           contacts.shown_trace, law, 1e3 * law_options.hold_s)));
     }
     return section;
   }
 
-  static ErrorSeries errors_of(const ContactRecording& recording, const ActuatorLayout& layout, const ReportData& data,
+  static ErrorSeries errors_of(const ContactRecording& recording, const ScoredLayout& layout, const ReportData& data,
                                const std::string& law) {
     ErrorSeries series;
     series.law = law;

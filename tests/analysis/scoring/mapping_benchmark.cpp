@@ -39,7 +39,7 @@ void measure(const char* scenario, int frames) {
       double best_s = 1e9;
       for (int i = 0; i < 7; ++i) {
         const auto before = std::clock();
-        score_all(recording, layout, laws);
+        score_all(recording, {&layout}, laws);
         best_s = std::min(best_s, seconds_since(before));
       }
       return 1e6 * best_s / frames / static_cast<double>(laws.size());

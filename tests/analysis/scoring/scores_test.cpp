@@ -45,7 +45,7 @@ Scores score_of(const ContactRecording& recording, const ActuatorLayout& layout,
   choice.name = law;
   choice.options.hold_s = hold_s;
   choice.actuators = std::move(actuators);
-  return score(recording, layout, choice);
+  return score(recording, {&layout}, choice);
 }
 
 TEST(Scores, OfASlideBetweenTwoActuatorsAreTheAnalyticOnes) {
@@ -154,7 +154,7 @@ TEST(Scores, CountContactOnSkinWithoutActuatorAsUnfeltAndSayWhere) {
       EXPECT_DOUBLE_EQ(metric(scores, "timing_f1"), 8.0 / 14);
     }
   }
-  const std::vector<float> errors = contact_errors_mm(recording, layout, LawChoice());
+  const std::vector<float> errors = contact_errors_mm(recording, {&layout}, LawChoice());
   ASSERT_EQ(errors.size(), 10U);
   EXPECT_NEAR(errors[0], 50, 0.01);
   EXPECT_TRUE(std::isnan(errors[9]));
@@ -171,7 +171,7 @@ TEST(Scores, CompareErrorsOverTheContactsThatAllLetFeel) {
     recording.add(0.1 * k, ContactRow{test::contact_at(k % 2 == 0 ? 0.3 : 0.5, 0.5, kCells)});
   LawChoice binary;
   binary.unfelt_m = 0.5;
-  const std::vector<const ActuatorLayout*> layouts = {wide.get(), narrow.get()};
+  const std::vector<ScoredLayout> layouts = {{wide.get()}, {narrow.get()}};
   const std::vector<Scores> scores = score_all(recording, layouts, {&binary, 1});
   EXPECT_NEAR(metric(scores[0], "localisation_error_mm"), std::sqrt((50.0 * 50 + 250 * 250) / 2), 0.1);
   EXPECT_NEAR(metric(scores[1], "localisation_error_mm"), 50, 0.01);
@@ -241,9 +241,9 @@ TEST(Scores, AreTheSameTogetherAsOneByOne) {
   const std::vector<std::string> names = law_names();
   std::vector<LawChoice> laws(names.size());
   for (std::size_t i = 0; i < names.size(); ++i) laws[i].name = names[i];
-  const std::vector<Scores> together = score_all(recording, two(), laws);
+  const std::vector<Scores> together = score_all(recording, {&two()}, laws);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const Scores alone = score(recording, two(), laws[i]);
+    const Scores alone = score(recording, {&two()}, laws[i]);
     for (std::size_t k = 0; k < alone.size(); ++k) {
       if (metrics()[k].name == std::string_view("common_error_mm")) continue;  // depends on what is compared
       EXPECT_TRUE(alone[k] == together[i][k] || (std::isnan(alone[k]) && std::isnan(together[i][k])))

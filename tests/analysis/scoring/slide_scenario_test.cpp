@@ -24,7 +24,7 @@ std::vector<Scores> judge(const ActuatorMap& map) {
   const ActuatorLayout layout(test::builtin_avatar(), map);
   std::vector<LawChoice> laws(2);
   laws[1].name = "phantom";
-  return score_all(slide(), layout, laws);
+  return score_all(slide(), {&layout}, laws);
 }
 
 TEST(SlideScenario, IsASlideOfManyContacts) {

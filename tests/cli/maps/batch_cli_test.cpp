@@ -55,6 +55,42 @@ TEST_F(BatchCommandLine, ScoresEveryMapAndLawOnContactsThatAreDetectedOnce) {
   EXPECT_EQ(run("cmp mine.png out/maps/mine.png && vestige avatar out/avatar.glb").exit_code, 0);
 }
 
+TEST_F(BatchCommandLine, JudgesLawsUnderWhichSpheresAreFeltAndReportsThem) {
+  const test::Outcome batch =
+      run("vestige batch --maps torso40 paper6 --traces rest --count 12 --laws depth,patch --rate 100 --duration 2 -o "
+          "out -q");
+  ASSERT_EQ(batch.exit_code, 0) << batch.standard_error;
+  EXPECT_EQ(run("head -1 out/contacts/rest.csv").standard_output,
+            "frame,time_s,collider,triangle,t,u,v,texture_u,texture_v,side,speed_m_per_s,depth_m,covered\n");
+  const auto scores = json_in("out/scores.json")["scores"];
+  ASSERT_EQ(scores.size(), 4U);
+  for (const auto& one : scores)
+    if (one["map"] == "torso40") {
+      EXPECT_GT(one["values"]["coverage"], 0) << one["law"];
+    }
+
+  // Whom a sphere covers by half a step of the duty, a replay makes vibrate.
+  ASSERT_EQ(run("vestige record --colliders rest --count 12 --map torso40 --rate 100 --duration 2 -o rest.mcap -q && "
+                "vestige replay rest.mcap --law patch --timeline t.csv --hold 0 -q")
+                .exit_code,
+            0);
+  const std::string vibrate = run("tail -n +2 t.csv | cut -d, -f2- | tr , '\n' | grep -vcx 0").standard_output;
+  EXPECT_GT(std::stoi(vibrate), 20);
+  EXPECT_EQ(run("awk -F, '{split($13, covered, \" \"); for (i in covered) print $1 \":\" covered[i]}' "
+                "out/contacts/rest.csv | awk -F: '$2 == \"torso40\" && $4 >= 0.01 / 510 {print $1, $3}' | "
+                "sort -u | wc -l")
+                .standard_output,
+            vibrate);
+
+  const test::Outcome report = run("vestige plot report out -o page");
+  ASSERT_EQ(report.exit_code, 0) << report.standard_error;
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "page/figures/torso40-timeline-patch.svg"));
+  ASSERT_EQ(run("sed -i 's/torso40:[0-9]*:/torso40:99:/' out/contacts/rest.csv").exit_code, 0);
+  const test::Outcome refused = run("vestige plot report out -o again");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.standard_error, HasSubstr("names actuator 99 of torso40, which has only 40"));
+}
+
 TEST_F(BatchCommandLine, GivesAllThatIsNeededToRecomputeTheRankingElsewhere) {
   ASSERT_EQ(run("vestige batch --maps builtin torso40 --traces hug slide --seeds 1:6 --laws binary,phantom "
                 "--rate 100 --duration 0.5 --unfelt-mm 150 -o out -q")
