@@ -12,6 +12,7 @@
 #include "analysis/plot/canvas/figure.hpp"
 #include "analysis/plot/data/scene_moments.hpp"
 #include "cli/facing_flag.hpp"
+#include "detector/actuators/law_maker.hpp"
 #include "traces/files/output_file.hpp"
 
 namespace vestige::plot {
@@ -31,8 +32,7 @@ struct Options {
   MomentChoice moments;
   double trail_ms = 100;
   std::string colour_by = "kind";
-  std::string law = "binary";
-  double hold_ms = 60;
+  LawFlags law;
   double rate_hz = 60;
   std::uint64_t every = 0;  ///< 0: by `rate_hz`
   std::size_t top = 12;

@@ -272,8 +272,10 @@ int draw_paraview(const Options& options) {
   warn_of(options, subject);
   if (subject.map.actuator_count == 0) warn(options, "there is no actuator map, so every amplitude is 0");
   ParaviewOptions settings;
-  settings.law = options.law;
-  settings.law_options.hold_s = options.hold_ms / 1000;
+  options.law.check();
+  settings.law = options.law.law;
+  settings.law_options = options.law.options();
+  require_spheres(std::span(&options.law.law, 1), trace.has_spheres(), input.string());
   settings.rate_hz = options.rate_hz;
   if (options.every != 0) settings.every = options.every;
   if (!stem.parent_path().empty()) make_folder(stem.parent_path());

@@ -206,12 +206,18 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
   add_input(paraview, options, "MCAP", "The trace");
   add_other_map(paraview, options);
   paraview
-      .add_option("--law", options.law, "The intensity law, which says how strongly a contact drives the actuators")
+      .add_option("--law", options.law.law, "The intensity law, which says how strongly a contact drives the actuators")
       ->capture_default_str()
       ->type_name(fmt::format("{}", fmt::join(law_names(), "|")));
+  for (std::size_t i = 0; i < law_parameters().size(); ++i) {
+    const LawParameter& known = law_parameters()[i];
+    paraview.add_option(known.flag, options.law.parameters[i], known.help)
+        ->check(help::kPositive)
+        ->type_name(known.type_name);
+  }
   paraview
       .add_option(
-          "--hold", options.hold_ms,
+          "--hold", options.law.hold_ms,
           "How long a contact is felt, in ms: a coin motor cannot answer a single frame; 0 gives the raw frames")
       ->capture_default_str()
       ->type_name("MS")

@@ -8,6 +8,7 @@
 
 #include "analysis/run/detection_run.hpp"
 #include "detector/actuators/actuator_layout.hpp"
+#include "detector/depth/depth_detector.hpp"
 #include "detector/detector.hpp"
 #include "detector/detectors/make_detectors.hpp"
 
@@ -59,7 +60,8 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
   DetectorOptions detector_options;
   detector_options.planes = PlaneSet::all();
   detector_options.skip = Skip::kOn;
-  const std::unique_ptr<Detector> detector = make_cpu_detector(subject.avatar, subject.map, detector_options);
+  const std::unique_ptr<Detector> detector =
+      with_depth(make_cpu_detector(subject.avatar, subject.map, detector_options), subject.avatar);
   const std::size_t actuators = subject.map.actuator_count;
   std::unique_ptr<IntensityLaw> law;
   if (actuators > 0)
@@ -92,7 +94,7 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
       if (!contact.hit()) continue;
       ++result.contacts;
       pending.contacts.push_back({built.time_s, contact.position + built.origin_m, ids[column], contact.triangle,
-                                  contact.actuator, contact.side, contact.speed_m_per_s});
+                                  contact.actuator, contact.side, contact.speed_m_per_s, contact.depth_m});
     }
     if (law != nullptr) {
       const std::vector<double>& amplitude = law->next(built.time_s, row, &built);

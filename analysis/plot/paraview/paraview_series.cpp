@@ -73,6 +73,25 @@ void add_point_data(vtkPolyData& data, const char* name, const Items& items, con
   data.GetPointData()->AddArray(array);
 }
 
+vtkSmartPointer<vtkPolyData> collider_cloud(std::span<const ColliderSample> colliders) {
+  auto cloud = point_cloud(colliders, [](const ColliderSample& one) { return one.position_m; });
+  add_point_data<vtkUnsignedIntArray>(*cloud, "collider", colliders, [](const auto& one) { return one.id; });
+  add_point_data<vtkFloatArray>(*cloud, "radius_m", colliders, [](const auto& one) { return one.radius_m; });
+  return cloud;
+}
+
+vtkSmartPointer<vtkPolyData> contact_cloud(std::span<const PlacedContact> contacts) {
+  auto cloud = point_cloud(contacts, [](const PlacedContact& one) { return one.position_m; });
+  add_point_data<vtkUnsignedIntArray>(*cloud, "collider", contacts, [](const auto& one) { return one.collider; });
+  add_point_data<vtkUnsignedIntArray>(*cloud, "triangle", contacts, [](const auto& one) { return one.triangle; });
+  add_point_data<vtkIntArray>(*cloud, "actuator", contacts, [](const auto& one) { return one.actuator; });
+  add_point_data<vtkIntArray>(*cloud, "side", contacts, [](const auto& one) { return one.side; });
+  add_point_data<vtkDoubleArray>(*cloud, "speed_m_per_s", contacts, [](const auto& one) { return one.speed_m_per_s; });
+  add_point_data<vtkDoubleArray>(*cloud, "depth_m", contacts, [](const auto& one) { return one.depth_m; });
+  add_point_data<vtkDoubleArray>(*cloud, "time_s", contacts, [](const auto& one) { return one.time_s; });
+  return cloud;
+}
+
 }  // namespace
 
 ParaviewSeries::ParaviewSeries(std::filesystem::path stem, Overwrite overwrite, const Subject& subject)
@@ -133,20 +152,8 @@ void ParaviewSeries::write(const SeriesStep& step) {
   if (!subject_.map.names.empty()) skin->GetFieldData()->AddArray(names);
   write_part("avatar", *skin, step.time_s);
 
-  const auto colliders = point_cloud(step.colliders, [](const ColliderSample& one) { return one.position_m; });
-  add_point_data<vtkUnsignedIntArray>(*colliders, "collider", step.colliders,
-                                      [](const ColliderSample& one) { return one.id; });
-  write_part("colliders", *colliders, step.time_s);
-
-  const auto spots = point_cloud(step.contacts, [](const PlacedContact& one) { return one.position_m; });
-  add_point_data<vtkUnsignedIntArray>(*spots, "collider", step.contacts, [](const auto& one) { return one.collider; });
-  add_point_data<vtkUnsignedIntArray>(*spots, "triangle", step.contacts, [](const auto& one) { return one.triangle; });
-  add_point_data<vtkIntArray>(*spots, "actuator", step.contacts, [](const auto& one) { return one.actuator; });
-  add_point_data<vtkIntArray>(*spots, "side", step.contacts, [](const auto& one) { return one.side; });
-  add_point_data<vtkDoubleArray>(*spots, "speed_m_per_s", step.contacts,
-                                 [](const auto& one) { return one.speed_m_per_s; });
-  add_point_data<vtkDoubleArray>(*spots, "time_s", step.contacts, [](const auto& one) { return one.time_s; });
-  write_part("contacts", *spots, step.time_s);
+  write_part("colliders", *collider_cloud(step.colliders), step.time_s);
+  write_part("contacts", *contact_cloud(step.contacts), step.time_s);
   times_s_.push_back(step.time_s);
 }
 

@@ -25,6 +25,7 @@ struct PlacedContact {
   std::uint16_t actuator = 0;  ///< 0: skin that no actuator covers
   std::int8_t side = 0;        ///< +1 entering, -1 leaving, 0 coplanar
   double speed_m_per_s = 0;
+  double depth_m = 0;  ///< 0 for points
 };
 
 /// One time step. Contacts and amplitudes are those since the previous step.
@@ -41,9 +42,9 @@ struct SeriesStep {
 ///   avatar_NNNNNN.vtp     the skin, world metres; cell data actuator (at the texel under each triangle's middle, or
 ///                         0), amplitude (0 … 1, of that actuator), contacts (in this step); texture coordinates with
 ///                         v upwards, as in VTK; field data actuator_name
-///   colliders_NNNNNN.vtp  a point for each collider; point data collider (id)
+///   colliders_NNNNNN.vtp  a point for each collider; point data collider (id), radius_m (0: a point)
 ///   contacts_NNNNNN.vtp   a point for each contact; point data collider, triangle, actuator, side,
-///                         speed_m_per_s, time_s
+///                         speed_m_per_s, depth_m, time_s
 /// Holds one step in memory. Without `commit`, no file remains.
 ///
 /// Functions throw `Error` with the file's name if the file exists (with `Overwrite::kRefuse`), if the folder does not
