@@ -74,9 +74,10 @@ class RateMeasurement {
       points_[i].contacts = runs_[i].finder.contacts();
       std::vector<ContactEvent> events = runs_[i].finder.take();
       const std::size_t colliders = scene_.collider_ids.size();
-      if (scene_.shape == ColliderShape::kSpheres) {
-        points_[i].touches = score_touches(truth.by_actuator, events, {colliders, rate_hz_, last_, truth.rate_hz});
-        events = touches_of(events);
+      if (scene_.has_spheres()) {
+        points_[i].touches =
+            score_touches(truth.by_actuator, events, {scene_.is_sphere, rate_hz_, last_, truth.rate_hz});
+        events = touches_of(events, scene_.is_sphere);
       }
       points_[i].score = score_events(truth.events, events, colliders, {EventMatch::kOverlap, frame_s}, until_s);
       points_[i].tolerated = score_events(truth.events, events, colliders, {EventMatch::kImpact, tolerance_s}, until_s);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -19,7 +20,9 @@ struct MovingScene {
   std::function<std::unique_ptr<ColliderSource>()> make_colliders;
   std::vector<std::uint32_t> collider_ids;  ///< ascending
   double duration_s = 0;
-  ColliderShape shape = ColliderShape::kPoints;
+  std::vector<bool> is_sphere;  ///< by rank: whether the collider has a radius at some time
+
+  bool has_spheres() const { return std::ranges::find(is_sphere, true) != is_sphere.end(); }
 };
 
 /// Samples a scene at a rate, beginning with frame `first`.

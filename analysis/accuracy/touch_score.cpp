@@ -10,7 +10,7 @@ constexpr double kFrameRounding_s = 1e-9;
 class ColliderTouches {
  public:
   ColliderTouches(std::span<const ContactEvent> truth, std::span<const ContactEvent> test, const TouchFrames& frames)
-      : truth_(truth), test_(test), touches_(touches_of(truth)), frames_(frames) {}
+      : truth_(truth), test_(test), touches_(touches_of(truth, frames.is_sphere)), frames_(frames) {}
 
   void add_to(TouchScore& score) {
     for (std::uint64_t frame = 1; frame <= frames_.last; ++frame) add(frame, score);
@@ -56,17 +56,17 @@ class ColliderTouches {
 
 }  // namespace
 
-std::vector<ContactEvent> touches_of(std::span<const ContactEvent> events) {
+std::vector<ContactEvent> touches_of(std::span<const ContactEvent> events, const std::vector<bool>& is_sphere) {
   std::vector<ContactEvent> touches;
   for (const ContactEvent& event : events) {
-    const bool goes_on =
-        !touches.empty() && touches.back().column == event.column && touches.back().last_frame + 1 >= event.first_frame;
+    const bool goes_on = is_sphere[event.column] && !touches.empty() && touches.back().column == event.column &&
+                         touches.back().last_frame + 1 >= event.first_frame;
     if (goes_on) {
       touches.back().last_frame = event.last_frame;
       touches.back().last_s = event.last_s;
     } else {
       touches.push_back(event);
-      touches.back().actuator = 0;
+      if (is_sphere[event.column]) touches.back().actuator = 0;
     }
   }
   return touches;
@@ -84,8 +84,9 @@ TouchScore& TouchScore::operator+=(const TouchScore& other) {
 TouchScore score_touches(std::span<const ContactEvent> truth, std::span<const ContactEvent> test,
                          const TouchFrames& frames) {
   TouchScore score;
-  for (std::uint32_t column = 0; column < frames.colliders; ++column)
-    ColliderTouches(events_of(truth, column), events_of(test, column), frames).add_to(score);
+  for (std::uint32_t column = 0; column < frames.is_sphere.size(); ++column)
+    if (frames.is_sphere[column])
+      ColliderTouches(events_of(truth, column), events_of(test, column), frames).add_to(score);
   return score;
 }
 

@@ -88,9 +88,9 @@ TrueContacts find_true_contacts(const MovingScene& scene, double rate_hz,
     events.push_back(std::move(part.events));
   }
   truth.events = join_events(events);
-  if (scene.shape != ColliderShape::kSpheres) return truth;
+  if (!scene.has_spheres()) return truth;
   truth.by_actuator = std::move(truth.events);
-  truth.events = touches_of(truth.by_actuator);
+  truth.events = touches_of(truth.by_actuator, scene.is_sphere);
   return truth;
 }
 

@@ -24,11 +24,13 @@ constexpr Field kAccuracy[] = {
     {"scenes/truth/rate_hz", "Hz", "rate of the truth"},
     {"scenes/truth/contacts", "", "contacts at that rate"},
     {"scenes/truth/events", "",
-     "true events: maximal runs of contact of one collider with one actuator, or with skin without any"},
+     "true events: maximal runs of contact of one collider with one actuator, or with skin without any; of a sphere "
+     "whole touches, whatever the actuators"},
     {"scenes/truth/frames_checked_by_exact", "", "frames of the truth that exact confirmed"},
     {"scenes/truth/inside_s", "s",
-     "time, summed over the colliders, in which spheres are wholly inside a closed body and so touch nothing; only if "
-     "colliders have a radius"},
+     "time, summed over the colliders, in which spheres are wholly inside the body and so touch nothing; only if "
+     "colliders "
+     "have a radius and the skin is closed"},
     {"scenes/truth/halved/rate_hz", "Hz", "half the rate of the truth"},
     {"scenes/truth/halved/contacts", "", "contacts at that rate"},
     {"scenes/truth/halved/events", "", "events at that rate"},

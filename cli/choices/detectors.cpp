@@ -110,16 +110,21 @@ bool takes_radii(const std::string& detector) {
   return detector == "cpu" || detector == "geometry" || detector == "exact" || detector == "decimated";
 }
 
-void warn_of_radii(const std::vector<std::string>& detectors, TraceReader& trace, const std::string& file,
-                   Verbosity verbosity) {
-  if (trace.shape() == ColliderShape::kPoints || std::ranges::all_of(detectors, takes_radii)) return;
-  if (trace.sphere_ids().empty()) return;
+void warn_of_radii(const std::vector<std::string>& detectors, std::size_t spheres, std::size_t colliders,
+                   const std::string& scene, Verbosity verbosity) {
+  if (spheres == 0) return;
   for (const std::string& detector : detectors)
     if (!takes_radii(detector))
       warn(fmt::format("{}: {} of {} have a radius, but {} tests the paths of their centres; cpu, geometry, exact and "
                        "decimated test spheres",
-                       file, trace.sphere_ids().size(), counted(trace.collider_ids().size(), "collider"), detector),
+                       scene, spheres, counted(colliders, "collider"), detector),
            verbosity);
+}
+
+void warn_of_radii(const std::vector<std::string>& detectors, TraceReader& trace, const std::string& file,
+                   Verbosity verbosity) {
+  if (std::ranges::all_of(detectors, takes_radii)) return;  // reads no more of the trace than is needed
+  warn_of_radii(detectors, trace.sphere_ids().size(), trace.collider_ids().size(), file, verbosity);
 }
 
 std::vector<std::string> skin_detector_names() {

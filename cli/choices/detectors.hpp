@@ -69,7 +69,11 @@ const std::vector<std::string>& detector_names();
 bool is_approximate(const std::string& detector);
 /// Whether a detector tests spheres. The others test the paths of their centres.
 bool takes_radii(const std::string& detector);
-/// Warns of detectors that ignore the radii of a trace's colliders, if it has any. `file` is the trace's name.
+/// Warns of detectors that ignore the radii of colliders, of which `spheres` have one. `scene` is the name of what they
+/// are in.
+void warn_of_radii(const std::vector<std::string>& detectors, std::size_t spheres, std::size_t colliders,
+                   const std::string& scene, Verbosity verbosity);
+/// The same for the colliders of a trace. `file` is its name.
 void warn_of_radii(const std::vector<std::string>& detectors, TraceReader& trace, const std::string& file,
                    Verbosity verbosity);
 /// Those that test the avatar's skin itself, and no simpler shape in its place.

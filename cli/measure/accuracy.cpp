@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <set>
@@ -93,22 +94,29 @@ std::vector<AccuracyContestant> make_contestants(const AccuracyOptions& options,
   return contestants;
 }
 
-/// Those that have a column, ascending.
-std::vector<std::uint32_t> collider_ids(const AccuracyOptions& options, const SceneChoice& choice,
-                                        ColliderSource& colliders) {
+/// Finds the scene's colliders, and which of them have a radius.
+void take_colliders(const AccuracyOptions& options, const SceneChoice& choice, ColliderSource& colliders,
+                    MovingScene& scene) {
   if (!choice.from_file()) {
-    std::vector<std::uint32_t> ids(choice.collider_count());
-    std::iota(ids.begin(), ids.end(), 0U);
-    return ids;
+    scene.collider_ids.resize(choice.collider_count());
+    std::iota(scene.collider_ids.begin(), scene.collider_ids.end(), 0U);
+    scene.is_sphere.assign(scene.collider_ids.size(), colliders.shape() == ColliderShape::kSpheres);
+    return;
   }
-  std::set<std::uint32_t> ids;
+  std::map<std::uint32_t, bool> is_sphere;  // by id
   std::vector<ColliderSample> samples;
   const auto frames = static_cast<std::uint64_t>(options.truth_rate_hz * options.duration_s);
   for (std::uint64_t i = 0; i <= frames; ++i) {
     colliders.sample(static_cast<double>(i) / options.truth_rate_hz, samples);
-    for (const ColliderSample& sample : samples) ids.insert(sample.id);
+    for (const ColliderSample& sample : samples) {
+      bool& sphere = is_sphere.try_emplace(sample.id, false).first->second;
+      sphere = sphere || sample.radius_m > 0;
+    }
   }
-  return {ids.begin(), ids.end()};
+  for (const auto& [id, sphere] : is_sphere) {
+    scene.collider_ids.push_back(id);
+    scene.is_sphere.push_back(sphere);
+  }
 }
 
 /// The scenes asked for: alike but for the colliders.
@@ -186,12 +194,12 @@ class Measurement {
   }
 
   AccuracyScene measure(const SceneChoice& choice, std::uint64_t seed, const std::vector<std::size_t>& which) const {
-    MovingScene moving{scene_.avatar, animation_, nullptr, {}, options_.duration_s};
+    MovingScene moving{scene_.avatar, animation_, nullptr, {}, options_.duration_s, {}};
     moving.make_colliders = [this, &choice, seed] { return make_colliders(choice, scene_.avatar, animation_, seed); };
     const std::unique_ptr<ColliderSource> colliders = moving.make_colliders();
     check_colliders(choice, *colliders, options_.duration_s, options_.common.verbosity());
-    moving.collider_ids = collider_ids(options_, choice, *colliders);
-    moving.shape = colliders->shape();
+    take_colliders(options_, choice, *colliders, moving);
+    if (seed == options_.common.seed) warn_of_ignored_radii(moving, choice.colliders);
     AccuracyScene result;
     result.colliders = choice.colliders;
     result.truth_rate_hz = options_.truth_rate_hz;
@@ -205,6 +213,15 @@ class Measurement {
     result.points = run_accuracy(moving, truth, contestants_, which, settings_,
                                  [&](double share) { return progress.update(share); });
     return result;
+  }
+
+  void warn_of_ignored_radii(const MovingScene& moving, const std::string& name) const {
+    std::vector<std::string> detectors;
+    for (const AccuracyContestant& contestant : contestants_)
+      if (std::ranges::find(detectors, contestant.detector) == detectors.end())
+        detectors.push_back(contestant.detector);
+    const auto spheres = static_cast<std::size_t>(std::ranges::count(moving.is_sphere, true));
+    warn_of_radii(detectors, spheres, moving.is_sphere.size(), name, options_.common.verbosity());
   }
 
   std::unique_ptr<Detector> make_truth(const std::string& detector) const {
@@ -225,7 +242,7 @@ class Measurement {
     result.checked_frames = check_true_contacts(
         moving, {rate_hz, options_.checked_frames, result.seeds.front(), make, [&] { return make_truth("exact"); }},
         [&](double share) { return progress.update((share + 3) / 4); });
-    if (moving.shape == ColliderShape::kSpheres) result.inside_s = inside_s(moving, truth);
+    if (moving.has_spheres()) result.inside_s = inside_s(moving, truth);
     result.true_contacts = truth.contacts;
     result.true_events = truth.events.size();
     result.half_contacts = half.contacts;

@@ -18,11 +18,14 @@ constexpr double kTruth_hz = 1000;
 /// Collider 0 touches from 0.199 s to 0.5 s, first over actuator 3, then over 4; collider 1 touches nothing.
 const std::vector<ContactEvent> kTruth = {event(0, 3, 200, 400, kTruth_hz), event(0, 4, 401, 500, kTruth_hz)};
 /// At 100 Hz the frames 1 to 100 are scored.
-const TouchFrames kFrames = {2, 100, 100, kTruth_hz};
+const std::vector<bool> kSpheres = {true, true};
+const TouchFrames kFrames = {kSpheres, 100, 100, kTruth_hz};
 
 TEST(Touches, AreRunsWhateverTheActuator) {
-  const std::vector<ContactEvent> touches = touches_of(std::vector<ContactEvent>{
-      event(0, 3, 5, 7, 100), event(0, 4, 8, 9, 100), event(0, 4, 11, 12, 100), event(1, 4, 13, 13, 100)});
+  const std::vector<ContactEvent> touches =
+      touches_of(std::vector<ContactEvent>{event(0, 3, 5, 7, 100), event(0, 4, 8, 9, 100), event(0, 4, 11, 12, 100),
+                                           event(1, 4, 13, 13, 100)},
+                 kSpheres);
   ASSERT_EQ(touches.size(), 3U);
   EXPECT_EQ(touches[0].first_frame, 5U);
   EXPECT_EQ(touches[0].last_frame, 9U);
@@ -30,6 +33,23 @@ TEST(Touches, AreRunsWhateverTheActuator) {
   EXPECT_EQ(touches[0].actuator, 0);
   EXPECT_EQ(touches[1].first_frame, 11U);
   EXPECT_EQ(touches[2].column, 1U);
+}
+
+TEST(Touches, OfPointsStayApart) {
+  const std::vector<ContactEvent> events = {event(0, 3, 5, 7, 100), event(0, 4, 8, 9, 100), event(1, 3, 5, 7, 100),
+                                            event(1, 4, 8, 9, 100)};
+  const std::vector<ContactEvent> touches = touches_of(events, {false, true});
+  ASSERT_EQ(touches.size(), 3U);
+  EXPECT_EQ(touches[0], events[0]);
+  EXPECT_EQ(touches[1], events[1]);
+  EXPECT_EQ(touches[2].last_frame, 9U);
+}
+
+TEST(TouchScore, LeavesPointsOut) {
+  const std::vector<bool> second = {false, true};
+  const TouchScore score = score_touches(kTruth, {}, {second, 100, 100, kTruth_hz});
+  EXPECT_EQ(score.within, 0U);
+  EXPECT_EQ(score.outside, 100U);
 }
 
 TEST(TouchScore, CountsFramesThatAreMoreThanOneFrameFromAnEnd) {

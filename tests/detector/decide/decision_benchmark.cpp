@@ -155,7 +155,7 @@ class SkippingFrame {
 
 template <typename FrameOfCpu>
 nlohmann::ordered_json measure_frames(const Avatar& avatar, const ActuatorMap& map, const std::string& colliders) {
-  MovingScene scene{avatar, find_animation(avatar, "walk"), nullptr, {}, 1};
+  MovingScene scene{avatar, find_animation(avatar, "walk"), nullptr, {}, 1, {}};
   scene.make_colliders = [&] { return find_scenario(colliders)->make(avatar, scene.animation, {100, 1}); };
   for (std::uint32_t id = 0; id < 100; ++id) scene.collider_ids.push_back(id);
   SceneSampler sampler(scene, 1000);
