@@ -176,7 +176,11 @@ class Replay {
     const ReplayOutputs& outputs = plan_.outputs;
     if (outputs.contacts != nullptr) outputs.contacts->write(frame, row, trace_.collider_ids());
     if (outputs.textures != nullptr) outputs.textures->add(frame, row);
-    if (outputs.timeline != nullptr) outputs.timeline->write(outputs.drive->next(frame.time_s, row, &frame));
+    if (outputs.timeline != nullptr) {
+      const ActuatorFrame& driven = outputs.drive->next(frame.time_s, row, &frame);
+      result_.any_vibrates |= std::ranges::any_of(driven.duty, [](std::uint8_t duty) { return duty != 0; });
+      outputs.timeline->write(driven);
+    }
     if (plan_.expectation.contacts != nullptr) result_.comparison->add(row, recorded_.row_of(frame.index));
     ++result_.frames;
   }

@@ -61,6 +61,7 @@ struct ReplayResult {
   std::uint64_t non_finite_segments = 0;
   std::optional<std::uint64_t> first_non_finite;    ///< index of the first frame with a non-finite pose or segment
   std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: contacts on skin that no actuator covers
+  bool any_vibrates = false;                        ///< whether any actuator's duty was more than 0; of a timeline only
   std::string texture_hash;
   double reading_s = 0;  ///< decoding the trace
   /// Whole round trips; excludes decoding, which runs in parallel if there are several threads.

@@ -219,7 +219,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   require_frames(reader, options.file);
   const std::uint64_t total = reader.frame_count();
   std::optional<ExportedContacts> contacts;
-  if (!options.contacts.empty()) contacts.emplace(options.contacts, reader.collider_ids(), limits_of(trace));
+  if (!options.contacts.empty()) contacts.emplace(options.contacts, reader, limits_of(trace));
   const std::vector<std::unique_ptr<TraceExport>> files = make_files(options, format, folder, trace, contacts);
   const std::uint64_t written = write_frames(reader, files, contacts, options);
   std::vector<std::string> losses;

@@ -11,9 +11,9 @@
 
 namespace vestige::cli {
 
-ExportedContacts::ExportedContacts(const std::string& file, std::span<const std::uint32_t> collider_ids,
-                                   const ContactLimits& limits)
-    : file_(file), contacts_(read_contacts(file, limits)) {
+ExportedContacts::ExportedContacts(const std::string& file, TraceReader& trace, const ContactLimits& limits)
+    : file_(file), has_spheres_(trace.has_spheres()), contacts_(read_contacts(file, limits)) {
+  const std::vector<std::uint32_t>& collider_ids = trace.collider_ids();
   for (const RecordedContact& contact : contacts_)
     if (!std::ranges::binary_search(collider_ids, contact.collider))
       refuse(fmt::format("has a contact of collider {}, which the trace does not have", contact.collider));
@@ -34,7 +34,7 @@ void ExportedContacts::write(hid_t file, const std::filesystem::path& path) cons
   if (next_ < contacts_.size()) refuse_frame(contacts_[next_].frame);
   const Hdf5Handle group(hdf5().create_group(file, "contacts", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                          hdf5().close_group, path, "make a group");
-  const bool has_depths = !contacts_.empty() && contacts_.front().depth_m.has_value();
+  const bool has_depths = contacts_.empty() ? has_spheres_ : contacts_.front().depth_m.has_value();
   ContactColumns columns(group.id(), path, has_depths ? ColliderShape::kSpheres : ColliderShape::kPoints);
   for (const RecordedContact& contact : contacts_) columns.append(contact);
   columns.close();

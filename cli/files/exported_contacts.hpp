@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "detector/output/recorded_contacts.hpp"
 #include "traces/scene/trace.hpp"
+#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::cli {
 
@@ -18,9 +18,9 @@ namespace vestige::cli {
 /// belong to the trace.
 class ExportedContacts {
  public:
-  /// Reads the contacts of `file`. `collider_ids` are those of the trace, ascending; `limits` what it has.
+  /// Reads the contacts of `file`, which must be of colliders of `trace`. `limits` are what the trace has.
   /// Precondition: no threads have been started.
-  ExportedContacts(const std::string& file, std::span<const std::uint32_t> collider_ids, const ContactLimits& limits);
+  ExportedContacts(const std::string& file, TraceReader& trace, const ContactLimits& limits);
 
   /// Checks the contacts of the next frame of the trace.
   void check(const TraceFrame& frame);
@@ -34,6 +34,7 @@ class ExportedContacts {
   [[noreturn]] void refuse(const std::string& cause) const;
 
   std::string file_;
+  bool has_spheres_;
   std::vector<RecordedContact> contacts_;  ///< by frame
   std::size_t next_ = 0;                   ///< those before it are checked
 };

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,17 +10,17 @@
 #include <vector>
 
 #include "analysis/base/provenance.hpp"
-#include "analysis/mapping/layouts.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/law_choice.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/measure/replay_check.hpp"
+#include "cli/measure/replay_maps.hpp"
+#include "cli/measure/replay_options.hpp"
 #include "cli/verbs.hpp"
 #include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
-#include "traces/files/input_file.hpp"
-#include "traces/hdf5/hdf5_reader.hpp"
 #include "traces/questions/placement_question.hpp"
 
 namespace vestige::cli {
@@ -31,20 +28,6 @@ namespace vestige::cli {
 namespace {
 
 constexpr const char* kIntensityGroup = "Intensity";
-
-struct ReplayOptions {
-  CommonOptions common;
-  DetectorChoice choice;
-  std::string trace;
-  std::size_t threads = 1;
-  LawFlags law;
-  std::vector<std::string> map_at;
-  std::string contacts;
-  std::string textures;
-  std::string planes = "actuator,t,triangle";
-  std::string timeline;
-  std::string verify;
-};
 
 struct NamedPlane {
   const char* name;
@@ -76,113 +59,6 @@ PlaneSet parse_planes(const std::string& text) {
     planes = planes | found->plane;
   }
   return planes;
-}
-
-/// One --map-at: when, and a map's file.
-struct TimedMap {
-  double time_s = 0;
-  std::string file;
-};
-
-/// By time. Throws `UsageError` for what is no TIME=FILE, and for a time that stands twice.
-std::vector<TimedMap> parse_map_at(const std::vector<std::string>& texts) {
-  std::vector<TimedMap> maps;
-  for (const std::string& text : texts) {
-    const std::size_t sign = text.find('=');
-    TimedMap timed;
-    const char* const end = text.data() + std::min(sign, text.size());
-    const auto [read_to, failure] = std::from_chars(text.data(), end, timed.time_s);
-    if (sign == std::string::npos || failure != std::errc() || read_to != end || !std::isfinite(timed.time_s) ||
-        sign + 1 == text.size())
-      throw UsageError("--map-at", fmt::format("'{}' is not a time in seconds, an equals sign and a map", text),
-                       "write for example --map-at 2.5=other.png");
-    timed.file = text.substr(sign + 1);
-    maps.push_back(timed);
-  }
-  std::ranges::stable_sort(maps, {}, &TimedMap::time_s);
-  const auto twice = std::ranges::adjacent_find(maps, {}, &TimedMap::time_s);
-  if (twice != maps.end())
-    throw UsageError("--map-at", fmt::format("two maps begin at {} s", twice->time_s), "leave one of them out");
-  return maps;
-}
-
-/// What --map-at cannot be used with.
-void check_map_at(const ReplayOptions& options) {
-  if (options.map_at.empty()) return;
-  if (options.choice.surface == "mapped")
-    throw UsageError("--map-at", "changes the mapped skin, and --surface mapped cannot follow",
-                     "leave one of the two out");
-  for (const std::string& detector : {options.choice.detector, options.verify})
-    if (detector == "paper")
-      throw UsageError("--map-at", "the detector 'paper' keeps its first map on the GPU", "choose another detector");
-}
-
-std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace,
-                                 const DriveMaker* drives, const ReplayOptions& options) {
-  const Verbosity verbosity = options.common.verbosity();
-  std::vector<MapChange> changes;
-  for (const TimedMap& timed : timed_maps) {
-    const ActuatorMapFiles files = read_map_files(trace.avatar, timed.file);
-    if (files.png.empty()) throw UsageError("--map-at", "'none' is not a map", "name a PNG file, builtin or a layout");
-    MapChange change = {timed.time_s, parse_actuator_map(files, trace.avatar, timed.file), nullptr};
-    if (change.map.actuator_count != trace.map.actuator_count)
-      throw Error(timed.file,
-                  fmt::format("names {} actuators, and the trace's map has {}", change.map.actuator_count,
-                              trace.map.actuator_count),
-                  "use maps with the same number of actuators");
-    for (const std::string& warning : change.map.warnings) warn(warning, verbosity);
-    const std::string other = other_facing(trace.avatar.facing, change.map.facing, {options.trace, timed.file});
-    if (!other.empty()) warn(other, verbosity);
-    if (drives != nullptr) change.layout = drives->layout_of(change.map);
-    changes.push_back(std::move(change));
-  }
-  return changes;
-}
-
-/// What --verify names: another detector, or a file that an earlier replay wrote.
-struct Verification {
-  std::unique_ptr<DetectorTeam> detectors;
-  std::vector<RecordedContact> contacts;
-  std::string texture_hash;
-  bool by_contacts = false;
-
-  ReplayExpectation expectation() const { return {detectors.get(), by_contacts ? &contacts : nullptr}; }
-};
-
-/// The contacts that --verify names, if it names such a file. They are read before any thread starts.
-std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify) {
-  if (verify.empty() || is_detector(verify)) return {};
-  if (!verify.ends_with(".csv") && !has_hdf5_name(verify) && !is_hdf5(verify)) return {};
-  return read_contacts(verify);
-}
-
-Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector,
-                               PlaneSet planes, std::optional<std::vector<RecordedContact>> expected) {
-  Verification verification;
-  if (options.verify.empty()) return verification;
-  if (is_detector(options.verify)) {
-    if (options.verify == detector.name())
-      throw UsageError("--verify", fmt::format("'{}' would be compared with itself", options.verify),
-                       "name another detector, or a file");
-    verification.detectors = std::make_unique<DetectorTeam>(options.threads, [&] {
-      return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, planes);
-    });
-  } else if (options.verify == "-" || options.verify == "auto") {
-    throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
-                     fmt::format("name {}, or a file that an earlier replay wrote", fmt::join(detector_names(), ", ")));
-  } else if (expected) {
-    verification.contacts = std::move(*expected);
-    verification.by_contacts = true;
-  } else {
-    const auto json = nlohmann::json::parse(read_text_file(options.verify), nullptr, false);
-    if (!json.is_object() || !json.contains("texture_hash") || !json["texture_hash"].is_string())
-      throw Error(options.verify,
-                  "is neither a detector, nor contacts (.csv, .h5), nor a replay's JSON with a texture_hash",
-                  fmt::format("name {}, or a file that 'vestige replay --contacts FILE.csv' or '--json FILE' wrote",
-                              fmt::join(detector_names(), ", ")));
-    verification.texture_hash = json["texture_hash"].get<std::string>();
-  }
-  return verification;
 }
 
 nlohmann::ordered_json to_json(const Comparison& comparison, const std::string& against) {
@@ -309,22 +185,6 @@ std::string summary(const ReplayResult& result, const Run& run) {
   return text + fmt::format("texture_hash {}\n", result.texture_hash);
 }
 
-/// Says how the check went; returns the exit code.
-int report_verification(const ReplayOptions& options, const ReplayResult& result, const Verification& verification,
-                        const std::vector<std::string>& outputs) {
-  if (options.verify.empty()) return kDone;
-  if (result.interrupted) {
-    print_summary(fmt::format("verify against {}: stopped before the end\n", options.verify), outputs, options.common);
-    return kDataLost;
-  }
-  const bool by_hash = !result.comparison;
-  const bool same = by_hash ? result.texture_hash == verification.texture_hash : result.comparison->differing() == 0;
-  std::string text = by_hash ? std::string(same ? "the texture hashes are equal" : "the texture hashes differ")
-                             : describe(*result.comparison);
-  print_summary(fmt::format("verify against {}: {}\n", options.verify, text), outputs, options.common);
-  return same ? kDone : kCheckFailed;
-}
-
 /// Says why there may be fewer contacts than expected.
 void warn_of_gaps(const ReplayResult& result, const std::vector<TimedMap>& timed_maps, const ReplayOptions& options) {
   const Verbosity verbosity = options.common.verbosity();
@@ -337,6 +197,20 @@ void warn_of_gaps(const ReplayResult& result, const std::vector<TimedMap>& timed
              "{}: {} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
              options.trace, result.non_finite_frames, result.non_finite_segments, *result.first_non_finite),
          verbosity);
+}
+
+/// Contacts that nobody feels are a reason to ask for another law or map.
+void warn_of_silence(const ReplayResult& result, const ReplayOptions& options) {
+  if (options.timeline.empty() || result.any_vibrates || result.contacts == 0) return;
+  const bool by_place = law_named(options.law.law).needs_poses;
+  if (!by_place && result.contacts == result.contacts_of_actuator[0]) return;  // the summary says it
+  warn(fmt::format("{}: {} drove no actuator under the law {}{}", options.timeline, counted(result.contacts, "contact"),
+                   options.law.law,
+                   by_place
+                       ? ": no sphere covered the place of an actuator; larger spheres or a map with more actuators "
+                         "would, and the law depth goes by regions"
+                       : ""),
+       options.common.verbosity());
 }
 
 /// Contacts that are fewer than the colliders are a reason to ask where the colliders were.
@@ -370,8 +244,7 @@ PlaneSet planes_of_outputs(const ReplayOptions& options, PlaneSet texture_planes
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
-  const std::vector<TimedMap> timed_maps = parse_map_at(options.map_at);
-  check_map_at(options);
+  const std::vector<TimedMap> timed_maps = parse_map_at(options);
   options.law.check();
   std::vector<std::string> inputs = {options.trace, options.verify, options.law.actuator};
   for (const TimedMap& timed : timed_maps) inputs.push_back(timed.file);
@@ -386,11 +259,11 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     throw UsageError("--timeline", fmt::format("there is no actuator in {}, so nothing to write", options.trace),
                      "give the trace an actuator map with 'vestige record --map', or leave --timeline out");
   const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
-  const ColliderShape shape = trace.reader.shape();
+  const ColliderShape shape = trace.reader.has_spheres() ? ColliderShape::kSpheres : ColliderShape::kPoints;
   PlaneSet planes = planes_of_outputs(options, texture_planes, shape);
   std::optional<DriveMaker> drives;
   if (!options.timeline.empty()) {
-    require_radii(std::span(&options.law.law, 1), shape, options.trace);
+    require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
     drives.emplace(options.law, trace.avatar, trace.map);
   }
   if (drives) planes = planes | drives->planes();
@@ -439,6 +312,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (texture_file) texture_file->commit();
   if (timeline) timeline->commit();
   warn_of_gaps(result, timed_maps, options);
+  warn_of_silence(result, options);
   ask_about_placement(trace, result, run, options);
 
   print_summary(summary(result, run), outputs, options.common);

@@ -229,7 +229,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
           ? pick_path(trace.avatar.triangles.size(), colliders, options.choice.skip_kind()).detector
           : options.choice.detector;
   warn_of_radii({name}, trace.reader, options.trace, verbosity);
-  require_radii(std::span(&options.law.law, 1), trace.reader.shape(), options.trace);
+  require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
   LawMaker laws = make_laws(options, trace);
   const auto detector =
       make_detector(name, options.choice.context, options.choice, trace.avatar, trace.map, laws.planes());

@@ -1,5 +1,7 @@
 #include "traces/scenarios/body.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -7,7 +9,9 @@
 #include <numbers>
 #include <utility>
 
+#include "traces/base/error.hpp"
 #include "traces/scene/pose.hpp"
+#include "traces/scene/radius.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
 namespace vestige {
@@ -72,6 +76,17 @@ const std::vector<glm::dmat4>& MovingBody::palette(double time_s) {
     palette_s_ = clamped_s;
   }
   return palette_;
+}
+
+float sphere_radius_m(const MovingBody& body, const std::optional<float>& asked_m, double usual_m) {
+  const double scaled_m = usual_m * body.metre();
+  if (!asked_m && scaled_m > double{kLargestRadius_m})
+    throw UsageError("--colliders",
+                     fmt::format("the avatar is {:.4g} m long, so its spheres would have a radius of {:.3g} m, and a "
+                                 "radius is at most {} m",
+                                 body.size_m(), scaled_m, kLargestRadius_m),
+                     "take an avatar whose unit is the metre, or give a --radius");
+  return asked_m.value_or(static_cast<float>(scaled_m));
 }
 
 }  // namespace vestige

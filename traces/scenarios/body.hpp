@@ -5,6 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "traces/scene/avatar.hpp"
@@ -67,5 +68,9 @@ class MovingBody {
   double palette_s_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<glm::dmat4> palette_;
 };
+
+/// Returns the radius of a scenario's spheres: the one asked for or, without one, `usual_m` beside a human being.
+/// Throws `UsageError` if the body is so large that this is larger than a radius may be.
+float sphere_radius_m(const MovingBody& body, const std::optional<float>& asked_m, double usual_m);
 
 }  // namespace vestige

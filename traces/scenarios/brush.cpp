@@ -28,7 +28,7 @@ class Brush final : public ColliderSource {
         skin_(avatar),
         settings_(settings),
         phase_(Random(settings.seed).uniform(0, 1)),
-        radius_m_(settings.radius_m.value_or(static_cast<float>(kBrushRadius_m * body_.metre()))),
+        radius_m_(sphere_radius_m(body_, settings.radius_m, kBrushRadius_m)),
         arms_{outer_arm(skin_, ArmSide::kLeft), outer_arm(skin_, ArmSide::kRight)} {
     has_arms_ = !arms_[0].empty() && !arms_[1].empty();
     Random random(settings.seed);

@@ -31,14 +31,15 @@ class Rest final : public ColliderSource {
       : body_(avatar, animation),
         skin_(avatar),
         settings_(settings),
-        radius_m_(settings.radius_m.value_or(static_cast<float>(kRestRadius_m * body_.metre()))) {
+        radius_m_(sphere_radius_m(body_, settings.radius_m, kRestRadius_m)) {
     const std::vector<SkinPoint> arm = outer_arm(skin_, ArmSide::kLeft);
+    has_arm_ = !arm.empty();
     hands_.reserve(settings.count);
     for (std::uint32_t id = 0; id < settings.count; ++id) {
       Random random(settings.seed, id);
       const double turn_s = random.uniform(kShortestRest_s, kLongestRest_s);
       const double depth_m = random.uniform(kLeastDepth_m, kMostDepth_m);
-      const bool on_shoulder = id == 0 && !arm.empty();
+      const bool on_shoulder = id == 0 && has_arm_;
       hands_.push_back({turn_s, depth_m, on_shoulder ? 0 : random.uniform(0, 1), kNoTurn, on_shoulder,
                         on_shoulder ? arm.front() : SkinPoint()});
     }
@@ -62,6 +63,11 @@ class Rest final : public ColliderSource {
       out.push_back({id, on_grid(place.position_m + up_m * place.normal), radius_m_});
       if (jumped || jumps) teleported_.push_back(id);
     }
+  }
+
+  std::vector<std::string> warnings() const override {
+    if (has_arm_) return {};
+    return {"the avatar's bones do not name its left arm, so the first hand is laid anywhere, as the others are"};
   }
 
  private:
@@ -93,6 +99,7 @@ class Rest final : public ColliderSource {
   Skin skin_;
   ScenarioSettings settings_;
   float radius_m_;
+  bool has_arm_ = false;
   std::vector<Hand> hands_;
 };
 

@@ -45,6 +45,8 @@ class TraceReader {
   const std::vector<std::uint32_t>& collider_ids();
   /// The ids of the colliders that have a radius in some frame, ascending.
   const std::vector<std::uint32_t>& sphere_ids();
+  /// Whether any collider has a radius above 0 in any frame. A file that holds radii may hold only those of points.
+  bool has_spheres() { return !sphere_ids().empty(); }
   /// The total number of frames that `next` delivers.
   std::uint64_t frame_count();
   /// The number of messages that the recorder noted as lost.

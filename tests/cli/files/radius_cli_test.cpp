@@ -9,11 +9,14 @@
 #include <vector>
 
 #include "tests/cli/files/exchange_fixture.hpp"
+#include "traces/hdf5/hdf5_reader.hpp"
+#include "traces/hdf5/hdf5_table.hpp"
 
 namespace vestige {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Radius : public test::ExchangeTest {
  protected:
@@ -71,11 +74,50 @@ TEST_F(Radius, IsNeededByLawsUnderWhichOnlySpheresAreFelt) {
     ASSERT_EQ(run(fmt::format("vestige replay brush.mcap --law {0} --timeline {0}.csv", law)).exit_code, 0) << law;
     EXPECT_THAT(
         run(fmt::format("tail -n +2 {}.csv | cut -d, -f2- | tr ',' '\n' | sort -n | tail -1", law)).standard_output,
-        ::testing::Not("0\n"))
+        Not("0\n"))
         << law;
   }
-  EXPECT_THAT(run("vestige batch --maps paper6 --traces a.mcap --laws patch -o b").standard_error,
-              HasSubstr("needs the poses of a trace"));
+}
+
+TEST_F(Radius, OfZeroForEveryColliderMakesPoints) {
+  write("zeros.csv", "time_s,id,x,y,z,radius_m\n0,4,0,1,1,0\n0.2,4,0,1,-1,0\n");
+  ASSERT_EQ(run("vestige record --colliders zeros.csv --rate 100 --duration 0.2 -o zeros.mcap").exit_code, 0);
+  ASSERT_EQ(version_of("zeros.mcap"), "2") << "it has radii";
+  EXPECT_THAT(run("vestige replay zeros.mcap --law depth --timeline t.csv").standard_error,
+              HasSubstr("only spheres are felt"));
+  EXPECT_THAT(run("vestige plot paraview zeros.mcap --law patch").standard_error, HasSubstr("only spheres are felt"));
+  EXPECT_THAT(run("vestige batch --maps paper6 --traces zeros.mcap --laws depth -o b").standard_error,
+              HasSubstr("only spheres are felt"));
+  ASSERT_EQ(run("vestige replay zeros.mcap --contacts zeros_contacts.csv").exit_code, 0);
+  EXPECT_THAT(run("head -1 zeros_contacts.csv").standard_output, Not(HasSubstr("depth")));
+}
+
+TEST_F(Radius, ThatCoversNoActuatorsPlaceIsSaidToBeSilentUnderPatch) {
+  ASSERT_EQ(
+      run("vestige record --colliders rest --count 1 --duration 0.8 --rate 100 --map body -o rest.mcap").exit_code, 0);
+  EXPECT_THAT(run("vestige replay rest.mcap --law depth --timeline d.csv").standard_error, Not(HasSubstr("drove no")));
+  ASSERT_EQ(run("vestige record --colliders rest --count 1 --duration 0.8 --rate 100 --map body --radius 0.012 "
+                "-o small.mcap")
+                .exit_code,
+            0);
+  const auto silent = run("vestige replay small.mcap --law patch --timeline p.csv");
+  EXPECT_EQ(silent.exit_code, 0);
+  EXPECT_THAT(silent.standard_error, HasSubstr("drove no actuator under the law patch"));
+}
+
+TEST_F(Radius, GivesDepthToTexturesAndExports) {
+  ASSERT_EQ(run("vestige record --colliders rest --duration 0.8 --rate 100 -o rest.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige replay rest.mcap --contacts c.csv --textures t.exr --planes depth").exit_code, 0);
+  EXPECT_THAT(run("vestige explain t.exr").standard_output, HasSubstr("depth"));
+  ASSERT_EQ(run("vestige export rest.mcap -o rest.h5 --contacts c.csv").exit_code, 0);
+  const auto rows = static_cast<hsize_t>(std::stoul(run("tail -n +2 c.csv | wc -l").standard_output));
+  ASSERT_GT(rows, 10U);
+  const Hdf5Handle file = open_hdf5(folder_ / "rest.h5", "");
+  std::vector<double> depth_m;
+  Hdf5Table(file.id(), "rest.h5", "contacts/depth").read(0, rows, depth_m);
+  std::string text;
+  for (const double depth : depth_m) text += fmt::format("{}\n", depth);
+  EXPECT_EQ(text, run("tail -n +2 c.csv | cut -d, -f15").standard_output);
 }
 
 TEST_F(Radius, InCsvIsInterpolatedAsThePositionIs) {
