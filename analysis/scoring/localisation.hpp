@@ -14,8 +14,8 @@ struct FeltOffset {
   /// Σ A_i v_i / Σ A_i. For contacts at all places between two actuators a distance L apart, its root mean square is
   /// 0.289 L under `binary` and 0.107 L under `phantom`.
   glm::dvec2 amplitude_m = glm::dvec2(0);
-  /// Σ A_i² v_i / Σ A_i². `phantom` assumes this formula, so the value is 0 between actuators under `phantom` by
-  /// construction.
+  /// Σ A_i² v_i / Σ A_i². `phantom` assumes this formula, so under it the value is 0 between actuators on flat skin,
+  /// and little on curved skin.
   glm::dvec2 energy_m = glm::dvec2(0);
 };
 

@@ -131,8 +131,8 @@ constexpr Metric kMetrics[] = {
      .model_based = true,
      .shown = Shown::kInFiles,
      .formula =
-         "sqrt(mean |Σ A_i² v_i / Σ A_i²|²): phantom assumes this formula, so for phantom it is 0 between actuators by "
-         "construction",
+         "sqrt(mean |Σ A_i² v_i / Σ A_i²|²): phantom assumes this formula, so for phantom it is 0 between actuators on "
+         "flat skin",
      .source = "Israr & Poupyrev 2011",
      .value = [](const LawTally& all) { return root_mean(all.squared_energy_error_m2, all.felt) * kMillimetres; }},
     {.name = "slide_ripple",

@@ -107,7 +107,7 @@ bool is_approximate(const std::string& detector) {
 }
 
 bool takes_radii(const std::string& detector) {
-  return detector == "cpu" || detector == "geometry" || detector == "exact" || detector == "decimated";
+  return detector == "cpu" || detector == "geometry" || detector == "exact" || is_approximate(detector);
 }
 
 void warn_of_radii(const std::vector<std::string>& detectors, std::size_t spheres, std::size_t colliders,
@@ -115,8 +115,8 @@ void warn_of_radii(const std::vector<std::string>& detectors, std::size_t sphere
   if (spheres == 0) return;
   for (const std::string& detector : detectors)
     if (!takes_radii(detector))
-      warn(fmt::format("{}: {} of {} have a radius, but {} tests the paths of their centres; cpu, geometry, exact and "
-                       "decimated test spheres",
+      warn(fmt::format("{}: {} of {} have a radius, but {} tests the paths of their centres; cpu, geometry, exact, "
+                       "boxes, capsules and decimated test spheres",
                        scene, spheres, counted(colliders, "collider"), detector),
            verbosity);
 }

@@ -39,9 +39,10 @@ struct LawOptions {
 ///   phantom   The two or three actuators around the contact, together as strong as one: A_i = sqrt(w_i), where the
 ///             w_i ≥ 0 add up to 1 and Σ w_i x_i is the contact's place. For two actuators, a share β of the way from
 ///             the first to the second gives A_1 = sqrt(1 - β) and A_2 = sqrt(β) (Israr & Poupyrev 2011, "Tactile
-///             Brush", the energy model). The places x_i are relative to the contact: directions and distances along
-///             the surface. Three actuators are a triangle of `ActuatorLayout::neighbours`. A contact beyond the
-///             outermost actuators moves to the nearest place between two of them, or at one.
+///             Brush", the energy model). Three actuators are a triangle of `ActuatorLayout::neighbours`, laid flat
+///             with its sides as long as they are along the surface. The contact's place in it is the point whose
+///             squared distances from the corners differ as the contact's do; on flat skin, that is the contact. A
+///             contact beyond the outermost actuators moves to the nearest place between two of them, or at one.
 ///   linear    The same with A_i = w_i: a phantom whose energy sags between actuators, for comparison.
 ///   gaussian  Every actuator at exp(-d² / 2σ²), where d is the distance along the surface. Less than half a step of
 ///             the duty counts as nothing.

@@ -83,7 +83,13 @@ Capsule Capsule::fit(std::span<const Corners> triangles) {
   return capsule;
 }
 
+double Capsule::height(const glm::dvec3& point) const {
+  const glm::dvec3 place = (point - middle) * axes;
+  return glm::length(place - glm::dvec3(std::clamp(place.x, -half_length, half_length), 0, 0)) - radius;
+}
+
 Chord Capsule::chord(const glm::dvec3& start, const glm::dvec3& end) const {
+  if (radius < 0) return Chord::none();
   const glm::dvec3 position = (start - middle) * axes;
   const glm::dvec3 speed = (end - start) * axes;
   const glm::dvec3 tip(half_length, 0, 0);

@@ -27,6 +27,11 @@ struct Capsule {
   /// the area from that axis, and its ends are where the surface ends. Skin lies on both sides of a capsule's surface.
   static Capsule fit(std::span<const Corners> triangles);
 
+  /// Returns the capsule with its surface moved outwards by `by`, or inwards. Where nothing is left, nothing is within
+  /// it.
+  Capsule grown(double by) const { return {middle, axes, half_length, radius + by}; }
+  /// Returns the distance of a point from the surface, negative inside.
+  double height(const glm::dvec3& point) const;
   Chord chord(const glm::dvec3& start, const glm::dvec3& end) const;
   /// Returns the direction, of length 1, that points outwards at a point of the surface.
   glm::dvec3 normal(const glm::dvec3& point) const;

@@ -17,6 +17,8 @@ class MovingFrame {
   const glm::dmat3& linear() const { return linear_; }
   glm::dvec3 to_world(const glm::dvec3& bind) const { return linear_ * bind + offset_; }
   glm::dvec3 to_bind(const glm::dvec3& world) const { return inverse_ * (world - offset_); }
+  /// Returns how much longer lengths are in the world: the root mean square over all directions.
+  double scale() const;
   /// Returns the vector, in the world, whose product with a displacement is that of `normal` with it in bind space.
   glm::dvec3 normal_to_world(const glm::dvec3& normal) const { return normal * inverse_; }
   /// Returns at least the largest |change x| / |linear() x| over all x.

@@ -43,6 +43,11 @@ OrientedBox OrientedBox::fit(std::span<const Corners> triangles) {
   return volume(straight) <= volume(turned) ? straight : turned;
 }
 
+double OrientedBox::height(const glm::dvec3& point) const {
+  const glm::dvec3 out = glm::abs(to_box(point)) - half;
+  return std::max({out.x, out.y, out.z});
+}
+
 Chord OrientedBox::chord(const glm::dvec3& start, const glm::dvec3& end) const {
   const glm::dvec3 position = to_box(start);
   const glm::dvec3 speed = (end - start) * axes;

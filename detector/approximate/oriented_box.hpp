@@ -23,6 +23,10 @@ struct OrientedBox {
   /// Returns a box around all corners: along the main axes of the area or along x, y, z, whichever has less volume.
   static OrientedBox fit(std::span<const Corners> triangles);
 
+  /// Returns the box with every face moved outwards by `by`, or inwards. Where nothing is left, nothing is within it.
+  OrientedBox grown(double by) const { return {middle, axes, half + by}; }
+  /// Returns how far outside a point is, negative inside: exact except beyond edges and corners, where it is less.
+  double height(const glm::dvec3& point) const;
   Chord chord(const glm::dvec3& start, const glm::dvec3& end) const;
   /// Returns the direction, of length 1, that points outwards at a point of the surface.
   glm::dvec3 normal(const glm::dvec3& point) const;

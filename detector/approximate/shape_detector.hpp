@@ -21,7 +21,8 @@
 
 namespace vestige {
 
-/// Finds contacts with one convex shape for each joint in place of the skin. `Shape` is OrientedBox or Capsule.
+/// Finds contacts with one convex shape for each joint in place of the skin. `Shape` is OrientedBox or Capsule. A
+/// sphere touches where its centre is within a shape that is grown by its radius, and in none that is shrunk by it.
 template <typename Shape>
 class ShapeDetector final : public Detector {
  public:
@@ -53,7 +54,9 @@ class ShapeDetector final : public Detector {
       if (near_[i].empty()) continue;
       work.pairs_tested += near_[i].size();
       Contact& contact = row[frame.segments[i].column];
-      contact = first_contact(frame, frame.segments[i], near_[i]);
+      const Segment& segment = frame.segments[i];
+      contact =
+          segment.is_sphere() ? first_touch_of(frame, segment, near_[i]) : first_contact(frame, segment, near_[i]);
       if (contact.hit()) ++work.pairs_meeting;
     }
     return work;
@@ -89,23 +92,26 @@ class ShapeDetector final : public Detector {
 
   void bound_parts(const DetectorFrame& frame) {
     double longest_m = 0;
-    if (method_ == Method::kCarried)
-      for (const Segment& segment : frame.segments)
+    double largest_m = 0;
+    for (const Segment& segment : frame.segments) {
+      largest_m = std::max(largest_m, static_cast<double>(segment.radius_m));
+      if (method_ == Method::kCarried)
         longest_m = std::max(longest_m, glm::distance(glm::dvec3(segment.start), glm::dvec3(segment.end)));
+    }
     boxes_.clear();
     boxes_.reserve(moved_.size());
-    for (const MovedPart& moved : moved_) boxes_.push_back(around(moved, longest_m));
+    for (const MovedPart& moved : moved_) boxes_.push_back(around(moved, longest_m, largest_m));
   }
 
-  /// Returns a box that every segment meets whose way meets the part.
+  /// Returns a box that every segment meets whose way meets the part, grown by the largest radius.
   ///
   /// kCarried: let S and E be the motions at the start and at the end, and D = E - S. |D x| <= moved for every x in the
   /// shape. |D y| <= |D x| + turn |S y - S x| for any other y. The way from a to b meets the shape at x, S a and E b
   /// are the segment's ends. So S b = E b - D b, and with q = |S b - S a|: |D b| <= moved + turn q and q <= length + |D
   /// b|. The point of the segment at the time of x is S x + t D b. So it lies within |D b| of where the shape was.
-  SkinBox around(const MovedPart& moved, double longest_m) const {
+  SkinBox around(const MovedPart& moved, double longest_m, double largest_m) const {
     constexpr double kSlack = 1e-5;  // far more than the rounding of fp32 within reach of the avatar
-    const Shape& shape = moved.part->shape;
+    const Shape shape = moved.part->shape.grown(largest_m / moved.end.scale());
     const glm::dvec3 middle = moved.start.to_world(shape.middle);
     double margin = 0;
     if (method_ == Method::kCarried) {
@@ -147,9 +153,8 @@ class ShapeDetector final : public Detector {
     const MovedPart& moved = moved_[near[crossing->chord]];
     const glm::dvec3 start(segment.start);
     const glm::dvec3 end(segment.end);
-    const glm::dvec3 start_bind = moved.start.to_bind(start);
-    const glm::dvec3 way_bind = moved.end.to_bind(end) - start_bind;
-    const glm::dvec3 place = start_bind + crossing->t * way_bind;
+    const glm::dvec3 way_bind = moved.end.to_bind(end) - moved.start.to_bind(start);
+    const glm::dvec3 place = place_in(moved, start, end, crossing->t);
     const SkinSpot& spot = moved.part->spots[moved.part->shape.cell(place)];
     if (surface_ == Surface::kMapped && spot.actuator == 0) return {};
     Contact contact;
@@ -164,6 +169,60 @@ class ShapeDetector final : public Detector {
     return contact;
   }
 
+  Contact first_touch_of(const DetectorFrame& frame, const Segment& segment, std::span<const std::size_t> near) {
+    enter(Stage::kTest);
+    const glm::dvec3 start(segment.start);
+    const glm::dvec3 end(segment.end);
+    const auto radius_of = [&](const MovedPart& moved) { return segment.radius_m / moved.end.scale(); };
+    chords_.clear();
+    shrunk_.clear();
+    for (const std::size_t i : near) {
+      const MovedPart& moved = moved_[i];
+      const glm::dvec3 from = moved.start.to_bind(start);
+      const glm::dvec3 to = moved.end.to_bind(end);
+      chords_.push_back(moved.part->shape.grown(radius_of(moved)).chord(from, to));
+      shrunk_.push_back(moved.part->shape.grown(-radius_of(moved)).chord(from, to));
+    }
+    const std::optional<double> t = first_touch(chords_, shrunk_);
+    if (!t) return {};
+    enter(Stage::kDecision);
+    // Of the parts that it touches, the one whose surface is nearest.
+    const MovedPart* nearest = nullptr;
+    double least = 0;
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      if (!(chords_[k].enter <= *t && *t <= chords_[k].leave)) continue;
+      const MovedPart& moved = moved_[near[k]];
+      const double away = std::abs(moved.part->shape.height(place_in(moved, start, end, *t))) / radius_of(moved);
+      if (nearest != nullptr && away >= least) continue;
+      nearest = &moved;
+      least = away;
+    }
+    const Shape& shape = nearest->part->shape;
+    const glm::dvec3 place = place_in(*nearest, start, end, *t);
+    const SkinSpot& spot = nearest->part->spots[shape.cell(place)];
+    if (surface_ == Surface::kMapped && spot.actuator == 0) return {};
+    Contact contact;
+    put_spot(spot, contact);
+    const double height = shape.height(place);
+    contact.t = static_cast<float>(*t);
+    contact.side = height >= 0 ? std::int8_t{1} : std::int8_t{-1};
+    const glm::dvec3 normal = shape.normal(place);
+    const glm::dvec3 outwards = nearest->end.normal_to_world(normal);
+    const double length = glm::length(outwards);
+    contact.position = start + *t * (end - start) - height * nearest->end.scale() / length * outwards;
+    if (frame.duration_s > 0) {
+      const glm::dvec3 way_bind = nearest->end.to_bind(end) - nearest->start.to_bind(start);
+      contact.speed_m_per_s = std::abs(glm::dot(normal, way_bind)) / length / frame.duration_s;
+    }
+    return contact;
+  }
+
+  /// Returns where, in bind space, a way is at time t.
+  static glm::dvec3 place_in(const MovedPart& moved, const glm::dvec3& start, const glm::dvec3& end, double t) {
+    const glm::dvec3 from = moved.start.to_bind(start);
+    return from + t * (moved.end.to_bind(end) - from);
+  }
+
   static constexpr float kEverywhere = std::numeric_limits<float>::infinity();
 
   const char* name_;
@@ -175,7 +234,8 @@ class ShapeDetector final : public Detector {
   std::vector<SkinBox> boxes_;  ///< one for each of `moved_`
   SegmentBoxes segments_;
   std::vector<std::vector<std::size_t>> near_;  ///< for each segment: the numbers in `moved_` that it may meet
-  std::vector<Chord> chords_;
+  std::vector<Chord> chords_;  ///< with the parts that a segment may meet; of a sphere, with those that are grown
+  std::vector<Chord> shrunk_;
 };
 
 }  // namespace vestige

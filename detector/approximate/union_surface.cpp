@@ -1,5 +1,7 @@
 #include "detector/approximate/union_surface.hpp"
 
+#include <algorithm>
+
 namespace vestige {
 
 std::optional<Crossing> first_crossing(std::span<const Chord> chords) {
@@ -21,6 +23,22 @@ std::optional<Crossing> first_crossing(std::span<const Chord> chords) {
   for (std::size_t i = 0; i < chords.size(); ++i)
     if (!chords[i].misses() && chords[i].enter > 0 && chords[i].enter <= 1 && (!first || chords[i].enter < first->t))
       first = Crossing{chords[i].enter, i, 1};
+  return first;
+}
+
+std::optional<double> first_touch(std::span<const Chord> grown, std::span<const Chord> shrunk) {
+  const auto touches = [&](double t) {
+    return t >= 0 && t <= 1 &&
+           std::ranges::any_of(grown, [t](const Chord& chord) { return chord.enter <= t && t <= chord.leave; }) &&
+           std::ranges::none_of(shrunk, [t](const Chord& chord) { return chord.enter < t && t < chord.leave; });
+  };
+  if (touches(0)) return 0;
+  std::optional<double> first;
+  const auto offer = [&](const Chord& chord, double t) {
+    if (!chord.misses() && (!first || t < *first) && touches(t)) first = t;
+  };
+  for (const Chord& chord : grown) offer(chord, chord.enter);
+  for (const Chord& chord : shrunk) offer(chord, chord.leave);
   return first;
 }
 

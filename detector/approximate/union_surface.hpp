@@ -20,4 +20,9 @@ struct Crossing {
 /// overlaps it, no surface is crossed. Of shapes that are entered or left at the same time, the first counts.
 std::optional<Crossing> first_crossing(std::span<const Chord> chords);
 
+/// Returns the first time in [0, 1] at which a way is within one of the grown shapes and inside none of the shrunk
+/// ones: when a sphere, whose radius shapes were grown and shrunk by, first touches the surface of the union. Where
+/// shapes overlap, this may find a touch deep inside.
+std::optional<double> first_touch(std::span<const Chord> grown, std::span<const Chord> shrunk);
+
 }  // namespace vestige
