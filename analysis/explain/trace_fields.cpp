@@ -67,6 +67,7 @@ constexpr Field kTraceHdf5[] = {
 
 constexpr Field kSessionFile[] = {
     {"facing", "", "axis along which the avatar looks at rest: +z, -z, +x, -x"},
+    {"radius", "m", "the --radius that every collider was given; mesh: by the meshes of a glTF's nodes"},
 };
 
 constexpr Field kRecord[] = {
