@@ -207,8 +207,8 @@ void warn_of_silence(const ReplayResult& result, const ReplayOptions& options) {
   warn(fmt::format("{}: {} drove no actuator under the law {}{}", options.timeline, counted(result.contacts, "contact"),
                    options.law.law,
                    by_place
-                       ? ": no sphere covered the place of an actuator; larger spheres or a map with more actuators "
-                         "would, and the law depth goes by regions"
+                       ? ": no sphere covered the place of an actuator deep enough; larger spheres, a map with more "
+                         "actuators or less --full-depth help, and the law depth goes by regions"
                        : ""),
        options.common.verbosity());
 }

@@ -28,6 +28,7 @@ std::vector<double> weights_of(std::span<const Corners> triangles) {
 }  // namespace
 
 Chord within_slab(Chord chord, double position, double speed, double half) {
+  if (half < 0) return Chord::none();
   if (speed == 0) return std::abs(position) <= half ? chord : Chord::none();
   const double first = (-half - position) / speed;
   const double second = (half - position) / speed;

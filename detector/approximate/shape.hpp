@@ -19,7 +19,8 @@ struct Chord {
   static Chord none() { return {1, 0}; }
 };
 
-/// Returns a chord limited to the times at which `position + t speed` lies within [-half, half].
+/// Returns a chord limited to the times at which `position + t speed` lies within [-half, half]. None if `half` is
+/// negative.
 Chord within_slab(Chord chord, double position, double speed, double half);
 
 /// The middle of a surface, and its three main directions.

@@ -103,7 +103,8 @@ class ShapeDetector final : public Detector {
     for (const MovedPart& moved : moved_) boxes_.push_back(around(moved, longest_m, largest_m));
   }
 
-  /// Returns a box that every segment meets whose way meets the part, grown by the largest radius.
+  /// Returns a box that every segment meets whose way meets the part; of a sphere, every segment with room for
+  /// `kGrowth` times its radius. `largest_m` is the largest radius.
   ///
   /// kCarried: let S and E be the motions at the start and at the end, and D = E - S. |D x| <= moved for every x in the
   /// shape. |D y| <= |D x| + turn |S y - S x| for any other y. The way from a to b meets the shape at x, S a and E b
@@ -111,14 +112,15 @@ class ShapeDetector final : public Detector {
   /// b|. The point of the segment at the time of x is S x + t D b. So it lies within |D b| of where the shape was.
   SkinBox around(const MovedPart& moved, double longest_m, double largest_m) const {
     constexpr double kSlack = 1e-5;  // far more than the rounding of fp32 within reach of the avatar
-    const Shape shape = moved.part->shape.grown(largest_m / moved.end.scale());
+    const Shape& shape = moved.part->shape;
     const glm::dvec3 middle = moved.start.to_world(shape.middle);
     double margin = 0;
     if (method_ == Method::kCarried) {
       const glm::dmat3 change = moved.end.linear() - moved.start.linear();
       const double turn = moved.start.relative_size(change);
       if (!(turn < 0.5)) return {glm::vec4(-kEverywhere), glm::vec4(kEverywhere)};
-      const double shift = glm::length(moved.end.to_world(shape.middle) - middle) + glm::length(shape.reach(change));
+      const double shift = glm::length(moved.end.to_world(shape.middle) - middle) + glm::length(shape.reach(change)) +
+                           turn * kGrowth * largest_m;
       margin = shift + turn * (longest_m + shift) / (1 - turn);
     }
     const glm::dvec3 reach = shape.reach(moved.start.linear()) + margin + kSlack * (1.0 + glm::abs(middle));
@@ -128,7 +130,11 @@ class ShapeDetector final : public Detector {
   /// Finds the parts that each segment may meet.
   void find_pairs(const DetectorFrame& frame) {
     segments_.reset(frame.segments.size());
-    for (std::uint32_t i = 0; i < frame.segments.size(); ++i) segments_.add(frame.segments[i], i);
+    for (std::uint32_t i = 0; i < frame.segments.size(); ++i) {
+      Segment roomy = frame.segments[i];
+      roomy.radius_m *= static_cast<float>(kGrowth);
+      segments_.add(roomy, i);
+    }
     near_.resize(frame.segments.size());
     for (auto& list : near_) list.clear();
     for (std::size_t first = 0; first < boxes_.size(); first += SegmentBoxes::kMostTested) {
@@ -223,6 +229,9 @@ class ShapeDetector final : public Detector {
     return from + t * (moved.end.to_bind(end) - from);
   }
 
+  /// How much farther than a radius a shape that is grown by it may reach: at a box's corners, sqrt(3), and where the
+  /// joint stretches lengths unevenly, sqrt(3) times their root mean square.
+  static constexpr double kGrowth = 3;
   static constexpr float kEverywhere = std::numeric_limits<float>::infinity();
 
   const char* name_;

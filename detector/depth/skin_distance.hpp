@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -22,8 +23,9 @@ namespace vestige {
 /// nearest face; of the triangle on the nearest edge whose plane is farthest away; at a corner, of the edge there that
 /// makes the smallest angle with the direction to the point. A plane that is farther away is seen less obliquely, so
 /// the sign is right where several sheets of skin meet, and where a triangle is there twice. Beyond a triangle without
-/// area, the next one is seen. (Baerentzen & Aanaes 2005
-/// weigh the normals around a corner by their angles instead, which counts a triangle that is there twice two times.)
+/// area, the next one is seen; a triangle that is flatter than fp32 can tell has none. Vertices at one place of the
+/// posed skin count as one corner. (Baerentzen & Aanaes 2005 weigh the normals around a corner by their angles instead,
+/// which counts a triangle that is there twice two times.)
 class SkinDistance {
  public:
   /// Keeps a reference to the avatar, which has triangles.
@@ -51,6 +53,11 @@ class SkinDistance {
     double squared_m2 = 0;
   };
 
+  /// The vertices of a triangle or an edge, by the number that stands for each place of the bind pose.
+  using Numbers = std::array<std::uint32_t, 3>;
+  using Edge = std::array<std::uint32_t, 2>;
+
+  Numbers numbers_of(std::uint32_t triangle) const;
   static PlaneSide side_of(const glm::dvec3& point, const Corners& triangle);
   Nearest nearest_to(const glm::dvec3& point);
   void look_into(std::size_t meshlet, const glm::dvec3& point, Nearest& best);
@@ -71,7 +78,12 @@ class SkinDistance {
   std::vector<MeshletCorners> skinned_;  ///< those that were looked into
   std::vector<std::uint32_t> slot_;      ///< of each meshlet in `skinned_`, from 1; 0: not there
   std::vector<std::size_t> looked_into_;
-  std::vector<std::uint32_t> crossed_;  ///< triangles without area beyond which `look_at_edge` looked
+  // What a query looks at:
+  std::vector<Edge> edges_;
+  std::vector<std::uint32_t> crossed_;   ///< triangles without area beyond which it looked
+  std::vector<std::uint32_t> together_;  ///< vertices at one place of the posed skin
+  std::vector<std::uint32_t> visited_;   ///< for each vertex, the last visit in which it came to `together_`
+  std::uint32_t visit_ = 0;
 };
 
 }  // namespace vestige

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <limits>
 #include <utility>
 
 #include "detector/nearest_in_triangle.hpp"
@@ -15,6 +16,8 @@ namespace {
 
 /// Some 50 MB of pairs.
 constexpr std::size_t kMostWaiting = std::size_t{1} << 18;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// With fewer triangles of a meshlet, bounds for all of them cost more than they save.
 constexpr int kFewPairs = 3;
@@ -81,13 +84,16 @@ void SphereFinder::take(const DetectorFrame& frame, std::uint32_t column, const 
   best = candidate;
 }
 
+/// Returns at most how far the best triangle so far is at the start; infinity if none touches there.
+double SphereFinder::best_at_most(std::uint32_t column) {
+  const std::optional<Best>& best = best_of(column);
+  return best && best->start ? best->start->range().high : kInfinity;
+}
+
 /// Returns whether a pair cannot win, because its triangle is farther from the centre at the start than the best one so
 /// far. The bounds are of squared distances at the start, to the triangle and to its nearest corner. Leaves doubtful
 /// pairs to the caller. Counts the pair if it touches at the start.
-bool SphereFinder::surely_loses(std::uint32_t column, double radius, double at_least, double to_a_corner_at_most) {
-  const std::optional<Best>& best = best_of(column);
-  if (!best || !best->start) return false;
-  const double best_at_most = best->start->range().high;
+bool SphereFinder::surely_loses(double best_at_most, double radius, double at_least, double to_a_corner_at_most) {
   if (at_least <= best_at_most * best_at_most) return false;
   if (to_a_corner_at_most <= radius * radius) {
     ++counts_.meeting;
@@ -105,41 +111,59 @@ void SphereFinder::offer(const DetectorFrame& frame, const MeshletPlaces& meshle
     }
     return;
   }
-  find_start_bounds(meshlet.before, segment.start, bounds_);
-  auto nearest = static_cast<std::size_t>(std::countr_zero(bits));
-  for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-    if (bounds_.at_least[i] < bounds_.at_least[nearest]) nearest = i;
+  bounds_.find(meshlet.before, segment.start);
+  const std::uint32_t apart = bounds_.compare(kInfinity, segment.radius_m).apart;
+  // The nearest first: then most others surely lose.
+  for (bits = rest_of(segment, bits); bits != 0; bits = rest_of(segment, bits)) {
+    const std::size_t i = bounds_.nearest(bits);
+    bits &= ~(1U << i);
+    const SpherePair pair = sphere_pair(segment, meshlet.at(i), meshlet.triangles[i], method_);
+    if (((apart >> i) & 1) != 0)
+      wait(frame, segment.column, pair);
+    else
+      offer(frame, segment.column, pair);
   }
-  offer(frame, meshlet.at(nearest), segment, meshlet.triangles[nearest]);
-  bits &= ~(1U << nearest);
-  for (; bits != 0; bits &= bits - 1) {
-    const auto i = static_cast<std::size_t>(std::countr_zero(bits));
-    const float at_least = bounds_.at_least[i];
-    if (std::isfinite(at_least) &&
-        surely_loses(segment.column, segment.radius_m, at_least, bounds_.to_a_corner_at_most[i]))
-      continue;
-    offer(frame, meshlet.at(i), segment, meshlet.triangles[i]);
-  }
+}
+
+/// Returns the triangles of `bounds_` that may still win, and counts those of the others that touch at the start.
+std::uint32_t SphereFinder::rest_of(const Segment& segment, std::uint32_t bits) {
+  const double limit = best_at_most(segment.column);
+  if (std::isinf(limit) || bits == 0) return bits;
+  const StartMasks masks = bounds_.compare(limit, segment.radius_m);
+  const std::uint32_t touching = bits & masks.farther & masks.corner_within;
+  counts_.meeting += static_cast<std::uint64_t>(std::popcount(touching));
+  bits &= ~touching;
+  return limit < segment.radius_m ? bits & ~(masks.farther & masks.apart) : bits;
 }
 
 void SphereFinder::offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment,
                          std::uint32_t triangle) {
   const SpherePair pair = sphere_pair(segment, corners, triangle, method_);
   const glm::dvec3& centre = pair.sphere.centre.start;
-  if (surely_loses(segment.column, pair.sphere.radius, kRoundedDown * squared_distance_to_box_of(centre, pair.before),
+  const double limit = best_at_most(segment.column);
+  if (std::isfinite(limit) &&
+      surely_loses(limit, pair.sphere.radius, kRoundedDown * squared_distance_to_box_of(centre, pair.before),
                    squared_distance_to_corners(centre, pair.before) / kRoundedDown))
     return;
-  const StartDistance distance(centre, pair.before);
+  offer(frame, segment.column, pair);
+}
+
+void SphereFinder::offer(const DetectorFrame& frame, std::uint32_t column, const SpherePair& pair) {
+  const StartDistance distance(pair.sphere.centre.start, pair.before);
   if (!touches_at_start(distance, pair.sphere.radius)) {
-    if (surely_touches_at_start(segment.column)) return;
-    if (waiting_.size() == kMostWaiting) make_room(frame);
-    waiting_.push_back({segment.column, pair});
+    wait(frame, column, pair);
     return;
   }
   ++counts_.meeting;
   // The side is found later, for the winner only.
-  take(frame, segment.column, {pair, {0, 0, true}, distance});
+  take(frame, column, {pair, {0, 0, true}, distance});
+}
+
+/// Keeps a pair that does not touch at the start, unless that rules it out.
+void SphereFinder::wait(const DetectorFrame& frame, std::uint32_t column, const SpherePair& pair) {
+  if (surely_touches_at_start(column)) return;
+  if (waiting_.size() == kMostWaiting) make_room(frame);
+  waiting_.push_back({column, pair});
 }
 
 /// Forgets the pairs that no longer matter. If most still do, decides them.

@@ -69,10 +69,14 @@ class SphereFinder {
   bool is_on_surface(const DetectorFrame& frame, const SpherePair& pair, const FirstTouch& touch) const;
   void take(const DetectorFrame& frame, std::uint32_t column, const Best& candidate);
   std::optional<Best>& best_of(std::uint32_t column);
+  void wait(const DetectorFrame& frame, std::uint32_t column, const SpherePair& pair);
   void make_room(const DetectorFrame& frame);
   void decide_waiting(const DetectorFrame& frame);
   bool surely_touches_at_start(std::uint32_t column);
-  bool surely_loses(std::uint32_t column, double radius, double at_least, double to_a_corner_at_most);
+  double best_at_most(std::uint32_t column);
+  std::uint32_t rest_of(const Segment& segment, std::uint32_t bits);
+  bool surely_loses(double best_at_most, double radius, double at_least, double to_a_corner_at_most);
+  void offer(const DetectorFrame& frame, std::uint32_t column, const SpherePair& pair);
 
   const Avatar& avatar_;
   const ActuatorMap& map_;

@@ -76,6 +76,27 @@ TEST_F(Laws, GradeDutiesWithTheContact) {
   EXPECT_GT(json_of("vestige replay t.mcap --timeline o.csv --json - --law gaussian")["law"]["sigma_mm"], 10);
 }
 
+/// At the shoulder, the shortest way to an actuator flips from the front of the body to its back.
+TEST_F(Laws, LetAHandThatStrokesAnArmBeFeltWithoutJumps) {
+  ASSERT_EQ(
+      run("vestige record -q --force --animation idle --colliders brush --count 1 --map body --duration 2.4 -o t.mcap")
+          .exit_code,
+      0);
+  const std::vector<ActuatorFrame> frames = timeline("--law phantom --method ccd");
+  const auto is_felt = [](const ActuatorFrame& frame) {
+    return std::ranges::any_of(frame.duty, [](std::uint8_t duty) { return duty != 0; });
+  };
+  int felt = 0;
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    if (!is_felt(frames[k - 1]) || !is_felt(frames[k])) continue;  // where a touch begins and ends
+    ++felt;
+    for (std::size_t i = 0; i < frames[k].duty.size(); ++i)
+      EXPECT_LE(std::abs(frames[k].duty[i] - frames[k - 1].duty[i]), 0.22 * 255)
+          << "actuator " << i + 1 << " at " << frames[k].time_s << " s";
+  }
+  EXPECT_GT(felt, 1000);
+}
+
 TEST_F(Laws, TakeTheirParameters) {
   EXPECT_GT(sum(timeline("--law speed --full-speed 0.5")), sum(timeline("--law speed --full-speed 2")));
   EXPECT_GT(sum(timeline("--law gaussian --sigma 200")), sum(timeline("--law gaussian --sigma 50")));

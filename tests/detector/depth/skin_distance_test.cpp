@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <map>
 #include <random>
@@ -82,27 +83,74 @@ TEST(SkinDistance, PassesOverTrianglesWithoutArea) {
   EXPECT_EQ(signed_m(mesh.avatar(), {3, 3, 2}), 3);
 }
 
-/// A sharp edge from P to Q. The face above it ends there in one piece, that below in two, which meet halfway at M. The
+/// A sharp edge from P to Q. The face above it ends there in one piece, that below in two, which meet between at M. The
 /// triangle P, M, Q without area closes the gap of no width.
-TEST(SkinDistance, SeesTheNextTriangleBeyondOneWithoutArea) {
+Mesh wedge(float middle) {
   enum : unsigned { kP, kQ, kM, kAboveP, kAboveQ, kBelowP, kBelowQ };
-  const Avatar wedge = test::rigid_avatar(
-      {{0, -1, 0}, {0, 1, 0}, {0, 0, 0}, {-2, -1, 0.3F}, {-2, 1, 0.3F}, {-2, -1, -0.3F}, {-2, 1, -0.3F}},
-      {{kP, kQ, kAboveQ},
-       {kP, kAboveQ, kAboveP},
-       {kP, kM, kQ},
-       {kM, kP, kBelowP},
-       {kM, kBelowP, kBelowQ},
-       {kQ, kM, kBelowQ},
-       {kQ, kBelowQ, kAboveQ},
-       {kP, kAboveP, kBelowP},
-       {kAboveP, kAboveQ, kBelowQ},
-       {kAboveP, kBelowQ, kBelowP}});
-  for (const double y : {-0.6, -0.2, 0.2, 0.6})
-    for (const double z : {-0.1, 0.1})
-      EXPECT_NEAR(signed_m(wedge, {0.1, y, z}), std::sqrt(0.02), 1e-6)
-          << "in front of the edge, behind one of the faces";
-  EXPECT_LT(signed_m(wedge, {-1, 0.2, 0.01}), 0);
+  return {{{0, -1, 0}, {0, 1, 0}, {0, middle, 0}, {-2, -1, 0.3F}, {-2, 1, 0.3F}, {-2, -1, -0.3F}, {-2, 1, -0.3F}},
+          {{kP, kQ, kAboveQ},
+           {kP, kAboveQ, kAboveP},
+           {kP, kM, kQ},
+           {kM, kP, kBelowP},
+           {kM, kBelowP, kBelowQ},
+           {kQ, kM, kBelowQ},
+           {kQ, kBelowQ, kAboveQ},
+           {kP, kAboveP, kBelowP},
+           {kAboveP, kAboveQ, kBelowQ},
+           {kAboveP, kBelowQ, kBelowP}}};
+}
+
+TEST(SkinDistance, SeesTheNextTriangleBeyondOneWithoutArea) {
+  std::mt19937 random(4);
+  std::normal_distribution<float> any(0, 1);
+  for (int turn = 0; turn < 40; ++turn) {
+    // Turned and moved, the triangle without area gets one of rounding errors.
+    const glm::quat rotation = turn == 0
+                                   ? glm::quat(1, 0, 0, 0)
+                                   : glm::normalize(glm::quat(any(random), any(random), any(random), any(random)));
+    const glm::vec3 moved = turn == 0 ? glm::vec3(0) : glm::vec3(any(random), any(random), any(random));
+    Mesh mesh = wedge(turn == 0 ? 0 : 0.137F);
+    for (glm::vec3& vertex : mesh.vertices) vertex = rotation * vertex + moved;
+    const Avatar avatar = mesh.avatar();
+    const auto place = [&](const glm::dvec3& point) { return glm::dquat(rotation) * point + glm::dvec3(moved); };
+    for (const double y : {-0.6, -0.2, 0.2, 0.6}) {
+      for (const double z : {-0.1, 0.1})
+        EXPECT_NEAR(signed_m(avatar, place({0.1, y, z})), std::sqrt(0.02), 1e-5)
+            << "in front of the edge, behind one of the faces; turn " << turn;
+      EXPECT_LT(signed_m(avatar, place({-0.1, y, 0.001})), 0) << turn;
+    }
+  }
+}
+
+/// A limb that is hidden has all its vertices in one place. Here it is the tip of a pyramid.
+TEST(SkinDistance, SeesTheTrianglesAroundAHiddenPart) {
+  constexpr unsigned kSides = 4;
+  constexpr unsigned kMiddle = 2 * kSides;  // of the hidden part, after its border
+  for (const bool is_first : {false, true}) {
+    for (const bool is_inside_out : {false, true}) {
+      Mesh mesh = {{{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}}, {{0, 1, 2}, {0, 2, 3}}};
+      for (unsigned i = 0; i < kSides; ++i) mesh.vertices.push_back(mesh.vertices[i] * 0.5F + glm::vec3(0, 1, 0));
+      mesh.vertices.emplace_back(0, 2, 0);
+      std::vector<glm::uvec3> hidden;
+      for (unsigned i = 0; i < kSides; ++i) {
+        const unsigned next = (i + 1) % kSides;
+        mesh.triangles.insert(mesh.triangles.end(), {{i, kSides + i, kSides + next}, {i, kSides + next, next}});
+        hidden.emplace_back(kMiddle, kSides + next, kSides + i);
+      }
+      mesh.triangles.insert(is_first ? mesh.triangles.begin() : mesh.triangles.end(), hidden.begin(), hidden.end());
+      if (is_inside_out)
+        for (glm::uvec3& triangle : mesh.triangles) std::swap(triangle.y, triangle.z);
+      Avatar avatar = mesh.avatar();
+      for (std::size_t i = kSides; i <= kMiddle; ++i) avatar.influences[i].palette[0] = 1;
+      DetectorFrame frame = test::frame_of(avatar, {});
+      frame.palette.push_back({{glm::vec4(0), glm::vec4(0), glm::vec4(0), glm::vec4(0, 1, 0, 1)}});
+      avatar.palette.resize(2);
+      SkinDistance distance(avatar);
+      distance.begin(frame);
+      EXPECT_EQ(distance.signed_m({0, 1.5, 0}), is_inside_out ? -0.5 : 0.5) << is_first;
+      EXPECT_EQ(distance.signed_m({0, 0.25, 0}), is_inside_out ? 0.25 : -0.25) << is_first;
+    }
+  }
 }
 
 TEST(SkinDistance, IsPositiveAtABorderThatIsThereTwice) {
