@@ -14,6 +14,7 @@ constexpr double kLongestPause_s = 0.1;
 constexpr double kLongestStep_m = 0.050;
 constexpr double kShortestSlide_m = 0.050;
 constexpr std::size_t kFewestContacts = 5;
+constexpr double kRounding_m = 1e-9;  // of a felt place
 
 }  // namespace
 
@@ -53,7 +54,7 @@ void SlideSmoothness::add(double energy, const glm::dvec3* felt_at_m, const glm:
   if (was_felt_) {
     const glm::dvec3 moved_m = *felt_at_m - felt_at_m_;
     largest_jump_m_ = std::max(largest_jump_m_, glm::length(moved_m));
-    if (glm::dot(moved_m, step_m) < 0) ++reversals_;
+    if (glm::dot(moved_m, moved_m) > kRounding_m * kRounding_m && glm::dot(moved_m, step_m) < 0) ++reversals_;
   }
   was_felt_ = true;
   felt_at_m_ = *felt_at_m;

@@ -102,22 +102,32 @@ class Between {
   }
 
   void find_edge() {
-    weight_[0] = {nearest_, 1};
-    count_ = 1;
     const double from_m2 = squared_m2(nearest_);
-    double least_m2 = from_m2;
+    double best_m = std::sqrt(from_m2);  // to the contact, from the nearest place of an edge
+    double second_m = std::numeric_limits<double>::infinity();
+    Share best = {nearest_, 0};
     for (const std::uint16_t other : layout_.beside(nearest_)) {
       const double to_m2 = squared_m2(other);
       const double length_m2 = squared_between_m2(nearest_, other);
       if (!(length_m2 > 0)) continue;
       const double share = std::clamp(0.5 * (from_m2 - to_m2 + length_m2) / length_m2, 0.0, 1.0);
-      const double there_m2 = (1 - share) * from_m2 + share * to_m2 - share * (1 - share) * length_m2;
-      if (!(there_m2 < least_m2)) continue;
-      least_m2 = there_m2;
-      count_ = 0;
-      if (share < 1) weight_[count_++] = {nearest_, 1 - share};
-      if (share > 0) weight_[count_++] = {other, share};
+      if (!(share > 0)) continue;
+      const double there_m =
+          std::sqrt(std::max(0.0, (1 - share) * from_m2 + share * to_m2 - share * (1 - share) * length_m2));
+      if (there_m < best_m) {
+        if (best.amplitude > 0) second_m = best_m;
+        best_m = there_m;
+        best = {other, share};
+      } else {
+        second_m = std::min(second_m, there_m);
+      }
     }
+    // Where two edges are equally near, neither's other end may take part, or it would begin with a jump.
+    if (second_m < (1 + kRamp) * best_m) best.amplitude *= (second_m / best_m - 1) / kRamp;
+    weight_[0] = {nearest_, 1 - best.amplitude};
+    count_ = 1;
+    if (best.amplitude > 0) weight_[count_++] = best;
+    if (best.amplitude >= 1) weight_[0] = weight_[--count_];
   }
 
   double squared_m2(std::uint16_t actuator) const {
@@ -129,6 +139,7 @@ class Between {
     return distance_m * distance_m;
   }
 
+  static constexpr double kRamp = 0.1;
   const ActuatorLayout& layout_;
   std::span<const float> distance_m_;
   std::uint16_t nearest_ = 0;

@@ -174,6 +174,15 @@ TEST(SlideFinder, TakesContactsThatFollowEachOtherAlongTheSkin) {
   EXPECT_FALSE(slides.is_slide(3));
 }
 
+TEST(SlideSmoothness, TakesNoRoundingForAReversal) {
+  SlideSmoothness slide;
+  const glm::dvec3 there(0.1, 0, 0);
+  const glm::dvec3 behind(0.1 - 1e-16, 0, 0);
+  slide.add(1, &there, glm::dvec3(0.01, 0, 0));
+  slide.add(0.5, &behind, glm::dvec3(0.01, 0, 0));
+  EXPECT_EQ(slide.reversals(), 0U);
+}
+
 TEST(SlideSmoothness, SeesRippleJumpsAndReversals) {
   SlideSmoothness slide;
   const glm::dvec3 step(0.01, 0, 0);

@@ -91,7 +91,7 @@ TEST_F(Laws, LetAHandThatStrokesAnArmBeFeltWithoutJumps) {
     if (!is_felt(frames[k - 1]) || !is_felt(frames[k])) continue;  // where a touch begins and ends
     ++felt;
     for (std::size_t i = 0; i < frames[k].duty.size(); ++i)
-      EXPECT_LE(std::abs(frames[k].duty[i] - frames[k - 1].duty[i]), 0.22 * 255)
+      EXPECT_LE(std::abs(frames[k].duty[i] - frames[k - 1].duty[i]), 0.2 * 255)
           << "actuator " << i + 1 << " at " << frames[k].time_s << " s";
   }
   EXPECT_GT(felt, 1000);
