@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "traces/scene/radius.hpp"
+
 namespace vestige {
 
 namespace {
@@ -139,7 +141,8 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
     Column& before = columns_[column];
     if (before.seen_in != 0 && before.seen_in == trace_frame.index) {
       const Segment segment = {static_cast<std::uint32_t>(column), glm::vec3(before.position_m - frame_.origin_m),
-                               glm::vec3(sample.position_m - frame_.origin_m), sample.radius_m};
+                               glm::vec3(sample.position_m - frame_.origin_m),
+                               is_sphere_radius(sample.radius_m) ? sample.radius_m : 0};
       if (within_reach(segment.start) && within_reach(segment.end)) {
         frame_.segments.push_back(segment);
       } else {

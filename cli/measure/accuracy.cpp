@@ -20,6 +20,7 @@
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
+#include "traces/scene/radius.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige::cli {
@@ -110,7 +111,7 @@ void take_colliders(const AccuracyOptions& options, const SceneChoice& choice, C
     colliders.sample(static_cast<double>(i) / options.truth_rate_hz, samples);
     for (const ColliderSample& sample : samples) {
       bool& sphere = is_sphere.try_emplace(sample.id, false).first->second;
-      sphere = sphere || sample.radius_m > 0;
+      sphere = sphere || is_sphere_radius(sample.radius_m);
     }
   }
   for (const auto& [id, sphere] : is_sphere) {

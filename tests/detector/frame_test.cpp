@@ -28,6 +28,16 @@ class FrameBuilderTest : public ::testing::Test {
   const std::vector<std::uint32_t> ids_ = {3, 7, 9};
 };
 
+TEST_F(FrameBuilderTest, TakesARadiusBelowANanometreForAPoint) {
+  FrameBuilder builder(avatar_, ids_);
+  builder.next(frame_at(0, {{3, {0, 0, 1}}, {7, {0, 0, 1}}, {9, {0, 0, 1}}}));
+  const DetectorFrame& frame =
+      builder.next(frame_at(1, {{3, {0, 0, 2}, 1e-45F}, {7, {0, 0, 2}, 0x1p-30F}, {9, {0, 0, 2}, 0x1.fffffep-31F}}));
+  EXPECT_EQ(frame.segments[0].radius_m, 0);
+  EXPECT_EQ(frame.segments[1].radius_m, 0x1p-30F);
+  EXPECT_EQ(frame.segments[2].radius_m, 0);
+}
+
 TEST_F(FrameBuilderTest, GivesAColliderTheColumnOfItsRankAndASegmentFromItsLastPosition) {
   FrameBuilder builder(avatar_, ids_);
   EXPECT_TRUE(builder.next(frame_at(0, {{9, {0, 0, 1}}, {3, {1, 0, 0}}})).segments.empty());

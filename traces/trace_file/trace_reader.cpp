@@ -10,6 +10,7 @@
 
 #include "traces/base/error.hpp"
 #include "traces/mcap/byte_source.hpp"
+#include "traces/scene/radius.hpp"
 #include "traces/trace_file/message_stream.hpp"
 #include "traces/trace_file/recovered.hpp"
 #include "traces/trace_file/trace_index.hpp"
@@ -172,7 +173,7 @@ const TraceReader::Implementation::Census& TraceReader::Implementation::census()
     spheres.clear();
     for (const ColliderSample& collider : frame.colliders) {
       current.push_back(collider.id);
-      if (collider.radius_m > 0) spheres.push_back(collider.id);
+      if (is_sphere_radius(collider.radius_m)) spheres.push_back(collider.id);
     }
     if (spheres != previous_spheres) {
       previous_spheres = spheres;

@@ -69,7 +69,8 @@ nlohmann::ordered_json to_json(const Agreement& agreement) {
   return {{"pairs", agreement.pairs},
           {"contacts", agreement.contacts},
           {"decided_exactly", agreement.exact_arithmetic},
-          {"differences", agreement.differences}};
+          {"differences", agreement.differences},
+          {"slowest_us", 1e6 * agreement.slowest_s}};
 }
 
 }  // namespace

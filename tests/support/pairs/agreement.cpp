@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 
+#include "analysis/base/clocks.hpp"
 #include "detector/decide/start_distance.hpp"
 #include "detector/decision.hpp"
 #include "detector/truth/truth.hpp"
 #include "tests/support/pairs/contact_cases.hpp"
+#include "traces/scene/radius.hpp"
 
 namespace vestige::test {
 
@@ -34,6 +37,24 @@ bool same(const std::optional<FirstContact>& a, const std::optional<FirstContact
   return std::bit_cast<std::uint32_t>(a->t) == std::bit_cast<std::uint32_t>(b->t) && a->side == b->side;
 }
 
+bool is_fp32(double x) {
+  return double{static_cast<float>(x)} == x;
+}
+bool is_fp32(const glm::dvec3& x) {
+  return is_fp32(x.x) && is_fp32(x.y) && is_fp32(x.z);
+}
+bool is_fp32(const Corners& triangle) {
+  return is_fp32(triangle.a) && is_fp32(triangle.b) && is_fp32(triangle.c);
+}
+/// Whether a trace can bring it.
+bool is_fp32(const ContactCase& c) {
+  return is_fp32(c.way.start) && is_fp32(c.way.end) && is_fp32(c.before) && is_fp32(c.after);
+}
+bool is_fp32(const SphereCase& c) {
+  return c.sphere.radius >= double{kSmallestRadius_m} && is_fp32(c.sphere.centre.start) &&
+         is_fp32(c.sphere.centre.end) && is_fp32(c.sphere.radius) && is_fp32(c.before) && is_fp32(c.after);
+}
+
 }  // namespace
 
 void Agreement::add(const Agreement& other) {
@@ -41,6 +62,7 @@ void Agreement::add(const Agreement& other) {
   contacts += other.contacts;
   exact_arithmetic += other.exact_arithmetic;
   differences += other.differences;
+  slowest_s = std::max(slowest_s, other.slowest_s);
   for (const std::string& example : other.examples)
     if (examples.size() < kMostExamples) examples.push_back(example);
 }
@@ -52,7 +74,9 @@ Agreement compare_with_truth(Method method, std::string_view family, std::uint64
   for (std::uint64_t i = 0; i < pairs; ++i) {
     const ContactCase c = generator.next();
     const bool moves = method == Method::kCcd;
+    const double begin_s = thread_cpu_s();
     const Decision decision = moves ? decide_ccd(c.way, c.before, c.after) : decide_static(c.way, c.after);
+    if (is_fp32(c)) agreement.slowest_s = std::max(agreement.slowest_s, thread_cpu_s() - begin_s);
     const auto truth = moves ? exact::ccd_contact(c.way, c.before, c.after) : exact::static_contact(c.way, c.after);
     if (truth) ++agreement.contacts;
     if (decision.exact_arithmetic) ++agreement.exact_arithmetic;
@@ -73,7 +97,9 @@ Agreement compare_spheres_with_truth(Method method, std::string_view family, std
   for (std::uint64_t i = 0; i < pairs; ++i) {
     const SphereCase c = generator.next_sphere();
     const Corners& before = method == Method::kCcd ? c.before : c.after;
+    const double begin_s = thread_cpu_s();
     const SphereDecision decision = decide_sphere(c.sphere, before, c.after);
+    if (is_fp32(c)) agreement.slowest_s = std::max(agreement.slowest_s, thread_cpu_s() - begin_s);
     const auto truth = exact::sphere_contact(c.sphere, before, c.after);
     if (truth) ++agreement.contacts;
     if (decision.exact_arithmetic) ++agreement.exact_arithmetic;
