@@ -28,9 +28,11 @@ enum class Skip { kOff, kOn };
 
 struct DetectorOptions {
   Surface surface = Surface::kAll;
-  PlaneSet planes;  ///< the planes that the rows must carry
+  PlaneSet planes = {};  ///< the planes that the rows must carry
   Method method = Method::kStatic;
   Skip skip = Skip::kOff;
+  /// Divide the shaders' work as on a GPU if the renderer is software, too. It is slower there. For tests.
+  bool as_on_gpu = false;
 };
 
 /// Work done by one call of `detect`, or the sum over several calls; for reports.

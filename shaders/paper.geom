@@ -1,16 +1,16 @@
-// Tests one triangle against a block of segments. Emits one point for each contact, to the collider's pixel of the
+// Tests one triangle against its share of the segments. Emits one point for each contact, to the collider's pixel of the
 // collision texture: HAVE 2010 §III.A. The test is Möller & Trumbore 1997, "Fast, Minimum Storage Ray/Triangle
 // Intersection", in fp32. `precise` forbids contraction and reordering, which may depend on the planes and the
 // number of segments that the program is compiled for. A division may still differ: GLSL lets it err by 2.5 ulp. Depth
 // is t / 2, so the depth test keeps the earliest contact (the paper does not say which contact is kept).
 
-layout(triangles) in;
-layout(points, max_vertices = BLOCK_SEGMENTS) out;
+layout(triangles, invocations = INVOCATIONS) in;
+layout(points, max_vertices = SHARE_SEGMENTS) out;
 
 in Skinned {
   vec3 position;
   vec2 texture_coordinate;
-  flat int block;
+  flat int instance;
 } skinned[];
 
 struct GpuSegment {
@@ -57,8 +57,8 @@ void main() {
   vec3 a = skinned[0].position;
   precise vec3 edge_1 = skinned[1].position - a;
   precise vec3 edge_2 = skinned[2].position - a;
-  int first = skinned[0].block * BLOCK_SEGMENTS;
-  int last = min(first + BLOCK_SEGMENTS, segment_count);
+  int first = (skinned[0].instance * INVOCATIONS + gl_InvocationID) * SHARE_SEGMENTS;
+  int last = min(first + SHARE_SEGMENTS, segment_count);
   for (int i = first; i < last; ++i) {
     vec3 start = segments[i].start;
     precise vec3 direction = segments[i].end - start;

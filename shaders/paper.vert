@@ -17,7 +17,7 @@ layout(std430, binding = VESTIGE_BINDING_PALETTE) readonly buffer Palette {
 out Skinned {
   vec3 position;
   vec2 texture_coordinate;
-  flat int block;
+  flat int instance;
 } skinned;
 
 void main() {
@@ -30,5 +30,5 @@ void main() {
       ((blend[0] * position_bind.x + blend[1] * position_bind.y) + blend[2] * position_bind.z) + blend[3];
   skinned.position = world.xyz;
   skinned.texture_coordinate = texture_coordinate;
-  skinned.block = gl_InstanceID;
+  skinned.instance = gl_InstanceID;
 }

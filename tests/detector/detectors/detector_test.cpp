@@ -44,6 +44,12 @@ struct Kind {
 std::unique_ptr<Detector> paper(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
   return make_paper_detector(test::make_context(), avatar, map, options);
 }
+std::unique_ptr<Detector> paper_as_on_gpu(const Avatar& avatar, const ActuatorMap& map,
+                                          const DetectorOptions& options) {
+  DetectorOptions as_on_gpu = options;
+  as_on_gpu.as_on_gpu = true;
+  return make_paper_detector(test::make_context(), avatar, map, as_on_gpu);
+}
 // own context: a device is made another way
 std::unique_ptr<Detector> paper_on_egl_device(const Avatar& avatar, const ActuatorMap& map,
                                               const DetectorOptions& options) {
@@ -71,6 +77,7 @@ class DetectorTest : public ::testing::TestWithParam<Kind> {
 
 INSTANTIATE_TEST_SUITE_P(Each, DetectorTest,
                          ::testing::Values(Kind{"cpu", make_cpu_detector}, Kind{"paper", paper},
+                                           Kind{"paper_as_on_gpu", paper_as_on_gpu},
                                            Kind{"paper_egl_device", paper_on_egl_device},
                                            Kind{"paper_osmesa", paper_on_osmesa}, Kind{"geometry", geometry},
                                            Kind{"geometry_osmesa", geometry_on_osmesa}),

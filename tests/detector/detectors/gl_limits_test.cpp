@@ -98,12 +98,12 @@ TEST(SmallViewports, HaveRoomForEveryCollider) {
   for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(row[i].hit()) << i;
 }
 
-TEST(DriversThatLinkNoLargeBlocks, AreGivenSmallerOnesAndLoseNoContact) {
+TEST(DriversThatLinkNoLargeShares, AreGivenSmallerOnesAndLoseNoContact) {
   const Avatar avatar = pile_of(1);
   const ActuatorMap map;
   ContactRow row;
-  {
-    const auto paper = make_paper_detector(LimitedContext::make({}, 4), avatar, map, {});
+  for (const bool as_on_gpu : {false, true}) {
+    const auto paper = make_paper_detector(LimitedContext::make({}, 2), avatar, map, {.as_on_gpu = as_on_gpu});
     for (const std::uint32_t colliders : {100U, 3U, 200U}) {
       paper->detect(frame_through(avatar, colliders), row);
       for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(row[i].hit()) << i;

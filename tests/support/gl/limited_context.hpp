@@ -18,12 +18,12 @@ using Limits = std::map<GLenum, GLint>;
 enum class Probe { kAccepted, kRefused };
 
 /// The context of all tests, but its driver says that some of its limits are lower. It clamps viewports, as drivers do.
-/// It says that a program does not link whose head defines a BLOCK_SEGMENTS above `largest_block`, or that is a probe
+/// It says that a program does not link whose head defines a SHARE_SEGMENTS above `largest_share`, or that is a probe
 /// which it refuses, and why, on many lines. Only one may live at a time.
 class LimitedContext final : public GlContext {
  public:
-  static std::unique_ptr<GlContext> make(Limits limits, int largest_block = 1 << 30, Probe probe = Probe::kAccepted) {
-    largest_block_ = largest_block;
+  static std::unique_ptr<GlContext> make(Limits limits, int largest_share = 1 << 30, Probe probe = Probe::kAccepted) {
+    largest_share_ = largest_share;
     probe_ = probe;
     return loaded(std::unique_ptr<GlContext>(new LimitedContext(std::move(limits))), "limited");
   }
@@ -80,15 +80,15 @@ class LimitedContext final : public GlContext {
   }
 
   static void APIENTRY shader_source(GLuint shader, GLsizei count, const GLchar* const* texts, const GLint* lengths) {
-    constexpr std::string_view kDefine = "#define BLOCK_SEGMENTS ";
+    constexpr std::string_view kDefine = "#define SHARE_SEGMENTS ";
     const std::string head(texts[0], static_cast<std::size_t>(lengths[0]));
     const std::size_t place = head.find(kDefine);
     latest_is_probe_ = head.find("#define QUESTIONS ") != std::string::npos;
-    latest_block_ = place == std::string::npos ? 0 : std::stoi(head.substr(place + kDefine.size()));
+    latest_share_ = place == std::string::npos ? 0 : std::stoi(head.substr(place + kDefine.size()));
     real_functions_->ShaderSource(shader, count, texts, lengths);
   }
   static bool is_refused() {
-    return latest_block_ > largest_block_ || (latest_is_probe_ && probe_ == Probe::kRefused);
+    return latest_share_ > largest_share_ || (latest_is_probe_ && probe_ == Probe::kRefused);
   }
   static std::string refusal() {
     std::string log = "0:7(2): error: this driver\n\ndoes not like it\n";
@@ -111,8 +111,8 @@ class LimitedContext final : public GlContext {
   static inline Limits limits_;
   static inline const GlFunctions* real_functions_ = nullptr;
   static inline GLsizeiptr largest_buffer_bytes_ = 0;
-  static inline int largest_block_ = 0;
-  static inline int latest_block_ = 0;
+  static inline int largest_share_ = 0;
+  static inline int latest_share_ = 0;
   static inline Probe probe_ = Probe::kAccepted;
   static inline bool latest_is_probe_ = false;
 };
