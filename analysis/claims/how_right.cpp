@@ -42,7 +42,8 @@ void add_verified(const std::vector<Result>& run, std::vector<Claim>& claims) {
     if (!replay.contains("verify") || !replay["verify"].contains("differing")) return;
     const auto& verify = replay["verify"];
     const auto differing = verify["differing"].get<std::uint64_t>();
-    const std::string who = code(replay.at("detector")) + on_renderer(replay.at("gl"), ContextName::kSaid);
+    const std::string who = code(replay.at("detector")) + on_renderer(replay.at("gl"), ContextName::kSaid) +
+                            (replay.value("ignores_radii", false) ? ", which tests the centres of spheres," : "");
     Sum& sum = sums[{who, code(verify.at("against")), differing > 0}];
     sum.differing += differing;
     sum.expected += verify.at("expected").get<std::uint64_t>();

@@ -101,6 +101,7 @@ constexpr Field kLaw[] = {
 
 constexpr Field kReplay[] = {
     {"complete", "", "false: the trace is damaged, or the run was interrupted"},
+    {"ignores_radii", "", "true: the detector tested the paths of spheres' centres"},
     {"picked", "", "what --detector auto chose"},
     {"why", "", "why it chose that"},
     {"threads", "", "number of threads that detected"},

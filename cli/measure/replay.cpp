@@ -96,6 +96,7 @@ struct Run {
   std::size_t colliders;
   std::optional<PickedPath> picked;  ///< by --detector auto
   const Detector& detector;
+  bool ignores_radii;                  ///< of colliders that have one
   const DriveMaker* drives = nullptr;  ///< of the timeline; null without one
 };
 
@@ -110,6 +111,7 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const Run& run, const
   json["trace"] = options.trace;
   json["detector"] = run.detector.name();
   json["approximate"] = run.detector.is_approximate();
+  json["ignores_radii"] = run.ignores_radii;
   if (const auto kept = run.detector.triangles_kept()) json["triangles_kept"] = *kept;
   if (run.picked) {
     json["picked"] = describe_picked(*run.picked);
@@ -280,7 +282,13 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   std::vector<std::string> tested_by = {picked ? picked->detector : options.choice.detector};
   if (is_detector(options.verify)) tested_by.push_back(options.verify);
   warn_of_radii(tested_by, trace.reader, options.trace, verbosity);
-  const Run run = {options, trace, collider_ids.size(), picked, detectors.first(), drives ? &*drives : nullptr};
+  const Run run = {.options = options,
+                   .trace = trace,
+                   .colliders = collider_ids.size(),
+                   .picked = picked,
+                   .detector = detectors.first(),
+                   .ignores_radii = shape == ColliderShape::kSpheres && !takes_radii(tested_by.front()),
+                   .drives = drives ? &*drives : nullptr};
   const Verification verification = load_verification(options, trace, run.detector, verified, std::move(expected));
 
   catch_interrupts();  // before the first temporary file

@@ -88,10 +88,16 @@ TEST(Claims, CountContactsThatDifferApartFromReplaysThatAgree) {
   same["verify"] = {{"against", "cpu"}, {"differing", 0}, {"expected", 7}};
   auto differs = same;
   differs["verify"]["differing"] = 2;
-  const auto texts = texts_of({result("1.json", same), result("2.json", same), result("3.json", differs)});
-  const std::string who = "`paper` on softpipe (software, osmesa) by `ccd`: ";
+  auto of_spheres = differs;
+  of_spheres["ignores_radii"] = true;
+  const auto texts = texts_of(
+      {result("1.json", same), result("2.json", same), result("3.json", differs), result("4.json", of_spheres)});
+  const std::string paper = "`paper` on softpipe (software, osmesa)";
+  const std::string who = paper + " by `ccd`: ";
   EXPECT_THAT(texts, Contains(who + "0 of 14 contacts differ from those of `cpu` in 2 replays"));
   EXPECT_THAT(texts, Contains(who + "2 of 7 contacts differ from those of `cpu`"));
+  EXPECT_THAT(texts, Contains(paper + ", which tests the centres of spheres, by `ccd`: 2 of 7 contacts differ from "
+                                      "those of `cpu`"));
 }
 
 TEST(Claims, SayWhoWritesTheSameTexture) {
