@@ -10,7 +10,7 @@ export PATH
 usage="usage: measure [--quick | --short] [--pairs N] [FOLDER]
   FOLDER     where the results go (default: results-DATE-RENDERER in the current folder)
   --quick    less than a minute instead of about an hour, to see whether everything works
-  --short    a few minutes, for a machine that is lent for minutes: all steps, with fewer pairs, frames and counts
+  --short    a few minutes, where an hour cannot be had: all steps, with fewer pairs, frames and counts
   --pairs N  adversarial pairs that each method decides; of spheres, a twentieth (default: 10000000; 500000 with
              --short, 5000 with --quick)
 Exit codes: 0 exact, and all steps ran; 1 not exact, or a step failed; 2 wrong usage"
@@ -25,7 +25,10 @@ out=
 while [ $# -gt 0 ]; do
   case $1 in
     -h | --help) echo "$usage"; exit 0 ;;
-    --quick | --short) size=${1#--} ;;
+    --quick | --short)
+      [ $size = full ] || wrong_usage "either --quick or --short"
+      size=${1#--}
+      ;;
     --pairs)
       case ${2:-} in '' | *[!0-9]* | 0*) wrong_usage "--pairs: '${2:-}' is not a number of pairs" ;; esac
       pairs=$2
@@ -137,7 +140,7 @@ for method in static ccd; do
     agreement --method $method --pairs "$pairs" --threads "$threads"
 done
 # Spheres are decided by other code, whose slow truth is slower.
-spheres=$((pairs / 20))
+spheres=$(((pairs + 19) / 20))
 for method in ${geometry:+static carried ccd}; do
   step "agreement-geometry-spheres-$method" into "$out/agreement-geometry-spheres-$method.json" \
     geometry_agreement --spheres --method "$method" --skip --pairs "$spheres"

@@ -29,7 +29,7 @@ constexpr Field kColliders[] = {
     {"x", "m", "its place in the world"},
     {"y", "m", "its place in the world; up"},
     {"z", "m", "its place in the world"},
-    {"radius_m", "m", "its radius, 0: a point; only in traces with radii"},
+    {"radius_m", "m", "its radius, below 2^-30: a point; only in traces with radii"},
     {"teleported", "", "1: it jumped here, so that no segment leads to it; 0: it moved"},
 };
 
@@ -58,7 +58,7 @@ constexpr Field kTraceHdf5[] = {
     {"colliders/position", "m", "frames x colliders x 3, float64: place in the world; NaN: absent"},
     {"colliders/present", "", "frames x colliders, uint8: 0 absent, 1 present"},
     {"colliders/teleported", "", "frames x colliders, uint8: 1: it jumped here"},
-    {"colliders/radius", "m", "frames x colliders, float32: 0: a point; NaN: absent; only in traces with radii"},
+    {"colliders/radius", "m", "frames x colliders, float32: below 2^-30: a point; NaN: absent; only in traces with radii"},
     {"avatar.glb", "", "the avatar's file, byte by byte"},
     {"actuator_map.png", "", "the actuator map's file, byte by byte"},
     {"actuator_map.json", "", "the actuator map's names, byte by byte"},

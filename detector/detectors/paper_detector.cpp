@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <compare>
@@ -48,7 +47,7 @@ class PaperDetector final : public Detector {
         gl_(current_gl(*context_)),
         avatar_(avatar),
         options_(with_sources(options)),
-        on_gpu_(options.as_on_gpu || !context_->info().software),
+        small_shares_(options.as_on_gpu || !context_->info().software),
         map_per_triangle_(map.triangle_count != 0),
         palette_(gl_),
         segments_(gl_),
@@ -171,25 +170,26 @@ class PaperDetector final : public Detector {
   /// A GPU reserves room for all points that an invocation may emit, so a few large shares leave most of it idle.
   /// Measured on an NVIDIA H100, 4998 triangles against 100 colliders, microseconds a draw: 128 segments in one
   /// invocation, 1412; 8 segments, in 13 instances, 283; 4 segments in 32 invocations, 186. On llvmpipe small shares
-  /// cost 2 to 6 times as much as large ones.
+  /// cost 2 to 6 times as much as large ones. All of this is with one plane; more make points larger.
   Share share_for(std::size_t segments) const {
     const std::size_t size = std::bit_ceil(std::max<std::size_t>(segments, 1));
-    if (!on_gpu_) return {std::min(size, largest_share_), 1};
+    if (!small_shares_) return {std::min(size, largest_share_), 1};
     constexpr std::size_t kInvocations = 32;  // what every driver allows
     const std::size_t invocations = std::clamp<std::size_t>(size / 2, 1, kInvocations);
     return {std::min({size / invocations, std::size_t{4}, largest_share_}), invocations};
   }
 
-  /// Returns the program for this number of segments, and their share. If the driver refuses the program, tries half as
-  /// many segments for an invocation, as every later call does: a driver may link less than its limits allow.
+  /// Returns the program for this number of segments, and their share. A driver may link less than its limits allow: if
+  /// it refuses a program of small shares, tries large ones, and then half as large. Every later call does so too.
   std::pair<GLuint, Share> program_for(std::size_t segments) {
     for (;;) {
       const Share share = share_for(segments);
       try {
         return {program_of(share).name(), share};
       } catch (const Error&) {
-        if (share.segments == 1) throw;
-        largest_share_ = share.segments / 2;
+        if (!small_shares_ && share.segments == 1) throw;
+        if (!small_shares_) largest_share_ = share.segments / 2;
+        small_shares_ = false;
       }
     }
   }
@@ -268,7 +268,7 @@ class PaperDetector final : public Detector {
   const GlFunctions& gl_;
   const Avatar& avatar_;
   DetectorOptions options_;
-  bool on_gpu_;
+  bool small_shares_;
   bool map_per_triangle_;
   std::size_t largest_share_ = 1;  ///< segments that an invocation may test
   GlBuffer palette_;

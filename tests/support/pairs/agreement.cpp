@@ -90,10 +90,8 @@ Agreement compare_with_truth(Method method, std::string_view family, std::uint64
   for (std::uint64_t i = 0; i < pairs; ++i) {
     const ContactCase c = generator.next();
     const bool moves = method == Method::kCcd;
-    double not_counted_s = std::numeric_limits<double>::infinity();
-    const Decision decision = timed(is_fp32(c) ? agreement.slowest_s : not_counted_s, [&] {
-      return moves ? decide_ccd(c.way, c.before, c.after) : decide_static(c.way, c.after);
-    });
+    const auto decide = [&] { return moves ? decide_ccd(c.way, c.before, c.after) : decide_static(c.way, c.after); };
+    const Decision decision = is_fp32(c) ? timed(agreement.slowest_s, decide) : decide();
     const auto truth = moves ? exact::ccd_contact(c.way, c.before, c.after) : exact::static_contact(c.way, c.after);
     if (truth) ++agreement.contacts;
     if (decision.exact_arithmetic) ++agreement.exact_arithmetic;
@@ -114,9 +112,8 @@ Agreement compare_spheres_with_truth(Method method, std::string_view family, std
   for (std::uint64_t i = 0; i < pairs; ++i) {
     const SphereCase c = generator.next_sphere();
     const Corners& before = method == Method::kCcd ? c.before : c.after;
-    double not_counted_s = std::numeric_limits<double>::infinity();
-    const SphereDecision decision = timed(is_fp32(c) ? agreement.slowest_s : not_counted_s,
-                                          [&] { return decide_sphere(c.sphere, before, c.after); });
+    const auto decide = [&] { return decide_sphere(c.sphere, before, c.after); };
+    const SphereDecision decision = is_fp32(c) ? timed(agreement.slowest_s, decide) : decide();
     const auto truth = exact::sphere_contact(c.sphere, before, c.after);
     if (truth) ++agreement.contacts;
     if (decision.exact_arithmetic) ++agreement.exact_arithmetic;

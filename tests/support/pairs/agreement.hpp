@@ -15,8 +15,8 @@ struct Agreement {
   std::uint64_t contacts = 0;
   std::uint64_t exact_arithmetic = 0;  ///< pairs for which the deciding code needed exact arithmetic
   std::uint64_t differences = 0;       ///< differences in contact or miss, in any bit of t, or in the side
-  double slowest_s = 0;                ///< least thread time of three, of the slowest decision that a trace can bring
-  std::vector<std::string> examples;   ///< the first differences, with hexadecimal numbers
+  double slowest_s = 0;  ///< thread time of the slowest decision that a trace can bring, the least of three
+  std::vector<std::string> examples;  ///< the first differences, with hexadecimal numbers
 
   void add(const Agreement& other);
 };
