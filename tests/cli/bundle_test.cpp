@@ -173,8 +173,8 @@ TEST_F(Bundle, MeasureLeavesAFolderOfResultsAndOneVerdict) {
   EXPECT_THAT(verdict, StartsWith("VERDICT: EXACT on " + device["renderer"].get<std::string>() + "\n"));
   EXPECT_THAT(verdict, AllOf(HasSubstr(device["context"].get<std::string>()), HasSubstr("to nearest even")));
   // Three methods by three contestants; two methods.
-  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 18000 answers"));
-  EXPECT_THAT(verdict, HasSubstr("0 differ, of 4000 answers"));
+  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 36000 answers"));
+  EXPECT_THAT(verdict, HasSubstr("0 differ, of 4200 answers"));
   EXPECT_THAT(verdict, HasSubstr("the texture of cpu without skipping: 18 of 18"));
   EXPECT_THAT(verdict, HasSubstr("errors: 0, others: "));
   EXPECT_THAT(verdict, HasSubstr("With 100 colliders, against the fastest cpu"));
@@ -202,7 +202,7 @@ esac
   const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
   EXPECT_THAT(verdict, StartsWith("VERDICT: INCOMPLETE on "));
   EXPECT_THAT(verdict, HasSubstr("FAILED:\n    sweep(139): results/log/sweep.txt"));
-  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 18000 answers")) << "what ran is kept";
+  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 36000 answers")) << "what ran is kept";
   EXPECT_THAT(verdict, AllOf(HasSubstr("errors: 1, others: "), HasSubstr("GL_INVALID_ENUM in glEnable")));
 }
 
