@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <compare>
 #include <map>
 #include <optional>
 #include <span>
@@ -161,7 +160,6 @@ class PaperDetector final : public Detector {
   struct Share {
     std::size_t segments = 1;
     std::size_t invocations = 1;
-    auto operator<=>(const Share&) const = default;
   };
 
   /// The shader may emit a point for each segment, so an invocation never tests more segments than it may emit points:
@@ -195,7 +193,7 @@ class PaperDetector final : public Detector {
   }
 
   const GlProgram& program_of(const Share& share) {
-    auto& program = programs_[share];
+    auto& program = programs_[{share.segments, share.invocations}];
     if (!program) {
       program.emplace(gl_, head(share),
                       std::initializer_list<GlProgram::Stage>{{GL_VERTEX_SHADER, "paper.vert", shaders::kPaperVert},
@@ -277,7 +275,8 @@ class PaperDetector final : public Detector {
   GLuint map_texture_ = 0;
   CollisionTexture texture_;
   DrawTimer timer_;
-  std::map<Share, std::optional<GlProgram>> programs_;
+  /// By the segments and the invocations of a share.
+  std::map<std::pair<std::size_t, std::size_t>, std::optional<GlProgram>> programs_;
   std::optional<GlProgram> skinning_program_;
   std::vector<GpuSegment> gpu_segments_;
 };
