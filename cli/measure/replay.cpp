@@ -243,6 +243,15 @@ PlaneSet planes_of_outputs(const ReplayOptions& options, PlaneSet texture_planes
   return planes | (shape == ColliderShape::kSpheres ? PlaneSet::all() : PlaneSet::all().without(Plane::kDepth));
 }
 
+/// Warns if the run's detector, or the one that it is compared with, ignores the radii of spheres. Returns whether the
+/// run's does.
+bool warn_of_ignored_radii(const ReplayOptions& options, const std::string& detector, OpenTrace& trace) {
+  std::vector<std::string> tested_by = {detector};
+  if (is_detector(options.verify)) tested_by.push_back(options.verify);
+  warn_of_radii(tested_by, trace.reader, options.trace, options.common.verbosity());
+  return !takes_radii(detector) && trace.reader.has_spheres();
+}
+
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
@@ -279,16 +288,9 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     return make_detector(picked ? picked->detector : options.choice.detector, options.choice.context, options.choice,
                          trace.avatar, trace.map, planes);
   });
-  std::vector<std::string> tested_by = {picked ? picked->detector : options.choice.detector};
-  if (is_detector(options.verify)) tested_by.push_back(options.verify);
-  warn_of_radii(tested_by, trace.reader, options.trace, verbosity);
-  const Run run = {.options = options,
-                   .trace = trace,
-                   .colliders = collider_ids.size(),
-                   .picked = picked,
-                   .detector = detectors.first(),
-                   .ignores_radii = shape == ColliderShape::kSpheres && !takes_radii(tested_by.front()),
-                   .drives = drives ? &*drives : nullptr};
+  const bool ignores_radii = warn_of_ignored_radii(options, detectors.first().name(), trace);
+  const Run run = {options,           trace,         collider_ids.size(),        picked,
+                   detectors.first(), ignores_radii, drives ? &*drives : nullptr};
   const Verification verification = load_verification(options, trace, run.detector, verified, std::move(expected));
 
   catch_interrupts();  // before the first temporary file
