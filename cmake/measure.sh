@@ -26,7 +26,7 @@ while [ $# -gt 0 ]; do
   case $1 in
     -h | --help) echo "$usage"; exit 0 ;;
     --quick | --short)
-      [ $size = full ] || wrong_usage "either --quick or --short"
+      [ "$size" = full ] || wrong_usage "either --quick or --short"
       size=${1#--}
       ;;
     --pairs)
@@ -131,24 +131,23 @@ VESTIGE_GL_DEBUG=1
 export VESTIGE_GL_DEBUG
 
 threads=$(getconf _NPROCESSORS_ONLN 2>/dev/null || echo 1)
-for method in ${geometry:+static carried ccd}; do
-  step "agreement-geometry-$method" into "$out/agreement-geometry-$method.json" \
-    geometry_agreement --method "$method" --skip --pairs "$pairs"
-done
-for method in static ccd; do
-  step "agreement-cpu-$method" into "$out/agreement-cpu-$method.json" \
-    agreement --method $method --pairs "$pairs" --threads "$threads"
-done
+# agreements INFIX PAIRS FLAGS...: of each method, to agreement-{geometry,cpu}-INFIX{METHOD}.json.
+agreements() {
+  infix=$1
+  count=$2
+  shift 2
+  for method in ${geometry:+static carried ccd}; do
+    step "agreement-geometry-$infix$method" into "$out/agreement-geometry-$infix$method.json" \
+      geometry_agreement "$@" --method "$method" --skip --pairs "$count"
+  done
+  for method in static ccd; do
+    step "agreement-cpu-$infix$method" into "$out/agreement-cpu-$infix$method.json" \
+      agreement "$@" --method $method --pairs "$count" --threads "$threads"
+  done
+}
+agreements '' "$pairs"
 # Spheres are decided by other code, whose slow truth is slower.
-spheres=$(((pairs + 19) / 20))
-for method in ${geometry:+static carried ccd}; do
-  step "agreement-geometry-spheres-$method" into "$out/agreement-geometry-spheres-$method.json" \
-    geometry_agreement --spheres --method "$method" --skip --pairs "$spheres"
-done
-for method in static ccd; do
-  step "agreement-cpu-spheres-$method" into "$out/agreement-cpu-spheres-$method.json" \
-    agreement --spheres --method $method --pairs "$spheres" --threads "$threads"
-done
+agreements spheres- $(((pairs + 19) / 20)) --spheres
 
 # replay NAME FLAGS...: through a detector, to replay-NAME.json.
 replay() {

@@ -185,9 +185,9 @@ class PaperDetector final : public Detector {
       try {
         return {program_of(share).name(), share};
       } catch (const Error&) {
-        if (!small_shares_ && share.segments == 1) throw;
-        if (!small_shares_) largest_share_ = share.segments / 2;
-        small_shares_ = false;
+        if (std::exchange(small_shares_, false)) continue;
+        if (share.segments == 1) throw;
+        largest_share_ = share.segments / 2;
       }
     }
   }

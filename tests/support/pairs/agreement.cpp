@@ -47,11 +47,10 @@ bool is_fp32(const glm::dvec3& x) {
 bool is_fp32(const Corners& triangle) {
   return is_fp32(triangle.a) && is_fp32(triangle.b) && is_fp32(triangle.c);
 }
-/// Whether a trace can bring it.
-bool is_fp32(const ContactCase& c) {
+bool a_trace_can_bring(const ContactCase& c) {
   return is_fp32(c.way.start) && is_fp32(c.way.end) && is_fp32(c.before) && is_fp32(c.after);
 }
-bool is_fp32(const SphereCase& c) {
+bool a_trace_can_bring(const SphereCase& c) {
   return c.sphere.radius >= double{kSmallestRadius_m} && is_fp32(c.sphere.centre.start) &&
          is_fp32(c.sphere.centre.end) && is_fp32(c.sphere.radius) && is_fp32(c.before) && is_fp32(c.after);
 }
@@ -91,7 +90,7 @@ Agreement compare_with_truth(Method method, std::string_view family, std::uint64
     const ContactCase c = generator.next();
     const bool moves = method == Method::kCcd;
     const auto decide = [&] { return moves ? decide_ccd(c.way, c.before, c.after) : decide_static(c.way, c.after); };
-    const Decision decision = is_fp32(c) ? timed(agreement.slowest_s, decide) : decide();
+    const Decision decision = a_trace_can_bring(c) ? timed(agreement.slowest_s, decide) : decide();
     const auto truth = moves ? exact::ccd_contact(c.way, c.before, c.after) : exact::static_contact(c.way, c.after);
     if (truth) ++agreement.contacts;
     if (decision.exact_arithmetic) ++agreement.exact_arithmetic;
@@ -113,7 +112,7 @@ Agreement compare_spheres_with_truth(Method method, std::string_view family, std
     const SphereCase c = generator.next_sphere();
     const Corners& before = method == Method::kCcd ? c.before : c.after;
     const auto decide = [&] { return decide_sphere(c.sphere, before, c.after); };
-    const SphereDecision decision = is_fp32(c) ? timed(agreement.slowest_s, decide) : decide();
+    const SphereDecision decision = a_trace_can_bring(c) ? timed(agreement.slowest_s, decide) : decide();
     const auto truth = exact::sphere_contact(c.sphere, before, c.after);
     if (truth) ++agreement.contacts;
     if (decision.exact_arithmetic) ++agreement.exact_arithmetic;

@@ -443,7 +443,8 @@ SphereCase CaseGenerator::next_sphere() {
   if (!is_finite(c.way.end)) c.way.end = c.way.start;
   if (one_in(random, 2)) {  // as all that a trace brings
     round_to_fp32(c);
-    if (is_radius(double{static_cast<float>(radius)})) radius = double{static_cast<float>(radius)};
+    const double rounded = double{static_cast<float>(radius)};
+    if (is_radius(rounded)) radius = rounded;
   }
   return {{c.way, radius}, c.before, c.after};
 }
