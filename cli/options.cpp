@@ -156,14 +156,21 @@ void print_summary(std::string_view text, const std::vector<std::string>& output
   if (errno != EPIPE) throw system_error("standard output", "could not write", errno);
 }
 
+std::vector<double> parse_numbers(const std::string& text) {
+  std::vector<double> numbers;
+  for (const std::string& part : parse_list(text)) {
+    double number = 0;
+    if (!parse_number(part, number) || !std::isfinite(number)) return {};
+    numbers.push_back(number);
+  }
+  return numbers;
+}
+
 glm::dvec3 parse_vector(const std::string& text, const std::string& flag) {
-  const std::vector<std::string> parts = parse_list(text);
-  glm::dvec3 vector(0);
-  bool good = parts.size() == 3;
-  for (int i = 0; good && i < 3; ++i)
-    good = parse_number(parts[static_cast<std::size_t>(i)], vector[i]) && std::isfinite(vector[i]);
-  if (!good) throw UsageError(flag, fmt::format("'{}' is not X,Y,Z", text), "give three numbers, in metres: 0,1.5,0");
-  return vector;
+  const std::vector<double> numbers = parse_numbers(text);
+  if (numbers.size() != 3)
+    throw UsageError(flag, fmt::format("'{}' is not X,Y,Z", text), "give three numbers, in metres: 0,1.5,0");
+  return {numbers[0], numbers[1], numbers[2]};
 }
 
 std::vector<std::uint32_t> parse_counts(const std::string& text, const std::string& flag) {

@@ -72,6 +72,9 @@ void write_json(const std::string& path, const nlohmann::ordered_json& json, con
 /// error. With -q, prints nothing.
 void print_summary(std::string_view text, const std::vector<std::string>& output_paths, const CommonOptions& options);
 
+/// Parses finite numbers separated by commas. Returns nothing if a part is none.
+std::vector<double> parse_numbers(const std::string& text);
+
 /// Parses "X,Y,Z" in metres. Throws `UsageError` with the name of the flag.
 glm::dvec3 parse_vector(const std::string& text, const std::string& flag);
 

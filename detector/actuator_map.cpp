@@ -357,9 +357,9 @@ ActuatorMap parse_actuator_map(const ActuatorMapFiles& files, const Avatar& avat
   return map;
 }
 
-ActuatorMapFiles actuator_map_files(const TraceReader& trace) {
-  const auto png = trace.actuator_map_png();
-  return {{png.begin(), png.end()}, std::string(text_of(trace.actuator_map_json()))};
+ActuatorMapFiles actuator_map_files(const RecordedPerson& person) {
+  const auto png = person.actuator_map_png;
+  return {{png.begin(), png.end()}, std::string(text_of(person.actuator_map_json))};
 }
 
 std::filesystem::path sidecar_path(std::filesystem::path map) {

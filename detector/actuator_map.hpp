@@ -16,7 +16,7 @@
 
 namespace vestige {
 
-class TraceReader;
+struct RecordedPerson;
 
 /// The actuator ID map (HAVE 2010 §III.B): an image in which each grey level is one actuator and black fires nothing.
 /// The map stores actuator numbers 1 … actuator_count; 0 means no actuator.
@@ -84,7 +84,7 @@ struct ActuatorMapFiles {
 ActuatorMap parse_actuator_map(const ActuatorMapFiles& files, const Avatar& avatar, std::string_view name);
 
 /// Returns the map files that a trace carries; they are empty if the trace has no map.
-ActuatorMapFiles actuator_map_files(const TraceReader& trace);
+ActuatorMapFiles actuator_map_files(const RecordedPerson& person);
 
 /// Returns the path of the sidecar for a map in a PNG file: the same name with .json.
 std::filesystem::path sidecar_path(std::filesystem::path map);

@@ -68,17 +68,17 @@ const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame) {
 
   const bool has_before = started_;
   std::swap(world_, world_before_);
-  world_matrices(avatar_, trace_frame.pose, world_);
-  follow_origin(trace_frame.pose);
+  world_matrices(avatar_, trace_frame.poses.front(), world_);
+  follow_origin(trace_frame.poses.front());
   started_ = true;
-  build_palette(avatar_, world_, trace_frame.pose.origin_m - frame_.origin_m, frame_.palette);
+  build_palette(avatar_, world_, trace_frame.poses.front().origin_m - frame_.origin_m, frame_.palette);
   if (method_ != Method::kStatic) {
     if (has_before) {
       build_palette(avatar_, world_before_, pose_origin_before_m_ - frame_.origin_m, frame_.palette_before);
     } else {
       frame_.palette_before = frame_.palette;
     }
-    pose_origin_before_m_ = trace_frame.pose.origin_m;
+    pose_origin_before_m_ = trace_frame.poses.front().origin_m;
   }
   build_segments(trace_frame);
   // A pose in reach of its own origin can be out of reach of this frame's origin. Then this frame reports it.

@@ -7,7 +7,8 @@
 namespace vestige {
 
 const TraceFrame& SceneSampler::next() {
-  sample_frame({scene_.avatar, scene_.animation, *colliders_}, rate_hz_, next_++, frame_);
+  const SampledPerson person = {scene_.avatar, scene_.animation};
+  sample_frame({{&person, 1}, *colliders_}, rate_hz_, next_++, frame_);
   return frame_;
 }
 

@@ -37,9 +37,9 @@ TracedAvatar avatar_of(const std::vector<BatchTrace>& traces) {
     if (trace.scenario != nullptr) return {.given = "builtin", .glb = builtin_avatar_glb(), .facing = ""};
     try {
       const TraceReader reader(trace.given);
-      return {.given = trace.given,
-              .glb = {reader.avatar_glb().begin(), reader.avatar_glb().end()},
-              .facing = reader.facing()};
+      const RecordedPerson& person = reader.people().front();
+      return {
+          .given = trace.given, .glb = {person.avatar_glb.begin(), person.avatar_glb.end()}, .facing = person.facing};
     } catch (const Error&) {
       // If another trace can be read, this error is reported later, with the other traces.
       if (!first) first = std::current_exception();

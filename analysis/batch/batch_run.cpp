@@ -226,7 +226,7 @@ class BatchRun {
                           {"count", std::to_string(count)},
                           {"seed", std::to_string(trace.seed)},
                           {"rate_hz", fmt::format("{}", plan_.recording.rate_hz)}},
-                         plan_.avatar, {plan_.avatar_glb}, writing);
+                         {{plan_.avatar, {plan_.avatar_glb}}}, writing);
       RecordingSettings settings;
       settings.rate_hz = plan_.recording.rate_hz;
       settings.duration_s = plan_.recording.duration_s;
@@ -234,7 +234,7 @@ class BatchRun {
         writer.write(frame);
         return true;
       };
-      record(write, plan_.avatar, animation, *colliders, settings, [&](double) { return !stop_; });
+      record(write, {{plan_.avatar, animation}}, *colliders, settings, [&](double) { return !stop_; });
       if (stop_) throw Stopped();
       writer.finish();
     }
@@ -266,12 +266,12 @@ class BatchRun {
       return now_s - std::exchange(mark_s, now_s);
     };
     TraceReader reader(path);
-    if (sha256_hex(reader.avatar_glb()) != plan_.avatar_sha256)
+    if (sha256_hex(reader.people().front().avatar_glb) != plan_.avatar_sha256)
       throw Error(path,
                   fmt::format("was recorded with another avatar than that of the batch, '{}'", plan_.avatar_given),
                   "run one batch for each avatar, or name the avatar of the traces with --avatar");
     const Facing facing = plan_.avatar.facing.axis;
-    if (const auto recorded = facing_named(reader.facing()); recorded && *recorded != facing)
+    if (const auto recorded = facing_named(reader.people().front().facing); recorded && *recorded != facing)
       throw Error(path,
                   fmt::format("records that its avatar faces {}, and that of the batch faces {}", to_string(*recorded),
                               to_string(facing)),

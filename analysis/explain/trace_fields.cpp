@@ -78,6 +78,7 @@ constexpr Field kRecord[] = {
     {"frames", "", "frames written"},
     {"recording_s", "s", "how long the recording took"},
     {"bytes", "bytes", "size of what was written"},
+    {"avatars/name", "", "with several people: the name of each, in order"},
     {"lost/late", "", "live frames that were ready more than 20 ms late, or that found no room"},
     {"lost/malformed", "", "live messages that could not be read"},
     {"lost/overflowed", "", "datagrams that the operating system threw away"},
@@ -127,6 +128,10 @@ constexpr Field kInspect[] = {
     {"dropped_by_topic/*", "", "of them, those of one topic; beyond 1000 topics, (other topics)"},
     {"complete", "", "false: the file is damaged or cut"},
     {"recovered", "", "what 'vestige recover' noted in the file; empty: nothing"},
+    {"people/name", "", "name of each person of a trace, in order; empty: nobody needed one"},
+    {"people/avatar", "", "the attachment that is their avatar"},
+    {"people/topic", "", "the topic of their poses"},
+    {"people/facing", "", "axis along which their avatar looks at rest, as recorded; empty: not recorded"},
     {"warnings", "", "faults, a sentence each"},
     {"session/*", "", "the trace's metadata: where the recording came from"},
 };
@@ -243,7 +248,7 @@ FieldGroups session_fields() {
 }
 
 FieldGroups record_fields() {
-  return {{"", kRecord}, {"avatar", avatar_fields()}, {"", origin_fields()}};
+  return {{"", kRecord}, {"avatar", avatar_fields()}, {"avatars", avatar_fields()}, {"", origin_fields()}};
 }
 
 FieldGroups import_fields() {

@@ -85,8 +85,8 @@ Grid best_grid(Grid grid, std::span<const std::uint32_t> contacts, const FrameCo
 void add(const TraceFrame& frame, Sha256& sha) {
   const auto add_value = [&sha](const auto& value) { sha.update(std::as_bytes(std::span(&value, 1))); };
   add_value(frame.time_ns);
-  add_value(frame.pose.origin_m);
-  for (const auto& node : frame.pose.nodes) {
+  add_value(frame.poses.front().origin_m);
+  for (const auto& node : frame.poses.front().nodes) {
     add_value(node.translation);
     add_value(node.rotation);
     add_value(node.scale);

@@ -43,8 +43,8 @@ NodeLocal& any_joint(const Avatar& avatar, Pose& pose, Random& random) {
 void aim(const Avatar& avatar, Moments& moments, std::size_t count, Method method, Random& random) {
   std::vector<glm::dvec3> before;
   std::vector<glm::dvec3> now;
-  skin_reference(avatar, moments.before.pose, glm::dvec3(0), before);
-  skin_reference(avatar, moments.now.pose, glm::dvec3(0), now);
+  skin_reference(avatar, moments.before.poses.front(), glm::dvec3(0), before);
+  skin_reference(avatar, moments.now.poses.front(), glm::dvec3(0), now);
   for (std::uint32_t id = 0; id < count; ++id) {
     const glm::uvec3& triangle = avatar.triangles[random.index(avatar.triangles.size())];
     const std::size_t kind = random.index(3);
@@ -71,7 +71,7 @@ StressScene posed_scene(StressOrder order, const Disturb& disturb, const Disturb
   for (std::size_t done = 0; done < order.cases;) {
     const std::size_t count = std::min(kCollidersPerFrame, order.cases - done);
     Moments moments;
-    moments.before.pose = any_pose(avatar, random);
+    moments.before.poses.front() = any_pose(avatar, random);
     moments.now = moments.before;
     moments.now.index = 1;
     moments.now.time_ns = 10'000'000;
@@ -94,7 +94,7 @@ glm::quat turn(double angle_rad, const glm::dvec3& axis) {
 /// around a sweet (the candy-wrapper effect).
 StressScene collapse(StressOrder order) {
   const auto disturb = [&](Moments& moments, Random& random) {
-    NodeLocal& joint = any_joint(order.subject->avatar, moments.now.pose, random);
+    NodeLocal& joint = any_joint(order.subject->avatar, moments.now.poses.front(), random);
     joint.rotation = joint.rotation * turn(std::numbers::pi, {0, 1, 0});
     joint.scale = glm::vec3(static_cast<float>(order.magnitude));
   };
@@ -104,7 +104,7 @@ StressScene collapse(StressOrder order) {
 StressScene spin(StressOrder order) {
   const auto disturb = [&](Moments& moments, Random& random) {
     const auto root = static_cast<std::size_t>(order.subject->avatar.root_node);
-    NodeLocal& node = moments.now.pose.nodes[root];
+    NodeLocal& node = moments.now.poses.front().nodes[root];
     node.rotation = turn(order.magnitude * std::numbers::pi / 180, random.direction()) * node.rotation;
   };
   return posed_scene(order, disturb, leave);
@@ -114,7 +114,7 @@ StressScene mirrored(StressOrder order) {
   const auto disturb = [&](Moments& moments, Random& random) {
     // At both moments: a mirrored bone stays mirrored.
     Random same = random;
-    for (Pose* pose : {&moments.before.pose, &moments.now.pose}) {
+    for (Pose* pose : {&moments.before.poses.front(), &moments.now.poses.front()}) {
       random = same;
       NodeLocal& joint = any_joint(order.subject->avatar, *pose, random);
       for (int axis = 0; axis < static_cast<int>(order.magnitude); ++axis) joint.scale[axis] = -joint.scale[axis];
@@ -127,7 +127,7 @@ StressScene mirrored(StressOrder order) {
 StressScene teleport(StressOrder order) {
   const auto disturb = [&](Moments& moments, Random& random) {
     const glm::dvec3 jump = random.direction();
-    moments.now.pose.origin_m += glm::round(order.magnitude * jump);
+    moments.now.poses.front().origin_m += glm::round(order.magnitude * jump);
   };
   const auto spoil = [](Moments& moments, Random&) {
     for (const ColliderSample& collider : moments.now.colliders)
@@ -154,7 +154,8 @@ StressScene non_finite(StressOrder order) {
       for (ColliderSample& collider : frame.colliders)
         if (collider.id % 2 == 0) collider.position_m[axis] = broken_value(what);
     } else {
-      any_joint(order.subject->avatar, frame.pose, random).translation[axis] = static_cast<float>(broken_value(what));
+      any_joint(order.subject->avatar, frame.poses.front(), random).translation[axis] =
+          static_cast<float>(broken_value(what));
     }
   };
   return posed_scene(order, leave, spoil);

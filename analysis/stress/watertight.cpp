@@ -89,8 +89,8 @@ std::vector<Segment> segments_of(const ClosedSkin& skin, std::size_t count, Aim 
 void add_world_frames(const StressOrder& order, Aim aim, Random& random, std::vector<DetectorFrame>& frames) {
   const Avatar& avatar = order.subject->avatar;
   TraceFrame before;
-  before.pose = rest_pose(avatar);
-  before.pose.origin_m = glm::dvec3(order.magnitude);
+  before.poses.front() = rest_pose(avatar);
+  before.poses.front().origin_m = glm::dvec3(order.magnitude);
   const DetectorFrame first = FrameBuilder(avatar, {}, Method::kStatic).next(before);
   const ClosedSkin skin(avatar, first.palette, random);
   for (std::size_t done = 0; done < order.cases; done += kSegmentsAtOnce) {

@@ -18,13 +18,12 @@ void record_default_trace(const std::string& path, std::uint32_t colliders, cons
   const auto swarm = find_scenario("swarm")->make(scene.avatar, animation, {colliders, options.seed});
   TraceWriterOptions writing;
   writing.overwrite = options.overwrite();
-  TraceWriter writer(path, {{"argv", provenance_texts(invocation.argv).at("argv")}}, scene.avatar, scene.attachments(),
-                     writing);
+  TraceWriter writer(path, {{"argv", provenance_texts(invocation.argv).at("argv")}}, {scene.person()}, writing);
   const auto write = [&](const TraceFrame& frame) {
     writer.write(frame);
     return true;
   };
-  record(write, scene.avatar, animation, *swarm, {}, [](double) { return !interrupted(); });
+  record(write, {{scene.avatar, animation}}, *swarm, {}, [](double) { return !interrupted(); });
   writer.finish();
 }
 

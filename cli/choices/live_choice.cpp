@@ -46,7 +46,7 @@ void add_live_options(CLI::App& verb, LiveChoice& choice) {
 void check_live_choice(const CLI::App& verb, const LiveChoice& choice) {
   if (!choice.is_live()) return;
   if (!choice.is_lines()) parse_host_port(choice.source, kScheme, "--live");
-  for (const char* flag : {"--animation", "--ignore-morphs", "--colliders", "--count", "--radius"})
+  for (const char* flag : {"--animation", "--ignore-morphs", "--colliders", "--count", "--radius", "--at"})
     if (verb.count(flag) != 0)
       throw UsageError(flag, "the motion and the colliders come from the live source",
                        fmt::format("leave out {} or --live", flag));

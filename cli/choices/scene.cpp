@@ -100,12 +100,13 @@ ActuatorMapFiles load_map(const std::string& map) {
 }
 
 OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
-    : reader(path), avatar(parse_avatar_glb(reader.avatar_glb(), path + ", avatar.glb")) {
-  take_recorded_facing(avatar.facing, reader.facing());
-  if (!reader.facing().empty() && !avatar.facing.doubt.empty())
+    : reader(path), avatar(parse_avatar_glb(reader.people().front().avatar_glb, path + ", avatar.glb")) {
+  const RecordedPerson& person = reader.people().front();
+  take_recorded_facing(avatar.facing, person.facing);
+  if (!person.facing.empty() && !avatar.facing.doubt.empty())
     warn(fmt::format("{}: {}; {} is taken", path, avatar.facing.doubt, to_string(avatar.facing.axis)), verbosity);
-  if (!reader.actuator_map_png().empty())
-    map = parse_actuator_map(actuator_map_files(reader), avatar, path + ", actuator_map.png");
+  if (!person.actuator_map_png.empty())
+    map = parse_actuator_map(actuator_map_files(person), avatar, path + ", actuator_map.png");
   if (!reader.recovered().empty()) warn(fmt::format("{}: {}", path, reader.recovered()), verbosity);
   if (verbosity == Verbosity::kVerbose) warn_all(avatar.warnings, verbosity);
 }

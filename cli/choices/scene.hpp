@@ -14,15 +14,16 @@
 
 namespace vestige::cli {
 
-/// The input of a recording: an avatar and its map, as files and in parsed form.
+/// A person of a recording: an avatar and its map, as files and in parsed form.
 struct Scene {
+  std::string name;  ///< empty: nobody needs one
   std::vector<std::byte> avatar_glb;
   std::vector<std::byte> map_png;
   std::string map_json;
   Avatar avatar;
   ActuatorMap map;
 
-  TraceAttachments attachments() const { return {avatar_glb, map_png, map_json}; }
+  TracePerson person() const { return {avatar, {avatar_glb, map_png, map_json}, name}; }
 };
 
 /// Throws `Error` if the avatar is one point at rest, unless an animation scales it. What touches the point touches all

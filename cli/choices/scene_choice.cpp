@@ -32,6 +32,7 @@ std::string describe_colliders() {
   for (const Scenario& scenario : scenarios()) longest = std::max(longest, scenario.name.size());
   for (const Scenario& scenario : scenarios())
     fmt::format_to(std::back_inserter(text), "\n  {:<{}} {}", scenario.name, longest, scenario.summary);
+  fmt::format_to(std::back_inserter(text), "\n  {:<{}} no collider", kNoColliders, longest);
   return text +
          "\nor a file of rows time_s,id,x,y,z[,radius_m], or the animated nodes of a glTF file. Its convention: " +
          kConvention;
@@ -115,9 +116,11 @@ void add_scene_options(CLI::App& verb, SceneChoice& choice) {
   verb.add_option("--count", choice.count, describe_count())->check(help::whole_number(1, 1000000));
 }
 
-void check_scene_choice(const SceneChoice& choice) {
-  if (!choice.from_file() && find_scenario(choice.colliders) == nullptr) throw no_scenario(choice.colliders);
-  if (const auto flag = choice.motion.given(); flag && !is_motion_file(choice.animation))
+void check_scene_choice(const SceneChoice& choice, const std::vector<std::string>& animations) {
+  const bool has_none = choice.colliders == kNoColliders;
+  if (!has_none && !choice.from_file() && find_scenario(choice.colliders) == nullptr)
+    throw no_scenario(choice.colliders);
+  if (const auto flag = choice.motion.given(); flag && std::ranges::none_of(animations, is_motion_file))
     throw UsageError(*flag, "no motion capture is played",
                      fmt::format("leave {} out, or name a .bvh as --animation", *flag));
   if (!choice.nodes.empty() && !choice.from_gltf())
@@ -127,11 +130,15 @@ void check_scene_choice(const SceneChoice& choice) {
   check_radius(choice.radius, choice.colliders);
   if (choice.count && choice.from_file())
     throw UsageError("--count", "the file sets the number of colliders", "leave --count out");
+  for (const auto& [is_given, flag] :
+       {std::pair(choice.count.has_value(), "--count"), std::pair(!choice.radius.text.empty(), "--radius")})
+    if (is_given && has_none)
+      throw UsageError(flag, "there are no colliders", fmt::format("leave {} out, or name --colliders", flag));
 }
 
-void load_motion(const SceneChoice& choice, Avatar& avatar, const std::vector<std::string>& outputs,
-                 const CommonOptions& common) {
-  if (is_motion_file(choice.animation)) add_motion(avatar, choice.animation, choice.motion, outputs, common);
+void load_motion(const std::string& animation, const MotionChoice& motion, Avatar& avatar,
+                 const std::vector<std::string>& outputs, const CommonOptions& common) {
+  if (is_motion_file(animation)) add_motion(avatar, animation, motion, outputs, common);
 }
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,

@@ -39,6 +39,9 @@ struct SceneChoice {
   std::uint32_t collider_count() const;
 };
 
+/// The value of --colliders that means no collider.
+inline constexpr const char* kNoColliders = "none";
+
 /// Returns the help of --animation; `otherwise` is its default.
 std::string describe_animations(std::string_view otherwise);
 
@@ -53,15 +56,15 @@ std::string describe_count();
 /// and how a file of colliders measures.
 void add_scene_options(CLI::App& verb, SceneChoice& choice);
 
-/// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit and --up without motion
-/// capture, --count with colliders from a file, --nodes with colliders that come from no glTF, units and axes of
-/// colliders that come from no file.
-void check_scene_choice(const SceneChoice& choice);
+/// Throws `UsageError` for a scenario that does not exist, and for flags without effect: --unit and --up if none of the
+/// people's animations is motion capture, --count with colliders from a file or without colliders, --nodes with
+/// colliders that come from no glTF, units and axes of colliders that come from no file.
+void check_scene_choice(const SceneChoice& choice, const std::vector<std::string>& animations);
 
-/// If --animation names a motion file, adds the motion to the avatar's animations under that name, by
+/// If `animation` names a motion file, adds the motion to the avatar's animations under that name, by
 /// add_motion.
-void load_motion(const SceneChoice& choice, Avatar& avatar, const std::vector<std::string>& outputs,
-                 const CommonOptions& common);
+void load_motion(const std::string& animation, const MotionChoice& motion, Avatar& avatar,
+                 const std::vector<std::string>& outputs, const CommonOptions& common);
 
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const Avatar& avatar,
                                                const Animation* animation, std::uint64_t seed);

@@ -62,12 +62,13 @@ class CsvFolder {
     const auto inside = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
     poses = inside("poses.csv");
     colliders = inside("colliders.csv");
-    attachments = {{inside("avatar.glb"), trace.avatar_glb()},
-                   {inside("actuator_map.png"), trace.actuator_map_png()},
-                   {inside("actuator_map.json"), trace.actuator_map_json()}};
+    const RecordedPerson& person = trace.people().front();
+    attachments = {{inside("avatar.glb"), person.avatar_glb},
+                   {inside("actuator_map.png"), person.actuator_map_png},
+                   {inside("actuator_map.json"), person.actuator_map_json}};
     session = inside("session.json");
-    if (facing_named(trace.facing()))
-      session_json = nlohmann::ordered_json({{trace_format::kFacingKey, trace.facing()}}).dump(2) + "\n";
+    if (facing_named(person.facing))
+      session_json = nlohmann::ordered_json({{trace_format::kFacingKey, person.facing}}).dump(2) + "\n";
   }
   std::vector<std::string> written() const {
     std::vector<std::string> all = {poses, colliders};
@@ -150,11 +151,12 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
   const Overwrite overwrite = options.common.overwrite();
   std::vector<std::unique_ptr<TraceExport>> files;
   if (folder) {
-    files.push_back(make_pose_csv(folder->poses, overwrite, reader.node_names()));
+    files.push_back(make_pose_csv(folder->poses, overwrite, reader.people().front().node_names));
     files.push_back(make_collider_csv(folder->colliders, overwrite, reader.shape()));
   } else if (format == "csv") {
-    files.push_back(options.what == "poses" ? make_pose_csv(options.output, overwrite, reader.node_names())
-                                            : make_collider_csv(options.output, overwrite, reader.shape()));
+    files.push_back(options.what == "poses"
+                        ? make_pose_csv(options.output, overwrite, reader.people().front().node_names)
+                        : make_collider_csv(options.output, overwrite, reader.shape()));
   } else if (format == "ndjson") {
     files.push_back(make_frame_ndjson(options.output, overwrite));
   } else if (format == "hdf5") {
@@ -162,7 +164,7 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
     if (contacts) write_contacts = [&contacts, &options](hid_t file) { contacts->write(file, options.output); };
     files.push_back(make_frame_hdf5(options.output, overwrite, reader, std::move(write_contacts)));
   } else {
-    files.push_back(make_frame_gltf(options.output, overwrite, trace.avatar, reader.avatar_glb(),
+    files.push_back(make_frame_gltf(options.output, overwrite, trace.avatar, reader.people().front().avatar_glb,
                                     {.all = reader.collider_ids(), .spheres = reader.sphere_ids()}));
   }
   return files;
@@ -243,11 +245,11 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   if (contacts) json["contacts"] = contacts->count();
   json.update({{"losses", losses}, {"complete", reader.complete()}});
   write_json(options.common.json, json, options.common);
-  print_summary(
-      fmt::format("{}: {} of {} and {}{}\n", options.output, counted(written, "frame"),
-                  counted(reader.collider_ids().size(), "collider"), counted(reader.node_names().size(), "node"),
-                  contacts ? ", " + counted(contacts->count(), "contact") : ""),
-      {options.output, options.common.json}, options.common);
+  print_summary(fmt::format("{}: {} of {} and {}{}\n", options.output, counted(written, "frame"),
+                            counted(reader.collider_ids().size(), "collider"),
+                            counted(reader.people().front().node_names.size(), "node"),
+                            contacts ? ", " + counted(contacts->count(), "contact") : ""),
+                {options.output, options.common.json}, options.common);
 }
 
 }  // namespace

@@ -215,7 +215,7 @@ void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional
     const double time_s = static_cast<double>((*next)++) * step_s;
     frame.time_ns = std::llround(time_s * 1e9);
     // Keys are at times of fp32: on them, nothing is interpolated.
-    frame.pose = sample_animation(avatar, avatar.animations.back(), double{static_cast<float>(time_s)});
+    frame.poses.front() = sample_animation(avatar, avatar.animations.back(), double{static_cast<float>(time_s)});
     return true;
   };
   frames.share = [count, next] { return static_cast<double>(*next) / static_cast<double>(count); };
@@ -357,7 +357,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
   bool more = frames.next(frame);
   std::optional<Questions> questions;  // what 'vestige export' wrote is not in doubt
   if (options.from.empty()) questions.emplace(scene.avatar, options, frames);
-  TraceWriter trace(options.output, session, scene.avatar, scene.attachments(), writing_of(options, frames.shape));
+  TraceWriter trace(options.output, session, {scene.person()}, writing_of(options, frames.shape));
   {
     Progress progress("Importing", verbosity);
     for (; more; more = frames.next(frame)) {

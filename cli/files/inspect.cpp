@@ -18,6 +18,43 @@ struct InspectOptions {
   std::string trace;
 };
 
+/// Returns what the session records of a person under this key; empty if it records nothing.
+std::string recorded(const McapSummary& summary, std::string_view key, std::size_t person) {
+  if (!summary.session) return {};
+  const auto found = summary.session->find(trace_format::numbered(key, person));
+  return found == summary.session->end() ? "" : found->second;
+}
+
+/// Returns the axis that the session records; empty if it records none.
+std::string facing_of(const McapSummary& summary, std::size_t person) {
+  const std::string facing = recorded(summary, trace_format::kFacingKey, person);
+  return facing_named(facing) ? facing : "";
+}
+
+nlohmann::ordered_json people_json(const McapSummary& summary) {
+  nlohmann::ordered_json people = nlohmann::ordered_json::array();
+  for (std::size_t person = 0; person < summary.people; ++person)
+    people.push_back({{"name", recorded(summary, trace_format::kNameKey, person)},
+                      {"avatar", trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, person)},
+                      {"topic", trace_format::numbered("/pose", person)},
+                      {"facing", facing_of(summary, person)}});
+  return people;
+}
+
+std::string describe_people(const McapSummary& summary) {
+  std::string text;
+  for (std::size_t person = 0; person < summary.people; ++person) {
+    const std::string facing = facing_of(summary, person);
+    const std::string name = recorded(summary, trace_format::kNameKey, person);
+    const std::string label = summary.people == 1 ? "avatar faces" : fmt::format("person {}", person + 1);
+    if (summary.people > 1)
+      text += fmt::format("  {:<20} '{}'{}\n", label, name, facing.empty() ? "" : ", faces " + facing);
+    else if (!facing.empty())
+      text += fmt::format("  {:<20} {}, {}\n", label, facing, in_words(AvatarFacing::By::kTrace));
+  }
+  return text;
+}
+
 nlohmann::ordered_json to_json(const McapSummary& summary) {
   nlohmann::ordered_json channels = nlohmann::ordered_json::array();
   for (const auto& channel : summary.channels)
@@ -50,15 +87,9 @@ nlohmann::ordered_json to_json(const McapSummary& summary) {
                                  {"complete", summary.complete},
                                  {"recovered", summary.recovered},
                                  {"warnings", summary.warnings}};
+  json["people"] = summary.is_trace ? people_json(summary) : nlohmann::ordered_json::array();
   if (summary.session) json["session"] = *summary.session;
   return json;
-}
-
-/// Returns the axis that the session records; empty if it records none.
-std::string facing_of(const McapSummary& summary) {
-  if (!summary.session) return {};
-  const auto recorded = summary.session->find(std::string(trace_format::kFacingKey));
-  return recorded != summary.session->end() && facing_named(recorded->second) ? recorded->second : "";
 }
 
 std::string describe(const McapSummary& summary, const std::string& path, bool verbose) {
@@ -72,8 +103,7 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
   for (const auto& attachment : summary.attachments)
     text += fmt::format("  {:<20} {:>9} bytes     sha256 {}{}\n", attachment.name, attachment.bytes, attachment.sha256,
                         attachment.is_recorded.value_or(true) ? "" : " (not the recorded one)");
-  if (const std::string facing = facing_of(summary); !facing.empty())
-    text += fmt::format("  {:<20} {}, {}\n", "avatar faces", facing, in_words(AvatarFacing::By::kTrace));
+  text += describe_people(summary);
   if (summary.dropped != 0) {
     text += fmt::format("lost {} while recording\n", counted(summary.dropped, "message"));
     for (const auto& [topic, count] : summary.dropped_by_topic)

@@ -15,6 +15,7 @@
 #include "cli/choices/snapshots.hpp"
 #include "cli/files/export_formats.hpp"
 #include "cli/files/limits_choice.hpp"
+#include "cli/files/people_choice.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
@@ -23,6 +24,8 @@
 #include "traces/recording/recorder.hpp"
 #include "traces/recording/sampled_scene.hpp"
 #include "traces/scene/colliders.hpp"
+#include "traces/scene/people.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
@@ -39,6 +42,7 @@ constexpr ColliderShape kLiveShape = ColliderShape::kSpheres;
 struct RecordOptions {
   CommonOptions common;
   SceneChoice scene;
+  std::vector<PersonChoice> people;
   LimitsChoice limits;
   LiveChoice live;
   RecordingSettings recording;
@@ -49,19 +53,28 @@ struct RecordOptions {
   std::string output;
 };
 
+void require_near(const glm::dvec3& position_m, const char* flag, const std::string& text) {
+  if (std::max({std::abs(position_m.x), std::abs(position_m.y), std::abs(position_m.z)}) <= kFarthest_m) return;
+  throw UsageError(flag, fmt::format("'{}' is farther away than 1e7 m", text),
+                   "choose a nearer place: beyond 1e7 m, positions are too coarse for contacts");
+}
+
+std::vector<TracePerson> recorded_people(const std::vector<Person>& people) {
+  std::vector<TracePerson> recorded;
+  for (const Person& person : people) recorded.push_back(person.scene.person());
+  return recorded;
+}
+
 RecordingSettings settings_of(const RecordOptions& options) {
   RecordingSettings settings = options.recording;
   settings.origin_m = parse_vector(options.origin, "--origin");
   if (!options.live.is_lines())  // which have no rate
     refuse_too_many_frames(settings.rate_hz * settings.duration_s, "--duration", "lower --duration or --rate");
-  if (std::max({std::abs(settings.origin_m.x), std::abs(settings.origin_m.y), std::abs(settings.origin_m.z)}) >
-      kFarthest_m)
-    throw UsageError("--origin", fmt::format("'{}' is farther away than 1e7 m", options.origin),
-                     "choose a nearer origin: beyond 1e7 m, positions are too coarse for contacts");
+  require_near(settings.origin_m, "--origin", options.origin);
   return settings;
 }
 
-Session session_of(const RecordOptions& options, const Animation* animation, const Invocation& invocation) {
+Session session_of(const RecordOptions& options, const std::vector<Person>& people, const Invocation& invocation) {
   Session session = provenance_texts(invocation.argv);
   if (options.live.is_live()) {
     session["live"] = options.live.source;
@@ -69,7 +82,11 @@ Session session_of(const RecordOptions& options, const Animation* animation, con
     return session;
   }
   session["rate_hz"] = fmt::format("{}", options.recording.rate_hz);
-  session["animation"] = animation == nullptr ? "" : animation->name;
+  for (std::size_t k = 0; k < people.size(); ++k) {
+    const Animation* animation = people[k].animation;
+    session[trace_format::numbered("animation", k)] = animation == nullptr ? "" : animation->name;
+    if (!options.people[k].at.empty()) session[trace_format::numbered("at", k)] = options.people[k].at;
+  }
   session["colliders"] = options.scene.colliders;
   if (!options.scene.radius.text.empty()) session["radius"] = options.scene.radius.text;
   session["seed"] = fmt::format("{}", options.common.seed);
@@ -89,11 +106,13 @@ TraceWriterOptions writing_of(const RecordOptions& options, ColliderShape shape)
   return writing;
 }
 
-void record_scene(const RecordOptions& options, const Scene& scene, const Animation* animation,
-                  ColliderSource& colliders, const RecordingSettings& settings, Recorder& recorder) {
+void record_scene(const RecordOptions& options, const std::vector<Person>& people, ColliderSource& colliders,
+                  const RecordingSettings& settings, Recorder& recorder) {
   std::optional<PlacementQuestion> question;
-  if (options.scene.from_file())
-    question.emplace(scene.avatar, options.scene.convention.of_colliders(), settings.origin_m);
+  if (options.scene.from_file() && people.size() == 1)
+    question.emplace(people.front().scene.avatar, options.scene.convention.of_colliders(), settings.origin_m);
+  std::vector<SampledPerson> sampled;
+  for (const Person& person : people) sampled.push_back(person.sampled());
   const auto write = [&](const TraceFrame& frame) {
     if (snapshot_wanted()) recorder.snapshot();
     if (question) question->see(frame);
@@ -101,7 +120,7 @@ void record_scene(const RecordOptions& options, const Scene& scene, const Animat
   };
   {
     Progress progress("Recording", options.common.verbosity());
-    record(write, scene.avatar, animation, colliders, settings, [&](double share) { return progress.update(share); });
+    record(write, sampled, colliders, settings, [&](double share) { return progress.update(share); });
   }
   if (!question) return;
   if (const auto doubt = question->ask())
@@ -127,6 +146,25 @@ void refuse_part_name(const RecordOptions& options, const RecordingLimits& limit
     throw UsageError(options.common.json, "the recording, or a part of it, has this name", "choose another name");
 }
 
+/// Loads the avatars, maps and motions of all people.
+std::vector<Person> load_people(const RecordOptions& options, const glm::dvec3& origin_m,
+                                const std::vector<std::string>& outputs) {
+  const Verbosity verbosity = options.common.verbosity();
+  std::vector<Person> people;
+  people.reserve(options.people.size());  // an animation belongs to its scene
+  for (const PersonChoice& choice : options.people) {
+    Person& person = people.emplace_back();
+    person.scene = load_scene(choice.avatar, choice.map, choice.facing, verbosity);
+    person.scene.name = choice.name;
+    if (options.live.is_live()) continue;
+    load_motion(choice.animation, options.scene.motion, person.scene.avatar, outputs, options.common);
+    person.animation = choose_animation(person.scene.avatar, choice.animation, options.scene.morphs, verbosity);
+    person.stance = stance_of(choice, person.scene.avatar);
+    require_near(origin_m + person.stance.position_m, "--at", choice.at);
+  }
+  return people;
+}
+
 void run_record(const RecordOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   check_trace_name(options.output);
@@ -134,18 +172,18 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   const RecordingLimits limits = limits_of(options.limits, options.output);
   const std::vector<std::string> outputs = {limits.splits() ? part_path(options.output, 1).string() : options.output,
                                             options.common.json};
-  check_outputs(outputs, {options.scene.avatar, options.scene.map, options.scene.colliders, options.scene.animation},
-                options.common);
+  std::vector<std::string> inputs = {options.scene.colliders};
+  for (const PersonChoice& person : options.people)
+    inputs.insert(inputs.end(), {person.avatar, person.map, person.animation});
+  check_outputs(outputs, inputs, options.common);
   refuse_part_name(options, limits);
   if (options.output == "-") refuse_terminal("-o -");
 
-  Scene scene = load_scene(options.scene.avatar, options.scene.map, options.scene.facing, verbosity);
-  const Animation* animation = nullptr;
+  const std::vector<Person> people = load_people(options, settings.origin_m, outputs);
   std::unique_ptr<ColliderSource> colliders;
   if (!options.live.is_live()) {
-    load_motion(options.scene, scene.avatar, outputs, options.common);
-    animation = choose_animation(scene.avatar, options.scene.animation, options.scene.morphs, verbosity);
-    colliders = make_colliders(options.scene, scene.avatar, animation, options.common.seed);
+    warn_of_overlap(people, verbosity);
+    colliders = make_colliders(options.scene, people, options.common.seed);
     check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
     if (const std::string how = describe_resampling(colliders->median_step_s(), settings.rate_hz); !how.empty())
       warn(fmt::format("--colliders {}: {}", options.scene.colliders, how), verbosity);
@@ -158,18 +196,17 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   catch_snapshots(limits.ring_s && options.output != "-" ? Snapshots::kWanted : Snapshots::kIgnored);
   const auto start = std::chrono::steady_clock::now();
   Recorder recorder({.path = options.output,
-                     .session = session_of(options, animation, invocation),
-                     .avatar = scene.avatar,
-                     .attachments = scene.attachments(),
+                     .session = session_of(options, people, invocation),
+                     .people = recorded_people(people),
                      .writing = writing_of(options, colliders ? colliders->shape() : kLiveShape),
                      .limits = limits});
   LiveCounts lost;
   if (options.live.is_live()) {
     const auto duration_s = options.has_duration ? std::optional(settings.duration_s) : std::nullopt;
-    lost = record_live(options.live, scene, recorder, {.rate_hz = settings.rate_hz, .duration_s = duration_s},
-                       settings.origin_m, verbosity);
+    lost = record_live(options.live, people.front().scene, recorder,
+                       {.rate_hz = settings.rate_hz, .duration_s = duration_s}, settings.origin_m, verbosity);
   } else {
-    record_scene(options, scene, animation, *colliders, settings, recorder);
+    record_scene(options, people, *colliders, settings, recorder);
   }
   recorder.finish();
   const std::chrono::duration<double> recording = std::chrono::steady_clock::now() - start;
@@ -200,12 +237,18 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   json["bytes"] = recorder.bytes_written();
   if (options.live.is_live())
     json["lost"] = {{"late", lost.late}, {"malformed", lost.malformed}, {"overflowed", lost.overflowed}};
-  json["avatar"] = to_json(scene.avatar);
+  json["avatar"] = to_json(people.front().scene.avatar);
+  if (people.size() > 1)
+    for (const Person& person : people) {
+      json["avatars"].push_back(to_json(person.scene.avatar));
+      json["avatars"].back()["name"] = person.scene.name;
+    }
   write_json(options.common.json, json, options.common);
   const std::string rate = options.live.is_lines() ? "" : fmt::format(" at {} Hz", settings.rate_hz);
+  const std::string who = people.size() == 1 ? "" : fmt::format(" of {}", count_of_people(people.size()));
   print_summary(
-      fmt::format("{}: {}{}, {:.1f} MB\n", name_of(recorder.files()), counted(recorder.frame_count(), "frame"), rate,
-                  static_cast<double>(recorder.bytes_written()) / 1e6),
+      fmt::format("{}: {}{}{}, {:.1f} MB\n", name_of(recorder.files()), counted(recorder.frame_count(), "frame"), who,
+                  rate, static_cast<double>(recorder.bytes_written()) / 1e6),
       {options.output, options.common.json}, options.common);
 }
 
@@ -215,8 +258,10 @@ void add_record(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<RecordOptions>();
   CLI::App* verb = add_verb(program, "record", "Write a trace of an avatar and the colliders around it",
                             "  vestige record -o man.mcap\n"
-                            "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n");
+                            "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n"
+                            "  vestige record --avatar builtin --avatar builtin --at 0,0,0.9,180 -o two.mcap\n");
   add_scene_options(*verb, options->scene);
+  add_people_options(*verb);
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")
       ->type_name("HZ")
       ->capture_default_str()
@@ -243,8 +288,13 @@ void add_record(CLI::App& program, Invocation& invocation) {
       ->type_name("OUT.mcap|-");
   add_common_options(*verb, options->common);
   verb->callback([options, verb, &invocation] {
-    check_scene_choice(options->scene);
+    options->people = people_choices(*verb);
+    std::vector<std::string> animations;
+    for (const PersonChoice& person : options->people) animations.push_back(person.animation);
+    check_scene_choice(options->scene, animations);
     check_live_choice(*verb, options->live);
+    if (options->live.is_live() && options->people.size() > 1)
+      throw UsageError("--avatar", "a live recording holds one person", "name one avatar, or leave --live out");
     options->has_duration = verb->count("--duration") != 0;
     run_record(*options, invocation);
   });

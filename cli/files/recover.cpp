@@ -24,22 +24,61 @@ struct RecoverOptions {
   CommonOptions common;
   std::string file;
   std::string output;
-  std::string avatar;
-  std::string map;
+  std::vector<std::string> avatars;
+  std::vector<std::string> maps;
 };
+
+/// The value of a flag that may name a person: "FILE" for the first, "2=FILE" for the second.
+struct OfPerson {
+  std::size_t person = 0;
+  std::string value;
+};
+
+OfPerson parse_of_person(const std::string& text, const char* flag) {
+  const std::size_t mark = text.find('=');
+  const bool has_number = mark != std::string::npos && mark > 0 &&
+                          std::ranges::all_of(text.substr(0, mark), [](char c) { return c >= '0' && c <= '9'; });
+  if (!has_number) return {0, text};
+  std::size_t number = 0;
+  std::from_chars(text.data(), text.data() + mark, number);
+  if (number < 1 || number > trace_format::kMostPeople)
+    throw UsageError(flag, fmt::format("'{}' names no person", text),
+                     fmt::format("people are numbered from 1 to {}", trace_format::kMostPeople));
+  return {number - 1, text.substr(mark + 1)};
+}
+
+std::vector<OfPerson> parse_people(const std::vector<std::string>& texts, const char* flag) {
+  std::vector<OfPerson> parsed;
+  for (const std::string& text : texts) {
+    parsed.push_back(parse_of_person(text, flag));
+    const std::size_t person = parsed.back().person;
+    if (std::ranges::count(parsed, person, &OfPerson::person) > 1)
+      throw UsageError(flag, fmt::format("is given twice for person {}", person + 1), "give it once for each person");
+  }
+  return parsed;
+}
 
 /// Returns the substitutes that the flags name.
 Substitutes read_substitutes(const RecoverOptions& options) {
   Substitutes substitutes;
-  if (!options.avatar.empty())
-    substitutes.avatar = {.from = options.avatar,
-                          .files = {{std::string(trace_format::kAvatarName), load_avatar(options.avatar)}}};
-  if (!options.map.empty()) {
-    ActuatorMapFiles map = load_map(options.map);
-    substitutes.map = {.from = options.map, .files = {{std::string(trace_format::kMapImageName), std::move(map.png)}}};
-    const auto json = std::as_bytes(std::span(map.json));
+  using trace_format::attachment_name;
+  using trace_format::AttachmentKind;
+  for (const auto& [person, avatar] : parse_people(options.avatars, "--avatar"))
+    substitutes.avatars.push_back({.person = person,
+                                   .from = avatar,
+                                   .files = {{attachment_name(AttachmentKind::kAvatar, person), load_avatar(avatar)}}});
+  for (const auto& [person, map] : parse_people(options.maps, "--map")) {
+    if (map == "none")
+      throw UsageError("--map", "'none' puts nothing in the place of a map", "name a map, or leave --map out");
+    ActuatorMapFiles files = load_map(map);
+    Substitute& substitute = substitutes.maps.emplace_back();
+    substitute = {.person = person,
+                  .from = map,
+                  .files = {{attachment_name(AttachmentKind::kMapImage, person), std::move(files.png)}}};
+    const auto json = std::as_bytes(std::span(files.json));
     if (!json.empty())
-      substitutes.map->files.emplace(trace_format::kMapTextName, std::vector<std::byte>(json.begin(), json.end()));
+      substitute.files.emplace(attachment_name(AttachmentKind::kMapText, person),
+                               std::vector<std::byte>(json.begin(), json.end()));
   }
   substitutes.refusal =
       refusal_unless_forced({options.output, options.common.json}, options.common, "take another attachment");
@@ -78,9 +117,11 @@ nlohmann::ordered_json to_json(const Recovery& recovery, const RecoverOptions& o
 
 /// Returns which flag replaces a damaged attachment, unless something already takes its place.
 std::string remedy_for(const std::string& name, const Recovery& recovery) {
-  const bool is_ours = std::ranges::find(trace_format::kAttachmentNames, name) != trace_format::kAttachmentNames.end();
-  if (!is_ours || std::ranges::count(recovery.replaced, name, &Recovery::Replaced::name) > 0) return "";
-  return fmt::format("; {} puts an intact one in its place", name == trace_format::kAvatarName ? "--avatar" : "--map");
+  const auto id = trace_format::attachment_id(name);
+  if (!id || std::ranges::count(recovery.replaced, name, &Recovery::Replaced::name) > 0) return "";
+  return fmt::format("; {}{} puts an intact one in its place",
+                     id->kind == trace_format::AttachmentKind::kAvatar ? "--avatar" : "--map",
+                     id->person == 0 ? "" : fmt::format(" {}=…", id->person + 1));
 }
 
 void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
@@ -114,11 +155,14 @@ void warn_of_losses(const Recovery& recovery, const RecoverOptions& options) {
 }
 
 void run_recover(const RecoverOptions& options, Invocation& invocation) {
-  check_outputs({options.output, options.common.json},
-                {options.file, options.avatar, options.map, sidecar_path(options.map).string()}, options.common);
+  std::vector<std::string> inputs = {options.file};
+  for (const OfPerson& avatar : parse_people(options.avatars, "--avatar")) inputs.push_back(avatar.value);
+  for (const OfPerson& map : parse_people(options.maps, "--map")) {
+    inputs.push_back(map.value);
+    inputs.push_back(sidecar_path(map.value).string());
+  }
+  check_outputs({options.output, options.common.json}, inputs, options.common);
   check_trace_name(options.output);
-  if (options.map == "none")
-    throw UsageError("--map", "'none' puts nothing in the place of a map", "name a map, or leave --map out");
   if (options.output == "-") refuse_terminal("-o -");
   const mcap::FileSource source(options.file);
   catch_interrupts();
@@ -155,12 +199,18 @@ void add_recover(CLI::App& program, Invocation& invocation) {
   verb->add_option("-o,--output", options->output, "The file to write, or '-' for standard output")
       ->required()
       ->type_name("OUT.mcap|-");
-  verb->add_option("--avatar", options->avatar,
-                   "Put this avatar in the place of a damaged or missing one. It must be the recorded one (by its "
-                   "SHA-256); --force takes any other as well, if it overwrites no file, and the new file says so")
-      ->type_name("builtin|FILE");
-  verb->add_option("--map", options->map, "Likewise for the actuator map, with its sidecar FILE.json if that exists")
-      ->type_name("builtin|FILE.png");
+  verb->add_option(
+          "--avatar", options->avatars,
+          "Put this avatar in the place of a damaged or missing one. It must be the recorded one (by its "
+          "SHA-256); --force takes any other as well, if it overwrites no file, and the new file says so. 2=FILE "
+          "is for the second person; repeat the flag for more people")
+      ->type_name("[K=]builtin|FILE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--map", options->maps, "Likewise for the actuator map, with its sidecar FILE.json if that exists")
+      ->type_name("[K=]builtin|FILE.png")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_common_options(*verb, options->common);
   verb->callback([options, &invocation] { run_recover(*options, invocation); });
 }

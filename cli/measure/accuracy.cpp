@@ -126,7 +126,9 @@ std::vector<SceneChoice> scene_choices(const AccuracyOptions& options) {
   for (const std::string& colliders : parse_distinct(options.colliders, "--colliders")) {
     choices.push_back(options.scene);
     choices.back().colliders = colliders;
-    check_scene_choice(choices.back());
+    check_scene_choice(choices.back(), {options.scene.animation});
+    if (colliders == kNoColliders)
+      throw UsageError("--colliders", "without colliders there is nothing to measure", "name a scenario");
     if (choices.back().avatar == "builtin" && choices.back().animation.empty()) choices.back().animation = "walk";
   }
   if (choices.empty()) throw UsageError("--colliders", "the list is empty", "name a scenario, or a .csv or .glb file");
@@ -296,7 +298,7 @@ void run_accuracy_verb(const AccuracyOptions& options, Invocation& invocation) {
 
   catch_interrupts();
   Scene scene = load_scene(options.scene.avatar, options.scene.map, options.scene.facing, options.common.verbosity());
-  load_motion(options.scene, scene.avatar, outputs, options.common);
+  load_motion(options.scene.animation, options.scene.motion, scene.avatar, outputs, options.common);
   const Animation* animation =
       choose_animation(scene.avatar, choices.front().animation, options.scene.morphs, options.common.verbosity());
   const Measurement measurement(options, scene, animation, rates_hz);

@@ -69,14 +69,14 @@ SceneRenderer::~SceneRenderer() {
 
 void SceneRenderer::draw(const TraceFrame& frame) {
   context_->make_current();
-  world_matrices(avatar_, frame.pose, world_);
+  world_matrices(avatar_, frame.poses.front(), world_);
   const glm::dvec3 root(world_[static_cast<std::size_t>(avatar_.root_node)][3]);
   build_palette(avatar_, world_, -root, palette_matrices_);
   palette_.upload(palette_matrices_.data(), palette_matrices_.size() * sizeof(SkinMatrix), GL_STREAM_DRAW);
   collider_positions_.clear();
   collider_positions_.reserve(frame.colliders.size());
   for (const ColliderSample& collider : frame.colliders)
-    collider_positions_.emplace_back(collider.position_m - frame.pose.origin_m - root);
+    collider_positions_.emplace_back(collider.position_m - frame.poses.front().origin_m - root);
   points_.upload(collider_positions_.data(), collider_positions_.size() * sizeof(glm::vec3), GL_STREAM_DRAW);
 
   constexpr GLfloat kFar = 1;

@@ -19,7 +19,7 @@ class FrameBuilderTest : public ::testing::Test {
     TraceFrame frame;
     frame.index = index;
     frame.time_ns = static_cast<std::int64_t>(index) * 1000000;
-    frame.pose = rest_pose(avatar_);
+    frame.poses.front() = rest_pose(avatar_);
     frame.colliders = colliders;
     return frame;
   }
@@ -87,7 +87,7 @@ TEST_F(FrameBuilderTest, DropsAndCountsWhatIsNotFinite) {
   EXPECT_EQ(builder.next(frame_at(2, {{3, {0, 0, 0}}, {7, {0, 0, 1}}})).segments.size(), 1U);
   EXPECT_EQ(builder.non_finite_segments(), 2U);
   TraceFrame bad_pose = frame_at(3, {{3, {0, 0, 0}}, {7, {0, 0, 1}}});
-  bad_pose.pose.nodes[0].translation.x = std::numeric_limits<float>::infinity();
+  bad_pose.poses.front().nodes[0].translation.x = std::numeric_limits<float>::infinity();
   EXPECT_TRUE(builder.next(bad_pose).segments.empty());
   EXPECT_EQ(builder.non_finite_frames(), 1U);
 }
@@ -97,7 +97,7 @@ TEST_F(FrameBuilderTest, KeepsAWholeMetreOriginUntilTheAvatarIsTwoMetresAway) {
   TraceFrame frame = frame_at(0, {});
   const auto origin_at = [&](double x) {
     ++frame.index;
-    frame.pose.origin_m.x = x;
+    frame.poses.front().origin_m.x = x;
     return builder.next(frame).origin_m.x;
   };
   EXPECT_EQ(origin_at(0.25), 0);
@@ -116,10 +116,10 @@ TEST_F(FrameBuilderTest, GivesTheSameBitsTenThousandKilometresAway) {
   for (std::uint64_t i = 0; i < 200; ++i) {
     const double x = std::ldexp(std::round(std::ldexp(0.0371 * static_cast<double>(i), 20)), -20);
     TraceFrame frame = frame_at(i, {{3, {x, 0.5, 1 - x}}});
-    frame.pose.origin_m = {x, 0, 0};
-    frame.pose.nodes[0].translation = {0.3F, 0.1F, -0.7F};
+    frame.poses.front().origin_m = {x, 0, 0};
+    frame.poses.front().nodes[0].translation = {0.3F, 0.1F, -0.7F};
     TraceFrame shifted = frame;
-    shifted.pose.origin_m += shift;
+    shifted.poses.front().origin_m += shift;
     shifted.colliders[0].position_m += shift;
     const DetectorFrame& a = here.next(frame);
     const DetectorFrame& b = there.next(shifted);

@@ -43,8 +43,8 @@ void read_poses(const std::filesystem::path& path) {
   TraceFrame frame;
   for (std::uint64_t next_index = 0; poses.next(frame); next_index = frame.index + 1) {
     require(frame.index >= next_index, "frames do not run back");
-    require(frame.pose.nodes.size() == avatar.nodes.size(), "a pose fits the avatar");
-    for (const NodeLocal& node : frame.pose.nodes)
+    require(frame.poses.front().nodes.size() == avatar.nodes.size(), "a pose fits the avatar");
+    for (const NodeLocal& node : frame.poses.front().nodes)
       require(std::isfinite(glm::dot(node.rotation, node.rotation)), "rotations are finite");
   }
 }

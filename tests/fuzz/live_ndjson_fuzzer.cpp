@@ -36,7 +36,7 @@ Reading read(std::string_view text, std::size_t piece) {
   const auto take = [&](const vestige::TraceFrame& frame) {
     require(reading.indexes.empty() || frame.index > reading.indexes.back(), "numbers of frames grow");
     require(reading.times_ns.empty() || frame.time_ns >= reading.times_ns.back(), "time does not run back");
-    require(frame.pose.nodes.size() == avatar.nodes.size(), "a pose fits the avatar");
+    require(frame.poses.front().nodes.size() == avatar.nodes.size(), "a pose fits the avatar");
     reading.indexes.push_back(frame.index);
     reading.times_ns.push_back(frame.time_ns);
   };

@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     while (reader.next(frame)) {
       require(frames == 0 || frame.index > last_index, "numbers of frames grow");
       require(frame.time_ns >= last_ns, "time does not run back");
-      require(frame.pose.nodes.size() == reader.node_names().size(), "a pose fits the avatar");
+      require(frame.poses.front().nodes.size() == reader.people().front().node_names.size(), "a pose fits the avatar");
       last_index = frame.index;
       last_ns = frame.time_ns;
       ++frames;

@@ -34,7 +34,7 @@ int main(int count, char** arguments) {
   write(folder / "broken", broken);
   {
     const auto glb = test::skeleton_glb(1);
-    TraceWriter writer(folder / "events", {}, test::skeleton(1), {.avatar_glb = glb}, options);
+    TraceWriter writer(folder / "events", {}, {{test::skeleton(1), {.avatar_glb = glb}}}, options);
     for (std::uint64_t i = 0; i < 2; ++i) {
       TraceFrame frame = test::frame(i, 1, 1);
       frame.teleported = {3};

@@ -28,8 +28,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   TraceFrame frame;
   state.show(frame);
   require(state.malformed() <= datagrams, "a datagram is malformed once");
-  require(frame.pose.nodes.size() == avatar.nodes.size(), "a pose fits the avatar");
-  for (const NodeLocal& node : frame.pose.nodes)
+  require(frame.poses.front().nodes.size() == avatar.nodes.size(), "a pose fits the avatar");
+  for (const NodeLocal& node : frame.poses.front().nodes)
     require(std::isfinite(glm::dot(node.rotation, node.rotation)), "rotations are finite");
   for (std::size_t i = 1; i < frame.colliders.size(); ++i)
     require(frame.colliders[i - 1].id < frame.colliders[i].id, "each collider is there once");

@@ -31,8 +31,8 @@ inline std::vector<TraceFrame> scene(std::string_view scenario, const Avatar& av
     TraceFrame& frame = scene[k];
     frame.index = k;
     frame.time_ns = std::llround(time_s * 1e9);
-    frame.pose = looped_pose(avatar, animation, time_s);
-    frame.pose.origin_m += origin_m;
+    frame.poses.front() = looped_pose(avatar, animation, time_s);
+    frame.poses.front().origin_m += origin_m;
     source->sample(time_s, frame.colliders);
     for (ColliderSample& collider : frame.colliders) collider.position_m += origin_m;
     frame.teleported = source->teleported();

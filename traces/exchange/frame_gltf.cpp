@@ -217,16 +217,16 @@ void FrameGltf::write(const TraceFrame& frame) {
     ++frames_left_out_;
     return;
   }
-  if (first_row_.empty() && is_finite(glm::vec3(frame.pose.origin_m))) base_m_ = frame.pose.origin_m;
+  if (first_row_.empty() && is_finite(glm::vec3(frame.poses.front().origin_m))) base_m_ = frame.poses.front().origin_m;
   row_.assign(1, time_s);
   const auto append = [&](const glm::vec3& vector) { row_.insert(row_.end(), {vector.x, vector.y, vector.z}); };
-  glm::vec3 origin(frame.pose.origin_m - base_m_);
+  glm::vec3 origin(frame.poses.front().origin_m - base_m_);
   if (!is_finite(origin)) {
     ++non_finite_;
     origin = last_row_.empty() ? glm::vec3(0) : glm::vec3(last_row_[1], last_row_[2], last_row_[3]);
   }
   append(origin);
-  for (std::size_t i = 0; i < frame.pose.nodes.size(); ++i) append_node(i, frame.pose.nodes[i]);
+  for (std::size_t i = 0; i < frame.poses.front().nodes.size(); ++i) append_node(i, frame.poses.front().nodes[i]);
   scale_.assign(ids_.size(), 0);
   for (const ColliderSample& collider : frame.colliders) {
     const auto place = place_of_.find(collider.id);

@@ -32,7 +32,7 @@ class FrameHdf5 final : public TraceExport {
     add({"time_ns", h5.int64, 8, {}, "ns"});
     add({"frame", h5.uint64, 8, {}, ""});
     add({"pose/origin", h5.float64, 8, {3}, "m", "x, y, z; right-handed, +Y up, +Z forward"});
-    const hsize_t nodes = trace.node_names().size();
+    const hsize_t nodes = trace.people().front().node_names.size();
     add({"pose/translation", h5.float32, 4, {nodes, 3}, "m", "x, y, z"});
     add({"pose/rotation", h5.float32, 4, {nodes, 4}, "1", "x, y, z, w"});
     add({"pose/scale", h5.float32, 4, {nodes, 3}, "1", "x, y, z"});
@@ -49,7 +49,7 @@ class FrameHdf5 final : public TraceExport {
     translation_.clear();
     rotation_.clear();
     scale_.clear();
-    for (const NodeLocal& node : frame.pose.nodes) {
+    for (const NodeLocal& node : frame.poses.front().nodes) {
       translation_.insert(translation_.end(), {node.translation.x, node.translation.y, node.translation.z});
       rotation_.insert(rotation_.end(), {node.rotation.x, node.rotation.y, node.rotation.z, node.rotation.w});
       scale_.insert(scale_.end(), {node.scale.x, node.scale.y, node.scale.z});
@@ -67,7 +67,8 @@ class FrameHdf5 final : public TraceExport {
     }
     for (const std::uint32_t id : frame.teleported)
       if (const auto place = place_of_.find(id); place != place_of_.end()) teleported_[place->second] = 1;
-    const double origin[] = {frame.pose.origin_m.x, frame.pose.origin_m.y, frame.pose.origin_m.z};
+    const double origin[] = {frame.poses.front().origin_m.x, frame.poses.front().origin_m.y,
+                             frame.poses.front().origin_m.z};
     const void* rows[] = {&frame.time_ns, &frame.index,     origin,          translation_.data(), rotation_.data(),
                           scale_.data(),  position_.data(), present_.data(), teleported_.data(),  radius_.data()};
     for (std::size_t i = 0; i < datasets_.size(); ++i) datasets_[i].append(rows[i]);
@@ -94,10 +95,11 @@ class FrameHdf5 final : public TraceExport {
       for (const auto& [key, value] : trace.session())
         if (value.size() < kMostAttributeBytes) write_hdf5_attribute(made.id(), key, value, path_);
     }
-    write_bytes("avatar.glb", trace.avatar_glb());
-    write_bytes("actuator_map.png", trace.actuator_map_png());
-    write_bytes("actuator_map.json", trace.actuator_map_json());
-    write_node_names(trace.node_names());
+    const RecordedPerson& person = trace.people().front();
+    write_bytes("avatar.glb", person.avatar_glb);
+    write_bytes("actuator_map.png", person.actuator_map_png);
+    write_bytes("actuator_map.json", person.actuator_map_json);
+    write_node_names(person.node_names);
     write_whole("colliders/id", h5.uint32, ids_.size(), ids_.data(), Checksum::kYes);
   }
 

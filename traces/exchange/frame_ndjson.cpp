@@ -19,7 +19,7 @@ class FrameNdjson final : public TraceExport {
     fmt::format_to(std::back_inserter(line_), R"({{"frame":{},"time_s":)", frame.index);
     append_seconds(line_, frame.time_ns);
     line_ += R"(,"pose":)";
-    append_json(line_, frame.pose);
+    append_json(line_, frame.poses.front());
     line_ += R"(,"colliders":)";
     append_json(line_, frame.colliders);
     if (!frame.teleported.empty())

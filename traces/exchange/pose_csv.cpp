@@ -60,9 +60,9 @@ class PoseCsv final : public TraceExport {
     row_ = fmt::format("{},", frame.index);
     append_seconds(row_, frame.time_ns);
     const auto out = std::back_inserter(row_);
-    const glm::dvec3& origin = frame.pose.origin_m;
+    const glm::dvec3& origin = frame.poses.front().origin_m;
     fmt::format_to(out, ",{},{},{}", origin.x, origin.y, origin.z);
-    for (const NodeLocal& node : frame.pose.nodes) {
+    for (const NodeLocal& node : frame.poses.front().nodes) {
       fmt::format_to(out, ",{},{},{}", node.translation.x, node.translation.y, node.translation.z);
       fmt::format_to(out, ",{},{},{},{}", node.rotation.x, node.rotation.y, node.rotation.z, node.rotation.w);
       fmt::format_to(out, ",{},{},{}", node.scale.x, node.scale.y, node.scale.z);
@@ -177,10 +177,10 @@ void PoseCsvReader::take(const Target& target, TraceFrame& frame) {
       frame.time_ns = nanoseconds_of(time_s_);
       break;
     case Column::kOrigin:
-      number(frame.pose.origin_m[static_cast<int>(target.part)]);
+      number(frame.poses.front().origin_m[static_cast<int>(target.part)]);
       break;
     case Column::kNode:
-      number(part_of(frame.pose.nodes[target.node], target.part));
+      number(part_of(frame.poses.front().nodes[target.node], target.part));
       break;
   }
 }
@@ -192,17 +192,17 @@ void PoseCsvReader::check(const TraceFrame& frame) {
     throw lines_.error(fmt::format("frame {} is beyond 4294967295", frame.index));
   if (frame.time_ns < last_time_ns_)
     throw lines_.error(fmt::format("time runs backwards, to {} s", time_s_), "sort the rows by time");
-  for (std::size_t i = 0; i < frame.pose.nodes.size(); ++i) {
-    const glm::quat& q = frame.pose.nodes[i].rotation;
+  for (std::size_t i = 0; i < frame.poses.front().nodes.size(); ++i) {
+    const glm::quat& q = frame.poses.front().nodes[i].rotation;
     if (q.x == 0 && q.y == 0 && q.z == 0 && q.w == 0)
       throw lines_.error(fmt::format("the rotation of node {} is zero, which is not a rotation", i));
   }
 }
 
 void PoseCsvReader::change_convention(TraceFrame& frame) const {
-  frame.pose.origin_m = convention_.position_m(frame.pose.origin_m);
+  frame.poses.front().origin_m = convention_.position_m(frame.poses.front().origin_m);
   for (std::size_t node = 0; node < moves_.size(); ++node)
-    if (moves_[node]) frame.pose.nodes[node] = convention_.node(frame.pose.nodes[node]);
+    if (moves_[node]) frame.poses.front().nodes[node] = convention_.node(frame.poses.front().nodes[node]);
 }
 
 bool PoseCsvReader::next(TraceFrame& frame) {
@@ -210,7 +210,7 @@ bool PoseCsvReader::next(TraceFrame& frame) {
     if (rows_ == 0) throw Error(reader_.name(), "holds no frame", kRemedy);
     return false;
   }
-  frame.pose = rest_;
+  frame.poses.front() = rest_;
   frame.index = rows_;
   for (const Target& target : targets_) take(target, frame);
   if (!lines_.at_end()) throw lines_.error(fmt::format("has more than the header's {} fields", targets_.size()));

@@ -69,8 +69,8 @@ class TraceHdf5::Implementation {
       time_.fail(fmt::format("has {} in row {}, after {}", frame.time_ns, row_, last_time_ns_));
     last_index_ = frame.index;
     last_time_ns_ = frame.time_ns;
-    frame.pose.origin_m = vector(block_.origin, place);
-    fill_pose(place, frame.pose);
+    frame.poses.front().origin_m = vector(block_.origin, place);
+    fill_pose(place, frame.poses.front());
     fill_colliders(place, frame);
     ++row_;
     return true;
@@ -95,8 +95,9 @@ class TraceHdf5::Implementation {
       const std::optional<int> version = trace_format::parse_version(said);
       if (!version)
         throw Error(path_.string(), fmt::format("its format version is '{}', which is no version", said), kHdf5Remedy);
-      if (*version > trace_format::kNewestVersion)
-        throw Error(path_.string(), unknown_version(said), "use the later version of vestige that wrote it");
+      constexpr int kNewest = trace_format::kSpheresVersion;  // HDF5 holds one person
+      if (*version > kNewest)
+        throw Error(path_.string(), unknown_version(said, kNewest), "use the later version of vestige that wrote it");
     }
   }
 

@@ -250,7 +250,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
       throw Malformed("its frame number has more than 32 bits");
     const auto time = json.find("time_s");
     frame.time_ns = time == json.end() ? std::max(now_ns, last_ns_) : time_of(*time, last_ns_);
-    frame.pose = pose_;
+    frame.poses.front() = pose_;
     std::optional<FloatJson> read_floats;
     const auto floats = [&]() -> FloatJson& {
       return read_floats ? *read_floats : read_floats.emplace(in_floats(line, json));
@@ -258,17 +258,18 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     if (const auto pose = json.find("pose"); pose != json.end()) {
       if (!pose->is_object()) throw Malformed("'pose' is not an object");
       note_unknown(*pose, {"origin", "nodes", "joints"});
-      frame.pose.origin_m = pose->contains("origin") ? position_of((*pose)["origin"], "origin") : glm::dvec3(0);
+      frame.poses.front().origin_m =
+          pose->contains("origin") ? position_of((*pose)["origin"], "origin") : glm::dvec3(0);
       const FloatJson& in_float = floats()["pose"];
       if (const auto nodes = in_float.find("nodes"); nodes != in_float.end()) {
-        read_nodes(*nodes, frame.pose);
+        read_nodes(*nodes, frame.poses.front());
       } else if (const auto joints = in_float.find("joints"); joints != in_float.end() && joints->is_object()) {
-        frame.pose.nodes = rest_.nodes;
+        frame.poses.front().nodes = rest_.nodes;
         for (const auto& [name, joint] : joints->items()) {
           const auto node = node_of_.find(name);
           if (node == node_of_.end()) throw Malformed(fmt::format("the avatar has no node '{}'", name));
           note_unknown(joint, {"t", "r", "s"});
-          read_joint(joint, frame.pose.nodes[node->second]);
+          read_joint(joint, frame.poses.front().nodes[node->second]);
         }
       } else {
         throw Malformed("'pose' has neither 'nodes' nor 'joints'");
@@ -280,7 +281,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     }
     if (const auto teleported = json.find("teleported"); teleported != json.end())
       frame.teleported = teleported_of(*teleported);
-    pose_ = frame.pose;
+    pose_ = frame.poses.front();
     last_ns_ = frame.time_ns;
     next_index_ = frame.index + 1;
     take(std::move(frame));

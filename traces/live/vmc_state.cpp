@@ -205,7 +205,7 @@ void VmcState::show(TraceFrame& frame) {
   top = top_local_;
   top.translation = glm::vec3(root_.position + root_.rotation * glm::dvec3(top_local_.translation));
   top.rotation = glm::quat(glm::normalize(root_.rotation * glm::normalize(glm::dquat(top_local_.rotation))));
-  frame.pose = pose_;
+  frame.poses.front() = pose_;
   frame.colliders.clear();
   for (const auto& [id, collider] : colliders_) frame.colliders.push_back(collider);
   frame.teleported = std::exchange(teleported_, {});

@@ -255,8 +255,8 @@ void PlacementQuestion::see(const TraceFrame& frame) {
 std::optional<std::string> PlacementQuestion::ask() const {
   Moments moments;
   for (const TraceFrame& frame : kept_) {
-    if (frame.colliders.empty() || !is_finite(frame.pose)) continue;
-    Moment moment = {NearPoints(sampler_.points_m(frame.pose)), {}, {}};
+    if (frame.colliders.empty() || !is_finite(frame.poses.front())) continue;
+    Moment moment = {NearPoints(sampler_.points_m(frame.poses.front())), {}, {}};
     for (const ColliderSample& collider : frame.colliders) {
       if (!is_finite(collider.position_m)) continue;
       moment.ids.push_back(collider.id);

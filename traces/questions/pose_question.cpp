@@ -74,13 +74,13 @@ void PoseQuestion::see(const TraceFrame& frame) {
   ++frames_;
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     const auto node = static_cast<std::size_t>(joints_[k]);
-    const NodeLocal given = convention_.given_node(frame.pose.nodes[node]);
+    const NodeLocal given = convention_.given_node(frame.poses.front().nodes[node]);
     for (Reading& reading : readings_)
       if (stands_as_at_rest(reading.convention.node(given), avatar_.nodes[node].rest)) ++reading.as_at_rest[k];
   }
   for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
     const glm::quat& rest = avatar_.nodes[i].rest.rotation;
-    NodeLocal given = convention_.given_node(frame.pose.nodes[i]);
+    NodeLocal given = convention_.given_node(frame.poses.front().nodes[i]);
     const float now = closeness(convention_.node(given).rotation, rest);
     if (now < kTurned) ++turned_[i];
     given.rotation = glm::quat(given.rotation.x, given.rotation.y, given.rotation.z, given.rotation.w);

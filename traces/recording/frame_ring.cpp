@@ -47,7 +47,8 @@ void FrameRing::push(const TraceFrame& frame) {
     append(
         open_, Stream::kEvents, frame.index, last_ns_,
         encoder_.event({.time_ns = last_ns_, .kind = trace_format::kTeleportKind, .collider = collider, .text = {}}));
-  append(open_, Stream::kPose, frame.index, last_ns_, encoder_.pose(last_ns_, frame.pose));
+  for (const Pose& pose : frame.poses)
+    append(open_, Stream::kPose, frame.index, last_ns_, encoder_.pose(last_ns_, pose));
   append(open_, Stream::kColliders, frame.index, last_ns_, encoder_.colliders(last_ns_, frame.colliders));
   if (open_.size() >= kBlockBytes) close_block();
   forget_old();
@@ -91,6 +92,7 @@ void FrameRing::Contents::for_each(const TakeNote& take_note, const TakeFrame& t
   MessageDecoder decoder;
   mcap::RawBuffer expanded;
   TraceFrame frame;
+  std::size_t person = 0;            ///< whose pose comes next in the frame
   std::vector<RecordingNote> notes;  ///< notes before the next frame
   bool begun = first_ns_ == 0;       ///< nothing has left the ring, or a frame was delivered
   const auto give_notes = [&] {
@@ -115,7 +117,8 @@ void FrameRing::Contents::for_each(const TakeNote& take_note, const TakeFrame& t
                            .text = std::string(event.text)});
         }
       } else if (message.channel_id == id_of(Stream::kPose)) {
-        decoder.pose(message.data, frame.pose);
+        if (person == frame.poses.size()) frame.poses.emplace_back();
+        decoder.pose(message.data, frame.poses[person++]);
       } else {
         decoder.colliders(message.data, frame.colliders);
         frame.index = message.publish_time;
@@ -127,6 +130,7 @@ void FrameRing::Contents::for_each(const TakeNote& take_note, const TakeFrame& t
         }
         notes.clear();
         frame.teleported.clear();
+        person = 0;
       }
     }
   }

@@ -161,7 +161,7 @@ Recorder::Implementation::~Implementation() {
 }
 
 std::unique_ptr<TraceWriter> Recorder::Implementation::open(const std::filesystem::path& path) const {
-  return std::make_unique<TraceWriter>(path, target_.session, target_.avatar, target_.attachments, target_.writing);
+  return std::make_unique<TraceWriter>(path, target_.session, target_.people, target_.writing);
 }
 
 void Recorder::Implementation::open_next() {

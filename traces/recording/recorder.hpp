@@ -32,8 +32,7 @@ class Recorder {
   struct Target {
     std::filesystem::path path;
     Session session;
-    const Avatar& avatar;          ///< the caller keeps it alive
-    TraceAttachments attachments;  ///< the caller keeps their bytes alive
+    std::vector<TracePerson> people;  ///< the caller keeps avatars and bytes alive
     TraceWriterOptions writing;
     RecordingLimits limits;
   };

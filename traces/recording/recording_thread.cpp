@@ -17,8 +17,10 @@ std::size_t bytes_of(const std::vector<RecordingNote>& notes) {
 }
 
 std::size_t bytes_of(const TraceFrame& frame) {
-  return sizeof frame + frame.pose.nodes.size() * sizeof frame.pose.nodes[0] +
-         frame.colliders.size() * sizeof frame.colliders[0] + frame.teleported.size() * sizeof frame.teleported[0];
+  std::size_t bytes = 0;
+  for (const Pose& pose : frame.poses) bytes += sizeof pose + pose.nodes.size() * sizeof pose.nodes[0];
+  return bytes + sizeof frame + frame.colliders.size() * sizeof frame.colliders[0] +
+         frame.teleported.size() * sizeof frame.teleported[0];
 }
 
 }  // namespace

@@ -15,17 +15,22 @@ void sample_frame(const SampledScene& scene, double rate_hz, std::uint64_t index
   const double time_s = static_cast<double>(index) / rate_hz;
   out.index = index;
   out.time_ns = std::llround(time_s * 1e9);
-  out.pose = looped_pose(scene.avatar, scene.animation, time_s);
-  out.pose.origin_m = scene.origin_m;
+  out.poses.resize(scene.people.size());
+  for (std::size_t k = 0; k < scene.people.size(); ++k) {
+    const SampledPerson& person = scene.people[k];
+    out.poses[k] = looped_pose(person.avatar, person.animation, time_s);
+    out.poses[k].origin_m = scene.origin_m;
+    move_to(person.stance, person.avatar, out.poses[k]);
+  }
   scene.colliders.sample(time_s, out.colliders);
   out.teleported = scene.colliders.teleported();
   for (ColliderSample& sample : out.colliders) sample.position_m += scene.origin_m;
 }
 
-void record(const FrameSink& write, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
+void record(const FrameSink& write, const std::vector<SampledPerson>& people, ColliderSource& colliders,
             const RecordingSettings& settings, const std::function<bool(double)>& progress) {
   const std::uint64_t frames = frame_count(settings);
-  const SampledScene scene = {avatar, animation, colliders, on_grid(settings.origin_m)};
+  const SampledScene scene = {people, colliders, on_grid(settings.origin_m)};
   TraceFrame frame;
   for (std::uint64_t index = 0; index < frames; ++index) {
     sample_frame(scene, settings.rate_hz, index, frame);

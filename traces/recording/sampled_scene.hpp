@@ -3,9 +3,12 @@
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <span>
+#include <vector>
 
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/colliders.hpp"
+#include "traces/scene/stance.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {
@@ -19,23 +22,28 @@ struct RecordingSettings {
 /// Returns the number of frames of a recording: rate times duration, rounded, at least 1.
 std::uint64_t frame_count(const RecordingSettings& settings);
 
+struct SampledPerson {
+  const Avatar& avatar;
+  const Animation* animation = nullptr;  ///< loops; null means the rest pose
+  Stance stance = {};
+};
+
 /// A scene that frames are sampled from. The times requested from one `colliders` must not decrease.
 struct SampledScene {
-  const Avatar& avatar;
-  const Animation* animation;  ///< loops; null means the rest pose
+  std::span<const SampledPerson> people;
   ColliderSource& colliders;
   glm::dvec3 origin_m = glm::dvec3(0);
 };
 
-/// Returns in `out` pose and colliders at time index / rate.
+/// Returns in `out` poses and colliders at time index / rate.
 void sample_frame(const SampledScene& scene, double rate_hz, std::uint64_t index, TraceFrame& out);
 
 /// Receives a frame. Returns false if it accepts no more frames.
 using FrameSink = std::function<bool(const TraceFrame&)>;
 
-/// Samples pose and colliders at the times k / rate and passes them to `write`. The animation loops; null means the
-/// rest pose. Calls `progress` with the fraction done; it returns false to stop.
-void record(const FrameSink& write, const Avatar& avatar, const Animation* animation, ColliderSource& colliders,
+/// Samples poses and colliders at the times k / rate and passes them to `write`. Calls `progress` with the fraction
+/// done; it returns false to stop.
+void record(const FrameSink& write, const std::vector<SampledPerson>& people, ColliderSource& colliders,
             const RecordingSettings& settings, const std::function<bool(double)>& progress);
 
 }  // namespace vestige

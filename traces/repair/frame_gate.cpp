@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
+#include <set>
 #include <utility>
 
 namespace vestige {
@@ -56,6 +57,7 @@ void FrameGate::take(const mcap::Message& message, Trust trust) {
   Held& held = group_.messages.emplace_back();
   held.message = message;
   held.stream = stream;
+  held.person = streams_.person_of(message.channel_id);
   held.data.assign(message.data.begin(), message.data.end());
   group_.bytes += held.data.size() + sizeof held;
   if (group_.bytes > kMostWaitingBytes) end_group();
@@ -90,7 +92,7 @@ bool FrameGate::is_readable(const Held& held) {
     switch (held.stream) {
       case Stream::kPose: {
         const std::size_t nodes = decoder_.pose_node_count(held.data);
-        return held.message.log_time <= kLatest_ns && (!node_count_ || nodes == *node_count_);
+        return held.message.log_time <= kLatest_ns && has_nodes(held.person, nodes);
       }
       case Stream::kColliders:
         decoder_.colliders(held.data, colliders_);
@@ -107,6 +109,11 @@ bool FrameGate::is_readable(const Held& held) {
   return true;
 }
 
+bool FrameGate::has_nodes(std::size_t person, std::size_t nodes) const {
+  const auto expected = node_counts_.find(person);
+  return expected == node_counts_.end() || nodes == expected->second;
+}
+
 /// Whether a recorder could have written a readable message.
 bool FrameGate::is_plausible(const Held& held) {
   const auto time_ns = static_cast<std::int64_t>(held.message.log_time);
@@ -118,23 +125,26 @@ bool FrameGate::is_plausible(const Held& held) {
   if (held.stream == Stream::kColliders) {
     decoder_.colliders(held.data, colliders_);
     return decoder_.colliders_time_ns(held.data) == time_ns &&
-           std::all_of(colliders_.begin(), colliders_.end(),
-                       [](const ColliderSample& collider) { return is_near(collider.position_m); });
+           std::all_of(colliders_.begin(), colliders_.end(), [](const ColliderSample& collider) {
+             return is_near(collider.position_m) && collider.owner <= trace_format::kMostPeople;
+           });
   }
   return true;
 }
 
 bool FrameGate::clean(Group& group) {
-  std::size_t poses = 0;
+  std::set<std::size_t> poses;  // of these people
   std::size_t colliders = 0;
   std::uint64_t colliders_time_ns = 0;
   bool readable = true;
   std::erase_if(group.messages, [&](const Held& held) {
     const bool is_good = is_readable(held) && (group.trust == Trust::kVerified || is_plausible(held));
-    const bool keep = is_good && !(held.stream == Stream::kPose && poses > 0) &&
+    const bool is_pose = held.stream == Stream::kPose;
+    const bool is_other_time = is_pose && !poses.empty() && held.message.log_time != group.time_ns;
+    const bool keep = is_good && !(is_pose && poses.contains(held.person)) && !is_other_time &&
                       !(held.stream == Stream::kColliders && colliders > 0);
-    if (keep && held.stream == Stream::kPose) {
-      ++poses;
+    if (keep && is_pose) {
+      poses.insert(held.person);
       group.time_ns = held.message.log_time;
     }
     if (keep && held.stream == Stream::kColliders) {
@@ -148,10 +158,10 @@ bool FrameGate::clean(Group& group) {
     return !keep;
   });
   if (!group.has_frame) return false;
-  // A frame with two poses, or with one pose and no colliders, counts as whole if one good message of each kind present
+  // A frame with two poses of a person, or without colliders, counts as whole if one good message of each kind present
   // is left.
   const bool agrees = group.trust == Trust::kVerified || (colliders == 1 && colliders_time_ns == group.time_ns);
-  const bool good = poses == 1 && agrees && (readable || colliders == 1);
+  const bool good = !poses.empty() && agrees && (readable || colliders == 1);
   if (!good) leave_out_frame(group);
   return good;
 }

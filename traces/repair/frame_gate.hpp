@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -14,7 +15,8 @@
 namespace vestige {
 
 /// Passes on the messages that form a trace which `TraceReader` reads to its end: whole frames that fit the avatar and
-/// follow each other. Messages of foreign channels pass.
+/// follow each other. Messages of foreign channels pass. A frame of several people is whole with the poses of all; in a
+/// damaged trace it also passes with the poses of some, as `TraceReader` delivers it.
 ///
 /// An unverified frame, which no CRC covers, passes only under three conditions. Its pose and colliders agree on frame
 /// and time. A recorder could have written them. It lies between the verified frames around it, so the gate holds it
@@ -27,8 +29,8 @@ class FrameGate {
   /// Keeps a reference to `streams`, which says which channels are Vestige's own.
   FrameGate(const StreamTable& streams, Write write) : streams_(streams), write_(std::move(write)) {}
 
-  /// Sets the avatar's number of nodes. Without this call, any number passes.
-  void set_node_count(std::size_t count) { node_count_ = count; }
+  /// Sets the number of nodes of a person's avatar. Without this call, any number passes.
+  void set_node_count(std::size_t person, std::size_t count) { node_counts_[person] = count; }
   /// Takes the next message of the file; copies its data.
   void take(const mcap::Message& message, mcap::Trust trust);
   /// Call this after the last message.
@@ -41,12 +43,13 @@ class FrameGate {
   struct Held {
     mcap::Message message;
     trace_format::Stream stream = trace_format::Stream::kForeign;
+    std::size_t person = 0;  ///< whose pose
     std::vector<std::byte> data;
   };
   /// Consecutive messages of one frame, and the foreign messages between them.
   struct Group {
     std::uint32_t sequence = 0;
-    std::uint64_t time_ns = 0;  ///< of the pose
+    std::uint64_t time_ns = 0;  ///< of the poses
     mcap::Trust trust = mcap::Trust::kVerified;
     bool has_frame = false;  ///< has a pose or colliders, not only events
     std::vector<Held> messages;
@@ -58,6 +61,7 @@ class FrameGate {
   bool clean(Group& group);
   bool is_readable(const Held& held);
   bool is_plausible(const Held& held);
+  bool has_nodes(std::size_t person, std::size_t nodes) const;
   std::vector<bool> longest_sequence(const Group* next) const;
   void release(const Group* next);
   void write(Group& group);
@@ -65,7 +69,7 @@ class FrameGate {
 
   const StreamTable& streams_;
   Write write_;
-  std::optional<std::size_t> node_count_;
+  std::map<std::size_t, std::size_t> node_counts_;  ///< by person
   MessageDecoder decoder_;
   std::vector<ColliderSample> colliders_;
   Pose pose_;

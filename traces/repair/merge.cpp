@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "traces/mcap/check/summary_check.hpp"
 #include "traces/mcap/encode.hpp"
 #include "traces/mcap/stream_reader.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/trace_file/definitions.hpp"
 #include "traces/trace_file/mcap_output.hpp"
 #include "traces/trace_file/trace_index.hpp"
@@ -41,24 +43,23 @@ Moment moment_of(const mcap::Message& message) {
   return {.time_ns = message.log_time, .sequence = message.sequence};
 }
 
-/// What must be the same in all parts.
+/// What must be the same in all parts: the SHA-256 of each person's avatar, map and map's description.
 struct Identity {
-  std::string avatar;
-  std::string map_image;
-  std::string map_text;
+  std::size_t people = 1;
+  std::map<std::string, std::string> sha256;
 };
 
 Identity identity_of(const TraceIndex& index) {
-  return {.avatar = sha256_hex(index.avatar_glb),
-          .map_image = sha256_hex(index.actuator_map_png),
-          .map_text = sha256_hex(index.actuator_map_json)};
+  Identity identity = {.people = index.people, .sha256 = {}};
+  for (const auto& [name, data] : index.attachments) identity.sha256[name] = sha256_hex(data);
+  return identity;
 }
 
 bool is_trace(const Definitions& definitions) {
   return std::any_of(definitions.channels.begin(), definitions.channels.end(), [&](const auto& entry) {
     const auto schema = definitions.schemas.find(entry.second.schema_id);
-    return trace_format::recognise(entry.second, schema == definitions.schemas.end() ? nullptr : &schema->second) ==
-           Stream::kPose;
+    return trace_format::recognise(entry.second, schema == definitions.schemas.end() ? nullptr : &schema->second)
+               .stream == Stream::kPose;
   });
 }
 
@@ -73,12 +74,28 @@ void require_same(const Map& known, const Map& added, std::string_view kind, con
 }
 
 void require_same(const Identity& known, const Identity& added, const ByteSource& first, const ByteSource& other) {
-  const auto refuse = [&](std::string_view what) {
-    throw Error(other.name(), fmt::format("its {} differs from that of {}", what, first.name()), kOneRecording);
+  using trace_format::AttachmentKind;
+  if (added.people != known.people)
+    throw Error(other.name(),
+                fmt::format("holds {}, and {} holds {}", count_of_people(added.people), first.name(),
+                            count_of_people(known.people)),
+                kOneRecording);
+  const auto sha256 = [](const Identity& identity, const std::string& name) {
+    const auto found = identity.sha256.find(name);
+    return found == identity.sha256.end() ? std::string() : found->second;
   };
-  if (added.avatar != known.avatar) refuse("avatar");
-  if (added.map_image != known.map_image) refuse("actuator map");
-  if (added.map_text != known.map_text) refuse("actuator map's description");
+  for (std::size_t person = 0; person < known.people; ++person)
+    for (const AttachmentKind part : trace_format::kAttachmentKinds) {
+      const std::string name = trace_format::attachment_name(part, person);
+      if (sha256(added, name) == sha256(known, name)) continue;
+      const std::string_view what = part == AttachmentKind::kAvatar     ? "avatar"
+                                    : part == AttachmentKind::kMapImage ? "actuator map"
+                                                                        : "actuator map's description";
+      throw Error(other.name(),
+                  fmt::format("its {}{} differs from that of {}", what,
+                              person == 0 ? "" : fmt::format(" of person {}", person + 1), first.name()),
+                  kOneRecording);
+    }
 }
 
 void require_same_version(const std::optional<int>& known, const TraceIndex& added, const ByteSource& first,
@@ -86,8 +103,9 @@ void require_same_version(const std::optional<int>& known, const TraceIndex& add
   const std::optional<int> own = added.streams.version_of_schemas();
   if (!known || !own || *known == *own) return;
   throw Error(other.name(),
-              fmt::format("has format version {}, and {} has {}: 1 is of points, 2 of colliders with radii", *own,
-                          first.name(), *known),
+              fmt::format("has format version {}, and {} has {}: 1 is of points, 2 of colliders with radii, 3 of "
+                          "several people or colliders that belong to people",
+                          *own, first.name(), *known),
               kOneRecording);
 }
 
@@ -218,6 +236,7 @@ class Merger {
   std::vector<std::unique_ptr<Part>> parts_;
   std::set<std::string> written_;  ///< SHA-256 of attachments and metadata
   std::optional<std::uint32_t> last_frame_;
+  std::set<std::size_t> posed_;  ///< the people whose pose was written at this moment
   Merged result_;
 };
 
@@ -272,6 +291,7 @@ const Part& Merger::take_moment(const Moment& moment) {
   const bool is_shared = std::ranges::count_if(parts_, [&](const auto& part) { return part->is_at(moment); }) > 1;
   const Part* from = nullptr;
   Fingerprint frame;
+  posed_.clear();
   for (const auto& part : parts_) {
     if (!part->is_at(moment)) continue;
     if (from == nullptr) {
@@ -320,7 +340,10 @@ void Merger::require_next_frame(std::uint32_t sequence, const Part& part) {
 }
 
 void Merger::write(const mcap::Message& message, const Part& part) {
-  if (output_.streams().stream_of(message.channel_id) == Stream::kPose) require_next_frame(message.sequence, part);
+  if (output_.streams().stream_of(message.channel_id) == Stream::kPose) {
+    const bool is_second = !posed_.insert(output_.streams().person_of(message.channel_id)).second;
+    if (is_second || posed_.size() == 1) require_next_frame(message.sequence, part);
+  }
   if (!output_.write(message))
     throw Error(part.source().name(),
                 fmt::format("it has messages of channel {}, which is not defined", message.channel_id),

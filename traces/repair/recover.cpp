@@ -42,7 +42,7 @@ bool is_rebuilt(Opcode opcode) {
 
 std::string profile_of(const Definitions& definitions) {
   if (definitions.header) return definitions.header->profile;
-  const bool has_poses = streams_of(definitions).find(Stream::kPose) != nullptr;
+  const bool has_poses = !streams_of(definitions).pose_channels().empty();
   return has_poses ? std::string(trace_format::kProfile) : std::string();
 }
 
@@ -67,7 +67,7 @@ void Recoverer::repaired(std::string what) {
 }
 
 Recovery Recoverer::run(const std::function<bool(double)>& progress) {
-  learn_node_count();
+  learn_node_counts();
   RecordPlace place;
   while (walker_.next(place)) {
     take_damages();
@@ -80,12 +80,9 @@ Recovery Recoverer::run(const std::function<bool(double)>& progress) {
   return std::move(result_);
 }
 
-void Recoverer::learn_node_count() {
-  if (nodes_known_) return;
-  const mcap::Channel* pose = output_.streams().find(Stream::kPose);
-  if (pose == nullptr) return;
-  nodes_known_ = true;
-  if (const auto names = parse_node_names(*pose)) gate_.set_node_count(names->size());
+void Recoverer::learn_node_counts() {
+  for (const auto& [person, channel] : output_.streams().pose_channels())
+    if (const auto names = parse_node_names(*channel)) gate_.set_node_count(person, names->size());
 }
 
 void Recoverer::take_damages() {
@@ -283,8 +280,9 @@ void Recoverer::take_inner(Opcode opcode, Bytes content, Trust trust) {
         result_.bytes_lost += content.size() + mcap::kRecordHeadBytes;
         break;
       }
+      if (output_.definitions().channels.contains(channel.id)) break;
       output_.add(std::move(channel));
-      learn_node_count();
+      learn_node_counts();
       break;
     }
     case Opcode::kMessage:

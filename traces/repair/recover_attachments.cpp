@@ -26,22 +26,24 @@ void Recoverer::take_metadata(mcap::Metadata metadata) {
   }
   if (metadata.name == trace_format::kSessionName) {
     facts_.claims.session = metadata.metadata;
-    drop_facing(metadata.metadata);
+    for (std::size_t person = 0; person < trace_format::kMostPeople; ++person) drop_facing(metadata.metadata, person);
     mend_version(metadata.metadata);
   }
   output_.write(metadata);
   ++result_.metadata;
 }
 
-/// Drops the facing of a session if it is no axis, or if another avatar takes the place of the recorded one: it faces
-/// where its own file tells.
-void Recoverer::drop_facing(mcap::StringMap& session) {
-  const auto facing = session.find(std::string(trace_format::kFacingKey));
+/// Drops the facing of a person in a session if it is no axis, or if another avatar takes the place of the recorded
+/// one: it faces where its own file tells.
+void Recoverer::drop_facing(mcap::StringMap& session, std::size_t person) {
+  const std::string key = trace_format::numbered(trace_format::kFacingKey, person);
+  const auto facing = session.find(key);
   if (facing == session.end()) return;
-  const auto avatar = plan_.attachments.find(std::string(trace_format::kAvatarName));
+  const auto avatar =
+      plan_.attachments.find(trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, person));
   const bool is_other = avatar != plan_.attachments.end() && !avatar->second.is_recorded;
   const bool is_axis = facing_named(facing->second).has_value();
-  if (!is_axis) repaired(fmt::format("the session's facing '{}', which is no axis, was left out", facing->second));
+  if (!is_axis) repaired(fmt::format("the session's {} '{}', which is no axis, was left out", key, facing->second));
   if (!is_axis || is_other) session.erase(facing);
 }
 
@@ -58,13 +60,13 @@ void Recoverer::mend_version(mcap::StringMap& session) {
 AttachmentFacts Recoverer::facts() const {
   AttachmentFacts facts = facts_;
   facts.claims.pose = pose_metadata(output_.streams());
-  if (const mcap::Channel* pose = output_.streams().find(Stream::kPose))
-    if (const auto names = parse_node_names(*pose)) facts.pose_nodes = names->size();
+  for (const auto& [person, channel] : output_.streams().pose_channels())
+    if (const auto names = parse_node_names(*channel)) facts.pose_nodes[person] = names->size();
   return facts;
 }
 
 void Recoverer::note_attachment(const mcap::Attachment& attachment, std::string_view name, bool is_whole) {
-  if (std::ranges::find(trace_format::kAttachmentNames, name) == trace_format::kAttachmentNames.end()) return;
+  if (!trace_format::attachment_id(name)) return;
   if (is_whole && attachment.name == name)
     facts_.sha256[attachment.name] = sha256_hex(attachment.data);
   else

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -21,21 +22,20 @@
 
 namespace vestige {
 
-/// The node names in the metadata of a file's channels /pose: those of the first such channel. A channel with other
-/// names belongs to none of the file's frames.
+/// The node names in the metadata of a file's channels /pose: of each topic, those of the first such channel. A channel
+/// with other names belongs to none of the file's frames.
 class PoseNodes {
  public:
   bool agrees(const mcap::Channel& channel) {
-    if (channel.topic != trace_format::channel_of(trace_format::Stream::kPose).topic) return true;
+    const std::string topic = trace_format::channel_of(trace_format::Stream::kPose).topic;
+    if (channel.topic != topic && !channel.topic.starts_with(topic + "/")) return true;
     auto names = parse_node_names(channel);
-    if (std::exchange(known_, true)) return names == names_;
-    names_ = std::move(names);
-    return true;
+    const auto [known, is_first] = names_.try_emplace(channel.topic, names);
+    return is_first || known->second == names;
   }
 
  private:
-  bool known_ = false;
-  std::optional<std::vector<std::string>> names_;
+  std::map<std::string, std::optional<std::vector<std::string>>> names_;
 };
 
 /// Reads a damaged file record by record (recover.cpp), and writes or replaces its attachments
@@ -58,7 +58,7 @@ class Recoverer {
   void take_misnamed(mcap::Bytes content, std::uint64_t offset);
   void take_attachment(mcap::Bytes content);
   void take_metadata(mcap::Metadata metadata);
-  void drop_facing(mcap::StringMap& session);
+  void drop_facing(mcap::StringMap& session, std::size_t person);
   void mend_version(mcap::StringMap& session);
   void note_attachment(const mcap::Attachment& attachment, std::string_view name, bool is_whole);
   void replace(const std::string& name, const Replacement& replacement);
@@ -68,7 +68,7 @@ class Recoverer {
   void take_remains(mcap::Bytes records);
   void take_inner(mcap::Opcode opcode, mcap::Bytes content, mcap::Trust trust);
   void write(const mcap::Message& message);
-  void learn_node_count();
+  void learn_node_counts();
   std::uint64_t bytes_of_rebuilt(const mcap::Damage& damage);
   void repaired(std::string what);
   void count_messages();
@@ -90,7 +90,6 @@ class Recoverer {
   std::uint32_t crc_ = mcap::crc32(std::as_bytes(std::span(mcap::kMagic)));
   std::uint64_t crc_end_ = mcap::kMagicBytes;  ///< the end of the bytes that crc_ covers
   bool data_ended_ = false;
-  bool nodes_known_ = false;
 };
 
 }  // namespace vestige

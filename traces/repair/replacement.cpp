@@ -15,23 +15,24 @@ namespace vestige {
 
 namespace {
 
-using Names = std::span<const std::string_view>;
+using trace_format::AttachmentKind;
 
-constexpr std::array kAvatarNames = {trace_format::kAvatarName};
-constexpr std::array kMapNames = {trace_format::kMapImageName, trace_format::kMapTextName};
+constexpr std::array kAvatarParts = {AttachmentKind::kAvatar};
+constexpr std::array kMapParts = {AttachmentKind::kMapImage, AttachmentKind::kMapText};
 
 class Planner {
  public:
   Planner(std::string_view file, const AttachmentFacts& facts, const Substitutes& substitutes)
       : file_(file), facts_(facts), refusal_(substitutes.refusal) {}
 
-  void take(const Substitute& substitute, Names names);
+  void take(const Substitute& substitute, std::span<const AttachmentKind> parts);
   ReplacementPlan take_plan() { return std::move(plan_); }
 
  private:
   bool needs_replacement(const std::string& name) const;
   void require_recorded(const Substitute& substitute, const std::string& name, const std::string& refusal) const;
-  static void require_nodes(const Substitute& substitute, std::size_t pose_nodes);
+  void require_person(std::size_t person) const;
+  void require_nodes(const Substitute& substitute) const;
 
   std::string_view file_;
   const AttachmentFacts& facts_;
@@ -67,27 +68,44 @@ void Planner::require_recorded(const Substitute& substitute, const std::string& 
                 fmt::format("name the one of the recording; to take this one anyway, {}", refusal));
 }
 
-void Planner::require_nodes(const Substitute& substitute, std::size_t pose_nodes) {
-  const auto avatar = substitute.files.find(std::string(trace_format::kAvatarName));
-  if (avatar == substitute.files.end()) return;
+void Planner::require_nodes(const Substitute& substitute) const {
+  const auto avatar = substitute.files.find(trace_format::attachment_name(AttachmentKind::kAvatar, substitute.person));
+  const auto pose_nodes = facts_.pose_nodes.find(substitute.person);
+  if (avatar == substitute.files.end() || pose_nodes == facts_.pose_nodes.end()) return;
   const auto nodes = glb_node_count(avatar->second);
-  if (!nodes || *nodes == pose_nodes) return;
-  throw Error(substitute.from, fmt::format("has {} nodes, but the poses of the trace have {}", *nodes, pose_nodes),
+  if (!nodes || *nodes == pose_nodes->second) return;
+  throw Error(substitute.from,
+              fmt::format("has {} nodes, but the poses of the trace have {}", *nodes, pose_nodes->second),
               "name the avatar of the recording");
 }
 
-void Planner::take(const Substitute& substitute, Names group) {
-  if (!facts_.pose_nodes)
+/// Throws `Error` unless the file has poses or an attachment of the person, or the SHA-256 of one.
+void Planner::require_person(std::size_t person) const {
+  if (facts_.pose_nodes.empty())
     throw Error(file_, "is not a trace of vestige, so it needs no avatar and no actuator map",
                 "leave out --avatar and --map");
-  const std::vector<std::string> names(group.begin(), group.end());
+  const auto is_known = [&](AttachmentKind part) {
+    const std::string name = trace_format::attachment_name(part, person);
+    return facts_.sha256.contains(name) || facts_.damaged.contains(name) ||
+           !recorded_sha256(facts_.claims, name).empty();
+  };
+  if (person == 0 || facts_.pose_nodes.contains(person) ||
+      std::ranges::any_of(trace_format::kAttachmentKinds, is_known))
+    return;
+  throw Error(file_, fmt::format("holds no person {}", person + 1), "`vestige inspect` shows who is in it");
+}
+
+void Planner::take(const Substitute& substitute, std::span<const AttachmentKind> parts) {
+  require_person(substitute.person);
+  std::vector<std::string> names;
+  for (const AttachmentKind part : parts) names.push_back(trace_format::attachment_name(part, substitute.person));
   std::vector<std::string> needed;
   std::ranges::copy_if(names, std::back_inserter(needed), [&](const auto& name) { return needs_replacement(name); });
   const bool has_any = std::ranges::any_of(names, [&](const auto& name) { return facts_.sha256.contains(name); });
   // Without a session, nobody knows what is missing.
   const bool may_lack_all = needed.empty() && !has_any;
-  if (may_lack_all && group.front() == trace_format::kMapImageName &&
-      !recorded_sha256(facts_.claims, trace_format::kAvatarName).empty())
+  const std::string avatar = trace_format::attachment_name(AttachmentKind::kAvatar, substitute.person);
+  if (may_lack_all && names.front() != avatar && !recorded_sha256(facts_.claims, avatar).empty())
     throw Error(file_, "was recorded without an actuator map, so there is none to replace", "leave out --map");
   if (may_lack_all) needed = {names.front()};
   if (needed.empty()) {
@@ -105,7 +123,7 @@ void Planner::take(const Substitute& substitute, Names group) {
   }
   if (refusal_)
     for (const std::string& name : needed) require_recorded(substitute, name, *refusal_);
-  require_nodes(substitute, *facts_.pose_nodes);
+  require_nodes(substitute);
   for (const std::string& name : names) {
     const auto file = substitute.files.find(name);
     if (file != substitute.files.end())
@@ -119,8 +137,8 @@ void Planner::take(const Substitute& substitute, Names group) {
 
 ReplacementPlan plan_replacements(std::string_view file, const AttachmentFacts& facts, const Substitutes& substitutes) {
   Planner planner(file, facts, substitutes);
-  if (substitutes.avatar) planner.take(*substitutes.avatar, kAvatarNames);
-  if (substitutes.map) planner.take(*substitutes.map, kMapNames);
+  for (const Substitute& avatar : substitutes.avatars) planner.take(avatar, kAvatarParts);
+  for (const Substitute& map : substitutes.maps) planner.take(map, kMapParts);
   return planner.take_plan();
 }
 

@@ -12,28 +12,29 @@
 
 namespace vestige {
 
-/// An avatar, or a map with its sidecar, that takes the place of damaged or missing attachments.
+/// A person's avatar, or map with its sidecar, that takes the place of damaged or missing attachments.
 struct Substitute {
+  std::size_t person = 0;
   std::string from;                                     ///< as the user named it, for errors
   std::map<std::string, std::vector<std::byte>> files;  ///< by the attachment's name
 };
 
 struct Substitutes {
-  std::optional<Substitute> avatar;
-  std::optional<Substitute> map;
+  std::vector<Substitute> avatars;  ///< at most one for each person
+  std::vector<Substitute> maps;     ///< likewise
   /// The remedy of the error that refuses a substitute whose SHA-256 is not the recorded one. Nothing: such a
   /// substitute is accepted.
   std::optional<std::string> refusal = "";
 
-  bool empty() const { return !avatar && !map; }
+  bool empty() const { return avatars.empty() && maps.empty(); }
 };
 
 /// What a damaged file still has, and says about its attachments.
 struct AttachmentFacts {
   AttachmentClaims claims;
-  std::map<std::string, std::string> sha256;  ///< of Vestige's own attachments that are undamaged, by name
-  std::set<std::string> damaged;              ///< names of those that are damaged
-  std::optional<std::size_t> pose_nodes;      ///< nodes of each pose; nothing: the file is not a Vestige trace
+  std::map<std::string, std::string> sha256;      ///< of Vestige's own attachments that are undamaged, by name
+  std::set<std::string> damaged;                  ///< names of those that are damaged
+  std::map<std::size_t, std::size_t> pose_nodes;  ///< nodes of each pose, by person; empty: not a Vestige trace
 };
 
 /// What takes the place of an attachment.
@@ -54,7 +55,7 @@ struct ReplacementPlan {
 ///
 /// Throws `Error` with file and remedy if `file` is not a trace; if an avatar has another number of nodes than the
 /// poses; if the trace was recorded without a map; and, unless accepted, if a substitute is not the recorded one or the
-/// file does not say which one that is.
+/// file does not say which one that is; if there is no such person.
 ReplacementPlan plan_replacements(std::string_view file, const AttachmentFacts& facts, const Substitutes& substitutes);
 
 }  // namespace vestige

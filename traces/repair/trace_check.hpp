@@ -21,6 +21,7 @@ struct TraceCheck {
   };
   bool is_trace = false;  ///< judged by profile or channels; any other MCAP file is checked as a container only
   mcap::ContainerFacts container;
+  std::size_t people = 1;               ///< see `people_of`
   std::uint64_t frames = 0;             ///< frames that readers deliver, up to the first one that they refuse
   std::uint64_t dropped = 0;            ///< number of messages that the recorder noted as lost
   std::vector<Attachment> attachments;  ///< the undamaged ones, by name

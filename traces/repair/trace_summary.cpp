@@ -114,6 +114,8 @@ void Gatherer::check_attachments() {
     sha256[attachment.name] = attachment.sha256;
     attachment.is_recorded = is_recorded(claims_, attachment.name, attachment.sha256);
   }
+  summary_.is_trace = !streams_.pose_channels().empty();
+  summary_.people = people_of(claims_, streams_, sha256);
   for (const SessionProblem& problem : check_session(source_.name(), claims_, sha256))
     warn({session_offset_, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
 }

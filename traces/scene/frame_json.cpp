@@ -36,6 +36,7 @@ void append_json(std::string& out, const std::vector<ColliderSample>& colliders)
       out += R"(,"radius":)";
       append_json(out, colliders[i].radius_m);
     }
+    if (colliders[i].owner != kNobody) fmt::format_to(std::back_inserter(out), R"(,"owner":{})", colliders[i].owner);
     out += '}';
   }
   out += ']';

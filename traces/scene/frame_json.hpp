@@ -12,7 +12,7 @@ namespace vestige {
 /// `{"origin": [x, y, z], "nodes": [[tx, ty, tz, rx, ry, rz, rw, sx, sy, sz], …]}`
 void append_json(std::string& out, const Pose& pose);
 
-/// `[{"id", "position": [x, y, z], "radius"}, …]`; a point has no radius.
+/// `[{"id", "position": [x, y, z], "radius", "owner"}, …]`; a point has no radius, and what belongs to nobody no owner.
 void append_json(std::string& out, const std::vector<ColliderSample>& colliders);
 
 }  // namespace vestige

@@ -34,7 +34,7 @@ void StreamTable::add(mcap::Schema schema) {
 
 void StreamTable::add(mcap::Channel channel) {
   const std::uint16_t id = channel.id;
-  if (streams_[id] != Stream::kForeign) return;
+  if (streams_[id].stream != Stream::kForeign) return;
   if (const auto known = channels_.find(id); known != channels_.end())
     channels_of_schema_.erase({known->second.schema_id, id});
   channels_of_schema_.emplace(channel.schema_id, id);
@@ -43,9 +43,10 @@ void StreamTable::add(mcap::Channel channel) {
 
 void StreamTable::update(const mcap::Channel& channel) {
   const auto schema = schemas_.find(channel.schema_id);
-  const Stream stream = trace_format::recognise(channel, schema == schemas_.end() ? nullptr : &schema->second);
+  const trace_format::StreamId stream =
+      trace_format::recognise(channel, schema == schemas_.end() ? nullptr : &schema->second);
   streams_[channel.id] = stream;
-  if (stream == Stream::kForeign) return;
+  if (stream.stream == Stream::kForeign) return;
   const auto [first, is_new] = channel_of_.try_emplace(stream, channel.id);
   first->second = std::min(first->second, channel.id);
 }
@@ -64,9 +65,16 @@ std::optional<int> StreamTable::version_of_schemas() const {
   return {};
 }
 
-const mcap::Channel* StreamTable::find(Stream stream) const {
-  const auto found = channel_of_.find(stream);
+const mcap::Channel* StreamTable::find(Stream stream, std::size_t person) const {
+  const auto found = channel_of_.find({stream, person});
   return found == channel_of_.end() ? nullptr : &channels_.at(found->second);
+}
+
+std::map<std::size_t, const mcap::Channel*> StreamTable::pose_channels() const {
+  std::map<std::size_t, const mcap::Channel*> found;
+  for (const auto& [id, channel] : channel_of_)
+    if (id.stream == Stream::kPose) found.emplace(id.person, &channels_.at(channel));
+  return found;
 }
 
 MessageStream::MessageStream(const mcap::ByteSource& source, const std::vector<MessagePlace>& places,
@@ -144,6 +152,7 @@ bool MessageStream::next_in_chunk(TraceMessage& message) {
 bool MessageStream::take(std::uint64_t offset, mcap::Bytes content, TraceMessage& message) {
   message.message = mcap::decode_message(content);
   message.stream = table_.stream_of(message.message.channel_id);
+  message.person = table_.person_of(message.message.channel_id);
   message.offset = offset;
   return message.stream != Stream::kForeign;
 }

@@ -22,9 +22,13 @@ class StreamTable {
  public:
   void add(mcap::Schema schema);
   void add(mcap::Channel channel);
-  trace_format::Stream stream_of(std::uint16_t channel_id) const { return streams_[channel_id]; }
-  /// Returns the stream's channel, or null until it is known.
-  const mcap::Channel* find(trace_format::Stream stream) const;
+  trace_format::Stream stream_of(std::uint16_t channel_id) const { return streams_[channel_id].stream; }
+  /// Whose pose a channel carries.
+  std::size_t person_of(std::uint16_t channel_id) const { return streams_[channel_id].person; }
+  /// Returns the stream's channel, or null until it is known. Of /pose, that of a person.
+  const mcap::Channel* find(trace_format::Stream stream, std::size_t person = 0) const;
+  /// Returns the channels /pose that are known, by person.
+  std::map<std::size_t, const mcap::Channel*> pose_channels() const;
   /// Returns the format version that has all schemas of Vestige's own channels; nothing if none has.
   std::optional<int> version_of_schemas() const;
 
@@ -34,13 +38,14 @@ class StreamTable {
   std::map<std::uint16_t, mcap::Schema> schemas_;
   std::map<std::uint16_t, mcap::Channel> channels_;
   std::set<std::pair<std::uint16_t, std::uint16_t>> channels_of_schema_;  ///< schema's id, channel's id
-  std::map<trace_format::Stream, std::uint16_t> channel_of_;  ///< the lowest id, if several channels are recognised
-  std::vector<trace_format::Stream> streams_ = std::vector(1 << 16, trace_format::Stream::kForeign);  ///< by channel id
+  std::map<trace_format::StreamId, std::uint16_t> channel_of_;  ///< the lowest id, if several channels are recognised
+  std::vector<trace_format::StreamId> streams_ = std::vector<trace_format::StreamId>(1 << 16);  ///< by channel id
 };
 
 /// A message of one of Vestige's own streams.
 struct TraceMessage {
   trace_format::Stream stream = trace_format::Stream::kForeign;
+  std::size_t person = 0;    ///< whose pose
   std::uint64_t offset = 0;  ///< in the file: of the message, or of the chunk that holds it
   mcap::Message message;
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -15,11 +16,34 @@ namespace vestige {
 
 namespace {
 
+using trace_format::AttachmentKind;
 using trace_format::sha256_key;
 
+bool is_avatar(std::string_view attachment) {
+  const auto id = trace_format::attachment_id(attachment);
+  return id && id->kind == AttachmentKind::kAvatar;
+}
+
+/// Returns 1 + the largest person whose attachment a map names, each key after this prefix; 0 if it names none.
+std::size_t people_named(const mcap::StringMap& map, std::string_view prefix) {
+  std::size_t people = 0;
+  for (auto entry = map.lower_bound(std::string(prefix)); entry != map.end() && entry->first.starts_with(prefix);
+       ++entry)
+    if (const auto id = trace_format::attachment_id(std::string_view(entry->first).substr(prefix.size())))
+      people = std::max(people, id->person + 1);
+  return people;
+}
+
+/// Returns how many people have an attachment whose SHA-256 is recorded.
+std::size_t people_claimed(const AttachmentClaims& claims) {
+  return std::max(people_named(claims.session, trace_format::kSha256Prefix),
+                  people_named(claims.pose, trace_format::kSha256Prefix));
+}
+
 std::string sha256_of_builtin(std::string_view attachment) {
-  if (attachment == trace_format::kAvatarName) return sha256_hex(builtin_avatar_glb());
-  if (attachment == trace_format::kMapImageName) return sha256_hex(builtin_actuator_map_png());
+  const auto id = trace_format::attachment_id(attachment);
+  if (id && id->kind == AttachmentKind::kAvatar) return sha256_hex(builtin_avatar_glb());
+  if (id && id->kind == AttachmentKind::kMapImage) return sha256_hex(builtin_actuator_map_png());
   const std::string json = builtin_actuator_map_json();
   return sha256_hex(std::as_bytes(std::span(json)));
 }
@@ -52,12 +76,11 @@ void AttachmentCheck::missing(std::string_view name) {
                          "`vestige recover --force` put another actuator map in without it"});
     return;
   }
-  problems_.push_back(
-      {fmt::format("the attachment {}, whose SHA-256 is recorded, is missing or damaged", name),
-       fmt::format("{}; {} puts an intact one in its place",
-                   name == trace_format::kAvatarName ? "`vestige replay` has no body to move, and refuses the file"
-                                                     : "the trace has no actuator map as it was recorded",
-                   replacing_command(file_, claims_, name))});
+  problems_.push_back({fmt::format("the attachment {}, whose SHA-256 is recorded, is missing or damaged", name),
+                       fmt::format("{}; {} puts an intact one in its place",
+                                   is_avatar(name) ? "`vestige replay` has no body to move, and refuses the file"
+                                                   : "the trace has no actuator map as it was recorded",
+                                   replacing_command(file_, claims_, name))});
 }
 
 void AttachmentCheck::present(std::string_view name, const std::string& sha256) {
@@ -100,9 +123,8 @@ std::optional<SessionProblem> check_version(const AttachmentClaims& claims) {
 
 }  // namespace
 
-std::string unknown_version(std::string_view version) {
-  return fmt::format("its format version is {}, and this vestige reads versions up to {}", version,
-                     trace_format::kNewestVersion);
+std::string unknown_version(std::string_view version, int newest) {
+  return fmt::format("its format version is {}, and this vestige reads versions up to {}", version, newest);
 }
 
 void refuse_later_version(std::string_view file, const Session& session) {
@@ -115,8 +137,24 @@ void refuse_later_version(std::string_view file, const Session& session) {
 }
 
 mcap::StringMap pose_metadata(const StreamTable& streams) {
-  const mcap::Channel* pose = streams.find(trace_format::Stream::kPose);
-  return pose == nullptr ? mcap::StringMap() : pose->metadata;
+  mcap::StringMap metadata;
+  for (const auto& [person, channel] : streams.pose_channels())
+    metadata.insert(channel->metadata.begin(), channel->metadata.end());
+  return metadata;
+}
+
+std::optional<int> version_of(const AttachmentClaims& claims) {
+  if (claims.version_of_schemas) return claims.version_of_schemas;
+  const auto text = claims.session.find(std::string(trace_format::kVersionKey));
+  return text == claims.session.end() ? std::nullopt : trace_format::parse_version(text->second);
+}
+
+std::size_t people_of(const AttachmentClaims& claims, const StreamTable& streams,
+                      const std::map<std::string, std::string>& sha256) {
+  if (const auto version = version_of(claims); version && *version < trace_format::kPeopleVersion) return 1;
+  std::size_t people = std::max({std::size_t{1}, people_claimed(claims), people_named(sha256, "")});
+  for (const auto& [person, channel] : streams.pose_channels()) people = std::max(people, person + 1);
+  return people;
 }
 
 std::set<std::string> recorded_sha256(const AttachmentClaims& claims, std::string_view attachment) {
@@ -137,24 +175,31 @@ std::vector<SessionProblem> check_session(std::string_view file, const Attachmen
                                           const std::map<std::string, std::string>& sha256) {
   AttachmentCheck check(file, claims);
   for (const auto& [name, hash] : sha256) check.present(name, hash);
-  for (const std::string_view name : trace_format::kAttachmentNames)
-    if (!sha256.contains(std::string(name))) check.missing(name);
+  for (std::size_t person = 0; person < people_claimed(claims); ++person)
+    for (const AttachmentKind kind : trace_format::kAttachmentKinds)
+      if (const std::string name = trace_format::attachment_name(kind, person); !sha256.contains(name))
+        check.missing(name);
   std::vector<SessionProblem> problems = check.take_problems();
   if (auto problem = check_version(claims)) problems.insert(problems.begin(), *std::move(problem));
-  const auto facing = claims.session.find(std::string(trace_format::kFacingKey));
-  if (facing != claims.session.end() && !facing_named(facing->second))
-    problems.push_back({fmt::format("the session records the facing '{}', which is no axis", facing->second),
-                        "the avatar faces where its own file tells; `vestige recover` leaves it out"});
+  for (std::size_t person = 0; person < std::max<std::size_t>(1, people_claimed(claims)); ++person) {
+    const std::string key = trace_format::numbered(trace_format::kFacingKey, person);
+    const auto facing = claims.session.find(key);
+    if (facing != claims.session.end() && !facing_named(facing->second))
+      problems.push_back({fmt::format("the session records the {} '{}', which is no axis", key, facing->second),
+                          "the avatar faces where its own file tells; `vestige recover` leaves it out"});
+  }
   return problems;
 }
 
 std::string replacing_command(std::string_view file, const AttachmentClaims& claims, std::string_view attachment) {
-  const bool is_avatar = attachment == trace_format::kAvatarName;
+  const bool wants_avatar = is_avatar(attachment);
   const bool is_builtin = recorded_sha256(claims, attachment).contains(sha256_of_builtin(attachment));
-  return fmt::format("`vestige recover {} {} {} -o mended.mcap`", file, is_avatar ? "--avatar" : "--map",
-                     is_builtin  ? "builtin"
-                     : is_avatar ? "FILE.glb"
-                                 : "FILE.png");
+  const auto id = trace_format::attachment_id(attachment);
+  const std::string person = id && id->person > 0 ? fmt::format("{}=", id->person + 1) : "";
+  return fmt::format("`vestige recover {} {} {}{} -o mended.mcap`", file, wants_avatar ? "--avatar" : "--map", person,
+                     is_builtin     ? "builtin"
+                     : wants_avatar ? "FILE.glb"
+                                    : "FILE.png");
 }
 
 }  // namespace vestige

@@ -16,13 +16,21 @@ namespace vestige {
 /// What a file says about its attachments. A record that the file does not have is empty.
 struct AttachmentClaims {
   Session session;
-  mcap::StringMap pose;      ///< metadata of the channel /pose, which repeats the SHA-256s of the session
+  mcap::StringMap pose;      ///< metadata of the channels /pose, which repeat the SHA-256s of the session
   mcap::StringMap replaced;  ///< metadata record `replaced`
   std::optional<int> version_of_schemas = {};  ///< the format version whose schemas the file has, if they are of one
 };
 
-/// Returns the metadata of the channel /pose; empty if the table has no such channel.
+/// Returns the metadata of the channels /pose, of each key the first person's; empty if the table has no such channel.
 mcap::StringMap pose_metadata(const StreamTable& streams);
+
+/// Returns how many people a trace has, whose channels and attachments (by name) are these: of each person there is a
+/// channel, an attachment or the SHA-256 of one. Returns 1 for a trace of an earlier version than that of people.
+std::size_t people_of(const AttachmentClaims& claims, const StreamTable& streams,
+                      const std::map<std::string, std::string>& sha256);
+
+/// Returns the format version: that of the schemas, otherwise what the session says; nothing if neither is known.
+std::optional<int> version_of(const AttachmentClaims& claims);
 
 /// Returns what a file records as the SHA-256 of an attachment: nothing, one value, or two if either session or channel
 /// /pose is damaged.
@@ -42,8 +50,8 @@ struct SessionProblem {
 std::vector<SessionProblem> check_session(std::string_view file, const AttachmentClaims& claims,
                                           const std::map<std::string, std::string>& sha256);
 
-/// Returns "its format version is 9, and this vestige reads versions up to 2".
-std::string unknown_version(std::string_view version);
+/// Returns "its format version is 9, and this vestige reads versions up to 3".
+std::string unknown_version(std::string_view version, int newest = trace_format::kNewestVersion);
 
 /// Throws `Error` if a later version of vestige wrote the file: its `format_version` is greater than the newest known.
 void refuse_later_version(std::string_view file, const Session& session);

@@ -33,14 +33,10 @@ void take_metadata(mcap::Metadata metadata, std::uint64_t offset, TraceIndex& in
 
 void take_attachment(mcap::Bytes content, TraceIndex& index) {
   const mcap::Attachment attachment = mcap::decode_attachment(content);
-  std::vector<std::byte>* target = nullptr;
-  if (attachment.name == trace_format::kAvatarName) target = &index.avatar_glb;
-  if (attachment.name == trace_format::kMapImageName) target = &index.actuator_map_png;
-  if (attachment.name == trace_format::kMapTextName) target = &index.actuator_map_json;
-  if (target == nullptr) return;
+  if (!trace_format::attachment_id(attachment.name)) return;
   if (!mcap::attachment_crc_holds(content, attachment))
     throw Malformed(fmt::format("{}: its CRC is wrong", attachment.name));
-  target->assign(attachment.data.begin(), attachment.data.end());
+  index.attachments[attachment.name].assign(attachment.data.begin(), attachment.data.end());
 }
 
 /// Whether the summary lists everything, so that scanning the file would find nothing more.
@@ -135,12 +131,9 @@ TraceIndex by_scanning(const mcap::ByteSource& source) {
 
 void check(const mcap::ByteSource& source, TraceIndex& index) {
   std::map<std::string, std::string> sha256;
-  const auto note = [&](std::string_view name, mcap::Bytes data) {
+  for (const auto& [name, data] : index.attachments)
     if (!data.empty()) sha256.emplace(name, sha256_hex(data));
-  };
-  note(trace_format::kAvatarName, index.avatar_glb);
-  note(trace_format::kMapImageName, index.actuator_map_png);
-  note(trace_format::kMapTextName, index.actuator_map_json);
+  index.people = people_of(index.claims(), index.streams, sha256);
   for (const SessionProblem& problem : check_session(source.name(), index.claims(), sha256))
     index.damages.add({index.session_offset, 0, fmt::format("{}; {}", problem.what, problem.consequence)});
 }
@@ -155,6 +148,11 @@ TraceIndex read_index(const mcap::ByteSource& source) {
 }
 
 }  // namespace
+
+std::span<const std::byte> TraceIndex::attachment(trace_format::AttachmentKind kind, std::size_t person) const {
+  const auto found = attachments.find(trace_format::attachment_name(kind, person));
+  return found == attachments.end() ? std::span<const std::byte>() : found->second;
+}
 
 TraceIndex index_trace(const mcap::ByteSource& source) {
   TraceIndex index = read_index(source);

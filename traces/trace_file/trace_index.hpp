@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,9 +22,8 @@ struct TraceIndex {
   std::uint64_t session_offset = 0;
   std::optional<mcap::StringMap> recovered;  ///< the metadata record "recovered"
   mcap::StringMap replaced;                  ///< the metadata record "replaced"; empty if there is none
-  std::vector<std::byte> avatar_glb;
-  std::vector<std::byte> actuator_map_png;
-  std::vector<std::byte> actuator_map_json;
+  std::map<std::string, std::vector<std::byte>> attachments;  ///< Vestige's own that are undamaged, by name
+  std::size_t people = 1;                                     ///< see `people_of`
   StreamTable streams;
   std::vector<MessagePlace> places;  ///< in file order
   bool has_footer = false;
@@ -34,6 +35,8 @@ struct TraceIndex {
             .replaced = replaced,
             .version_of_schemas = streams.version_of_schemas()};
   }
+  /// Returns the bytes of an attachment; empty if there is no undamaged one.
+  std::span<const std::byte> attachment(trace_format::AttachmentKind kind, std::size_t person = 0) const;
 };
 
 /// Reads the index from the summary if that is complete, otherwise by scanning the file. Throws `Error` if the file is

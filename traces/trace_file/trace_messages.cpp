@@ -1,7 +1,7 @@
 #include "traces/trace_file/trace_messages.hpp"
 
 #include <fmt/format.h>
-#include <schemas/collider_frame_2_generated.h>
+#include <schemas/collider_frame_3_generated.h>
 #include <schemas/event_generated.h>
 #include <schemas/pose_frame_generated.h>
 
@@ -31,11 +31,14 @@ std::optional<std::uint32_t> find_duplicate(std::vector<std::uint32_t>& ids) {
   return twice == ids.end() ? std::nullopt : std::optional(*twice);
 }
 
-/// Throws `mcap::Malformed` if the frame has another number of radii than colliders, or a radius that none can have.
-void require_valid_radii(const trace::ColliderFrame& table) {
+/// Throws `mcap::Malformed` if the frame has another number of radii or owners than colliders, or a radius that none
+/// can have.
+void require_valid(const trace::ColliderFrame& table) {
+  const std::size_t colliders = table.colliders() == nullptr ? 0 : table.colliders()->size();
+  if (const auto* owners = table.owners(); owners != nullptr && owners->size() != colliders)
+    throw mcap::Malformed(fmt::format("it has {} colliders, but {} owners", colliders, owners->size()));
   const auto* radii = table.radii();
   if (radii == nullptr) return;
-  const std::size_t colliders = table.colliders() == nullptr ? 0 : table.colliders()->size();
   if (radii->size() != colliders)
     throw mcap::Malformed(fmt::format("it has {} colliders, but {} radii", colliders, radii->size()));
   for (unsigned i = 0; i < radii->size(); ++i)
@@ -86,7 +89,13 @@ mcap::Bytes MessageEncoder::colliders(std::int64_t time_ns, const std::vector<Co
     radii = buffer.CreateUninitializedVector(colliders.size(), &radius);
     for (const ColliderSample& collider : colliders) *radius++ = flatbuffers::EndianScalar(collider.radius_m);
   }
-  buffer.Finish(trace::CreateColliderFrame(buffer, time_ns, vector, radii));
+  flatbuffers::Offset<flatbuffers::Vector<std::uint16_t>> owners;
+  if (std::ranges::any_of(colliders, [](const ColliderSample& collider) { return collider.owner != kNobody; })) {
+    std::uint16_t* owner = nullptr;
+    owners = buffer.CreateUninitializedVector(colliders.size(), &owner);
+    for (const ColliderSample& collider : colliders) *owner++ = flatbuffers::EndianScalar(collider.owner);
+  }
+  buffer.Finish(trace::CreateColliderFrame(buffer, time_ns, vector, radii, owners));
   return finished(buffer);
 }
 
@@ -141,7 +150,7 @@ void MessageDecoder::colliders(mcap::Bytes message, std::vector<ColliderSample>&
   const auto& table = verified<trace::ColliderFrame>(message);
   const auto* vector = table.colliders();
   colliders.clear();
-  require_valid_radii(table);
+  require_valid(table);
   if (vector == nullptr) return;
   colliders.reserve(vector->size());
   bool ascending = true;
@@ -151,6 +160,8 @@ void MessageDecoder::colliders(mcap::Bytes message, std::vector<ColliderSample>&
   }
   if (const auto* radii = table.radii())
     for (std::size_t i = 0; i < colliders.size(); ++i) colliders[i].radius_m = radii->Get(static_cast<unsigned>(i));
+  if (const auto* owners = table.owners())
+    for (std::size_t i = 0; i < colliders.size(); ++i) colliders[i].owner = owners->Get(static_cast<unsigned>(i));
   if (ascending) return;
   ids_.clear();
   for (const ColliderSample& collider : colliders) ids_.push_back(collider.id);

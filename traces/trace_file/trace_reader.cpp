@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "traces/base/error.hpp"
 #include "traces/mcap/byte_source.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/scene/radius.hpp"
 #include "traces/trace_file/message_stream.hpp"
 #include "traces/trace_file/recovered.hpp"
@@ -28,31 +30,31 @@ constexpr std::size_t kMostWarnings = 1000;
 constexpr std::size_t kMostColliders = 1'000'000;  ///< in a trace; also the most teleports in a frame
 constexpr std::string_view kRecover = "run `vestige recover`, which may still find a part of it";
 
-/// The schemas count; where they are foreign, what the session says. A damaged session says nothing, so its colliders
-/// may have radii.
-ColliderShape recorded_shape(const TraceIndex& index) {
-  std::optional<int> version = index.streams.version_of_schemas();
-  if (const auto text = index.session.find(std::string(trace_format::kVersionKey));
-      !version && text != index.session.end())
-    version = trace_format::parse_version(text->second);
-  return version == trace_format::kPointsVersion ? ColliderShape::kPoints : ColliderShape::kSpheres;
+/// Returns what the session says of a person under this key; empty if it says nothing.
+std::string recorded(const Session& session, std::string_view key, std::size_t person) {
+  const auto found = session.find(trace_format::numbered(key, person));
+  return found == session.end() ? "" : found->second;
 }
 
 }  // namespace
 
 class TraceReader::Implementation {
  public:
-  explicit Implementation(const std::filesystem::path& path)
+  Implementation(const std::filesystem::path& path, People allowed)
       : source_(path), index_(index_trace(source_)), frames_(*this, PoseDecoding::kFull) {
     if (index_.recovered) recovered_ = describe_recovered(*index_.recovered);
     for (const mcap::Damage& damage : index_.damages.kept()) warn(damage);
     require_trace();
-    shape_ = recorded_shape(index_);
+    require_people(allowed);
+    for (std::size_t person = 0; person < index_.people; ++person) people_.push_back(take_person(person));
   }
 
   const TraceIndex& index() const { return index_; }
-  const std::vector<std::string>& node_names() const { return node_names_; }
-  ColliderShape shape() const { return shape_; }
+  const std::vector<RecordedPerson>& people() const { return people_; }
+  /// A damaged session says nothing of the version, so its colliders may have radii.
+  ColliderShape shape() const {
+    return version_ == trace_format::kPointsVersion ? ColliderShape::kPoints : ColliderShape::kSpheres;
+  }
   const std::vector<std::string>& warnings() const { return warnings_; }
   const std::string& recovered() const { return recovered_; }
   bool complete() const { return index_.has_footer && warnings_.empty(); }
@@ -89,6 +91,8 @@ class TraceReader::Implementation {
     bool peek() { return held_ || (held_ = messages_.next(message_)); }
     void take(TraceFrame& frame);
     void take_pose(TraceFrame& frame);
+    void take_colliders(TraceFrame& frame);
+    void end_poses(TraceFrame& frame, std::uint64_t offset, bool is_whole);
     void take_event(TraceFrame& frame);
     [[noreturn]] void refuse(std::string_view cause) const;
 
@@ -97,8 +101,9 @@ class TraceReader::Implementation {
     MessageStream messages_;
     MessageDecoder decoder_;
     TraceMessage message_;
-    bool held_ = false;  ///< message_ was read but not yet used
-    bool pose_taken_ = false;
+    bool held_ = false;             ///< message_ was read but not yet used
+    std::vector<bool> pose_taken_;  ///< by person
+    std::size_t poses_taken_ = 0;
     bool colliders_taken_ = false;
     std::optional<std::uint32_t> last_sequence_;
     std::int64_t last_time_ns_ = 0;
@@ -107,11 +112,16 @@ class TraceReader::Implementation {
 
   void warn(const mcap::Damage& damage);
   void require_trace();
+  void require_people(People allowed);
+  RecordedPerson take_person(std::size_t person);
+  void require_owners(const TraceFrame& frame);
 
   mcap::FileSource source_;
   TraceIndex index_;
-  ColliderShape shape_ = ColliderShape::kPoints;
-  std::vector<std::string> node_names_;
+  std::optional<int> version_;
+  int newest_ = trace_format::kNewestVersion;  ///< that the caller can handle
+  std::vector<RecordedPerson> people_;
+  std::map<std::uint32_t, std::uint16_t> owners_;  ///< of the colliders, in a trace that has owners
   std::vector<std::string> warnings_;
   std::string recovered_;
   std::optional<Census> census_;
@@ -129,30 +139,77 @@ void TraceReader::Implementation::warn(const mcap::Damage& damage) {
 
 void TraceReader::Implementation::require_trace() {
   const std::string file = source_.name();
-  while (index_.streams.find(Stream::kPose) == nullptr && frames_.skip_message()) continue;
+  const auto lacks_poses = [&] { return index_.streams.pose_channels().empty(); };
+  while (lacks_poses() && frames_.skip_message()) continue;
   frames_.rewind();
-  const mcap::Channel* pose = index_.streams.find(Stream::kPose);
-  if (pose == nullptr && index_.profile_is_ours && !warnings_.empty())
+  version_ = version_of(index_.claims());
+  if (lacks_poses() && index_.profile_is_ours && !warnings_.empty())
     throw Error(warnings_.front(), "so the file holds no frame", kRecover);
-  if (pose == nullptr) {
+  if (lacks_poses()) {
     throw Error(file,
                 index_.profile_is_ours
                     ? "is a trace without the channel /pose"
                     : "is an MCAP file, but not a trace of vestige: it has no channel /pose with vestige's schema",
                 "record a trace with `vestige record`; `vestige inspect` shows what is in this file");
   }
-  auto names = parse_node_names(*pose);
-  if (!names) throw Error(file, "its channel /pose does not say which nodes the poses have", "record it again");
-  node_names_ = std::move(*names);
-  if (index_.avatar_glb.empty()) {
-    throw Error(file, "has no undamaged attachment avatar.glb",
-                fmt::format("put an intact one in its place: {}",
-                            replacing_command(file, index_.claims(), trace_format::kAvatarName)));
+}
+
+void TraceReader::Implementation::require_people(People allowed) {
+  if (allowed == People::kSeveral) return;
+  newest_ = trace_format::kSpheresVersion;
+  constexpr std::string_view kRemedy = "`vestige inspect`, `doctor`, `cat`, `trim`, `merge` and `recover` read it";
+  if (index_.people > 1)
+    throw Error(source_.name(), fmt::format("holds {} people, and this verb reads traces of one person", index_.people),
+                kRemedy);
+  if (version_ == trace_format::kPeopleVersion)
+    throw Error(source_.name(), "may hold colliders that belong to its person, which this verb does not know", kRemedy);
+}
+
+RecordedPerson TraceReader::Implementation::take_person(std::size_t person) {
+  using trace_format::AttachmentKind;
+  const std::string file = source_.name();
+  const std::string topic = trace_format::numbered("/pose", person);
+  const std::string avatar = trace_format::attachment_name(AttachmentKind::kAvatar, person);
+  RecordedPerson taken = {.name = recorded(index_.session, trace_format::kNameKey, person),
+                          .facing = recorded(index_.session, trace_format::kFacingKey, person),
+                          .avatar_glb = index_.attachment(AttachmentKind::kAvatar, person),
+                          .actuator_map_png = index_.attachment(AttachmentKind::kMapImage, person),
+                          .actuator_map_json = index_.attachment(AttachmentKind::kMapText, person),
+                          .node_names = {}};
+  const mcap::Channel* pose = index_.streams.find(Stream::kPose, person);
+  if (pose != nullptr) {
+    auto names = parse_node_names(*pose);
+    if (!names)
+      throw Error(file, fmt::format("its channel {} does not say which nodes the poses have", topic),
+                  "record it again");
+    taken.node_names = std::move(*names);
+  } else {
+    warn({0, 0, fmt::format("there is no channel {}, so person {} has no pose in any frame", topic, person + 1)});
   }
-  const auto nodes = glb_node_count(index_.avatar_glb);
-  if (nodes && *nodes != node_names_.size()) {
-    throw Error(file, fmt::format("its poses have {} nodes, but its avatar has {}", node_names_.size(), *nodes),
+  if (taken.avatar_glb.empty())
+    throw Error(file, fmt::format("has no undamaged attachment {}", avatar),
+                fmt::format("put an intact one in its place: {}", replacing_command(file, index_.claims(), avatar)));
+  const auto nodes = glb_node_count(taken.avatar_glb);
+  if (pose != nullptr && nodes && *nodes != taken.node_names.size())
+    throw Error(file,
+                person == 0
+                    ? fmt::format("its poses have {} nodes, but its avatar has {}", taken.node_names.size(), *nodes)
+                    : fmt::format("its poses {} have {} nodes, but its {} has {}", topic, taken.node_names.size(),
+                                  avatar, *nodes),
                 "record it again");
+  return taken;
+}
+
+/// Throws `Error` if a collider belongs to another person than in an earlier frame.
+void TraceReader::Implementation::require_owners(const TraceFrame& frame) {
+  if (version_.value_or(newest_) < trace_format::kPeopleVersion) return;
+  for (const ColliderSample& collider : frame.colliders) {
+    const auto [known, is_new] = owners_.try_emplace(collider.id, collider.owner);
+    if (known->second != collider.owner)
+      throw Error(source_.name(),
+                  fmt::format("frame {}: collider {} belongs to {}, but before it belonged to {}", frame.index,
+                              collider.id, in_words(collider.owner), in_words(known->second)),
+                  "record it again with another id for each owner");
   }
 }
 
@@ -169,6 +226,7 @@ const TraceReader::Implementation::Census& TraceReader::Implementation::census()
   std::vector<std::uint32_t> spheres;
   while (frames.next(frame)) {
     ++census.frames;
+    require_owners(frame);
     current.clear();
     spheres.clear();
     for (const ColliderSample& collider : frame.colliders) {
@@ -211,9 +269,12 @@ bool TraceReader::Implementation::Frames::next(TraceFrame& frame) {
     const std::uint32_t sequence = message_.message.sequence;
     const std::uint64_t offset = message_.offset;
     frame.index = sequence;
+    frame.poses.resize(owner_.people_.size());
     frame.colliders.clear();
     frame.teleported.clear();
-    pose_taken_ = colliders_taken_ = false;
+    pose_taken_.assign(owner_.people_.size(), false);
+    poses_taken_ = 0;
+    colliders_taken_ = false;
     bool is_whole = true;
     do {
       try {
@@ -224,7 +285,8 @@ bool TraceReader::Implementation::Frames::next(TraceFrame& frame) {
       }
       held_ = false;
     } while (peek() && message_.message.sequence == sequence);
-    if (pose_taken_) {
+    if (poses_taken_ > 0) {
+      end_poses(frame, offset, is_whole);
       if (!colliders_taken_ && is_whole && owner_.index_.streams.find(Stream::kColliders) != nullptr)
         owner_.warn(
             {offset, 0, fmt::format("frame {} has no message of /colliders, so it has no colliders", sequence)});
@@ -244,33 +306,60 @@ void TraceReader::Implementation::Frames::take(TraceFrame& frame) {
   }
   if (last_sequence_ && message_.message.sequence <= *last_sequence_)
     refuse(fmt::format("comes after frame {}", *last_sequence_));
-  if (message_.stream == Stream::kPose) {
+  if (message_.stream == Stream::kPose)
     take_pose(frame);
-    return;
-  }
+  else
+    take_colliders(frame);
+}
+
+void TraceReader::Implementation::Frames::take_colliders(TraceFrame& frame) {
   if (colliders_taken_) refuse("has its colliders twice");
   decoder_.colliders(message_.message.data, frame.colliders);
-  if (owner_.shape_ == ColliderShape::kPoints &&
-      std::ranges::any_of(frame.colliders, [](const ColliderSample& collider) { return collider.radius_m != 0; })) {
+  const auto any = [&](auto fails) { return std::ranges::any_of(frame.colliders, fails); };
+  const auto leave_out = [&](const std::string& cause) {
     frame.colliders.clear();
-    throw Malformed("its colliders have radii, which its schema does not have");
-  }
+    throw Malformed(cause);
+  };
+  const int version = owner_.version_.value_or(owner_.newest_);
+  if (version < trace_format::kSpheresVersion && any([](const auto& collider) { return collider.radius_m != 0; }))
+    leave_out("its colliders have radii, which its schema does not have");
+  if (version < trace_format::kPeopleVersion && any([](const auto& collider) { return collider.owner != kNobody; }))
+    leave_out("its colliders have owners, which its schema does not have");
+  if (const auto fault = owner_fault(frame.colliders, owner_.people_.size())) leave_out(*fault);
   colliders_taken_ = true;
 }
 
 void TraceReader::Implementation::Frames::take_pose(TraceFrame& frame) {
-  if (pose_taken_) refuse("has two poses");
-  const std::size_t nodes = decoding_ == PoseDecoding::kFull ? decoder_.pose(message_.message.data, frame.pose)
+  const std::size_t person = message_.person;
+  if (person >= owner_.people_.size()) return;  // another program's: the format version knows one person
+  if (pose_taken_[person])
+    refuse(owner_.people_.size() == 1 ? "has two poses" : fmt::format("has two poses of person {}", person + 1));
+  const std::size_t nodes = decoding_ == PoseDecoding::kFull ? decoder_.pose(message_.message.data, frame.poses[person])
                                                              : decoder_.pose_node_count(message_.message.data);
-  if (nodes != owner_.node_names_.size())
-    refuse(fmt::format("its pose has {} nodes, but the avatar has {}", nodes, owner_.node_names_.size()));
+  const std::size_t expected = owner_.people_[person].node_names.size();
+  if (nodes != expected) refuse(fmt::format("its pose has {} nodes, but the avatar has {}", nodes, expected));
   if (message_.message.log_time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
     refuse("its time is out of range");
-  frame.time_ns = static_cast<std::int64_t>(message_.message.log_time);
+  const auto time_ns = static_cast<std::int64_t>(message_.message.log_time);
+  if (poses_taken_ > 0 && time_ns != frame.time_ns)
+    refuse(fmt::format("its poses are of different times, {} ns and {} ns", frame.time_ns, time_ns));
+  frame.time_ns = time_ns;
   if (last_sequence_ && frame.time_ns < last_time_ns_)
     refuse(
         fmt::format("its time, {} ns, is earlier than that of the frame before, {} ns", frame.time_ns, last_time_ns_));
-  pose_taken_ = true;
+  pose_taken_[person] = true;
+  ++poses_taken_;
+}
+
+/// Empties the poses that the frame does not have.
+void TraceReader::Implementation::Frames::end_poses(TraceFrame& frame, std::uint64_t offset, bool is_whole) {
+  if (poses_taken_ == frame.poses.size()) return;
+  for (std::size_t person = 0; person < frame.poses.size(); ++person) {
+    if (pose_taken_[person]) continue;
+    frame.poses[person] = {};
+    if (is_whole && owner_.index_.streams.find(Stream::kPose, person) != nullptr)
+      owner_.warn({offset, 0, fmt::format("frame {} has no pose of person {}", frame.index, person + 1)});
+  }
 }
 
 void TraceReader::Implementation::Frames::take_event(TraceFrame& frame) {
@@ -282,31 +371,18 @@ void TraceReader::Implementation::Frames::take_event(TraceFrame& frame) {
   if (event.kind == trace_format::kDroppedKind) dropped_ += event.count;
 }
 
-TraceReader::TraceReader(const std::filesystem::path& path) : implementation_(std::make_unique<Implementation>(path)) {}
+TraceReader::TraceReader(const std::filesystem::path& path, People allowed)
+    : implementation_(std::make_unique<Implementation>(path, allowed)) {}
 TraceReader::~TraceReader() = default;
-
-std::string TraceReader::facing() const {
-  const auto found = session().find(std::string(trace_format::kFacingKey));
-  return found == session().end() ? "" : found->second;
-}
 
 const Session& TraceReader::session() const {
   return implementation_->index().session;
 }
-std::span<const std::byte> TraceReader::avatar_glb() const {
-  return implementation_->index().avatar_glb;
-}
-std::span<const std::byte> TraceReader::actuator_map_png() const {
-  return implementation_->index().actuator_map_png;
-}
-std::span<const std::byte> TraceReader::actuator_map_json() const {
-  return implementation_->index().actuator_map_json;
+const std::vector<RecordedPerson>& TraceReader::people() const {
+  return implementation_->people();
 }
 ColliderShape TraceReader::shape() const {
   return implementation_->shape();
-}
-const std::vector<std::string>& TraceReader::node_names() const {
-  return implementation_->node_names();
 }
 const std::vector<std::uint32_t>& TraceReader::collider_ids() {
   return implementation_->census().collider_ids;

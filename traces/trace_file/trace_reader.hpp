@@ -13,32 +13,43 @@
 
 namespace vestige {
 
+/// A person of a trace. The bytes belong to the reader.
+struct RecordedPerson {
+  std::string name;    ///< empty: the trace names nobody
+  std::string facing;  ///< which way the avatar looks at rest: `take_recorded_facing`; empty: the trace does not say it
+  std::span<const std::byte> avatar_glb;
+  std::span<const std::byte> actuator_map_png;   ///< empty: the person has none
+  std::span<const std::byte> actuator_map_json;  ///< empty: the person has none
+  std::vector<std::string> node_names;  ///< of the avatar, in order: each pose of this person has as many nodes
+};
+
+/// What a caller of `TraceReader` can handle. kOne: only traces of one person whose colliders belong to nobody.
+enum class People : std::uint8_t { kOne, kSeveral };
+
 /// Reads a trace by its index, or by scanning it if the footer is missing or the summary is broken. Damaged chunks are
 /// skipped. A skipped chunk shows as a gap in `TraceFrame::index`, as a warning with its byte offset, and in
 /// `complete()`.
 ///
 /// Every function throws `Error` with the name of the file and the offset. Causes: not an MCAP file, not a Vestige
-/// trace, a later `format_version`, no avatar or a damaged one, more than a million colliders. Also a frame that
-/// contradicts the rest: frames out of order, time running backwards, another number of nodes than the avatar has, a
-/// collider twice.
+/// trace, a later `format_version`, no avatar or a damaged one, more than a million colliders, a collider that changes
+/// its owner, more people than the caller can handle. Also a frame that contradicts the rest: frames out of order, time
+/// running backwards, another number of nodes than the avatar has, a collider twice.
+///
+/// Where a person's pose is missing, the frame is delivered without it, and a warning says so. A frame in which every
+/// pose is missing is left out.
 class TraceReader {
  public:
   /// "-" is standard input, which is copied to a nameless temporary file.
-  explicit TraceReader(const std::filesystem::path& path);
+  explicit TraceReader(const std::filesystem::path& path, People allowed = People::kOne);
   ~TraceReader();
   TraceReader(const TraceReader&) = delete;
   TraceReader& operator=(const TraceReader&) = delete;
 
   const Session& session() const;
-  /// Which way the avatar looks at rest, as recorded: `take_recorded_facing`. Empty: the trace does not say it.
-  std::string facing() const;
-  std::span<const std::byte> avatar_glb() const;
-  std::span<const std::byte> actuator_map_png() const;   ///< empty: the trace has none
-  std::span<const std::byte> actuator_map_json() const;  ///< empty: the trace has none
+  /// The people in the order of `TraceFrame::poses`, at least one.
+  const std::vector<RecordedPerson>& people() const;
   /// Whether the trace's colliders may have a radius: kPoints in format version 1.
   ColliderShape shape() const;
-  /// The names of the avatar's nodes, in order. Each frame's pose has as many nodes.
-  const std::vector<std::string>& node_names() const;
 
   /// The ids of all colliders in the trace, ascending. The first call of this or the next three functions reads the
   /// whole trace once, without decoding poses. `next` still continues where it was.

@@ -14,6 +14,7 @@
 #include "traces/base/sha256.hpp"
 #include "traces/files/append_file.hpp"
 #include "traces/mcap/writer.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/scene/radius.hpp"
 #include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_messages.hpp"
@@ -26,12 +27,18 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using trace_format::Stream;
 
-std::vector<mcap::Attachment> list_attachments(const TraceAttachments& from) {
-  using trace_format::attachment_of;
-  std::vector<mcap::Attachment> all = {attachment_of(trace_format::kAvatarName, from.avatar_glb)};
-  if (!from.actuator_map_png.empty()) all.push_back(attachment_of(trace_format::kMapImageName, from.actuator_map_png));
+/// An attachment's name and bytes.
+using NamedBytes = std::pair<std::string, mcap::Bytes>;
+
+std::vector<NamedBytes> list_attachments(const TraceAttachments& from, std::size_t person) {
+  using trace_format::attachment_name;
+  using trace_format::AttachmentKind;
+  std::vector<NamedBytes> all = {{attachment_name(AttachmentKind::kAvatar, person), from.avatar_glb}};
+  if (!from.actuator_map_png.empty())
+    all.emplace_back(attachment_name(AttachmentKind::kMapImage, person), from.actuator_map_png);
   if (!from.actuator_map_json.empty())
-    all.push_back(attachment_of(trace_format::kMapTextName, std::as_bytes(std::span(from.actuator_map_json))));
+    all.emplace_back(attachment_name(AttachmentKind::kMapText, person),
+                     std::as_bytes(std::span(from.actuator_map_json)));
   return all;
 }
 
@@ -57,8 +64,8 @@ class TraceWriter::Implementation {
     std::string text;
   };
 
-  Implementation(const std::filesystem::path& path, Session session, const Avatar& avatar,
-                 const TraceAttachments& attachments, const TraceWriterOptions& options);
+  Implementation(const std::filesystem::path& path, Session session, const std::vector<TracePerson>& people,
+                 const TraceWriterOptions& options);
 
   void write(const TraceFrame& frame);
   void note(Note note);
@@ -74,7 +81,9 @@ class TraceWriter::Implementation {
  private:
   void require_usable() const;
   void require_valid(const TraceFrame& frame);
-  void define(Stream stream, const mcap::StringMap& metadata);
+  void require_valid_colliders(const TraceFrame& frame);
+  void define(Stream stream);
+  void define_pose(std::size_t person, const mcap::StringMap& metadata);
   void write_message(Stream stream, mcap::Bytes data);
   void write_event(const TraceEvent& event);
   void write_notes();
@@ -91,9 +100,10 @@ class TraceWriter::Implementation {
   MessageEncoder encoder_;
   std::optional<VizEncoder> viz_;
   std::int64_t next_viz_ns_ = 0;
-  std::size_t node_count_;
-  std::vector<std::uint32_t> ids_;  ///< collider ids of one frame, sorted
-  std::vector<Note> notes_;         ///< notes that wait for the next frame
+  int version_;
+  std::vector<std::size_t> node_counts_;  ///< by person
+  std::vector<std::uint32_t> ids_;        ///< collider ids of one frame, sorted
+  std::vector<Note> notes_;               ///< notes that wait for the next frame
   Clock::time_point chunk_opened_;
   std::uint64_t frame_count_ = 0;
   std::uint32_t sequence_ = 0;  ///< of the last frame
@@ -102,42 +112,61 @@ class TraceWriter::Implementation {
   bool usable_ = true;
 };
 
-TraceWriter::Implementation::Implementation(const std::filesystem::path& path, Session session, const Avatar& avatar,
-                                            const TraceAttachments& attachments, const TraceWriterOptions& options)
+TraceWriter::Implementation::Implementation(const std::filesystem::path& path, Session session,
+                                            const std::vector<TracePerson>& people, const TraceWriterOptions& options)
     : path_(path),
       options_(options),
       file_(path, options.overwrite, options.unfinished),
       writer_([this](mcap::Bytes bytes) { file_.write(bytes); },
               {.profile = std::string(trace_format::kProfile), .library = fmt::format("vestige {}", kVersion)},
               writer_options(options)),
-      node_count_(avatar.nodes.size()) {
-  const std::vector<mcap::Attachment> all = list_attachments(attachments);
-  session.insert_or_assign(std::string(trace_format::kVersionKey),
-                           fmt::format("{}", trace_format::version_with(options.shape)));
-  session.emplace(trace_format::kFacingKey, to_string(avatar.facing.axis));
-  mcap::StringMap of_poses = {{std::string(trace_format::kNodesKey), node_names(avatar)}};
-  for (const mcap::Attachment& one : all) {
-    const std::string sha256 = sha256_hex(one.data);
-    session.insert_or_assign(trace_format::sha256_key(one.name), sha256);
-    of_poses.emplace(trace_format::sha256_key(one.name), sha256);
+      version_(people.size() > 1 || options.has_owners ? trace_format::kPeopleVersion
+                                                       : trace_format::version_with(options.shape)) {
+  using trace_format::numbered;
+  if (people.empty() || people.size() > trace_format::kMostPeople)
+    throw Error(path.string(), fmt::format("a trace cannot hold {} people", people.size()),
+                fmt::format("record 1 to {}", trace_format::kMostPeople));
+  session.insert_or_assign(std::string(trace_format::kVersionKey), fmt::format("{}", version_));
+  std::vector<mcap::StringMap> of_poses;
+  std::vector<NamedBytes> attachments;
+  for (std::size_t person = 0; person < people.size(); ++person) {
+    const TracePerson& one = people[person];
+    node_counts_.push_back(one.avatar.nodes.size());
+    session.emplace(numbered(trace_format::kFacingKey, person), to_string(one.avatar.facing.axis));
+    if (!one.name.empty()) session.insert_or_assign(numbered(trace_format::kNameKey, person), one.name);
+    mcap::StringMap& metadata = of_poses.emplace_back();
+    metadata.emplace(trace_format::kNodesKey, node_names(one.avatar));
+    for (NamedBytes& attachment : list_attachments(one.attachments, person)) {
+      const std::string sha256 = sha256_hex(attachment.second);
+      session.insert_or_assign(trace_format::sha256_key(attachment.first), sha256);
+      metadata.emplace(trace_format::sha256_key(attachment.first), sha256);
+      attachments.push_back(std::move(attachment));
+    }
   }
   writer_.write(mcap::Metadata{.name = std::string(trace_format::kSessionName), .metadata = std::move(session)});
-  for (const mcap::Attachment& one : all) writer_.write(one);
-  define(Stream::kPose, of_poses);
-  define(Stream::kColliders, {});
+  for (const auto& [name, bytes] : attachments) writer_.write(trace_format::attachment_of(name, bytes));
+  writer_.write(trace_format::schema_of(Stream::kPose, version_));
+  for (std::size_t person = 0; person < people.size(); ++person) define_pose(person, of_poses[person]);
+  define(Stream::kColliders);
   if (options.viz == Viz::kScene) {
-    viz_.emplace(avatar);
+    std::vector<const Avatar*> avatars;
+    for (const TracePerson& person : people) avatars.push_back(&person.avatar);
+    viz_.emplace(avatars);
     for (const mcap::Schema& schema : viz_format::schemas()) writer_.write(schema);
     for (const mcap::Channel& channel : viz_format::channels()) writer_.write(channel);
   }
   file_.sync();
 }
 
-void TraceWriter::Implementation::define(Stream stream, const mcap::StringMap& metadata) {
-  const int version = trace_format::version_with(options_.shape);
-  mcap::Channel channel = trace_format::channel_of(stream, version);
+void TraceWriter::Implementation::define(Stream stream) {
+  writer_.write(trace_format::schema_of(stream, version_));
+  writer_.write(trace_format::channel_of(stream, version_));
+}
+
+/// All channels /pose share one schema.
+void TraceWriter::Implementation::define_pose(std::size_t person, const mcap::StringMap& metadata) {
+  mcap::Channel channel = trace_format::channel_of(Stream::kPose, version_, person);
   channel.metadata.insert(metadata.begin(), metadata.end());
-  writer_.write(trace_format::schema_of(stream, version));
   writer_.write(channel);
 }
 
@@ -155,16 +184,26 @@ void TraceWriter::Implementation::require_valid(const TraceFrame& frame) {
   if (frame.time_ns < time_ns_)
     refuse(frame,
            fmt::format("its time, {} ns, is earlier than that of the last frame, {} ns", frame.time_ns, time_ns_));
-  if (frame.pose.nodes.size() != node_count_)
-    refuse(frame, fmt::format("its pose has {} nodes, but the avatar has {}", frame.pose.nodes.size(), node_count_));
+  if (frame.poses.size() != node_counts_.size())
+    refuse(frame, fmt::format("it has {} poses for {} people", frame.poses.size(), node_counts_.size()));
+  for (std::size_t person = 0; person < node_counts_.size(); ++person)
+    if (const std::size_t nodes = frame.poses[person].nodes.size(); nodes != node_counts_[person])
+      refuse(frame, fmt::format("its pose has {} nodes, but the avatar has {}", nodes, node_counts_[person]));
+  require_valid_colliders(frame);
+}
+
+void TraceWriter::Implementation::require_valid_colliders(const TraceFrame& frame) {
   ids_.clear();
   for (const ColliderSample& collider : frame.colliders) {
     ids_.push_back(collider.id);
     if (const std::string_view fault = radius_fault(double{collider.radius_m}); !fault.empty())
       refuse(frame, fmt::format("the radius of collider {}, {} m, {}", collider.id, collider.radius_m, fault));
-    if (options_.shape == ColliderShape::kPoints && collider.radius_m != 0)
+    if (version_ == trace_format::kPointsVersion && collider.radius_m != 0)
       refuse(frame, fmt::format("collider {} has a radius in a trace of points", collider.id));
+    if (version_ != trace_format::kPeopleVersion && collider.owner != kNobody)
+      refuse(frame, fmt::format("collider {} has an owner in a trace without owners", collider.id));
   }
+  if (const auto fault = owner_fault(frame.colliders, node_counts_.size())) refuse(frame, *fault);
   std::sort(ids_.begin(), ids_.end());
   const auto twice = std::adjacent_find(ids_.begin(), ids_.end());
   if (twice != ids_.end()) refuse(frame, fmt::format("it has collider {} twice", *twice));
@@ -190,7 +229,7 @@ void TraceWriter::Implementation::write_viz(const TraceFrame& frame) {
 }
 
 void TraceWriter::Implementation::write_event(const TraceEvent& event) {
-  if (!events_defined_) define(Stream::kEvents, {});
+  if (!events_defined_) define(Stream::kEvents);
   events_defined_ = true;
   write_message(Stream::kEvents, encoder_.event(event));
 }
@@ -205,7 +244,8 @@ void TraceWriter::Implementation::write(const TraceFrame& frame) {
   write_notes();
   for (const std::uint32_t collider : frame.teleported)
     write_event({.time_ns = time_ns_, .kind = trace_format::kTeleportKind, .collider = collider, .text = {}});
-  write_message(Stream::kPose, encoder_.pose(time_ns_, frame.pose));
+  for (std::size_t person = 0; person < frame.poses.size(); ++person)
+    write_message(trace_format::pose_channel_id(person), encoder_.pose(time_ns_, frame.poses[person]));
   write_message(Stream::kColliders, encoder_.colliders(time_ns_, frame.colliders));
   write_viz(frame);
   ++frame_count_;
@@ -251,10 +291,11 @@ std::uint64_t TraceWriter::Implementation::bytes_if_finished_with(const TraceFra
   // Size of a FlatBuffer, its message record and its index entry, without the parts counted below.
   constexpr std::uint64_t kMessageBytes = 192;
   constexpr std::uint64_t kNodeBytes = 40;
-  constexpr std::uint64_t kColliderBytes = 36;
+  constexpr std::uint64_t kColliderBytes = 38;
   constexpr std::uint64_t kEventsChannelBytes = 4096;  // holds its schema twice
   std::uint64_t bytes = writer_.bytes_if_finished() + 1024;
-  bytes += 2 * kMessageBytes + kNodeBytes * frame.pose.nodes.size() + kColliderBytes * frame.colliders.size();
+  bytes += kMessageBytes + kColliderBytes * frame.colliders.size();
+  for (const Pose& pose : frame.poses) bytes += kMessageBytes + kNodeBytes * pose.nodes.size();
   bytes += kMessageBytes * frame.teleported.size();
   for (const Note& note : notes_) bytes += kMessageBytes + note.text.size();
   if (viz_ && frame.time_ns >= next_viz_ns_) bytes += viz_->most_bytes(frame);
@@ -282,9 +323,9 @@ void TraceWriter::Implementation::abandon() noexcept {
   }
 }
 
-TraceWriter::TraceWriter(const std::filesystem::path& path, Session session, const Avatar& avatar,
-                         const TraceAttachments& attachments, const TraceWriterOptions& options)
-    : implementation_(std::make_unique<Implementation>(path, std::move(session), avatar, attachments, options)) {}
+TraceWriter::TraceWriter(const std::filesystem::path& path, Session session, const std::vector<TracePerson>& people,
+                         const TraceWriterOptions& options)
+    : implementation_(std::make_unique<Implementation>(path, std::move(session), people, options)) {}
 
 TraceWriter::~TraceWriter() {
   implementation_->abandon();

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "traces/files/append_file.hpp"
 #include "traces/files/output_file.hpp"
@@ -35,6 +36,7 @@ struct TraceWriterOptions {
   ChunkSync sync = ChunkSync::kNone;
   Viz viz = Viz::kNone;
   ColliderShape shape = ColliderShape::kPoints;  ///< kSpheres: the trace says format version 2
+  bool has_owners = false;                       ///< whether colliders may belong to people: format version 3
 };
 
 /// The attachments that make a trace one self-contained file. The caller keeps the bytes alive until the writer is
@@ -43,6 +45,13 @@ struct TraceAttachments {
   std::span<const std::byte> avatar_glb;
   std::span<const std::byte> actuator_map_png = {};  ///< empty: none
   std::string actuator_map_json = {};                ///< the map's sidecar, empty: none
+};
+
+/// A person to record. The caller keeps the avatar alive until the writer is constructed.
+struct TracePerson {
+  const Avatar& avatar;
+  TraceAttachments attachments;
+  std::string name = {};  ///< empty: nobody needs one, as in a trace of one person
 };
 
 /// Writes a trace, an MCAP file described in trace_format.hpp. The file appears under its own name at once. It grows by
@@ -56,10 +65,11 @@ struct TraceAttachments {
 /// Every function throws `Error` with the name of the file; after that, only the destructor may be called.
 class TraceWriter {
  public:
-  /// Stores `session`, and adds `format_version` and the SHA-256 of each attachment to it, and the avatar's `facing`
-  /// unless it has one. The SHA-256s also go to the channel /pose, so that the summary has them.
-  TraceWriter(const std::filesystem::path& path, Session session, const Avatar& avatar,
-              const TraceAttachments& attachments, const TraceWriterOptions& options);
+  /// Stores `session`, and adds `format_version`, and of each person the name, the SHA-256 of each attachment, and the
+  /// avatar's `facing` unless the session has one. The SHA-256s also go to the person's channel /pose, so that the
+  /// summary has them. There may be 1 to `kMostPeople` people.
+  TraceWriter(const std::filesystem::path& path, Session session, const std::vector<TracePerson>& people,
+              const TraceWriterOptions& options);
   /// If `finish` was not called, writes pending data and leaves a trace without footer, which is still readable.
   /// Removes a trace without any frame, and any unfinished trace with `Unfinished::kRemoved`.
   ~TraceWriter();
@@ -67,8 +77,8 @@ class TraceWriter {
   TraceWriter& operator=(const TraceWriter&) = delete;
 
   /// Writes a frame. Throws `Error` unless `index` increases and fits 32 bits, and `time_ns` is not negative and does
-  /// not decrease. The pose must have one local transform for each node of the avatar, and each collider id may occur
-  /// once.
+  /// not decrease. There must be one pose for each person, with one local transform for each node of the avatar. Each
+  /// collider id may occur once, and its owner must be there.
   void write(const TraceFrame& frame);
 
   /// Notes that `count` messages of `topic` were lost since the last frame. The note is stored with the next frame, or

@@ -23,6 +23,7 @@ namespace {
 
 constexpr const char* kWorld = "world";
 constexpr const char* kAvatar = "avatar";
+constexpr const char* kSkeleton = "skeleton";
 constexpr double kPoint_m = 0.02;  ///< diameter: a point has none, but must be visible
 constexpr double kBone_m = 0.008;
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
@@ -49,12 +50,11 @@ Placement placement_of(const glm::dmat4& matrix) {
   return placement;
 }
 
-std::vector<std::string> frame_names(const Avatar& avatar) {
-  std::set<std::string> taken = {kWorld, kAvatar};
+std::vector<std::string> frame_names(const Avatar& avatar, const std::string& prefix, std::set<std::string>& taken) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < avatar.nodes.size(); ++i) {
-    std::string name = avatar.nodes[i].name;
-    if (name.empty() || taken.contains(name)) name = fmt::format("{}#{}", name, i);
+    std::string name = prefix + avatar.nodes[i].name;
+    if (name == prefix || taken.contains(name)) name = fmt::format("{}#{}", name, i);
     while (!taken.insert(name).second) name += '_';
     names.push_back(std::move(name));
   }
@@ -115,39 +115,50 @@ struct VizEncoder::Builder {
   }
 };
 
-VizEncoder::VizEncoder(const Avatar& avatar) : builder_(std::make_unique<Builder>()), frames_(frame_names(avatar)) {
-  skeleton_.nodes = avatar.nodes;
-  skeleton_.node_order = avatar.node_order;
-  for (const std::string& name : frames_) name_bytes_ += name.size();
+VizEncoder::VizEncoder(const std::vector<const Avatar*>& avatars) : builder_(std::make_unique<Builder>()) {
+  const auto of_person = [](const char* name, std::size_t person) {
+    return person == 0 ? std::string(name) : fmt::format("{} {}", name, person + 1);
+  };
+  std::set<std::string> taken = {kWorld};
+  for (std::size_t person = 0; person < avatars.size(); ++person) taken.insert(of_person(kAvatar, person));
+  for (std::size_t person = 0; person < avatars.size(); ++person) {
+    Body& body = bodies_.emplace_back();
+    body.skeleton.nodes = avatars[person]->nodes;
+    body.skeleton.node_order = avatars[person]->node_order;
+    body.frame = of_person(kAvatar, person);
+    body.entity = of_person(kSkeleton, person);
+    body.frames = frame_names(*avatars[person], person == 0 ? "" : fmt::format("{}/", person + 1), taken);
+    for (const std::string& name : body.frames) name_bytes_ += name.size();
+    frame_count_ += body.frames.size();
+  }
 }
 
 VizEncoder::~VizEncoder() = default;
 
-void VizEncoder::place_nodes(const TraceFrame& frame) {
-  world_matrices(skeleton_, frame.pose, world_);
-}
-
 mcap::Bytes VizEncoder::transforms(const TraceFrame& frame) {
   flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
   buffer.Clear();
-  place_nodes(frame);
   const foxglove::Time time = time_of(frame.time_ns);
   std::vector<flatbuffers::Offset<foxglove::FrameTransform>> transforms;
-  transforms.push_back(builder_->transform(time, kWorld, kAvatar, {.position = frame.pose.origin_m}));
-  std::vector<Placement> placements(world_.size());
-  for (const int index : skeleton_.node_order) {
-    const auto i = static_cast<std::size_t>(index);
-    placements[i] = placement_of(world_[i]);
-    const int parent = skeleton_.nodes[i].parent;
-    if (parent < 0) {
-      transforms.push_back(builder_->transform(time, kAvatar, frames_[i], placements[i]));
-      continue;
+  for (std::size_t person = 0; person < bodies_.size(); ++person) {
+    Body& body = bodies_[person];
+    world_matrices(body.skeleton, frame.poses[person], body.world);
+    transforms.push_back(builder_->transform(time, kWorld, body.frame, {.position = frame.poses[person].origin_m}));
+    std::vector<Placement> placements(body.world.size());
+    for (const int index : body.skeleton.node_order) {
+      const auto i = static_cast<std::size_t>(index);
+      placements[i] = placement_of(body.world[i]);
+      const int parent = body.skeleton.nodes[i].parent;
+      if (parent < 0) {
+        transforms.push_back(builder_->transform(time, body.frame, body.frames[i], placements[i]));
+        continue;
+      }
+      const Placement& from = placements[static_cast<std::size_t>(parent)];
+      const glm::dquat back = glm::conjugate(from.rotation);
+      transforms.push_back(builder_->transform(
+          time, body.frames[static_cast<std::size_t>(parent)], body.frames[i],
+          {.position = back * (placements[i].position - from.position), .rotation = back * placements[i].rotation}));
     }
-    const Placement& from = placements[static_cast<std::size_t>(parent)];
-    const glm::dquat back = glm::conjugate(from.rotation);
-    transforms.push_back(builder_->transform(
-        time, frames_[static_cast<std::size_t>(parent)], frames_[i],
-        {.position = back * (placements[i].position - from.position), .rotation = back * placements[i].rotation}));
   }
   const auto all = buffer.CreateVector(transforms);
   buffer.Finish(foxglove::CreateFrameTransforms(buffer, all));
@@ -157,11 +168,10 @@ mcap::Bytes VizEncoder::transforms(const TraceFrame& frame) {
 mcap::Bytes VizEncoder::scene(const TraceFrame& frame) {
   flatbuffers::FlatBufferBuilder& buffer = builder_->buffer;
   buffer.Clear();
-  place_nodes(frame);
   const foxglove::Time time = time_of(frame.time_ns);
   const foxglove::Duration for_ever(0, 0);
   std::vector<flatbuffers::Offset<foxglove::SceneEntity>> entities;
-  const auto add_entity = [&](const char* frame_id, const std::string& id, auto fill) {
+  const auto add_entity = [&](const std::string& frame_id, const std::string& id, auto fill) {
     const auto frame_name = buffer.CreateSharedString(frame_id);
     const auto name = buffer.CreateString(id);
     foxglove::SceneEntityBuilder entity(buffer);
@@ -174,20 +184,24 @@ mcap::Bytes VizEncoder::scene(const TraceFrame& frame) {
     entities.push_back(entity.Finish());
   };
 
-  std::vector<flatbuffers::Offset<foxglove::Point3>> ends;
-  for (std::size_t i = 0; i < world_.size(); ++i) {
-    const int parent = skeleton_.nodes[i].parent;
-    if (parent < 0) continue;
-    ends.push_back(builder_->point(glm::dvec3(world_[static_cast<std::size_t>(parent)][3])));
-    ends.push_back(builder_->point(glm::dvec3(world_[i][3])));
+  for (std::size_t person = 0; person < bodies_.size(); ++person) {
+    Body& body = bodies_[person];
+    world_matrices(body.skeleton, frame.poses[person], body.world);
+    std::vector<flatbuffers::Offset<foxglove::Point3>> ends;
+    for (std::size_t i = 0; i < body.world.size(); ++i) {
+      const int parent = body.skeleton.nodes[i].parent;
+      if (parent < 0) continue;
+      ends.push_back(builder_->point(glm::dvec3(body.world[static_cast<std::size_t>(parent)][3])));
+      ends.push_back(builder_->point(glm::dvec3(body.world[i][3])));
+    }
+    const auto points = buffer.CreateVector(ends);
+    const auto bone_pose = builder_->pose(glm::dvec3(0));
+    const auto bone_colour = foxglove::CreateColor(buffer, 0.35, 0.55, 0.85, 1.0);
+    const auto bones = foxglove::CreateLinePrimitive(buffer, foxglove::LineType::LINE_LIST, bone_pose, kBone_m, false,
+                                                     points, bone_colour);
+    const auto lines = buffer.CreateVector(&bones, 1);
+    add_entity(body.frame, body.entity, [&](auto& entity) { entity.add_lines(lines); });
   }
-  const auto points = buffer.CreateVector(ends);
-  const auto bone_pose = builder_->pose(glm::dvec3(0));
-  const auto bone_colour = foxglove::CreateColor(buffer, 0.35, 0.55, 0.85, 1.0);
-  const auto bones = foxglove::CreateLinePrimitive(buffer, foxglove::LineType::LINE_LIST, bone_pose, kBone_m, false,
-                                                   points, bone_colour);
-  const auto lines = buffer.CreateVector(&bones, 1);
-  add_entity(kAvatar, "skeleton", [&](auto& entity) { entity.add_lines(lines); });
 
   const auto colour = foxglove::CreateColor(buffer, 0.9, 0.35, 0.2, 1.0);
   std::set<std::uint32_t> shown;
@@ -215,10 +229,11 @@ mcap::Bytes VizEncoder::scene(const TraceFrame& frame) {
 }
 
 std::uint64_t VizEncoder::most_bytes(const TraceFrame& frame) const {
-  constexpr std::uint64_t kFixedBytes = 2048;
+  constexpr std::uint64_t kFixedBytes = 1024;
+  constexpr std::uint64_t kBodyBytes = 1024;
   constexpr std::uint64_t kNodeBytes = 384;
   constexpr std::uint64_t kColliderBytes = 448;
-  return kFixedBytes + 2 * name_bytes_ + kNodeBytes * frames_.size() +
+  return kFixedBytes + kBodyBytes * bodies_.size() + 2 * name_bytes_ + kNodeBytes * frame_count_ +
          kColliderBytes * (frame.colliders.size() + shown_.size());
 }
 

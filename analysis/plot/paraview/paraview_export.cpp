@@ -77,7 +77,7 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
   double last_s = 0;
   bool is_due = false;
   const auto write_last = [&] {
-    series.write({last_s, &last.pose, pending.amplitude, last.colliders, pending.contacts});
+    series.write({last_s, &last.poses.front(), pending.amplitude, last.colliders, pending.contacts});
     pending.clear();
     is_due = false;
   };

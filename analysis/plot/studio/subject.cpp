@@ -44,12 +44,13 @@ Subject read_subject(const std::string& avatar, const std::string& map, std::str
 Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map) {
   Subject subject;
   subject.title = path.filename().string();
-  subject.avatar = parse_avatar_glb(trace.avatar_glb(), path.string() + ", avatar.glb");
-  take_recorded_facing(subject.avatar.facing, trace.facing());
+  subject.avatar = parse_avatar_glb(trace.people().front().avatar_glb, path.string() + ", avatar.glb");
+  take_recorded_facing(subject.avatar.facing, trace.people().front().facing);
   if (!map.empty())
     subject.map = read_map(map, subject.avatar);
-  else if (!trace.actuator_map_png().empty())
-    subject.map = parse_actuator_map(actuator_map_files(trace), subject.avatar, path.string() + ", actuator_map.png");
+  else if (!trace.people().front().actuator_map_png.empty())
+    subject.map = parse_actuator_map(actuator_map_files(trace.people().front()), subject.avatar,
+                                     path.string() + ", actuator_map.png");
   if (subject.avatar.facing.lies_deg)
     subject.warnings.push_back(fmt::format("{}: its avatar {}; its left and its front are not known", path.string(),
                                            describe_lying(subject.avatar.facing)));

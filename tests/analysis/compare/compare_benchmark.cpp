@@ -73,12 +73,12 @@ void record_swarm(const std::filesystem::path& file) {
   const Avatar& avatar = test::builtin_avatar();
   const Animation* animation = find_animation(avatar, "walk");
   const auto swarm = find_scenario("swarm")->make(avatar, animation, {kSettings.counts.back(), 1});
-  TraceWriter writer(file, {}, avatar, {.avatar_glb = builtin_avatar_glb()}, {.overwrite = Overwrite::kAllow});
+  TraceWriter writer(file, {}, {{avatar, {.avatar_glb = builtin_avatar_glb()}}}, {.overwrite = Overwrite::kAllow});
   const auto write = [&](const TraceFrame& frame) {
     writer.write(frame);
     return true;
   };
-  record(write, avatar, animation, *swarm, {}, [](double) { return true; });
+  record(write, {{avatar, animation}}, *swarm, {}, [](double) { return true; });
   writer.finish();
 }
 

@@ -33,7 +33,7 @@ std::vector<std::string> touch(const Avatar& avatar, const ActuatorMap& map,
   std::vector<TraceFrame> frames(2);
   frames[1].index = 1;
   frames[1].time_ns = 10'000'000;
-  for (TraceFrame& frame : frames) frame.pose = rest_pose(avatar);
+  for (TraceFrame& frame : frames) frame.poses.front() = rest_pose(avatar);
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
     const auto corner = surface.corners_m(triangles[i]);
     const glm::dvec3 middle = (corner[0] + corner[1] + corner[2]) / 3.0;

@@ -73,7 +73,7 @@ TEST_F(ParaviewTest, EveryStepHasTheSkinWithRegionsAndAmplitudesTheCollidersAndA
   ASSERT_LT(listed.size(), 3U * 35);  // 60 Hz of half a second
 
   TraceReader trace(folder_ / "man.mcap");
-  const Avatar avatar = parse_avatar_glb(trace.avatar_glb(), "avatar");
+  const Avatar avatar = parse_avatar_glb(trace.people().front().avatar_glb, "avatar");
   TraceFrame frame;
   std::vector<glm::dvec3> skin_m;
   std::size_t contacts = 0;
@@ -89,7 +89,7 @@ TEST_F(ParaviewTest, EveryStepHasTheSkinWithRegionsAndAmplitudesTheCollidersAndA
     const auto skin = read_vtp(listed[i].file);
     ASSERT_EQ(static_cast<std::size_t>(skin->GetNumberOfPoints()), avatar.position_bind.size());
     ASSERT_EQ(static_cast<std::size_t>(skin->GetNumberOfPolys()), avatar.triangles.size());
-    skin_reference(avatar, frame.pose, glm::dvec3(0), skin_m);
+    skin_reference(avatar, frame.poses.front(), glm::dvec3(0), skin_m);
     EXPECT_NEAR(skin->GetPoint(77)[1], skin_m[77].y, 1e-9);
     EXPECT_EQ(skin->GetFieldData()->GetArray("TimeValue")->GetTuple1(0), listed[i].time_s);
     vtkDataArray& actuator = *skin->GetCellData()->GetArray("actuator");

@@ -41,7 +41,7 @@ class PlaybackTest : public ::testing::Test {
  protected:
   void write_trace(const std::vector<double>& times_s) const {
     const std::vector<std::byte> glb = test::skeleton_glb(test::kNodes);
-    TraceWriter writer(folder / "trace.mcap", {}, test::skeleton(test::kNodes), {.avatar_glb = glb},
+    TraceWriter writer(folder / "trace.mcap", {}, {{test::skeleton(test::kNodes), {.avatar_glb = glb}}},
                        test::steady_options());
     for (std::size_t i = 0; i < times_s.size(); ++i) {
       TraceFrame frame = test::frame(i, test::kNodes, test::kColliders);

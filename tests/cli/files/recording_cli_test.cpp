@@ -52,10 +52,10 @@ class Recording : public test::CommandLineTest {
     std::string lines;
     for (const TraceFrame& frame : frames_of(trace)) {
       lines += fmt::format(R"({{"frame":{},"time_s":{}.{:09},"pose":{{"origin":[{},{},{}],"nodes":[)", frame.index,
-                           frame.time_ns / 1'000'000'000, frame.time_ns % 1'000'000'000, frame.pose.origin_m.x,
-                           frame.pose.origin_m.y, frame.pose.origin_m.z);
+                           frame.time_ns / 1'000'000'000, frame.time_ns % 1'000'000'000, frame.poses.front().origin_m.x,
+                           frame.poses.front().origin_m.y, frame.poses.front().origin_m.z);
       std::vector<std::string> parts;
-      for (const NodeLocal& node : frame.pose.nodes) {
+      for (const NodeLocal& node : frame.poses.front().nodes) {
         const glm::vec3& t = node.translation;
         const glm::quat& r = node.rotation;
         std::vector<std::string> numbers;

@@ -94,9 +94,9 @@ TEST_F(RestPose, ThatIsAPointHasNoSurface) {
 
   const std::vector<std::byte> glb = read_avatar_glb(folder_ / "point.glb");
   const Avatar avatar = parse_avatar_glb(glb, "point.glb");
-  TraceWriter trace(folder_ / "older.mcap", {}, avatar, {glb, {}, {}}, {});
+  TraceWriter trace(folder_ / "older.mcap", {}, {{avatar, {glb, {}, {}}}}, {});
   TraceFrame frame;
-  frame.pose = rest_pose(avatar);
+  frame.poses.front() = rest_pose(avatar);
   trace.write(frame);
   trace.finish();
   const test::Outcome replayed = run("vestige replay older.mcap");

@@ -227,7 +227,7 @@ void swarm_over(const Avatar& avatar, std::uint32_t colliders, int frames, doubl
   for (int k = 0; k < frames; ++k) {
     trace_frame.index = static_cast<std::uint64_t>(k);
     trace_frame.time_ns = std::llround(k / rate_hz * 1e9);
-    trace_frame.pose = looped_pose(avatar, animation, k / rate_hz);
+    trace_frame.poses.front() = looped_pose(avatar, animation, k / rate_hz);
     swarm->sample(k / rate_hz, trace_frame.colliders);
     visit(trace_frame, builder.next(trace_frame));
   }

@@ -78,10 +78,10 @@ void PrintTo(const Hostility& hostility, std::ostream* out) {  // NOLINT(readabi
 }
 
 NodeLocal& root_of(TraceFrame& frame) {
-  return frame.pose.nodes[static_cast<std::size_t>(builtin_avatar().root_node)];
+  return frame.poses.front().nodes[static_cast<std::size_t>(builtin_avatar().root_node)];
 }
 NodeLocal& some_joint_of(TraceFrame& frame) {
-  return frame.pose.nodes[frame.pose.nodes.size() / 2];
+  return frame.poses.front().nodes[frame.poses.front().nodes.size() / 2];
 }
 
 using Case = std::tuple<Hostility, Method>;
@@ -135,10 +135,10 @@ const Hostility kNotFinitePoses[] = {
     {"overflowing_scale", [](TraceFrame& frame) { root_of(frame).scale = glm::vec3(3e38F); }},
     {"overflowing_product",
      [](TraceFrame& frame) {
-       for (NodeLocal& node : frame.pose.nodes) node.scale = glm::vec3(1e20F);
+       for (NodeLocal& node : frame.poses.front().nodes) node.scale = glm::vec3(1e20F);
      }},
-    {"nan_origin", [](TraceFrame& frame) { frame.pose.origin_m.z = static_cast<double>(kNan); }},
-    {"infinite_origin", [](TraceFrame& frame) { frame.pose.origin_m.x = static_cast<double>(kInfinity); }},
+    {"nan_origin", [](TraceFrame& frame) { frame.poses.front().origin_m.z = static_cast<double>(kNan); }},
+    {"infinite_origin", [](TraceFrame& frame) { frame.poses.front().origin_m.x = static_cast<double>(kInfinity); }},
 };
 INSTANTIATE_TEST_SUITE_P(Each, PoseThatIsNotFinite,
                          ::testing::Combine(::testing::ValuesIn(kNotFinitePoses), kEveryMethod), name_of_case);
@@ -210,9 +210,9 @@ const Hostility kFinitePoses[] = {
     {"no_rotation", [](TraceFrame& frame) { some_joint_of(frame).rotation = glm::quat(0, 0, 0, 0); }},
     {"twisted_bone", [](TraceFrame& frame) { some_joint_of(frame).rotation = glm::quat(0, 0, 1, 0); }},
     {"turned_head_over_heels", [](TraceFrame& frame) { root_of(frame).rotation = glm::quat(0, 1, 0, 0); }},
-    {"teleport_within_reach", [](TraceFrame& frame) { frame.pose.origin_m.x += 1.5; }},
-    {"teleport_of_a_kilometre", [](TraceFrame& frame) { frame.pose.origin_m.z += 1000.3; }},
-    {"teleport_around_the_earth", [](TraceFrame& frame) { frame.pose.origin_m.y -= 4e7; }},
+    {"teleport_within_reach", [](TraceFrame& frame) { frame.poses.front().origin_m.x += 1.5; }},
+    {"teleport_of_a_kilometre", [](TraceFrame& frame) { frame.poses.front().origin_m.z += 1000.3; }},
+    {"teleport_around_the_earth", [](TraceFrame& frame) { frame.poses.front().origin_m.y -= 4e7; }},
     {"denormal_collider", [](TraceFrame& frame) { put_first_collider(frame, 4e-310); }},
     {"far_collider", [](TraceFrame& frame) { put_first_collider(frame, 1e25); }},
     {"farthest_collider_and_hugest_scale",
@@ -233,8 +233,8 @@ class ScaledTriangle : public ::testing::TestWithParam<Method> {
     for (std::size_t k = 0; k < scene.size(); ++k) {
       scene[k].index = k;
       scene[k].time_ns = static_cast<std::int64_t>(k) * 10'000'000;
-      scene[k].pose = rest_pose(avatar);
-      scene[k].pose.nodes[0].scale = scale;
+      scene[k].poses.front() = rest_pose(avatar);
+      scene[k].poses.front().nodes[0].scale = scale;
       scene[k].colliders = {{0, k == 0 ? from : to}};
     }
     const auto cpu = make_cpu_detector(avatar, no_map(), {Surface::kAll, PlaneSet::all(), GetParam()});
@@ -268,8 +268,8 @@ TEST(FarCarriedTriangle, IsNotSkipped) {
   for (std::size_t k = 0; k < scene.size(); ++k) {
     scene[k].index = k;
     scene[k].time_ns = static_cast<std::int64_t>(k) * 10'000'000;
-    scene[k].pose = rest_pose(avatar);
-    scene[k].pose.nodes[0].scale = glm::vec3(k == 0 ? -kSize_m : kSize_m, kSize_m, kSize_m);
+    scene[k].poses.front() = rest_pose(avatar);
+    scene[k].poses.front().nodes[0].scale = glm::vec3(k == 0 ? -kSize_m : kSize_m, kSize_m, kSize_m);
     scene[k].colliders = {{0, glm::dvec3(k == 0 ? -1.5 : 1.5, 0, 0) * static_cast<double>(kSize_m)}};
   }
   for (const Skip skip : {Skip::kOff, Skip::kOn}) {

@@ -60,7 +60,7 @@ std::vector<Touch> touches_of(std::string_view name, const Avatar& avatar, const
   for (int k = 0; k < kFrames; ++k) {
     trace_frame.index = static_cast<std::uint64_t>(k);
     trace_frame.time_ns = std::llround(k / kRate_hz * 1e9);
-    trace_frame.pose = looped_pose(avatar, animation, k / kRate_hz);
+    trace_frame.poses.front() = looped_pose(avatar, animation, k / kRate_hz);
     source->sample(k / kRate_hz, trace_frame.colliders);
     trace_frame.teleported = source->teleported();
     const DetectorFrame& frame = builder.next(trace_frame);

@@ -44,9 +44,9 @@ TEST(GltfValidator, FindsNoErrorInTheExportOfATraceWhoseAvatarHasFaults) {
   for (int i = 0; i < 3; ++i) {
     TraceFrame frame;
     frame.time_ns = i * 1'000'000;
-    frame.pose = rest_pose(avatar);
-    frame.pose.origin_m.x = i;
-    frame.pose.nodes[2].translation.y = static_cast<float>(i);
+    frame.poses.front() = rest_pose(avatar);
+    frame.poses.front().origin_m.x = i;
+    frame.poses.front().nodes[2].translation.y = static_cast<float>(i);
     frame.colliders = {{7, glm::dvec3(0.5 * i, 0, 0)}, {8, glm::dvec3(1, 0, 0), 0.1F * static_cast<float>(i + 1)}};
     file->write(frame);
   }

@@ -44,11 +44,11 @@ TEST_F(LiveLines, AreFramesToTheBit) {
     const TraceFrame& frame = frames[0];
     EXPECT_EQ(frame.index, 4U);
     EXPECT_EQ(frame.time_ns, 500'000'000);
-    EXPECT_TRUE(test::same_bits(frame.pose.origin_m, glm::dvec3(0.1, -0.0, 1e300)));
-    EXPECT_EQ(frame.pose.nodes[1].translation.x, 0.1F);
-    EXPECT_TRUE(std::signbit(frame.pose.nodes[1].translation.y));
-    EXPECT_TRUE(std::isinf(frame.pose.nodes[1].translation.z));
-    EXPECT_TRUE(std::isnan(frame.pose.nodes[1].scale.x));
+    EXPECT_TRUE(test::same_bits(frame.poses.front().origin_m, glm::dvec3(0.1, -0.0, 1e300)));
+    EXPECT_EQ(frame.poses.front().nodes[1].translation.x, 0.1F);
+    EXPECT_TRUE(std::signbit(frame.poses.front().nodes[1].translation.y));
+    EXPECT_TRUE(std::isinf(frame.poses.front().nodes[1].translation.z));
+    EXPECT_TRUE(std::isnan(frame.poses.front().nodes[1].scale.x));
     ASSERT_EQ(frame.colliders.size(), 1U);
     EXPECT_EQ(frame.colliders[0].id, 3U);
     EXPECT_EQ(frame.colliders[0].position_m.y, 1.1);
@@ -63,9 +63,9 @@ TEST_F(LiveLines, MayLeaveOutAllButTheBraces) {
   ASSERT_EQ(frames.size(), 3U) << ::testing::PrintToString(lines_->problems());
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(frames[i].index, i);
   EXPECT_EQ(frames[0].time_ns, 7) << "when the line came";
-  EXPECT_EQ(frames[0].pose.origin_m, glm::dvec3(0));
-  EXPECT_EQ(frames[1].pose.nodes[1].translation.y, 5.0F);
-  EXPECT_EQ(frames[2].pose.nodes[1].translation.y, 5.0F) << "as the line before";
+  EXPECT_EQ(frames[0].poses.front().origin_m, glm::dvec3(0));
+  EXPECT_EQ(frames[1].poses.front().nodes[1].translation.y, 5.0F);
+  EXPECT_EQ(frames[2].poses.front().nodes[1].translation.y, 5.0F) << "as the line before";
   EXPECT_EQ(frames[2].time_ns, 1'000'000'000);
 }
 

@@ -39,7 +39,7 @@ class Vmc : public ::testing::Test {
     TraceFrame frame;
     state.show(frame);
     std::vector<glm::dmat4> world;
-    world_matrices(avatar_, frame.pose, world);
+    world_matrices(avatar_, frame.poses.front(), world);
     std::vector<glm::dvec3> positions;
     for (const glm::dmat4& matrix : world) positions.emplace_back(matrix[3]);
     return positions;
@@ -66,12 +66,13 @@ TEST_F(Vmc, ASenderInItsRestPoseLeavesTheAvatarInItsOwn) {
   EXPECT_TRUE(state.take(bundle(all)));
   TraceFrame frame;
   state.show(frame);
-  EXPECT_EQ(frame.pose.origin_m, glm::dvec3(5, 6, 7));
+  EXPECT_EQ(frame.poses.front().origin_m, glm::dvec3(5, 6, 7));
   const Pose rest = rest_pose(avatar_);
   for (std::size_t i = 0; i < rest.nodes.size(); ++i) {
-    expect_near(frame.pose.nodes[i].translation, rest.nodes[i].translation);
-    EXPECT_NEAR(std::abs(glm::dot(glm::dquat(frame.pose.nodes[i].rotation), glm::dquat(rest.nodes[i].rotation))), 1,
-                1e-6);
+    expect_near(frame.poses.front().nodes[i].translation, rest.nodes[i].translation);
+    EXPECT_NEAR(
+        std::abs(glm::dot(glm::dquat(frame.poses.front().nodes[i].rotation), glm::dquat(rest.nodes[i].rotation))), 1,
+        1e-6);
   }
   EXPECT_EQ(state.bones().size(), 20U);
 }
@@ -100,7 +101,7 @@ TEST_F(Vmc, AHeadThatTurnsToItsLeftInUnityTurnsToItsLeftHere) {
   std::vector<glm::dmat4> rest;
   std::vector<glm::dmat4> world;
   world_matrices(avatar_, rest_pose(avatar_), rest);
-  world_matrices(avatar_, frame.pose, world);
+  world_matrices(avatar_, frame.poses.front(), world);
   const glm::dmat4 turn = world[node("Head")] * glm::inverse(rest[node("Head")]);
   expect_near(glm::dvec3(turn * glm::dvec4(0, 0, 1, 0)), {1, 0, 0});
 }
@@ -161,7 +162,7 @@ TEST_F(Vmc, RotationsAreTurnedIntoEachNodesOwnFrame) {
   std::vector<glm::dmat4> rest;
   std::vector<glm::dmat4> world;
   world_matrices(avatar, rest_pose(avatar), rest);
-  world_matrices(avatar, frame.pose, world);
+  world_matrices(avatar, frame.poses.front(), world);
   const glm::dmat4 turn = world[1] * glm::inverse(rest[1]);
   expect_near(glm::dvec3(turn * glm::dvec4(0, 0, 1, 0)), {1, 0, 0});
   expect_near(glm::dvec3(turn * glm::dvec4(0, 1, 0, 0)), {0, 1, 0});
@@ -208,7 +209,7 @@ TEST_F(Vmc, CollidersStandWhereTheAvatarDoes) {
   state.take(collider(1, 1, 2, 3));
   TraceFrame frame;
   state.show(frame);
-  EXPECT_EQ(frame.pose.origin_m, glm::dvec3(5, 6, 7));
+  EXPECT_EQ(frame.poses.front().origin_m, glm::dvec3(5, 6, 7));
   ASSERT_EQ(frame.colliders.size(), 1U);
   EXPECT_EQ(frame.colliders[0].position_m, glm::dvec3(6, 8, 10));
 }

@@ -33,8 +33,7 @@ class RecorderTest : public ::testing::Test {
     writing.overwrite = overwrite_;
     return {.path = folder_ / "man.mcap",
             .session = {{"argv", "test"}},
-            .avatar = avatar_,
-            .attachments = {.avatar_glb = glb_, .actuator_map_json = "{}"},
+            .people = {{avatar_, {.avatar_glb = glb_, .actuator_map_json = "{}"}}},
             .writing = writing,
             .limits = limits};
   }
@@ -75,7 +74,7 @@ class RecorderTest : public ::testing::Test {
       indexes.push_back(frame.index);
     }
     EXPECT_TRUE(reader.complete()) << path;
-    EXPECT_EQ(reader.actuator_map_json().size(), 2U);
+    EXPECT_EQ(reader.people().front().actuator_map_json.size(), 2U);
     return indexes;
   }
 

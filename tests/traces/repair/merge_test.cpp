@@ -64,8 +64,8 @@ Bytes recording(const test::TemporaryFolder& folder, std::uint64_t frames, std::
   const std::vector<std::byte> glb = test::skeleton_glb(nodes);
   TraceWriterOptions options = test::steady_options(1200);
   options.overwrite = Overwrite::kAllow;
-  TraceWriter writer(folder / "other.mcap", {{"argv", "test"}}, test::skeleton(nodes),
-                     {.avatar_glb = glb, .actuator_map_json = map}, options);
+  TraceWriter writer(folder / "other.mcap", {{"argv", "test"}},
+                     {{test::skeleton(nodes), {.avatar_glb = glb, .actuator_map_json = map}}}, options);
   for (std::uint64_t i = 0; i < frames; ++i) {
     TraceFrame frame = test::frame(i, nodes, test::kColliders);
     frame.colliders[0].position_m.x += shift;
@@ -118,7 +118,8 @@ TEST(Merge, TakesWhatViewersDrawFromTheFirstFile) {
   const auto record = [&](const char* name, std::uint64_t first, std::uint64_t last) {
     TraceWriterOptions options = test::steady_options(1200);
     options.viz = Viz::kScene;
-    TraceWriter writer(folder / name, {{"argv", "test"}}, test::skeleton(test::kNodes), {.avatar_glb = glb}, options);
+    TraceWriter writer(folder / name, {{"argv", "test"}}, {{test::skeleton(test::kNodes), {.avatar_glb = glb}}},
+                       options);
     for (std::uint64_t i = first; i < last; ++i) writer.write(test::frame(i, test::kNodes, test::kColliders));
     writer.finish();
     return read_file(folder / name);
@@ -180,7 +181,7 @@ TEST(Merge, NamesWhatTheSessionsOfOtherRecordingsDifferIn) {
   const test::TemporaryFolder folder;
   const std::vector<std::byte> glb = test::skeleton_glb(test::kNodes);
   const auto record = [&](const char* name, const Session& session, std::uint64_t first) {
-    TraceWriter writer(folder / name, session, test::skeleton(test::kNodes), {.avatar_glb = glb},
+    TraceWriter writer(folder / name, session, {{test::skeleton(test::kNodes), {.avatar_glb = glb}}},
                        test::steady_options(1200));
     for (std::uint64_t i = first; i < first + 4; ++i) writer.write(test::frame(i, test::kNodes, test::kColliders));
     writer.finish();

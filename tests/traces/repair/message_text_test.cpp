@@ -37,13 +37,13 @@ nlohmann::json printed(Stream stream, mcap::Bytes data, const std::string& encod
 TEST(MessageText, PosesReadBackToTheSameBits) {
   MessageEncoder encoder;
   TraceFrame frame = test::frame(3, test::kNodes, 0);
-  frame.pose.nodes[0].translation = {-0.0F, std::numeric_limits<float>::denorm_min(), 16777216.0F};
-  const auto data = printed(Stream::kPose, encoder.pose(0, frame.pose))["data"];
+  frame.poses.front().nodes[0].translation = {-0.0F, std::numeric_limits<float>::denorm_min(), 16777216.0F};
+  const auto data = printed(Stream::kPose, encoder.pose(0, frame.poses.front()))["data"];
   TraceFrame read = frame;
-  read.pose = {};
-  read.pose.origin_m = {data["origin"][0], data["origin"][1], data["origin"][2]};
+  read.poses.front() = {};
+  read.poses.front().origin_m = {data["origin"][0], data["origin"][1], data["origin"][2]};
   for (const auto& node : data["nodes"])
-    read.pose.nodes.push_back(
+    read.poses.front().nodes.push_back(
         {.translation = {node[0].get<float>(), node[1].get<float>(), node[2].get<float>()},
          .rotation = glm::quat(node[6].get<float>(), node[3].get<float>(), node[4].get<float>(), node[5].get<float>()),
          .scale = {node[7].get<float>(), node[8].get<float>(), node[9].get<float>()}});

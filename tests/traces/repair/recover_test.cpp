@@ -315,13 +315,13 @@ TEST(Recover, FramesFitTheFirstChannelOfPosesWhateverOthersSay) {
                                        .sequence = 0,
                                        .log_time = 0,
                                        .publish_time = 0,
-                                       .data = encoder.pose(0, test::frame(0, 1, 0).pose)});
+                                       .data = encoder.pose(0, test::frame(0, 1, 0).poses.front())});
   append_record(records, channel(1, R"(["a","b","c"])"));
   append_record(records, mcap::Message{.channel_id = 1,
                                        .sequence = 1,
                                        .log_time = 1,
                                        .publish_time = 1,
-                                       .data = encoder.pose(1, test::frame(1, 3, 0).pose)});
+                                       .data = encoder.pose(1, test::frame(1, 3, 0).poses.front())});
   const auto outcome = recover(test::file_of_chunk(records, 0));
   ASSERT_TRUE(outcome);
   EXPECT_EQ(outcome->recovery.messages, 1U);

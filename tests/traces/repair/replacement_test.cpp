@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 Substitutes avatar(std::vector<std::byte> glb) {
   Substitutes substitutes;
-  substitutes.avatar = {.from = "new.glb", .files = {{"avatar.glb", std::move(glb)}}};
+  substitutes.avatars = {{.from = "new.glb", .files = {{"avatar.glb", std::move(glb)}}}};
   return substitutes;
 }
 
@@ -82,7 +82,7 @@ TEST_F(Replacing, TheRecordedAvatarMakesTheTraceWhole) {
   EXPECT_EQ(test::read_frames(reader).size(), kFrames);
   EXPECT_TRUE(reader.complete()) << reader.warnings().front();
   EXPECT_EQ(reader.recovered(), "");
-  EXPECT_TRUE(std::ranges::equal(reader.avatar_glb(), test::skeleton_glb(kNodes)));
+  EXPECT_TRUE(std::ranges::equal(reader.people().front().avatar_glb, test::skeleton_glb(kNodes)));
 }
 
 TEST_F(Replacing, EverySummaryHasTheRecordedHashes) {

@@ -34,7 +34,8 @@ class ForgedTrace {
     colliders(sequence, time_ns, {});
   }
   void pose(std::uint32_t sequence, std::uint64_t time_ns, std::size_t nodes = kNodes) {
-    message(1, sequence, time_ns, encoder_.pose(static_cast<std::int64_t>(time_ns), test::frame(0, nodes, 0).pose));
+    message(1, sequence, time_ns,
+            encoder_.pose(static_cast<std::int64_t>(time_ns), test::frame(0, nodes, 0).poses.front()));
   }
   void colliders(std::uint32_t sequence, std::uint64_t time_ns, const std::vector<ColliderSample>& colliders) {
     message(2, sequence, time_ns, encoder_.colliders(static_cast<std::int64_t>(time_ns), colliders));

@@ -27,8 +27,8 @@ TEST(ReferenceReader, SeesAllThatIsInATrace) {
     options.compression = compression;
     options.overwrite = Overwrite::kAllow;
     {
-      TraceWriter writer(folder / "a.mcap", {{"argv", "vestige record"}}, test::skeleton(test::kNodes),
-                         {.avatar_glb = glb, .actuator_map_json = "{}"}, options);
+      TraceWriter writer(folder / "a.mcap", {{"argv", "vestige record"}},
+                         {{test::skeleton(test::kNodes), {.avatar_glb = glb, .actuator_map_json = "{}"}}}, options);
       for (std::uint64_t i = 0; i < 100; ++i) writer.write(test::frame(i, test::kNodes, test::kColliders));
       writer.note_marker("here");
       writer.finish();

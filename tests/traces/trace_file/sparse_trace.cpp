@@ -67,7 +67,7 @@ void write(const std::filesystem::path& path, double bytes) {
   const std::vector<std::byte> glb = builtin_avatar_glb();
   const Avatar avatar = parse_avatar_glb(glb, "builtin");
   {
-    TraceWriter writer(small, {}, avatar, {.avatar_glb = glb}, {.overwrite = Overwrite::kAllow});
+    TraceWriter writer(small, {}, {{avatar, {.avatar_glb = glb}}}, {.overwrite = Overwrite::kAllow});
     const Animation* animation = find_animation(avatar, "");
     const auto colliders = find_scenario("swarm")->make(avatar, animation, {20, 1});
     const RecordingSettings settings{.rate_hz = 1000, .duration_s = static_cast<double>(kFrames) / 1000};
@@ -76,7 +76,7 @@ void write(const std::filesystem::path& path, double bytes) {
           writer.write(frame);
           return true;
         },
-        avatar, animation, *colliders, settings, [](double) { return true; });
+        {{avatar, animation}}, *colliders, settings, [](double) { return true; });
     writer.finish();
   }
   SparseFile file(path);

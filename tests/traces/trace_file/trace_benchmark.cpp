@@ -29,7 +29,7 @@ void write(const std::filesystem::path& path, vestige::Compression compression,
            std::vector<vestige::TraceFrame>& frames) {
   using namespace vestige;
   const auto glb = test::skeleton_glb(kNodes);
-  TraceWriter writer(path, {}, test::skeleton(kNodes), {.avatar_glb = glb},
+  TraceWriter writer(path, {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}},
                      {.overwrite = Overwrite::kAllow, .compression = compression});
   for (std::uint64_t i = 0; i < kFrames; ++i) {
     TraceFrame& frame = frames[i % frames.size()];

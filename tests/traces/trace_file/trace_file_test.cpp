@@ -53,8 +53,10 @@ TEST_P(TraceFileCompressed, ReadsBackToTheSameBits) {
   const std::vector<std::byte> png(100, std::byte{7});
   std::vector<TraceFrame> written;
   {
-    TraceWriter writer(folder / "a.mcap", {{"argv", "vestige record"}}, test::skeleton(kNodes),
-                       {.avatar_glb = glb, .actuator_map_png = png, .actuator_map_json = "{\"a\": 1}"}, options);
+    TraceWriter writer(
+        folder / "a.mcap", {{"argv", "vestige record"}},
+        {{test::skeleton(kNodes), {.avatar_glb = glb, .actuator_map_png = png, .actuator_map_json = "{\"a\": 1}"}}},
+        options);
     for (std::uint64_t i = 0; i < 200; ++i) {
       TraceFrame frame = test::frame(i, kNodes, i % 5);
       if (i % 50 == 9) frame.teleported = {3, 10};
@@ -69,10 +71,10 @@ TEST_P(TraceFileCompressed, ReadsBackToTheSameBits) {
   EXPECT_EQ(reader.session().at("argv"), "vestige record");
   EXPECT_EQ(reader.session().at("format_version"), "1");
   EXPECT_EQ(reader.session().at("sha256:avatar.glb"), sha256_hex(glb));
-  EXPECT_THAT(reader.avatar_glb(), ::testing::ElementsAreArray(glb));
-  EXPECT_THAT(reader.actuator_map_png(), ::testing::ElementsAreArray(png));
-  EXPECT_EQ(reader.actuator_map_json().size(), 8U);
-  EXPECT_EQ(reader.node_names().at(1), "node 1 \"\xC3\xA9\"");
+  EXPECT_THAT(reader.people().front().avatar_glb, ::testing::ElementsAreArray(glb));
+  EXPECT_THAT(reader.people().front().actuator_map_png, ::testing::ElementsAreArray(png));
+  EXPECT_EQ(reader.people().front().actuator_map_json.size(), 8U);
+  EXPECT_EQ(reader.people().front().node_names.at(1), "node 1 \"\xC3\xA9\"");
   const auto read = test::read_frames(reader);
   ASSERT_EQ(read.size(), written.size());
   for (std::size_t i = 0; i < read.size(); ++i) EXPECT_TRUE(test::same_bits(read[i], written[i])) << i;
@@ -118,7 +120,7 @@ TEST(TraceFile, IsTheSameBytesForTheSameFrames) {
 TEST(TraceFile, CountsDropsAndKeepsMarkers) {
   const test::TemporaryFolder folder;
   const auto glb = test::skeleton_glb(kNodes);
-  TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, test::steady_options());
+  TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}}, test::steady_options());
   writer.note_marker("before anything");
   writer.write(test::frame(0, kNodes, 1));
   writer.note_dropped("/colliders", 3);
@@ -137,7 +139,7 @@ TEST(TraceFile, CountsDropsAndKeepsMarkers) {
 TEST(TraceFile, RefusesFramesThatContradictTheTrace) {
   const test::TemporaryFolder folder;
   const auto glb = test::skeleton_glb(kNodes);
-  TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, test::steady_options());
+  TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}}, test::steady_options());
   writer.write(test::frame(5, kNodes, 1));
   EXPECT_THAT(error_of([&] { writer.write(test::frame(5, kNodes, 1)); }), HasSubstr("comes after frame 5"));
   TraceFrame early = test::frame(6, kNodes, 1);
@@ -182,7 +184,8 @@ TEST(TraceFile, WithoutFinishIsReadableToTheLastFrame) {
   const test::TemporaryFolder folder;
   const auto glb = test::skeleton_glb(kNodes);
   {
-    TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, test::steady_options(1000));
+    TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}},
+                       test::steady_options(1000));
     for (std::uint64_t i = 0; i < 20; ++i) writer.write(test::frame(i, kNodes, kColliders));
   }
   TraceReader reader(folder / "a.mcap");
@@ -196,7 +199,7 @@ TEST(TraceFile, LeavesNothingBehindWhenNoFrameWasWritten) {
   const test::TemporaryFolder folder;
   const auto glb = test::skeleton_glb(kNodes);
   {
-    const TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb},
+    const TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}},
                              test::steady_options());
     EXPECT_TRUE(std::filesystem::exists(folder / "a.mcap"));
   }
@@ -223,7 +226,7 @@ int record_until_full(const std::filesystem::path& path, rlim_t limit_bytes, Ove
       const auto glb = test::skeleton_glb(kNodes);
       TraceWriterOptions options = test::steady_options(2000);
       options.overwrite = overwrite;
-      TraceWriter writer(path, {}, test::skeleton(kNodes), {.avatar_glb = glb}, options);
+      TraceWriter writer(path, {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}}, options);
       for (std::uint64_t i = 0; i < 10000; ++i) writer.write(test::frame(i, kNodes, kColliders));
       writer.finish();
     });
@@ -272,7 +275,8 @@ TEST(TraceFile, OfAKilledRecorderLosesAtMostOneChunk) {
   const pid_t child = ::fork();
   if (child == 0) {
     const auto glb = test::skeleton_glb(kNodes);
-    TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, test::steady_options(4000));
+    TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}},
+                       test::steady_options(4000));
     for (std::uint64_t i = 0;; ++i) {
       writer.write(test::frame(i, kNodes, kColliders));
       if (::write(to_parent[1], &i, sizeof i) != sizeof i) ::_exit(1);
@@ -352,7 +356,7 @@ TEST(TraceFile, RefusesAPoseThatDoesNotFitTheAvatar) {
   const test::TemporaryFolder folder;
   const auto glb = test::skeleton_glb(kNodes + 1);
   {
-    TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, test::steady_options());
+    TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}}, test::steady_options());
     writer.write(test::frame(0, kNodes, 0));
     writer.finish();
   }
@@ -402,7 +406,7 @@ TEST(TraceReader, RefusesALaterFormatVersion) {
     TraceReader reader(folder / "b.mcap");
     FAIL() << "it was read";
   } catch (const Error& error) {
-    EXPECT_THAT(error.fault(), HasSubstr("b.mcap: its format version is 9, and this vestige reads versions up to 2"));
+    EXPECT_THAT(error.fault(), HasSubstr("b.mcap: its format version is 9, and this vestige reads versions up to 3"));
     EXPECT_THAT(error.remedy(), HasSubstr("later version"));
   }
   EXPECT_THAT(fmt::format("{}", fmt::join(summarise_mcap(folder / "b.mcap").warnings, "\n")),
@@ -420,7 +424,7 @@ TEST(TraceFile, OfSpheresGivesTheirRadiiBackToTheBit) {
     if (i != 1) frame.colliders[i % kColliders].radius_m = 0.1F / static_cast<float>(i + 1);  // frame 1: points only
   }
   {
-    TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, options);
+    TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}}, options);
     for (const TraceFrame& frame : written) writer.write(frame);
     writer.finish();
   }
@@ -441,7 +445,7 @@ TEST(TraceFile, RefusesToRecordARadiusThatNoneCanHave) {
   const std::vector<std::byte> glb = test::skeleton_glb(kNodes);
   for (const float wrong : {-1.0F, 10.5F, NAN, INFINITY}) {
     options.overwrite = Overwrite::kAllow;
-    TraceWriter writer(folder / "a.mcap", {}, test::skeleton(kNodes), {.avatar_glb = glb}, options);
+    TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}}, options);
     TraceFrame frame = test::frame(0, kNodes, kColliders);
     frame.colliders[0].radius_m = wrong;
     EXPECT_THROW(writer.write(frame), Error) << wrong;

@@ -47,12 +47,12 @@ inline TraceFrame frame(std::uint64_t index, std::size_t nodes, std::size_t coll
   frame.index = index;
   frame.time_ns = static_cast<std::int64_t>(index) * 1'000'003;
   const double phase = 0.1 + 0.37 * static_cast<double>(index);
-  frame.pose.origin_m = {1e7 + phase, -phase / 3, phase / 7};
+  frame.poses.front().origin_m = {1e7 + phase, -phase / 3, phase / 7};
   for (std::size_t i = 0; i < nodes; ++i) {
     const auto value = static_cast<float>(phase / (3.1 + static_cast<double>(i)));
-    frame.pose.nodes.push_back({.translation = {value, -value, value / 3},
-                                .rotation = glm::normalize(glm::quat(1 - value, value, value / 5, -value / 7)),
-                                .scale = {1 + value, 1, 1 - value}});
+    frame.poses.front().nodes.push_back({.translation = {value, -value, value / 3},
+                                         .rotation = glm::normalize(glm::quat(1 - value, value, value / 5, -value / 7)),
+                                         .scale = {1 + value, 1, 1 - value}});
   }
   for (std::size_t i = 0; i < colliders; ++i) {
     const double value = phase / (1.7 + static_cast<double>(i));
@@ -72,10 +72,12 @@ inline bool same_bits(const TraceFrame& a, const TraceFrame& b) {
     return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0);
   };
   if (a.index != b.index || a.time_ns != b.time_ns || a.teleported != b.teleported) return false;
-  if (!same_bits(a.pose.origin_m, b.pose.origin_m)) return false;
-  if (!equal_arrays(a.pose.nodes, b.pose.nodes) || a.colliders.size() != b.colliders.size()) return false;
+  if (a.poses.size() != b.poses.size() || a.colliders.size() != b.colliders.size()) return false;
+  for (std::size_t k = 0; k < a.poses.size(); ++k)
+    if (!same_bits(a.poses[k].origin_m, b.poses[k].origin_m) || !equal_arrays(a.poses[k].nodes, b.poses[k].nodes))
+      return false;
   for (std::size_t i = 0; i < a.colliders.size(); ++i) {
-    if (a.colliders[i].id != b.colliders[i].id) return false;
+    if (a.colliders[i].id != b.colliders[i].id || a.colliders[i].owner != b.colliders[i].owner) return false;
     if (!same_bits(a.colliders[i].position_m, b.colliders[i].position_m)) return false;
     if (std::bit_cast<std::uint32_t>(a.colliders[i].radius_m) != std::bit_cast<std::uint32_t>(b.colliders[i].radius_m))
       return false;
@@ -94,7 +96,7 @@ inline constexpr std::size_t kColliders = 2;
 /// A finished trace of `frames` frames.
 inline void write_trace(const std::filesystem::path& path, std::uint64_t frames, const TraceWriterOptions& options) {
   const std::vector<std::byte> glb = skeleton_glb(kNodes);
-  TraceWriter writer(path, {{"argv", "test"}}, skeleton(kNodes), {.avatar_glb = glb, .actuator_map_json = "{}"},
+  TraceWriter writer(path, {{"argv", "test"}}, {{skeleton(kNodes), {.avatar_glb = glb, .actuator_map_json = "{}"}}},
                      options);
   for (std::uint64_t i = 0; i < frames; ++i) writer.write(frame(i, kNodes, kColliders));
   writer.finish();

@@ -37,9 +37,9 @@ class VizTest : public ::testing::Test {
     TraceFrame frame;
     frame.index = index;
     frame.time_ns = static_cast<std::int64_t>(index) * 1'000'000;
-    frame.pose = looped_pose(avatar_, &avatar_.animations.front(), static_cast<double>(index) / 1000);
-    frame.pose.origin_m = {10, 0, -5};
-    frame.pose.nodes[1].scale = glm::vec3(1.5F);  // whoever is scaled carries those below away from it
+    frame.poses.front() = looped_pose(avatar_, &avatar_.animations.front(), static_cast<double>(index) / 1000);
+    frame.poses.front().origin_m = {10, 0, -5};
+    frame.poses.front().nodes[1].scale = glm::vec3(1.5F);  // whoever is scaled carries those below away from it
     for (std::uint32_t id = 0; id < 3; ++id)
       if (index < 50 || id != 1) frame.colliders.push_back({id + 7, {id, 1.5, static_cast<double>(index)}});
     return frame;
@@ -48,7 +48,7 @@ class VizTest : public ::testing::Test {
   json record(std::uint64_t frames) const {
     TraceWriterOptions options = test::steady_options(100'000);
     options.viz = Viz::kScene;
-    TraceWriter writer(folder_ / "a.mcap", {}, avatar_, {.avatar_glb = builtin_avatar_glb()}, options);
+    TraceWriter writer(folder_ / "a.mcap", {}, {{avatar_, {.avatar_glb = builtin_avatar_glb()}}}, options);
     for (std::uint64_t i = 0; i < frames; ++i) writer.write(frame(i));
     writer.finish();
     return json::parse(test::run_node("read_viz.mjs", folder_ / "a.mcap"));
@@ -67,7 +67,7 @@ TEST_F(VizTest, TransformsPutEveryNodeWhereTheReferenceSkinningDoes) {
     const auto index = message["log_time"].get<std::uint64_t>() / 1'000'000;
     std::vector<glm::dmat4> expected;
     const TraceFrame as_recorded = frame(index);
-    world_matrices(avatar_, as_recorded.pose, expected);
+    world_matrices(avatar_, as_recorded.poses.front(), expected);
     std::map<std::string, glm::dmat4> world = {{"world", glm::dmat4(1)}};
     for (const json& transform : message["transforms"]) {
       EXPECT_EQ(transform["timestamp"]["nsec"], index * 1'000'000);
@@ -78,10 +78,34 @@ TEST_F(VizTest, TransformsPutEveryNodeWhereTheReferenceSkinningDoes) {
     }
     EXPECT_EQ(world.size(), avatar_.nodes.size() + 2);
     for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
-      const glm::dvec3 place = as_recorded.pose.origin_m + glm::dvec3(expected[i][3]);
+      const glm::dvec3 place = as_recorded.poses.front().origin_m + glm::dvec3(expected[i][3]);
       EXPECT_LT(glm::length(glm::dvec3(world.at(avatar_.nodes[i].name)[3]) - place), 1e-6) << avatar_.nodes[i].name;
     }
   }
+}
+
+TEST_F(VizTest, FramesAndSkeletonOfASecondPersonHaveTheirNumber) {
+  TraceWriterOptions options = test::steady_options();
+  options.viz = Viz::kScene;
+  const TracePerson person = {avatar_, {.avatar_glb = builtin_avatar_glb()}};
+  TraceWriter writer(folder_ / "a.mcap", {}, {person, person}, options);
+  TraceFrame two = frame(0);
+  two.poses.push_back(two.poses.front());
+  two.poses[1].origin_m = {0, 0, 7};
+  writer.write(two);
+  writer.finish();
+  const json seen = json::parse(test::run_node("read_viz.mjs", folder_ / "a.mcap"));
+  std::map<std::string, json> frames;
+  for (const json& transform : seen["/viz/tf"]["messages"][0]["transforms"])
+    EXPECT_TRUE(frames.emplace(transform["child_frame_id"].get<std::string>(), transform).second) << transform;
+  EXPECT_EQ(frames.size(), 2 * (avatar_.nodes.size() + 1));
+  EXPECT_EQ(frames.at("avatar 2")["translation"]["z"], 7);
+  const std::string root = avatar_.nodes[static_cast<std::size_t>(avatar_.node_order.front())].name;
+  EXPECT_EQ(frames.at(root)["parent_frame_id"], "avatar");
+  EXPECT_EQ(frames.at("2/" + root)["parent_frame_id"], "avatar 2");
+  std::vector<std::string> entities;
+  for (const json& entity : seen["/viz/scene"]["messages"][0]["entities"]) entities.push_back(entity["id"]);
+  EXPECT_THAT(entities, ::testing::IsSupersetOf({"skeleton", "skeleton 2"}));
 }
 
 TEST_F(VizTest, TheSceneHasASphereForEveryColliderAndLinesForTheSkeleton) {
