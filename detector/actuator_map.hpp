@@ -83,7 +83,7 @@ struct ActuatorMapFiles {
 /// avatar's triangles.
 ActuatorMap parse_actuator_map(const ActuatorMapFiles& files, const Avatar& avatar, std::string_view name);
 
-/// Returns the map files that a trace carries; they are empty if the trace has no map.
+/// Returns the map files that a trace carries for a person; they are empty if the person has no map.
 ActuatorMapFiles actuator_map_files(const RecordedPerson& person);
 
 /// Returns the path of the sidecar for a map in a PNG file: the same name with .json.

@@ -21,6 +21,7 @@ namespace {
 UsageError no_scenario(const std::string& name) {
   std::vector<std::string_view> names;
   for (const Scenario& scenario : scenarios()) names.push_back(scenario.name);
+  names.push_back(kNoColliders);
   return {"--colliders", fmt::format("there is no scenario '{}'", name),
           fmt::format("{}the scenarios are: {}; or name a .csv or .glb file", help::did_you_mean(name, names),
                       fmt::join(names, ", "))};

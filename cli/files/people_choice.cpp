@@ -67,9 +67,10 @@ double volume_of(const Box& box) {
 }  // namespace
 
 void add_people_options(CLI::App& verb) {
-  verb.add_option("--at",
-                  "Where the person stands, in metres from --origin, and where they look: YAW in degrees, "
-                  "counter-clockwise from above, 0 along +Z [default: 0,0,0 and as the avatar looks]")
+  verb.add_option(
+          "--at",
+          "Where the person stands, in metres from --origin, and where they look: YAW in degrees, "
+          "counter-clockwise from above, 0 (also without YAW) along +Z [default: 0,0,0 and as the avatar looks]")
       ->type_name("X,Y,Z[,YAW]");
   verb.add_option("--name", "The person's name [with several people: the avatar's file name]")->type_name("TEXT");
   CLI::Option* avatar = verb.get_option(kAvatarFlag);
@@ -146,7 +147,9 @@ std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const 
 
 void warn_of_overlap(const std::vector<Person>& people, Verbosity verbosity) {
   constexpr double kMuch = 0.5;
+  if (people.size() < 2) return;
   std::vector<Box> boxes;
+  boxes.reserve(people.size());
   for (const Person& person : people) boxes.push_back(first_box(person));
   for (std::size_t b = 1; b < boxes.size(); ++b)
     for (std::size_t a = 0; a < b; ++a) {

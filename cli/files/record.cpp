@@ -61,6 +61,7 @@ void require_near(const glm::dvec3& position_m, const char* flag, const std::str
 
 std::vector<TracePerson> recorded_people(const std::vector<Person>& people) {
   std::vector<TracePerson> recorded;
+  recorded.reserve(people.size());
   for (const Person& person : people) recorded.push_back(person.scene.person());
   return recorded;
 }
@@ -112,6 +113,7 @@ void record_scene(const RecordOptions& options, const std::vector<Person>& peopl
   if (options.scene.from_file() && people.size() == 1)
     question.emplace(people.front().scene.avatar, options.scene.convention.of_colliders(), settings.origin_m);
   std::vector<SampledPerson> sampled;
+  sampled.reserve(people.size());
   for (const Person& person : people) sampled.push_back(person.sampled());
   const auto write = [&](const TraceFrame& frame) {
     if (snapshot_wanted()) recorder.snapshot();
@@ -165,6 +167,59 @@ std::vector<Person> load_people(const RecordOptions& options, const glm::dvec3& 
   return people;
 }
 
+/// How a recording went.
+struct RecordingResult {
+  LiveCounts lost;
+  double recording_s = 0;
+};
+
+/// Says what ended the recording early, and what it removed.
+void warn_of_end(const RecordOptions& options, const RecordingLimits& limits, const Recorder& recorder) {
+  const Verbosity verbosity = options.common.verbosity();
+  const bool cut_short = interrupted() && !options.live.is_live();
+  if (recorder.is_ring_cut_by_size())
+    warn(fmt::format("--max-size {} holds less than {} s: the trace has only the last {}", options.limits.max_size,
+                     *limits.ring_s, counted(recorder.frame_count(), "frame")),
+         verbosity);
+  if (cut_short && limits.ring_s)
+    warn(fmt::format("stopped; the trace has the last {} before that", counted(recorder.frame_count(), "frame")),
+         verbosity);
+  else if (cut_short || recorder.is_full())
+    warn(fmt::format("stopped {}after {}; the trace is complete up to there",
+                     recorder.is_full() ? "by --max-size " : "", counted(recorder.frame_count(), "frame")),
+         verbosity);
+  if (!recorder.removed().empty())
+    warn(fmt::format("removed the earlier recording's {}", name_of(recorder.removed())), verbosity);
+}
+
+/// Writes the JSON and prints the summary.
+void report(const RecordOptions& options, const std::vector<Person>& people, const Recorder& recorder,
+            const RecordingResult& result, const Invocation& invocation) {
+  nlohmann::ordered_json json = provenance(invocation.argv);
+  json["trace"] = options.output;
+  json["files"] = recorder.files();
+  json["removed"] = recorder.removed();
+  json["frames"] = recorder.frame_count();
+  json["recording_s"] = result.recording_s;
+  json["bytes"] = recorder.bytes_written();
+  if (options.live.is_live())
+    json["lost"] = {
+        {"late", result.lost.late}, {"malformed", result.lost.malformed}, {"overflowed", result.lost.overflowed}};
+  json["avatar"] = to_json(people.front().scene.avatar);
+  if (people.size() > 1)
+    for (const Person& person : people) {
+      json["avatars"].push_back(to_json(person.scene.avatar));
+      json["avatars"].back()["name"] = person.scene.name;
+    }
+  write_json(options.common.json, json, options.common);
+  const std::string rate = options.live.is_lines() ? "" : fmt::format(" at {} Hz", options.recording.rate_hz);
+  const std::string who = people.size() == 1 ? "" : fmt::format(" of {}", count_of_people(people.size()));
+  print_summary(
+      fmt::format("{}: {}{}{}, {:.1f} MB\n", name_of(recorder.files()), counted(recorder.frame_count(), "frame"), who,
+                  rate, static_cast<double>(recorder.bytes_written()) / 1e6),
+      {options.output, options.common.json}, options.common);
+}
+
 void run_record(const RecordOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   check_trace_name(options.output);
@@ -200,56 +255,20 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
                      .people = recorded_people(people),
                      .writing = writing_of(options, colliders ? colliders->shape() : kLiveShape),
                      .limits = limits});
-  LiveCounts lost;
+  RecordingResult result;
   if (options.live.is_live()) {
     const auto duration_s = options.has_duration ? std::optional(settings.duration_s) : std::nullopt;
-    lost = record_live(options.live, people.front().scene, recorder,
-                       {.rate_hz = settings.rate_hz, .duration_s = duration_s}, settings.origin_m, verbosity);
+    result.lost = record_live(options.live, people.front().scene, recorder,
+                              {.rate_hz = settings.rate_hz, .duration_s = duration_s}, settings.origin_m, verbosity);
   } else {
     record_scene(options, people, *colliders, settings, recorder);
   }
   recorder.finish();
-  const std::chrono::duration<double> recording = std::chrono::steady_clock::now() - start;
-  const bool cut_short = interrupted() && !options.live.is_live();
-  if (recorder.is_ring_cut_by_size())
-    warn(fmt::format("--max-size {} holds less than {} s: the trace has only the last {}", options.limits.max_size,
-                     *limits.ring_s, counted(recorder.frame_count(), "frame")),
-         verbosity);
-  if (cut_short && limits.ring_s)
-    warn(fmt::format("stopped; the trace has the last {} before that", counted(recorder.frame_count(), "frame")),
-         verbosity);
-  else if (cut_short || recorder.is_full())
-    warn(fmt::format("stopped {}after {}; the trace is complete up to there",
-                     recorder.is_full() ? "by --max-size " : "", counted(recorder.frame_count(), "frame")),
-         verbosity);
+  result.recording_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  warn_of_end(options, limits, recorder);
   // What came in live and found no room cannot be made again.
-  if (lost.lost_something() || (options.live.is_live() && recorder.is_full())) invocation.exit_code = kDataLost;
-
-  if (!recorder.removed().empty())
-    warn(fmt::format("removed the earlier recording's {}", name_of(recorder.removed())), verbosity);
-
-  nlohmann::ordered_json json = provenance(invocation.argv);
-  json["trace"] = options.output;
-  json["files"] = recorder.files();
-  json["removed"] = recorder.removed();
-  json["frames"] = recorder.frame_count();
-  json["recording_s"] = recording.count();
-  json["bytes"] = recorder.bytes_written();
-  if (options.live.is_live())
-    json["lost"] = {{"late", lost.late}, {"malformed", lost.malformed}, {"overflowed", lost.overflowed}};
-  json["avatar"] = to_json(people.front().scene.avatar);
-  if (people.size() > 1)
-    for (const Person& person : people) {
-      json["avatars"].push_back(to_json(person.scene.avatar));
-      json["avatars"].back()["name"] = person.scene.name;
-    }
-  write_json(options.common.json, json, options.common);
-  const std::string rate = options.live.is_lines() ? "" : fmt::format(" at {} Hz", settings.rate_hz);
-  const std::string who = people.size() == 1 ? "" : fmt::format(" of {}", count_of_people(people.size()));
-  print_summary(
-      fmt::format("{}: {}{}{}, {:.1f} MB\n", name_of(recorder.files()), counted(recorder.frame_count(), "frame"), who,
-                  rate, static_cast<double>(recorder.bytes_written()) / 1e6),
-      {options.output, options.common.json}, options.common);
+  if (result.lost.lost_something() || (options.live.is_live() && recorder.is_full())) invocation.exit_code = kDataLost;
+  report(options, people, recorder, result, invocation);
 }
 
 }  // namespace
@@ -258,8 +277,7 @@ void add_record(CLI::App& program, Invocation& invocation) {
   auto options = std::make_shared<RecordOptions>();
   CLI::App* verb = add_verb(program, "record", "Write a trace of an avatar and the colliders around it",
                             "  vestige record -o man.mcap\n"
-                            "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n"
-                            "  vestige record --avatar builtin --avatar builtin --at 0,0,0.9,180 -o two.mcap\n");
+                            "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n");
   add_scene_options(*verb, options->scene);
   add_people_options(*verb);
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")

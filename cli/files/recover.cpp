@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -44,6 +45,8 @@ OfPerson parse_of_person(const std::string& text, const char* flag) {
   if (number < 1 || number > trace_format::kMostPeople)
     throw UsageError(flag, fmt::format("'{}' names no person", text),
                      fmt::format("people are numbered from 1 to {}", trace_format::kMostPeople));
+  if (mark + 1 == text.size())
+    throw UsageError(flag, fmt::format("'{}' names no file", text), fmt::format("say {} {}=FILE", flag, number));
   return {number - 1, text.substr(mark + 1)};
 }
 

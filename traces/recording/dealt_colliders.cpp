@@ -36,6 +36,14 @@ class DealtColliders final : public ColliderSource {
     return has_spheres ? ColliderShape::kSpheres : ColliderShape::kPoints;
   }
 
+  std::vector<std::string> warnings() const override {
+    std::vector<std::string> all;
+    for (const Hand& hand : hands_)
+      for (std::string& warning : hand.colliders->warnings())
+        if (std::ranges::find(all, warning) == all.end()) all.push_back(std::move(warning));
+    return all;
+  }
+
  private:
   std::vector<Hand> hands_;
   std::vector<ColliderSample> samples_;

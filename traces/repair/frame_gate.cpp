@@ -16,6 +16,7 @@ using trace_format::Stream;
 
 namespace {
 
+constexpr std::size_t kMostOwners = 1'000'000;
 constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20;
 constexpr auto kLatest_ns = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
@@ -114,6 +115,22 @@ bool FrameGate::has_nodes(std::size_t person, std::size_t nodes) const {
   return expected == node_counts_.end() || nodes == expected->second;
 }
 
+/// Whether each collider of a readable message has the owner that it had before.
+bool FrameGate::keeps_owners(const Held& held) {
+  if (streams_.knows_one_person()) return true;
+  decoder_.colliders(held.data, colliders_);
+  const auto contradicts = [&](const ColliderSample& collider) {
+    const auto known = owners_.find(collider.id);
+    return known != owners_.end() && known->second != collider.owner;
+  };
+  if (std::ranges::any_of(colliders_, contradicts)) return false;
+  for (const ColliderSample& collider : colliders_) {
+    if (owners_.size() >= kMostOwners) break;  // readers refuse so many colliders
+    owners_.emplace(collider.id, collider.owner);
+  }
+  return true;
+}
+
 /// Whether a recorder could have written a readable message.
 bool FrameGate::is_plausible(const Held& held) {
   const auto time_ns = static_cast<std::int64_t>(held.message.log_time);
@@ -138,7 +155,8 @@ bool FrameGate::clean(Group& group) {
   std::uint64_t colliders_time_ns = 0;
   bool readable = true;
   std::erase_if(group.messages, [&](const Held& held) {
-    const bool is_good = is_readable(held) && (group.trust == Trust::kVerified || is_plausible(held));
+    const bool is_good = is_readable(held) && (group.trust == Trust::kVerified || is_plausible(held)) &&
+                         (held.stream != Stream::kColliders || keeps_owners(held));
     const bool is_pose = held.stream == Stream::kPose;
     const bool is_other_time = is_pose && !poses.empty() && held.message.log_time != group.time_ns;
     const bool keep = is_good && !(is_pose && poses.contains(held.person)) && !is_other_time &&

@@ -61,6 +61,7 @@ class FrameGate {
   bool clean(Group& group);
   bool is_readable(const Held& held);
   bool is_plausible(const Held& held);
+  bool keeps_owners(const Held& held);
   bool has_nodes(std::size_t person, std::size_t nodes) const;
   std::vector<bool> longest_sequence(const Group* next) const;
   void release(const Group* next);
@@ -70,6 +71,7 @@ class FrameGate {
   const StreamTable& streams_;
   Write write_;
   std::map<std::size_t, std::size_t> node_counts_;  ///< by person
+  std::map<std::uint32_t, std::uint16_t> owners_;   ///< of colliders, in a trace of the version that has owners
   MessageDecoder decoder_;
   std::vector<ColliderSample> colliders_;
   Pose pose_;

@@ -31,6 +31,7 @@ using mcap::Malformed;
 using mcap::Opcode;
 using trace_format::Stream;
 
+constexpr std::size_t kMostColliders = 1'000'000;  ///< whose owners are remembered; readers refuse more
 constexpr std::string_view kRefused =
     "`vestige replay` refuses the file; `vestige recover` leaves out what does not fit";
 
@@ -78,7 +79,7 @@ class FrameCheck {
     std::uint32_t frame = 0;
     ColliderSample collider;
   };
-  std::optional<Owned> last_person_owned_;
+  std::optional<Owned> largest_owner_;
   MessageDecoder decoder_;
   std::vector<ColliderSample> colliders_;
   std::optional<Frame> frame_;                 ///< the frame being read
@@ -161,12 +162,13 @@ void FrameCheck::take_pose(const CheckedRecord& record, const mcap::Message& mes
                                expected->second));
   if (message.log_time > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
     refuse(record, fmt::format("frame {}: its time is out of range", frame_->number));
-  if (last_time_ns_ && message.log_time < *last_time_ns_)
+  if (!frame_->poses.empty()) {
+    if (message.log_time != *last_time_ns_ && !frame_->poses.contains(person))
+      refuse(record, fmt::format("frame {}: its poses are of different times, {} ns and {} ns", frame_->number,
+                                 *last_time_ns_, message.log_time));
+  } else if (last_time_ns_ && message.log_time < *last_time_ns_)
     refuse(record, fmt::format("frame {}: its time, {} ns, is earlier than that of the frame before, {} ns",
                                frame_->number, message.log_time, *last_time_ns_));
-  if (!frame_->poses.empty() && message.log_time != last_time_ns_)
-    refuse(record, fmt::format("frame {}: its poses are of different times, {} ns and {} ns", frame_->number,
-                               *last_time_ns_, message.log_time));
   last_time_ns_ = message.log_time;
   frame_->poses.insert(person);
 }
@@ -177,10 +179,11 @@ void FrameCheck::take_colliders(const CheckedRecord& record, const mcap::Message
   frame_->has_colliders = true;
   if (!has_owners_) return;
   for (const ColliderSample& collider : colliders_) {
-    if (!last_person_owned_ || collider.owner > last_person_owned_->collider.owner) {
-      last_person_owned_ = {.record = record, .frame = frame_->number, .collider = collider};
-      last_person_owned_->record.content = {};
+    if (!largest_owner_ || collider.owner > largest_owner_->collider.owner) {
+      largest_owner_ = {.record = record, .frame = frame_->number, .collider = collider};
+      largest_owner_->record.content = {};
     }
+    if (owners_.size() == kMostColliders && !owners_.contains(collider.id)) continue;
     const auto [known, is_new] = owners_.try_emplace(collider.id, collider.owner);
     if (std::exchange(known->second, collider.owner) != collider.owner)
       refuse(record, fmt::format("frame {}: collider {} changes its owner to {}", frame_->number, collider.id,
@@ -189,9 +192,9 @@ void FrameCheck::take_colliders(const CheckedRecord& record, const mcap::Message
 }
 
 void FrameCheck::check_owners(std::size_t people) {
-  if (!last_person_owned_) return;
-  if (const auto fault = owner_fault({&last_person_owned_->collider, 1}, people))
-    report(last_person_owned_->record, fmt::format("frame {}: {}", last_person_owned_->frame, *fault),
+  if (!largest_owner_) return;
+  if (const auto fault = owner_fault({&largest_owner_->collider, 1}, people))
+    report(largest_owner_->record, fmt::format("frame {}: {}", largest_owner_->frame, *fault),
            "the frame is read without colliders");
 }
 
@@ -347,9 +350,15 @@ void Checker::take(const CheckedRecord& record) {
 TraceCheck Checker::finish() {
   frames_.finish();
   if (!result_.is_trace) return std::move(result_);
+  const auto channels = streams_.pose_channels();
   if (node_counts_.empty())
     result_.problems.add({.what = "no channel /pose says which nodes the poses have",
                           .consequence = "`vestige replay` refuses the file"});
+  else
+    for (const auto& [person, channel] : channels)
+      if (!node_counts_.contains(person))
+        result_.problems.add({.what = fmt::format("channel {} does not say which nodes the poses have", channel->topic),
+                              .consequence = "`vestige replay` refuses the file"});
   contents_.finish(node_counts_, streams_);
   frames_.check_owners(result_.people);
   if (result_.frames == 0 && result_.problems.count() == 0)

@@ -38,7 +38,7 @@ struct McapSummary {
   std::uint64_t compressed_bytes = 0;    ///< total of all chunks
   std::uint64_t uncompressed_bytes = 0;
   std::vector<Attachment> attachments;
-  bool is_trace = false;           ///< whether it has a channel of Vestige
+  bool is_trace = false;           ///< whether it has a channel /pose of Vestige
   std::size_t people = 1;          ///< of a Vestige trace; see `people_of`
   std::optional<Session> session;  ///< the metadata record `session`, if there is one
   std::string recovered;           ///< as `TraceReader::recovered`

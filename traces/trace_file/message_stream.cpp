@@ -14,6 +14,13 @@ using mcap::Malformed;
 using mcap::Opcode;
 using trace_format::Stream;
 
+namespace {
+
+constexpr std::string_view kCollidersSchema =
+    trace_format::kStreams[static_cast<std::size_t>(Stream::kColliders)].schema;
+
+}  // namespace
+
 // Outside chunks no single CRC covers a definition, and in a damaged file its copies may differ. A definition
 // recognised as Vestige's own is therefore never replaced.
 
@@ -22,6 +29,10 @@ void StreamTable::add(mcap::Schema schema) {
   const auto known = schemas_.find(id);
   if (known != schemas_.end() && trace_format::is_ours(known->second)) return;
   const bool is_ours = trace_format::is_ours(schema);
+  for (const int version : {trace_format::kPointsVersion, trace_format::kSpheresVersion})
+    if (is_ours && schema.name == kCollidersSchema &&
+        schema.data == trace_format::schema_of(Stream::kColliders, version).data)
+      knows_one_person_ = true;
   constexpr std::size_t kMostBytes = 65536;  // far more than Vestige's own have; a foreign one may have any size
   if (!is_ours || schema.data.size() > kMostBytes) schema.data = {};
   schemas_.insert_or_assign(id, std::move(schema));
@@ -66,6 +77,7 @@ std::optional<int> StreamTable::version_of_schemas() const {
 }
 
 const mcap::Channel* StreamTable::find(Stream stream, std::size_t person) const {
+  if (is_foreign(person)) return nullptr;
   const auto found = channel_of_.find({stream, person});
   return found == channel_of_.end() ? nullptr : &channels_.at(found->second);
 }
@@ -73,7 +85,7 @@ const mcap::Channel* StreamTable::find(Stream stream, std::size_t person) const 
 std::map<std::size_t, const mcap::Channel*> StreamTable::pose_channels() const {
   std::map<std::size_t, const mcap::Channel*> found;
   for (const auto& [id, channel] : channel_of_)
-    if (id.stream == Stream::kPose) found.emplace(id.person, &channels_.at(channel));
+    if (id.stream == Stream::kPose && !is_foreign(id.person)) found.emplace(id.person, &channels_.at(channel));
   return found;
 }
 

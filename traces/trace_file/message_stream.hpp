@@ -22,19 +22,27 @@ class StreamTable {
  public:
   void add(mcap::Schema schema);
   void add(mcap::Channel channel);
-  trace_format::Stream stream_of(std::uint16_t channel_id) const { return streams_[channel_id].stream; }
+  trace_format::Stream stream_of(std::uint16_t channel_id) const {
+    const trace_format::StreamId& stream = streams_[channel_id];
+    return is_foreign(stream.person) ? trace_format::Stream::kForeign : stream.stream;
+  }
   /// Whose pose a channel carries.
   std::size_t person_of(std::uint16_t channel_id) const { return streams_[channel_id].person; }
   /// Returns the stream's channel, or null until it is known. Of /pose, that of a person.
   const mcap::Channel* find(trace_format::Stream stream, std::size_t person = 0) const;
   /// Returns the channels /pose that are known, by person.
   std::map<std::size_t, const mcap::Channel*> pose_channels() const;
+  /// Whether the schema of /colliders is of a format version whose traces hold one person.
+  bool knows_one_person() const { return knows_one_person_; }
   /// Returns the format version that has all schemas of Vestige's own channels; nothing if none has.
   std::optional<int> version_of_schemas() const;
 
  private:
   void update(const mcap::Channel& channel);
+  /// A trace of an earlier format version may have a channel /pose/2 of another program.
+  bool is_foreign(std::size_t person) const { return person > 0 && knows_one_person_; }
 
+  bool knows_one_person_ = false;  ///< by the schema of /colliders
   std::map<std::uint16_t, mcap::Schema> schemas_;
   std::map<std::uint16_t, mcap::Channel> channels_;
   std::set<std::pair<std::uint16_t, std::uint16_t>> channels_of_schema_;  ///< schema's id, channel's id

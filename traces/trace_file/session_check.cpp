@@ -36,6 +36,7 @@ std::size_t people_named(const mcap::StringMap& map, std::string_view prefix) {
 
 /// Returns how many people have an attachment whose SHA-256 is recorded.
 std::size_t people_claimed(const AttachmentClaims& claims) {
+  if (const auto version = version_of(claims); version && *version < trace_format::kPeopleVersion) return 1;
   return std::max(people_named(claims.session, trace_format::kSha256Prefix),
                   people_named(claims.pose, trace_format::kSha256Prefix));
 }
@@ -152,7 +153,9 @@ std::optional<int> version_of(const AttachmentClaims& claims) {
 std::size_t people_of(const AttachmentClaims& claims, const StreamTable& streams,
                       const std::map<std::string, std::string>& sha256) {
   if (const auto version = version_of(claims); version && *version < trace_format::kPeopleVersion) return 1;
-  std::size_t people = std::max({std::size_t{1}, people_claimed(claims), people_named(sha256, "")});
+  // The session alone does not count: no CRC covers it.
+  std::size_t people =
+      std::max({std::size_t{1}, people_named(claims.pose, trace_format::kSha256Prefix), people_named(sha256, "")});
   for (const auto& [person, channel] : streams.pose_channels()) people = std::max(people, person + 1);
   return people;
 }

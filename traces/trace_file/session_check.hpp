@@ -24,8 +24,9 @@ struct AttachmentClaims {
 /// Returns the metadata of the channels /pose, of each key the first person's; empty if the table has no such channel.
 mcap::StringMap pose_metadata(const StreamTable& streams);
 
-/// Returns how many people a trace has, whose channels and attachments (by name) are these: of each person there is a
-/// channel, an attachment or the SHA-256 of one. Returns 1 for a trace of an earlier version than that of people.
+/// Returns how many people a trace has, whose channels and attachments (by name) are these: of the last person there is
+/// a channel, or an attachment, or channel metadata with the SHA-256 of one. Returns 1 for a trace of an earlier
+/// version than that of people.
 std::size_t people_of(const AttachmentClaims& claims, const StreamTable& streams,
                       const std::map<std::string, std::string>& sha256);
 

@@ -140,8 +140,10 @@ void TraceReader::Implementation::warn(const mcap::Damage& damage) {
 void TraceReader::Implementation::require_trace() {
   const std::string file = source_.name();
   const auto lacks_poses = [&] { return index_.streams.pose_channels().empty(); };
-  while (lacks_poses() && frames_.skip_message()) continue;
+  // Channels may be defined in chunks only.
+  while (index_.streams.pose_channels().size() < index_.people && frames_.skip_message()) continue;
   frames_.rewind();
+  index_.people = std::max(index_.people, people_of(index_.claims(), index_.streams, {}));
   version_ = version_of(index_.claims());
   if (lacks_poses() && index_.profile_is_ours && !warnings_.empty())
     throw Error(warnings_.front(), "so the file holds no frame", kRecover);
@@ -157,7 +159,8 @@ void TraceReader::Implementation::require_trace() {
 void TraceReader::Implementation::require_people(People allowed) {
   if (allowed == People::kSeveral) return;
   newest_ = trace_format::kSpheresVersion;
-  constexpr std::string_view kRemedy = "`vestige inspect`, `doctor`, `cat`, `trim`, `merge` and `recover` read it";
+  constexpr std::string_view kRemedy =
+      "`vestige inspect`, `doctor`, `cat`, `trim`, `merge`, `recompress` and `recover` read it";
   if (index_.people > 1)
     throw Error(source_.name(), fmt::format("holds {} people, and this verb reads traces of one person", index_.people),
                 kRemedy);

@@ -31,8 +31,8 @@ enum class People : std::uint8_t { kOne, kSeveral };
 /// `complete()`.
 ///
 /// Every function throws `Error` with the name of the file and the offset. Causes: not an MCAP file, not a Vestige
-/// trace, a later `format_version`, no avatar or a damaged one, more than a million colliders, a collider that changes
-/// its owner, more people than the caller can handle. Also a frame that contradicts the rest: frames out of order, time
+/// trace, a later `format_version`, no avatar or a damaged one, more than a million colliders, more people than the
+/// caller can handle. Also a frame that contradicts the rest: frames out of order, time
 /// running backwards, another number of nodes than the avatar has, a collider twice.
 ///
 /// Where a person's pose is missing, the frame is delivered without it, and a warning says so. A frame in which every
@@ -52,7 +52,8 @@ class TraceReader {
   ColliderShape shape() const;
 
   /// The ids of all colliders in the trace, ascending. The first call of this or the next three functions reads the
-  /// whole trace once, without decoding poses. `next` still continues where it was.
+  /// whole trace once, without decoding poses, and throws `Error` if a collider changes its owner. `next` still
+  /// continues where it was.
   const std::vector<std::uint32_t>& collider_ids();
   /// The ids of the colliders that have a radius in some frame, ascending.
   const std::vector<std::uint32_t>& sphere_ids();

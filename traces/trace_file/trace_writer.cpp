@@ -129,6 +129,7 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
   session.insert_or_assign(std::string(trace_format::kVersionKey), fmt::format("{}", version_));
   std::vector<mcap::StringMap> of_poses;
   std::vector<NamedBytes> attachments;
+  node_counts_.reserve(people.size());
   for (std::size_t person = 0; person < people.size(); ++person) {
     const TracePerson& one = people[person];
     node_counts_.push_back(one.avatar.nodes.size());
@@ -150,6 +151,7 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
   define(Stream::kColliders);
   if (options.viz == Viz::kScene) {
     std::vector<const Avatar*> avatars;
+    avatars.reserve(people.size());
     for (const TracePerson& person : people) avatars.push_back(&person.avatar);
     viz_.emplace(avatars);
     for (const mcap::Schema& schema : viz_format::schemas()) writer_.write(schema);
@@ -188,7 +190,9 @@ void TraceWriter::Implementation::require_valid(const TraceFrame& frame) {
     refuse(frame, fmt::format("it has {} poses for {} people", frame.poses.size(), node_counts_.size()));
   for (std::size_t person = 0; person < node_counts_.size(); ++person)
     if (const std::size_t nodes = frame.poses[person].nodes.size(); nodes != node_counts_[person])
-      refuse(frame, fmt::format("its pose has {} nodes, but the avatar has {}", nodes, node_counts_[person]));
+      refuse(frame, fmt::format("its pose{} has {} nodes, but the avatar has {}",
+                                node_counts_.size() == 1 ? "" : fmt::format(" of person {}", person + 1), nodes,
+                                node_counts_[person]));
   require_valid_colliders(frame);
 }
 
@@ -291,10 +295,10 @@ std::uint64_t TraceWriter::Implementation::bytes_if_finished_with(const TraceFra
   // Size of a FlatBuffer, its message record and its index entry, without the parts counted below.
   constexpr std::uint64_t kMessageBytes = 192;
   constexpr std::uint64_t kNodeBytes = 40;
-  constexpr std::uint64_t kColliderBytes = 38;
+  const std::uint64_t collider_bytes = version_ == trace_format::kPeopleVersion ? 38 : 36;
   constexpr std::uint64_t kEventsChannelBytes = 4096;  // holds its schema twice
   std::uint64_t bytes = writer_.bytes_if_finished() + 1024;
-  bytes += kMessageBytes + kColliderBytes * frame.colliders.size();
+  bytes += kMessageBytes + collider_bytes * frame.colliders.size();
   for (const Pose& pose : frame.poses) bytes += kMessageBytes + kNodeBytes * pose.nodes.size();
   bytes += kMessageBytes * frame.teleported.size();
   for (const Note& note : notes_) bytes += kMessageBytes + note.text.size();

@@ -53,9 +53,9 @@ void write_two(const std::filesystem::path& path, std::uint64_t frames, Compress
 /// A trace of two people written record by record, so that it may say what no recorder of ours would.
 class ForgedPeople {
  public:
-  ForgedPeople() : writer_(test::into(bytes_), {.profile = "vestige", .library = "forged"}, {}) {
-    const int version = trace_format::kPeopleVersion;
-    writer_.write(mcap::Metadata{.name = "session", .metadata = {{"format_version", "3"}}});
+  explicit ForgedPeople(int version = trace_format::kPeopleVersion)
+      : writer_(test::into(bytes_), {.profile = "vestige", .library = "forged"}, {}) {
+    writer_.write(mcap::Metadata{.name = "session", .metadata = {{"format_version", std::to_string(version)}}});
     for (const char* name : {"avatar.glb", "avatar.2.glb"})
       writer_.write(mcap::Attachment{.name = name, .media_type = "", .data = glb_});
     for (const Stream stream : {Stream::kPose, Stream::kColliders, Stream::kEvents})
@@ -105,7 +105,7 @@ struct Findings {
   std::vector<std::string> problems;
 };
 
-Findings findings_of(const std::vector<std::byte>& bytes) {
+Findings findings_of(const std::vector<std::byte>& bytes, std::size_t people = 2) {
   Findings findings;
   test::MemoryFile file;
   file.assign(bytes);
@@ -117,7 +117,8 @@ Findings findings_of(const std::vector<std::byte>& bytes) {
   findings.warnings = reader.warnings();
   const mcap::MemorySource source(bytes);
   const TraceCheck check = check_trace(source, test::go_on);
-  EXPECT_EQ(check.people, 2U);
+  EXPECT_EQ(check.people, people);
+  EXPECT_EQ(reader.people().size(), people);
   for (const mcap::Problem& problem : check.problems.kept()) findings.problems.push_back(problem.what);
   return findings;
 }
@@ -228,6 +229,36 @@ TEST(TraceOfPeople, AnOwnerIsThereAndStays) {
   EXPECT_THAT(changed.problems, Contains(HasSubstr("collider 4 changes its owner to person 2")));
 }
 
+TEST(TraceOfPeople, AnEarlierVersionKnowsOnePersonWhateverElseIsInTheFile) {
+  ForgedPeople trace(trace_format::kPointsVersion);
+  for (const std::uint32_t sequence : {0U, 1U, 2U}) {
+    trace.pose(0, sequence, sequence);
+    trace.pose(1, 0, 99);  // another program's channel, with its own numbers and times
+    trace.colliders(sequence, sequence, {{.id = 4}});
+  }
+  const std::vector<std::byte> bytes = trace.finished();
+  const Findings found = findings_of(bytes, 1);
+  EXPECT_EQ(found.error, "no error");
+  EXPECT_EQ(found.frames.size(), 3U);
+  EXPECT_THAT(found.problems, IsEmpty());
+  std::vector<std::byte> recovered;
+  const mcap::MemorySource source(bytes);
+  EXPECT_FALSE(recover_mcap(source, test::into(recovered), test::go_on).lost_something());
+}
+
+TEST(TraceOfPeople, RecoverLeavesOutWhatReadersRefuse) {
+  ForgedPeople trace;
+  trace.frame(0, {{.id = 4}});
+  trace.frame(1, {{.id = 4, .owner = 2}});
+  trace.frame(2, {{.id = 4}});
+  const mcap::MemorySource source(trace.finished());
+  std::vector<std::byte> recovered;
+  EXPECT_TRUE(recover_mcap(source, test::into(recovered), test::go_on).lost_something());
+  const Findings found = findings_of(recovered);
+  EXPECT_EQ(found.error, "no error");
+  EXPECT_EQ(found.frames.size(), 2U);
+}
+
 TEST(TraceOfPeople, NamesOfAttachmentsAndTopics) {
   using trace_format::attachment_id;
   EXPECT_EQ(trace_format::attachment_name(AttachmentKind::kMapText, 1), "actuator_map.2.json");
@@ -253,7 +284,7 @@ TEST(TraceOfPeople, WhateverByteIsChangedTheRestIsRecovered) {
   constexpr std::size_t kStep = 5;
   for (std::size_t at = mcap::kMagicBytes; at < whole.size(); at += kStep) {
     std::vector<std::byte> broken = whole;
-    broken[at] ^= std::byte{0x41};
+    broken[at] ^= at % 2 == 0 ? std::byte{0x41} : std::byte{0x01};
     std::vector<std::byte> mended;
     const mcap::MemorySource source(broken);
     ASSERT_EQ(test::message_of([&] { recover_mcap(source, test::into(mended), test::go_on); }), "no error") << at;
