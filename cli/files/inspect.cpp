@@ -7,6 +7,7 @@
 #include "traces/base/number_text.hpp"
 #include "traces/repair/trace_summary.hpp"
 #include "traces/scene/facing.hpp"
+#include "traces/trace_file/session_check.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
@@ -18,11 +19,9 @@ struct InspectOptions {
   std::string trace;
 };
 
-/// Returns what the session records of a person under this key; empty if it records nothing.
+/// Returns what the session, if there is one, records of a person under this key.
 std::string recorded(const McapSummary& summary, std::string_view key, std::size_t person) {
-  if (!summary.session) return {};
-  const auto found = summary.session->find(trace_format::numbered(key, person));
-  return found == summary.session->end() ? "" : found->second;
+  return summary.session ? recorded_of(*summary.session, key, person) : "";
 }
 
 /// Returns the axis that the session records; empty if it records none.

@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "traces/scene/people.hpp"
+
 namespace vestige {
 
 using mcap::Malformed;
@@ -16,7 +18,6 @@ using trace_format::Stream;
 
 namespace {
 
-constexpr std::size_t kMostOwners = 1'000'000;
 constexpr std::size_t kMostWaitingBytes = std::size_t{16} << 20;
 constexpr auto kLatest_ns = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
 
@@ -115,17 +116,16 @@ bool FrameGate::has_nodes(std::size_t person, std::size_t nodes) const {
   return expected == node_counts_.end() || nodes == expected->second;
 }
 
-/// Whether each collider of a readable message has the owner that it had before.
-bool FrameGate::keeps_owners(const Held& held) {
+/// Whether each collider of the message that was decoded last has the owner that it had before.
+bool FrameGate::keeps_owners() {
   if (streams_.knows_one_person()) return true;
-  decoder_.colliders(held.data, colliders_);
   const auto contradicts = [&](const ColliderSample& collider) {
     const auto known = owners_.find(collider.id);
     return known != owners_.end() && known->second != collider.owner;
   };
   if (std::ranges::any_of(colliders_, contradicts)) return false;
   for (const ColliderSample& collider : colliders_) {
-    if (owners_.size() >= kMostOwners) break;  // readers refuse so many colliders
+    if (owners_.size() >= kMostColliders) break;  // readers refuse so many colliders
     owners_.emplace(collider.id, collider.owner);
   }
   return true;
@@ -156,7 +156,7 @@ bool FrameGate::clean(Group& group) {
   bool readable = true;
   std::erase_if(group.messages, [&](const Held& held) {
     const bool is_good = is_readable(held) && (group.trust == Trust::kVerified || is_plausible(held)) &&
-                         (held.stream != Stream::kColliders || keeps_owners(held));
+                         (held.stream != Stream::kColliders || keeps_owners());
     const bool is_pose = held.stream == Stream::kPose;
     const bool is_other_time = is_pose && !poses.empty() && held.message.log_time != group.time_ns;
     const bool keep = is_good && !(is_pose && poses.contains(held.person)) && !is_other_time &&

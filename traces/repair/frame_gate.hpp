@@ -61,7 +61,7 @@ class FrameGate {
   bool clean(Group& group);
   bool is_readable(const Held& held);
   bool is_plausible(const Held& held);
-  bool keeps_owners(const Held& held);
+  bool keeps_owners();
   bool has_nodes(std::size_t person, std::size_t nodes) const;
   std::vector<bool> longest_sequence(const Group* next) const;
   void release(const Group* next);

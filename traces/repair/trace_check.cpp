@@ -31,7 +31,6 @@ using mcap::Malformed;
 using mcap::Opcode;
 using trace_format::Stream;
 
-constexpr std::size_t kMostColliders = 1'000'000;  ///< whose owners are remembered; readers refuse more
 constexpr std::string_view kRefused =
     "`vestige replay` refuses the file; `vestige recover` leaves out what does not fit";
 

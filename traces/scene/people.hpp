@@ -11,6 +11,9 @@
 
 namespace vestige {
 
+/// Most colliders of a trace, and most teleports of a frame. Readers refuse more.
+inline constexpr std::size_t kMostColliders = 1'000'000;
+
 /// Returns "person 2", or "nobody".
 inline std::string in_words(std::uint16_t owner) {
   return owner == kNobody ? "nobody" : fmt::format("person {}", owner);

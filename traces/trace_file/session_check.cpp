@@ -144,6 +144,11 @@ mcap::StringMap pose_metadata(const StreamTable& streams) {
   return metadata;
 }
 
+std::string recorded_of(const Session& session, std::string_view key, std::size_t person) {
+  const auto found = session.find(trace_format::numbered(key, person));
+  return found == session.end() ? "" : found->second;
+}
+
 std::optional<int> version_of(const AttachmentClaims& claims) {
   if (claims.version_of_schemas) return claims.version_of_schemas;
   const auto text = claims.session.find(std::string(trace_format::kVersionKey));

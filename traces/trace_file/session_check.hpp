@@ -24,6 +24,9 @@ struct AttachmentClaims {
 /// Returns the metadata of the channels /pose, of each key the first person's; empty if the table has no such channel.
 mcap::StringMap pose_metadata(const StreamTable& streams);
 
+/// Returns what a session records of a person under this key: facing, name; empty if it records nothing.
+std::string recorded_of(const Session& session, std::string_view key, std::size_t person);
+
 /// Returns how many people a trace has, whose channels and attachments (by name) are these: of the last person there is
 /// a channel, or an attachment, or channel metadata with the SHA-256 of one. Returns 1 for a trace of an earlier
 /// version than that of people.

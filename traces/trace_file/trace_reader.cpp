@@ -27,14 +27,7 @@ using mcap::Malformed;
 using trace_format::Stream;
 
 constexpr std::size_t kMostWarnings = 1000;
-constexpr std::size_t kMostColliders = 1'000'000;  ///< in a trace; also the most teleports in a frame
 constexpr std::string_view kRecover = "run `vestige recover`, which may still find a part of it";
-
-/// Returns what the session says of a person under this key; empty if it says nothing.
-std::string recorded(const Session& session, std::string_view key, std::size_t person) {
-  const auto found = session.find(trace_format::numbered(key, person));
-  return found == session.end() ? "" : found->second;
-}
 
 }  // namespace
 
@@ -173,8 +166,8 @@ RecordedPerson TraceReader::Implementation::take_person(std::size_t person) {
   const std::string file = source_.name();
   const std::string topic = trace_format::numbered("/pose", person);
   const std::string avatar = trace_format::attachment_name(AttachmentKind::kAvatar, person);
-  RecordedPerson taken = {.name = recorded(index_.session, trace_format::kNameKey, person),
-                          .facing = recorded(index_.session, trace_format::kFacingKey, person),
+  RecordedPerson taken = {.name = recorded_of(index_.session, trace_format::kNameKey, person),
+                          .facing = recorded_of(index_.session, trace_format::kFacingKey, person),
                           .avatar_glb = index_.attachment(AttachmentKind::kAvatar, person),
                           .actuator_map_png = index_.attachment(AttachmentKind::kMapImage, person),
                           .actuator_map_json = index_.attachment(AttachmentKind::kMapText, person),
