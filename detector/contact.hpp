@@ -1,9 +1,11 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -28,7 +30,49 @@ struct Contact {
 };
 
 /// One row of the collision texture: one texel for each collider of the trace, in the order of the collider ids.
-using ContactRow = std::vector<Contact>;
+/// It remembers which texels may hold a contact, so that clearing a row costs what was touched and not what exists.
+class ContactRow {
+ public:
+  ContactRow() = default;
+  explicit ContactRow(std::size_t columns) : contacts_(columns) {}
+  ContactRow(std::initializer_list<Contact> contacts) : contacts_(contacts), all_touched_(true) {}
+
+  /// Makes this a row without contacts.
+  void clear(std::size_t columns) {
+    if (all_touched_ || columns != contacts_.size()) {
+      contacts_.assign(columns, Contact());
+    } else {
+      for (const std::size_t column : touched_) contacts_[column] = Contact();
+    }
+    touched_.clear();
+    all_touched_ = false;
+  }
+
+  std::size_t size() const { return contacts_.size(); }
+  bool empty() const { return contacts_.empty(); }
+  const Contact& operator[](std::size_t column) const { return contacts_[column]; }
+  Contact& operator[](std::size_t column) {
+    constexpr std::size_t kMost = 16;  // beyond, it is as well to clear all
+    if (touched_.size() == kMost) {
+      all_touched_ = true;
+    } else {
+      touched_.push_back(column);
+    }
+    return contacts_[column];
+  }
+  auto begin() const { return contacts_.begin(); }
+  auto end() const { return contacts_.end(); }
+  auto begin() {
+    all_touched_ = true;
+    return contacts_.begin();
+  }
+  auto end() { return contacts_.end(); }
+
+ private:
+  std::vector<Contact> contacts_;
+  std::vector<std::size_t> touched_;  ///< columns that were given out to be written to
+  bool all_touched_ = false;          ///< then any texel may hold a contact
+};
 
 /// The values that a row can carry. A detector may leave the members of planes that were not requested at their
 /// defaults.

@@ -22,10 +22,6 @@ namespace vestige {
 /// an actuator.
 enum class Surface { kAll, kMapped };
 
-/// kOn: the detector discards meshlets and colliders that cannot meet before it skins or tests anything. This changes
-/// the work, but no bit of the result. Detectors that test all pairs by design ignore the option.
-enum class Skip { kOff, kOn };
-
 struct DetectorOptions {
   Surface surface = Surface::kAll;
   PlaneSet planes = {};  ///< the planes that the rows must carry
@@ -84,6 +80,8 @@ class Detector {
   virtual const char* name() const = 0;
   /// Frames for `detect` must come from a FrameBuilder with this method.
   virtual Method method() const { return Method::kStatic; }
+  /// Whether frames for `detect` may leave out segments that are out of the skin's reach.
+  virtual Skip skip() const { return Skip::kOff; }
   /// Whether simpler shapes stand in for the avatar's skin.
   virtual bool is_approximate() const { return false; }
   /// The number of triangles of the simpler mesh that stands in for the avatar's skin. Empty if no mesh does.

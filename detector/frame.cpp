@@ -51,11 +51,14 @@ SegmentBox box_of(const Segment& segment) {
   return box;
 }
 
-FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method)
+FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method,
+                           std::size_t person, Skip skip)
     : avatar_(avatar),
       collider_ids_(collider_ids.begin(), collider_ids.end()),
       columns_(collider_ids.size()),
       method_(method),
+      person_(person),
+      skip_(skip),
       bind_extent_m_(bind_extent_m(avatar)) {
   frame_.columns = columns_.size();
 }
@@ -67,23 +70,31 @@ const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame) {
   frame_.index = trace_frame.index;
 
   const bool has_before = started_;
+  const Pose& pose = trace_frame.poses[person_];
   std::swap(world_, world_before_);
-  world_matrices(avatar_, trace_frame.poses.front(), world_);
-  follow_origin(trace_frame.poses.front());
+  place(pose);
+  follow_origin(pose);
   started_ = true;
-  build_palette(avatar_, world_, trace_frame.poses.front().origin_m - frame_.origin_m, frame_.palette);
+  build_palette(avatar_, world_, pose.origin_m - frame_.origin_m, frame_.palette);
   if (method_ != Method::kStatic) {
     if (has_before) {
       build_palette(avatar_, world_before_, pose_origin_before_m_ - frame_.origin_m, frame_.palette_before);
     } else {
       frame_.palette_before = frame_.palette;
     }
-    pose_origin_before_m_ = trace_frame.poses.front().origin_m;
+    pose_origin_before_m_ = pose.origin_m;
   }
-  build_segments(trace_frame);
   // A pose in reach of its own origin can be out of reach of this frame's origin. Then this frame reports it.
-  const bool in_reach = skins_to_finite(frame_.palette);
-  const bool before_in_reach = method_ == Method::kStatic || skins_to_finite(frame_.palette_before);
+  const std::optional<glm::dvec3> reach_m = reach_of(frame_.palette);
+  const std::optional<glm::dvec3> reach_before_m =
+      method_ == Method::kStatic ? reach_m : reach_of(frame_.palette_before);
+  const bool in_reach = reach_m.has_value();
+  const bool before_in_reach = method_ == Method::kStatic || reach_before_m.has_value();
+  constexpr double kRounding = 1.001;  // of vertices, and of what starts are carried by: less than 2^-20 of the reach
+  glm::dvec3 all_m = glm::max(reach_m.value_or(glm::dvec3(0)), reach_before_m.value_or(glm::dvec3(0)));
+  if (method_ == Method::kCarried) all_m += carried_m();
+  reach_m_ = glm::vec3(all_m * kRounding);
+  build_segments(trace_frame);
   if (!in_reach || (!before_in_reach && before_was_in_reach_)) {
     ++non_finite_frames_;
     note_non_finite();
@@ -93,19 +104,51 @@ const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame) {
   return frame_;
 }
 
-/// Returns whether all sums of a skinned vertex, over any influences, stay in fp32's range. Weights sum to 1, and
-/// rounding adds a little.
-bool FrameBuilder::skins_to_finite(std::span<const SkinMatrix> palette) const {
-  return std::ranges::all_of(palette, [this](const SkinMatrix& matrix) {
+/// Returns how far a skinned vertex can be from the origin along each axis, with any influences; rounding adds a
+/// little, as weights sum to 1 only almost. Returns nothing if not all sums of a vertex stay in fp32's range.
+std::optional<glm::dvec3> FrameBuilder::reach_of(std::span<const SkinMatrix> palette) const {
+  glm::dvec3 all(0);
+  for (const SkinMatrix& matrix : palette) {
     glm::dvec3 reach = skin_reach_m(matrix, bind_extent_m_);
     // A blended column must not overflow even if the bind pose is flat: infinity times 0 is not a number.
     for (const auto& column : matrix.column) reach = glm::max(reach, glm::abs(glm::dvec3(column)));
-    return reach.x < kLargestSkin_m && reach.y < kLargestSkin_m && reach.z < kLargestSkin_m;
-  });
+    if (!(reach.x < kLargestSkin_m && reach.y < kLargestSkin_m && reach.z < kLargestSkin_m)) return {};
+    all = glm::max(all, reach);
+  }
+  return all;
+}
+
+/// Returns how far a vertex can have moved along each axis since the frame before.
+glm::dvec3 FrameBuilder::carried_m() const {
+  glm::dvec3 all(0);
+  for (std::size_t i = 0; i < frame_.palette.size(); ++i) {
+    SkinMatrix moved = frame_.palette[i];
+    for (std::size_t column = 0; column < moved.column.size(); ++column)
+      moved.column[column] -= frame_.palette_before[i].column[column];
+    all = glm::max(all, skin_reach_m(moved, bind_extent_m_));
+  }
+  return all;
+}
+
+bool FrameBuilder::is_out_of_reach(const Segment& segment) const {
+  const glm::vec3 reach_m = reach_m_ + bounding_radius_m(segment);
+  const auto beyond = [&](int axis) {
+    return std::min(segment.start[axis], segment.end[axis]) > reach_m[axis] ||
+           std::max(segment.start[axis], segment.end[axis]) < -reach_m[axis];
+  };
+  return beyond(0) || beyond(1) || beyond(2);
 }
 
 void FrameBuilder::note_non_finite() {
   if (!first_non_finite_) first_non_finite_ = frame_.index;
+}
+
+void FrameBuilder::place(const Pose& pose) {
+  if (pose.nodes.empty()) {  // a missing pose is one that is not finite
+    world_.assign(avatar_.nodes.size(), glm::dmat4(std::numeric_limits<double>::quiet_NaN()));
+  } else {
+    world_matrices(avatar_, pose, world_);
+  }
 }
 
 void FrameBuilder::follow_origin(const Pose& pose) {
@@ -125,6 +168,7 @@ void FrameBuilder::follow_origin(const Pose& pose) {
 
 void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
   frame_.segments.clear();
+  frame_.out_of_reach = 0;
   IdPlace next = collider_ids_.begin();
   for (const std::uint32_t id : trace_frame.teleported) {
     const IdPlace place = place_of(collider_ids_, id, next);
@@ -133,7 +177,9 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
     next = place + 1;
   }
   next = collider_ids_.begin();
+  const std::size_t owner = person_ + 1;
   for (const ColliderSample& sample : trace_frame.colliders) {
+    if (sample.owner == owner) continue;
     const IdPlace place = place_of(collider_ids_, sample.id, next);
     if (place == collider_ids_.end()) continue;
     next = place + 1;
@@ -143,11 +189,13 @@ void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
       const Segment segment = {static_cast<std::uint32_t>(column), glm::vec3(before.position_m - frame_.origin_m),
                                glm::vec3(sample.position_m - frame_.origin_m),
                                is_sphere_radius(sample.radius_m) ? sample.radius_m : 0};
-      if (within_reach(segment.start) && within_reach(segment.end)) {
-        frame_.segments.push_back(segment);
-      } else {
+      if (!within_reach(segment.start) || !within_reach(segment.end)) {
         ++non_finite_segments_;
         note_non_finite();
+      } else if (skip_ == Skip::kOn && is_out_of_reach(segment)) {
+        ++frame_.out_of_reach;
+      } else {
+        frame_.segments.push_back(segment);
       }
     }
     before = {sample.position_m, trace_frame.index + 1};

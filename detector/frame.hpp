@@ -48,22 +48,25 @@ struct DetectorFrame {
   std::vector<SkinMatrix> palette;
   std::vector<SkinMatrix> palette_before;  ///< of the previous frame, relative to this frame's origin
   std::vector<Segment> segments;           ///< by ascending columns, at most one for each column
+  std::size_t out_of_reach = 0;            ///< segments that were left out, as they cannot meet the skin
 };
 
 /// Converts the frames of a trace to the input of a detector: the segments between consecutive frames, and a palette.
-/// Both are relative to a whole-metre origin that follows the avatar.
+/// Both are relative to a whole-metre origin that follows the avatar. A trace of several people needs one for each.
 class FrameBuilder {
  public:
   /// `collider_ids` is ascending; the rank of an id is the column of the collider. Colliders with other ids are
-  /// ignored. A frame whose pose is not finite is empty. With a method that uses the previous frame, the next
-  /// frame is empty, too.
-  FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method = Method::kStatic);
+  /// ignored. `person` counts from 0: the avatar takes that pose of each frame, and this person's own colliders test
+  /// nothing. A frame whose pose is missing or not finite is empty. With a method that uses the previous frame, the
+  /// next frame is empty, too. With Skip::kOn, segments out of the skin's reach are left out.
+  FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method = Method::kStatic,
+               std::size_t person = 0, Skip skip = Skip::kOff);
 
   /// Takes the next frame of the trace. If the indices leave a gap (a damaged trace), the frame tests nothing. The
   /// reference is valid until the next call.
   const DetectorFrame& next(const TraceFrame& trace_frame);
 
-  /// Number of frames whose pose is not finite or is close to the end of fp32's range. They test nothing.
+  /// Number of frames whose pose is missing, not finite or close to the end of fp32's range. They test nothing.
   std::uint64_t non_finite_frames() const { return non_finite_frames_; }
   /// Number of segments with an end that is not finite or is close to the end of fp32's range. They test nothing.
   std::uint64_t non_finite_segments() const { return non_finite_segments_; }
@@ -78,15 +81,21 @@ class FrameBuilder {
     std::uint64_t seen_in = 0;
   };
 
+  void place(const Pose& pose);
   void follow_origin(const Pose& pose);
   void build_segments(const TraceFrame& trace_frame);
-  bool skins_to_finite(std::span<const SkinMatrix> palette) const;
+  std::optional<glm::dvec3> reach_of(std::span<const SkinMatrix> palette) const;
+  glm::dvec3 carried_m() const;
+  bool is_out_of_reach(const Segment& segment) const;
   void note_non_finite();
 
   const Avatar& avatar_;
   std::vector<std::uint32_t> collider_ids_;
   std::vector<Column> columns_;
   Method method_;
+  std::size_t person_;
+  Skip skip_;
+  glm::vec3 reach_m_ = glm::vec3(0);  ///< segments that stay beyond it along an axis cannot meet the skin
   std::vector<glm::dmat4> world_;
   std::vector<glm::dmat4> world_before_;
   glm::dvec3 pose_origin_before_m_ = glm::dvec3(0);

@@ -14,4 +14,8 @@ constexpr const char* name_of(Method method) {
   return method == Method::kStatic ? "static" : (method == Method::kCarried ? "carried" : "ccd");
 }
 
+/// kOn: the detector discards meshlets and colliders that cannot meet before it skins or tests anything. This changes
+/// the work, but no bit of the result. Detectors that test all pairs by design ignore the option.
+enum class Skip { kOff, kOn };
+
 }  // namespace vestige

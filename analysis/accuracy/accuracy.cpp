@@ -120,7 +120,8 @@ class RateMeasurement {
     point.frame_us.push_back(elapsed.count() * 1e6);
     Repetition& pass = point.passes.back();
     if (pass_ == 0 && pass.frames % skinning_step_ == 0)
-      point.skinning.add(scene_.avatar, trace_frame, run.detection.frame(), *contestants_[contestant]->instance);
+      point.skinning.add(scene_.avatar, trace_frame.poses.front(), run.detection.frame(),
+                         *contestants_[contestant]->instance);
     ++pass.frames;
     pass.seconds += elapsed.count();
     ++point.processor_passes.back().frames;

@@ -193,8 +193,9 @@ class RunningSweep {
     for (std::size_t number = 0; number < places_.size(); ++number) {
       const std::vector<std::size_t> columns = columns_of(drawn_[entry.point][number], drawn_for_any_[number]);
       for (const ContactRow& all : references_[entry.series][number]) {
-        row.clear();
-        for (const std::size_t column : columns) row.push_back(all[column]);
+        row.clear(columns.size());
+        for (std::size_t i = 0; i < columns.size(); ++i)
+          if (all[columns[i]].hit()) row[i] = all[columns[i]];
         hash.add(row);
         const auto contacts = static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
         point.contacts += contacts;

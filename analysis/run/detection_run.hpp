@@ -17,7 +17,7 @@ class DetectionRun {
  public:
   /// `collider_ids` as in `FrameBuilder`. Keeps references to `avatar` and `detector`.
   DetectionRun(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Detector& detector)
-      : detector_(detector), builder_(avatar, collider_ids, detector.method()) {}
+      : detector_(detector), builder_(avatar, collider_ids, detector.method(), 0, detector.skip()) {}
 
   /// Only says where everything comes from: nothing is detected in this frame.
   void begin(const TraceFrame& first) { builder_.next(first); }

@@ -64,18 +64,18 @@ void DetectorTeam::start(FrameBatch& batch) {
 }
 
 void DetectorTeam::finish() {
-  work_through(*first_);
+  work_through(first_);
   end_.arrive_and_wait();
   batch_ = nullptr;
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
 void DetectorTeam::help() {
-  std::unique_ptr<Detector> detector;
+  PeopleDetectors detectors;
   for (begin_.arrive_and_wait(); batch_ != nullptr; begin_.arrive_and_wait()) {
     try {
-      if (detector == nullptr) detector = make_();
-      work_through(*detector);
+      if (detectors.empty()) detectors = make_();
+      work_through(detectors);
     } catch (...) {
       note_failure();
     }
@@ -83,9 +83,9 @@ void DetectorTeam::help() {
   }
 }
 
-void DetectorTeam::work_through(Detector& detector) try {
+void DetectorTeam::work_through(const PeopleDetectors& detectors) try {
   for (std::size_t i = next_++; i < batch_->count; i = next_++)
-    batch_->work[i] = detector.detect(batch_->frames[i], batch_->rows[i]);
+    batch_->work[i] = detectors[i % detectors.size()]->detect(batch_->frames[i], batch_->rows[i]);
 } catch (...) {
   note_failure();
 }

@@ -14,7 +14,8 @@
 
 namespace vestige {
 
-/// Frames that are detected together, and their results. Memory is reused.
+/// Frames that are detected together, and their results. Memory is reused. In a trace of several people, each of its
+/// frames is one for the first person, then one for the second, and so on.
 struct FrameBatch {
   std::vector<DetectorFrame> frames;  ///< only the first `count` are valid
   std::vector<ContactRow> rows;
@@ -25,12 +26,15 @@ struct FrameBatch {
   void add(const DetectorFrame& frame);
 };
 
-/// A team of equal detectors, one for each thread. Each detector is made and used by its own thread. A free thread
+/// The detectors of a trace's people, in their order: one for each person.
+using PeopleDetectors = std::vector<std::unique_ptr<Detector>>;
+
+/// A team of equal detectors: in each thread, one for each person. Each thread makes and uses its own. A free thread
 /// takes the next frame of a batch. The rows are in the order of the frames, so the number of threads does not change a
 /// bit of the result.
 class DetectorTeam {
  public:
-  using Make = std::function<std::unique_ptr<Detector>()>;  ///< called by several threads at a time
+  using Make = std::function<PeopleDetectors()>;  ///< called by several threads at a time
 
   /// Makes all detectors: the first for the calling thread. Throws what `make` threw. `threads` is at least 1 and
   /// includes the calling thread.
@@ -39,8 +43,9 @@ class DetectorTeam {
   DetectorTeam(const DetectorTeam&) = delete;
   DetectorTeam& operator=(const DetectorTeam&) = delete;
 
-  Detector& first() { return *first_; }
-  const Detector& first() const { return *first_; }
+  /// The first thread's detector of a person, who counts from 0.
+  Detector& first(std::size_t person = 0) { return *first_[person]; }
+  const Detector& first(std::size_t person = 0) const { return *first_[person]; }
   std::size_t threads() const { return helpers_.size() + 1; }
 
   /// Starts the other threads on `batch`. The batch must stay untouched until `finish` has returned.
@@ -52,11 +57,11 @@ class DetectorTeam {
   void help();
   /// Lets the helpers return. Precondition: no batch is under way.
   void dismiss();
-  void work_through(Detector& detector);
+  void work_through(const PeopleDetectors& detectors);
   void note_failure();
 
   Make make_;
-  std::unique_ptr<Detector> first_;
+  PeopleDetectors first_;
   /// Null except between `start` and `finish`. To begin with null tells the helpers to return.
   FrameBatch* batch_ = nullptr;
   std::atomic<std::size_t> next_ = 0;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <span>
+#include <utility>
 
 #include "analysis/base/clocks.hpp"
 #include "detector/output/texture_hash.hpp"
@@ -34,52 +34,6 @@ class BatchSize {
   std::size_t size_;
 };
 
-/// Turns the contacts of a CSV file back into rows, frame by frame.
-class RecordedRows {
- public:
-  RecordedRows(std::span<const RecordedContact> contacts, std::span<const std::uint32_t> collider_ids)
-      : contacts_(contacts), collider_ids_(collider_ids) {}
-
-  const ContactRow& row_of(std::uint64_t frame) {
-    row_.assign(collider_ids_.size(), Contact());
-    while (next_ < contacts_.size() && contacts_[next_].frame < frame) skip();
-    for (; next_ < contacts_.size() && contacts_[next_].frame == frame; ++next_) {
-      const RecordedContact& recorded = contacts_[next_];
-      const auto place = std::ranges::lower_bound(collider_ids_, recorded.collider);
-      if (place == collider_ids_.end() || *place != recorded.collider) {
-        ++strangers_;
-        continue;
-      }
-      Contact& contact = row_[static_cast<std::size_t>(place - collider_ids_.begin())];
-      contact.triangle = recorded.triangle;
-      contact.t = recorded.t;
-      contact.actuator = recorded.actuator;
-    }
-    return row_;
-  }
-
-  /// Returns the number of contacts whose frame or collider the trace does not have. It includes contacts that were
-  /// never asked for.
-  std::uint64_t strangers() const { return strangers_ + (contacts_.size() - next_); }
-
- private:
-  void skip() {
-    ++strangers_;
-    ++next_;
-  }
-
-  std::span<const RecordedContact> contacts_;
-  std::span<const std::uint32_t> collider_ids_;
-  std::size_t next_ = 0;
-  std::uint64_t strangers_ = 0;
-  ContactRow row_;
-};
-
-void look_up_anew(const ActuatorMap& map, ContactRow& row) {
-  for (Contact& contact : row)
-    if (contact.hit()) contact.actuator = map.at(contact.triangle, contact.texture_coordinate);
-}
-
 /// One run through a trace. While the team detects in one batch of frames, the next one is read.
 class Replay {
  public:
@@ -88,12 +42,11 @@ class Replay {
         detectors_(detectors),
         plan_(plan),
         frame_count_(trace.frame_count()),
-        skinning_step_(std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames)),
-        recorded_(plan.expectation.contacts != nullptr ? std::span(*plan.expectation.contacts)
-                                                       : std::span<const RecordedContact>(),
-                  trace.collider_ids()),
-        builder_(plan.avatar, trace.collider_ids(), detectors.first().method()) {
-    result_.contacts_of_actuator.resize(plan.actuator_count + 1);
+        skinning_step_(std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames)) {
+    people_.reserve(plan.people.size());
+    for (std::size_t person = 0; person < plan.people.size(); ++person)
+      people_.emplace_back(plan.people[person], person, trace.collider_ids(), detectors.first(person),
+                           plan.expectation.contacts);
     if (plan.expectation.detectors != nullptr || plan.expectation.contacts != nullptr) result_.comparison.emplace();
   }
 
@@ -113,24 +66,32 @@ class Replay {
   }
 
  private:
+  /// Reads so many frames of the trace, each of which is a frame for every person.
   void read(FrameBatch& batch, std::size_t size) {
     batch.clear();
-    while (batch.count < size) {
+    while (batch.count < size * people_.size()) {
       const auto start = Clock::now();
       const bool more = trace_.next(trace_frame_);
       const auto read = Clock::now();
       result_.reading_s += seconds(read - start);
       if (!more) return;
-      const DetectorFrame& frame = builder_.next(trace_frame_);
-      batch.add(frame);
+      for (PersonReplay& person : people_) batch.add(person.build(trace_frame_));
       building_s_ += seconds(Clock::now() - read);
-      if (frames_read_ % skinning_step_ == 0) {
-        const auto check = Clock::now();
-        result_.skinning.add(plan_.avatar, trace_frame_, frame, detectors_.first());
-        checking_s_ += seconds(Clock::now() - check);
-      }
+      if (frames_read_ % skinning_step_ == 0) check_skinning(batch);
       ++frames_read_;
     }
+  }
+
+  /// Checks how the people of the frame that was read last are skinned.
+  void check_skinning(const FrameBatch& batch) {
+    const auto start = Clock::now();
+    for (std::size_t person = 0; person < people_.size(); ++person) {
+      const Pose& pose = trace_frame_.poses[person];
+      if (pose.nodes.empty()) continue;  // it is missing
+      result_.skinning.add(people_[person].avatar(), pose, batch.frames[batch.count - people_.size() + person],
+                           detectors_.first(person));
+    }
+    checking_s_ += seconds(Clock::now() - start);
   }
 
   /// Detects in `batch` and reads `next_batch` beside it. Returns the seconds that detection took.
@@ -153,74 +114,60 @@ class Replay {
   }
 
   void take(FrameBatch& batch, const std::function<bool(double)>& progress) {
-    for (std::size_t i = 0; i < batch.count && !result_.interrupted; ++i) {
-      follow_map_changes(batch.frames[i].time_s);
-      if (changed_map_ != nullptr) look_up_anew(*changed_map_, batch.rows[i]);
-      if (plan_.expectation.detectors != nullptr) {
-        if (changed_map_ != nullptr) look_up_anew(*changed_map_, expected_.rows[i]);
-        result_.comparison->add(batch.rows[i], expected_.rows[i]);
-      }
-      take(batch.frames[i], batch.rows[i], batch.work[i]);
+    for (std::size_t i = 0; i < batch.count && !result_.interrupted; i += people_.size()) {
+      for (std::size_t person = 0; person < people_.size(); ++person) take(person, batch, i + person);
+      ++result_.frames;
       result_.interrupted = !progress(static_cast<double>(result_.frames) / static_cast<double>(frame_count_));
     }
   }
 
-  void take(const DetectorFrame& frame, const ContactRow& row, const DetectorWork& work) {
-    result_.work += work;
-    for (const Contact& contact : row) {
-      if (!contact.hit()) continue;
-      ++result_.contacts;
-      ++result_.contacts_of_actuator[contact.actuator];
-    }
-    hash_.add(row);
-    const ReplayOutputs& outputs = plan_.outputs;
-    if (outputs.contacts != nullptr) outputs.contacts->write(frame, row, trace_.collider_ids());
-    if (outputs.textures != nullptr) outputs.textures->add(frame, row);
-    if (outputs.timeline != nullptr) {
-      const ActuatorFrame& driven = outputs.drive->next(frame.time_s, row, &frame);
-      result_.any_vibrates |= std::ranges::any_of(driven.duty, [](std::uint8_t duty) { return duty != 0; });
-      outputs.timeline->write(driven);
-    }
-    if (plan_.expectation.contacts != nullptr) result_.comparison->add(row, recorded_.row_of(frame.index));
-    ++result_.frames;
-  }
-
-  void follow_map_changes(double time_s) {
-    for (; result_.map_changes < plan_.changes.size(); ++result_.map_changes) {
-      const MapChange& change = plan_.changes[result_.map_changes];
-      if (change.time_s > time_s) return;
-      changed_map_ = &change.map;
-      if (plan_.outputs.drive != nullptr) plan_.outputs.drive->law().change_map(change.map.firing, change.layout);
-    }
+  /// Takes the row of batch.frames[i], which is a frame of this person.
+  void take(std::size_t person, FrameBatch& batch, std::size_t i) {
+    const DetectorFrame& frame = batch.frames[i];
+    ContactRow& row = batch.rows[i];
+    result_.work += batch.work[i];
+    people_[person].take(frame, row, plan_.expectation.detectors != nullptr ? &expected_.rows[i] : nullptr,
+                         comparison());
+    if (plan_.contacts != nullptr)
+      plan_.contacts->write(static_cast<std::uint16_t>(person + 1), frame, row, trace_.collider_ids());
+    if (plan_.textures != nullptr) plan_.textures->add(person, frame, row);
   }
 
   void finish() {
     if (is_alone()) result_.detection_s += building_s_;  // several threads had it within their time
-    if (plan_.expectation.contacts != nullptr && !result_.interrupted) {
-      result_.comparison->missing += recorded_.strangers();
-      result_.comparison->expected += recorded_.strangers();
+    std::vector<std::string> hashes;
+    for (PersonReplay& person : people_) {
+      const PersonResult& found = result_.people.emplace_back(person.finish(result_.interrupted, comparison()));
+      hashes.push_back(found.texture_hash);
+      result_.contacts += found.contacts;
+      result_.origin_changes += found.origin_changes;
+      result_.non_finite_frames += found.non_finite_frames;
+      result_.non_finite_segments += found.non_finite_segments;
+      if (found.first_non_finite)
+        result_.first_non_finite =
+            std::min(*found.first_non_finite, result_.first_non_finite.value_or(*found.first_non_finite));
     }
-    result_.texture_hash = hash_.hex();
-    result_.origin_changes = builder_.origin_changes();
-    result_.non_finite_frames = builder_.non_finite_frames();
-    result_.non_finite_segments = builder_.non_finite_segments();
-    result_.first_non_finite = builder_.first_non_finite();
+    result_.texture_hash = texture_hash_of(hashes);
+    if (plan_.expectation.contacts == nullptr || result_.interrupted) return;
+    const auto of_nobody = static_cast<std::uint64_t>(
+        std::ranges::count_if(*plan_.expectation.contacts,
+                              [this](const RecordedContact& contact) { return contact.avatar > people_.size(); }));
+    result_.comparison->missing += of_nobody;
+    result_.comparison->expected += of_nobody;
   }
 
   bool is_alone() const { return detectors_.threads() == 1; }
+  Comparison* comparison() { return result_.comparison ? &*result_.comparison : nullptr; }
 
   TraceReader& trace_;
   DetectorTeam& detectors_;
   const ReplayPlan& plan_;
   std::uint64_t frame_count_;
   std::uint64_t skinning_step_;  ///< of frames whose skinning is checked
-  RecordedRows recorded_;
-  FrameBuilder builder_;
+  std::vector<PersonReplay> people_;
   TraceFrame trace_frame_;
   std::uint64_t frames_read_ = 0;
   FrameBatch expected_;
-  TextureHash hash_;
-  const ActuatorMap* changed_map_ = nullptr;
   double building_s_ = 0;
   double checking_s_ = 0;
   ReplayResult result_;

@@ -10,12 +10,11 @@
 
 namespace vestige {
 
-void SkinningError::add(const Avatar& avatar, const TraceFrame& trace_frame, const DetectorFrame& frame,
-                        Detector& detector) {
+void SkinningError::add(const Avatar& avatar, const Pose& pose, const DetectorFrame& frame, Detector& detector) {
   std::vector<glm::dvec3> reference;
   std::vector<glm::vec3> own;
   std::vector<glm::vec3> contract;
-  skin_reference(avatar, trace_frame.poses.front(), frame.origin_m, reference);
+  skin_reference(avatar, pose, frame.origin_m, reference);
   detector.skinned_vertices(frame, own);
   skin_vertices(avatar, frame.palette, contract);
   if (detector.skins_in_shader() && !identical) identical = 0;

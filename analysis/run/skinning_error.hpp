@@ -5,7 +5,7 @@
 
 #include "detector/detector.hpp"
 #include "traces/scene/avatar.hpp"
-#include "traces/scene/trace.hpp"
+#include "traces/scene/pose.hpp"
 
 namespace vestige {
 
@@ -21,7 +21,7 @@ struct SkinningError {
   double largest_cpu_m = 0;  ///< largest distance of the contract's fp32 skinning to the double reference
   double height_m = 0;       ///< longest side of the avatar's box, in the double reference
 
-  void add(const Avatar& avatar, const TraceFrame& trace_frame, const DetectorFrame& frame, Detector& detector);
+  void add(const Avatar& avatar, const Pose& pose, const DetectorFrame& frame, Detector& detector);
   /// Adds what was compared elsewhere. Both are of one detector.
   SkinningError& operator+=(const SkinningError& other);
 };

@@ -41,7 +41,7 @@ struct Kernel {
     const Segment segment = {0, glm::vec3(query.way.start), glm::vec3(query.way.end)};
     const DetectorFrame frame = loose_frame(std::span(&before, 1), std::span(&after, 1), {segment});
     const DetectorWork work = detector->detect(frame, row);
-    return {row.front().hit(), work.unsure > 0};
+    return {row[0].hit(), work.unsure > 0};
   }
 };
 

@@ -185,7 +185,7 @@ std::vector<StressFamily> stress_families() {
 }
 
 void stress_truth(const StressSubject& subject, const DetectorFrame& frame, Method method, ContactRow& row) {
-  row.assign(frame.columns, Contact());
+  row.clear(frame.columns);
   if (frame.segments.empty()) return;
   if (std::ranges::any_of(frame.segments, &Segment::is_sphere)) {
     const DetectorOptions options = {Surface::kAll, PlaneSet::all(), method};

@@ -94,5 +94,9 @@ std::string describe_methods(const char* verb);
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes);
+/// As above, in a context that several detectors of a thread share: the first that needs one makes it.
+std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
+                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
+                                        PlaneSet planes, std::shared_ptr<GlContext>& shared);
 
 }  // namespace vestige::cli

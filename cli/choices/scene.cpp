@@ -11,11 +11,15 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/scene/reference_skinning.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
 namespace {
+
+using trace_format::AttachmentKind;
 
 void warn_all(const std::vector<std::string>& warnings, Verbosity verbosity) {
   for (const std::string& warning : warnings) warn(warning, verbosity);
@@ -49,6 +53,23 @@ void complete(Scene& scene, ActuatorMapFiles map, const SceneNames& names, const
   warn_all(vestige::settle_facing(facing, choice.axis, scene.map.facing, names.avatar), verbosity);
   if (const std::string other = other_facing(facing, scene.map.facing, names); !other.empty())
     warn(other + kOrSetFacing, verbosity);
+}
+
+/// Returns the people's names. Of several people, one without a name, or with the name of another, gets a number.
+std::vector<std::string> names_of(const std::vector<RecordedPerson>& people) {
+  std::vector<std::string> names;
+  names.reserve(people.size());
+  for (const RecordedPerson& person : people) names.push_back(person.name);
+  if (people.size() == 1) return names;
+  for (std::size_t i = 0; i < people.size(); ++i)
+    if (people[i].name.empty() || std::ranges::count(people, people[i].name, &RecordedPerson::name) > 1)
+      names[i] = in_words(static_cast<std::uint16_t>(i + 1));
+  return names;
+}
+
+/// Returns what errors call an attachment of a trace.
+std::string attachment(const std::string& path, AttachmentKind kind, std::size_t person) {
+  return fmt::format("{}, {}", path, trace_format::attachment_name(kind, person));
 }
 
 }  // namespace
@@ -99,16 +120,22 @@ ActuatorMapFiles load_map(const std::string& map) {
   return files;
 }
 
-OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity)
-    : reader(path), avatar(parse_avatar_glb(reader.people().front().avatar_glb, path + ", avatar.glb")) {
-  const RecordedPerson& person = reader.people().front();
-  take_recorded_facing(avatar.facing, person.facing);
-  if (!person.facing.empty() && !avatar.facing.doubt.empty())
-    warn(fmt::format("{}: {}; {} is taken", path, avatar.facing.doubt, to_string(avatar.facing.axis)), verbosity);
-  if (!person.actuator_map_png.empty())
-    map = parse_actuator_map(actuator_map_files(person), avatar, path + ", actuator_map.png");
+OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity, People allowed) : reader(path, allowed) {
+  const std::vector<RecordedPerson>& recorded = reader.people();
+  const std::vector<std::string> names = names_of(recorded);
+  people.reserve(recorded.size());
+  for (std::size_t i = 0; i < recorded.size(); ++i) {
+    people.push_back(
+        {names[i], parse_avatar_glb(recorded[i].avatar_glb, attachment(path, AttachmentKind::kAvatar, i)), {}});
+    auto& [name, avatar, map] = people.back();
+    take_recorded_facing(avatar.facing, recorded[i].facing);
+    if (!recorded[i].facing.empty() && !avatar.facing.doubt.empty())
+      warn(fmt::format("{}: {}; {} is taken", path, avatar.facing.doubt, to_string(avatar.facing.axis)), verbosity);
+    if (!recorded[i].actuator_map_png.empty())
+      map = parse_actuator_map(actuator_map_files(recorded[i]), avatar, attachment(path, AttachmentKind::kMapImage, i));
+    if (verbosity == Verbosity::kVerbose) warn_all(avatar.warnings, verbosity);
+  }
   if (!reader.recovered().empty()) warn(fmt::format("{}: {}", path, reader.recovered()), verbosity);
-  if (verbosity == Verbosity::kVerbose) warn_all(avatar.warnings, verbosity);
 }
 
 int report_damage(const TraceReader& trace, const std::string& path, Verbosity verbosity) {

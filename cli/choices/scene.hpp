@@ -53,12 +53,22 @@ std::vector<std::byte> load_avatar(const std::string& avatar);
 /// unless they can be parsed.
 ActuatorMapFiles load_map(const std::string& map);
 
-/// A trace, with the avatar and map that it carries.
-struct OpenTrace {
-  OpenTrace(const std::string& path, Verbosity verbosity);
-  TraceReader reader;
+/// A person of a trace, with the avatar and map that the trace carries.
+struct TracedPerson {
+  std::string name;  ///< of one person empty if the trace names nobody; of several people, each is different
   Avatar avatar;
   ActuatorMap map;
+};
+
+/// A trace with its people.
+struct OpenTrace {
+  OpenTrace(const std::string& path, Verbosity verbosity, People allowed = People::kOne);
+  /// The only person, for verbs that know one.
+  TracedPerson& person() { return people.front(); }
+  const TracedPerson& person() const { return people.front(); }
+
+  TraceReader reader;
+  std::vector<TracedPerson> people;
 };
 
 /// Prints what was wrong with a trace to standard error. Returns kDataLost if anything was, otherwise kDone.

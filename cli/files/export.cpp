@@ -95,8 +95,8 @@ class CsvFolder {
 
 ContactLimits limits_of(const OpenTrace& trace) {
   ContactLimits limits;
-  limits.triangles = trace.avatar.triangles.size();
-  limits.actuators = trace.map.actuator_count;
+  limits.triangles = trace.person().avatar.triangles.size();
+  limits.actuators = trace.person().map.actuator_count;
   return limits;
 }
 
@@ -164,7 +164,8 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
     if (contacts) write_contacts = [&contacts, &options](hid_t file) { contacts->write(file, options.output); };
     files.push_back(make_frame_hdf5(options.output, overwrite, reader, std::move(write_contacts)));
   } else {
-    files.push_back(make_frame_gltf(options.output, overwrite, trace.avatar, reader.people().front().avatar_glb,
+    files.push_back(make_frame_gltf(options.output, overwrite, trace.person().avatar,
+                                    reader.people().front().avatar_glb,
                                     {.all = reader.collider_ids(), .spheres = reader.sphere_ids()}));
   }
   return files;

@@ -35,7 +35,7 @@ void ExportedContacts::write(hid_t file, const std::filesystem::path& path) cons
   const Hdf5Handle group(hdf5().create_group(file, "contacts", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                          hdf5().close_group, path, "make a group");
   const bool has_depths = contacts_.empty() ? has_spheres_ : contacts_.front().depth_m.has_value();
-  ContactColumns columns(group.id(), path, has_depths ? ColliderShape::kSpheres : ColliderShape::kPoints);
+  ContactColumns columns(group.id(), path, {has_depths ? ColliderShape::kSpheres : ColliderShape::kPoints});
   for (const RecordedContact& contact : contacts_) columns.append(contact);
   columns.close();
 }

@@ -60,13 +60,13 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
           make_survey(choice.contestants, avatar, map),
           make_contestants(choice.contestants, avatar, map, std::exchange(once, Verbosity::kQuiet))};
     };
-    growth = run_growth(trace.reader, trace.avatar, trace.map, make, options.settings,
+    growth = run_growth(trace.reader, trace.person().avatar, trace.person().map, make, options.settings,
                         [&](double share) { return progress.update(share); });
   }
   check_measured("growth", growth.by_colliders);
 
   nlohmann::ordered_json json = provenance(invocation.argv);
-  json["avatar"] = to_json(trace.avatar);
+  json["avatar"] = to_json(trace.person().avatar);
   json["trace"] = path;
   json["complete"] = !interrupted();
   json["colliders"] = options.settings.colliders;

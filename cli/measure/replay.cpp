@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
-#include <string_view>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -17,11 +18,14 @@
 #include "cli/measure/replay_check.hpp"
 #include "cli/measure/replay_maps.hpp"
 #include "cli/measure/replay_options.hpp"
+#include "cli/measure/replay_report.hpp"
+#include "cli/measure/replay_timelines.hpp"
 #include "cli/verbs.hpp"
 #include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/questions/placement_question.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
@@ -61,152 +65,33 @@ PlaneSet parse_planes(const std::string& text) {
   return planes;
 }
 
-nlohmann::ordered_json to_json(const Comparison& comparison, const std::string& against) {
-  return {{"against", against},
-          {"expected", comparison.expected},
-          {"differing", comparison.differing()},
-          {"missing", comparison.missing},
-          {"extra", comparison.extra},
-          {"other_triangle", comparison.other_triangle},
-          {"other_actuator", comparison.other_actuator},
-          {"other_t", comparison.other_t},
-          {"largest_t_difference", comparison.largest_t_difference}};
-}
-
-nlohmann::ordered_json to_json(const SkinningError& skinning) {
-  return {
-      {"frames", skinning.frames},
-      {"vertices", skinning.vertices},
-      {"identical_to_cpu", skinning.identical ? nlohmann::ordered_json(*skinning.identical) : nlohmann::ordered_json()},
-      {"largest_error_m", skinning.largest_m},
-      {"largest_error_cpu_m", skinning.largest_cpu_m},
-      {"height_m", skinning.height_m},
-      {"largest_error_of_height", skinning.largest_m / skinning.height_m}};
-}
-
-/// Whether the GPU passes pairs on to the CPU, which is worth a line.
-bool captures(const Detector& detector) {
-  return std::string_view(detector.name()) == "geometry";
-}
-
-/// A trace under replay, and what runs it.
-struct Run {
-  const ReplayOptions& options;
-  const OpenTrace& trace;
-  std::size_t colliders;
-  std::optional<PickedPath> picked;  ///< by --detector auto
-  const Detector& detector;
-  bool ignores_radii;                  ///< of colliders that have one
-  const DriveMaker* drives = nullptr;  ///< of the timeline; null without one
-};
-
-std::string describe_picked(const PickedPath& picked) {
-  return fmt::format("{}, skip {}", picked.detector, picked.skip == Skip::kOn ? "on" : "off");
-}
-
-nlohmann::ordered_json to_json(const ReplayResult& result, const Run& run, const Invocation& invocation) {
-  const ReplayOptions& options = run.options;
-  const OpenTrace& trace = run.trace;
-  nlohmann::ordered_json json = provenance(invocation.argv);
-  json["trace"] = options.trace;
-  json["detector"] = run.detector.name();
-  json["approximate"] = run.detector.is_approximate();
-  json["ignores_radii"] = run.ignores_radii;
-  if (const auto kept = run.detector.triangles_kept()) json["triangles_kept"] = *kept;
-  if (run.picked) {
-    json["picked"] = describe_picked(*run.picked);
-    json["why"] = run.picked->why;
-  }
-  json["threads"] = options.threads;
-  json["method"] = options.choice.method;
-  json["skip"] = options.choice.skip;
-  json["surface"] = options.choice.surface;
-  json["hold_ms"] = options.law.hold_ms;
-  if (run.drives != nullptr) json["law"] = run.drives->to_json();
-  for (const std::string& map : options.map_at) json["map_at"].push_back(map);
-  json["gl"] = vestige::to_json(run.detector.gl_info());
-  json["avatar"] = vestige::to_json(trace.avatar);
-  if (options.choice.surface == "mapped") json["triangles_left_out"] = run.detector.triangles_left_out();
-  json["frames"] = result.frames;
-  json["frames_skipped"] = result.work.frames_skipped;
-  json["colliders"] = run.colliders;
-  json["contacts"] = result.contacts;
-  json["unsure"] = result.work.unsure;
-  json["texture_hash"] = result.texture_hash;
-  json["pairs_tested"] = result.work.pairs_tested;
-  if (captures(run.detector)) {
-    json["pairs_captured"] = result.work.pairs_captured;
-    json["pairs_meeting"] = result.work.pairs_meeting;
-  }
-  json["origin_changes"] = result.origin_changes;
-  json["non_finite_frames"] = result.non_finite_frames;
-  json["non_finite_segments"] = result.non_finite_segments;
-  if (result.first_non_finite) json["first_non_finite_frame"] = *result.first_non_finite;
-  json["reading_s"] = result.reading_s;
-  json["detection_s"] = result.detection_s;
-  json["hz"] = static_cast<double>(result.frames) / result.detection_s;
-  nlohmann::ordered_json actuators = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < trace.map.actuator_count; ++i)
-    actuators.push_back({{"name", trace.map.names[i]}, {"contacts", result.contacts_of_actuator[i + 1]}});
-  json["actuators"] = actuators;
-  json["skinning"] = to_json(result.skinning);
-  if (result.comparison) json["verify"] = to_json(*result.comparison, options.verify);
-  json["complete"] = trace.reader.complete() && !result.interrupted;
-  return json;
-}
-
-std::string summary(const ReplayResult& result, const Run& run) {
-  const Detector& detector = run.detector;
-  const ActuatorMap& map = run.trace.map;
-  const GlInfo gl = detector.gl_info();
-  const std::string where = gl.context.empty() ? "" : fmt::format(" on {} ({})", gl.context, gl.renderer);
-  std::string text =
-      fmt::format("{}{}{}: {}, {}, {}, {:.0f} Hz\n", detector.name(), detector.is_approximate() ? " (approximate)" : "",
-                  where, counted(result.frames, "frame"), counted(run.colliders, "collider"),
-                  counted(result.contacts, "contact"), static_cast<double>(result.frames) / result.detection_s);
-  if (run.picked) text += fmt::format("picked {} ({})\n", describe_picked(*run.picked), run.picked->why);
-  const auto add_row = [&](std::string_view actuator, std::uint64_t contacts) {
-    text += fmt::format("  {:<24} {:>8} {}\n", actuator, contacts, contacts == 1 ? "contact" : "contacts");
-  };
-  for (std::size_t i = 0; i < map.actuator_count; ++i) add_row(map.names[i], result.contacts_of_actuator[i + 1]);
-  add_row("(no actuator)", result.contacts_of_actuator[0]);
-  if (const auto kept = detector.triangles_kept())
-    text += fmt::format("kept: {} of {} triangles\n", *kept, run.trace.avatar.triangles.size());
-  if (detector.triangles_left_out() != 0)
-    text += fmt::format("left out: {} of {} triangles, which no actuator covers\n", detector.triangles_left_out(),
-                        run.trace.avatar.triangles.size());
-  text += fmt::format("skinning by {}: at most {:.2g} of the avatar's height from the double-precision reference{}\n",
-                      detector.skins_in_shader() ? "a shader" : "the CPU",
-                      result.skinning.largest_m / result.skinning.height_m,
-                      result.skinning.identical ? fmt::format("; {} of {} vertices have the same bits as on the CPU",
-                                                              *result.skinning.identical, result.skinning.vertices)
-                                                : "");
-  if (captures(detector))
-    text += fmt::format("captured {} of {} pairs; {} of these pairs touch\n", result.work.pairs_captured,
-                        result.work.pairs_tested, result.work.pairs_meeting);
-  return text + fmt::format("texture_hash {}\n", result.texture_hash);
-}
-
 /// Says why there may be fewer contacts than expected.
-void warn_of_gaps(const ReplayResult& result, const std::vector<TimedMap>& timed_maps, const ReplayOptions& options) {
+void warn_of_gaps(const ReplayResult& result, const OpenTrace& trace, const std::vector<TimedMap>& timed_maps,
+                  const ReplayOptions& options) {
   const Verbosity verbosity = options.common.verbosity();
   if (result.interrupted) warn(fmt::format("stopped after {} frames", result.frames), verbosity);
-  for (std::size_t i = result.map_changes; i < timed_maps.size() && !result.interrupted; ++i)
+  for (std::size_t i = result.people.front().map_changes; i < timed_maps.size() && !result.interrupted; ++i)
     warn(fmt::format("--map-at {}={}: the trace ends before that time", timed_maps[i].time_s, timed_maps[i].file),
          verbosity);
-  if (result.non_finite_frames + result.non_finite_segments != 0)
-    warn(fmt::format(
-             "{}: {} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
-             options.trace, result.non_finite_frames, result.non_finite_segments, *result.first_non_finite),
-         verbosity);
+  for (std::size_t i = 0; i < result.people.size(); ++i) {
+    const PersonResult& person = result.people[i];
+    if (!person.first_non_finite) continue;
+    warn(
+        fmt::format("{}: {} poses{} and the ends of {} segments are {}not finite, the first in frame {}; they fired "
+                    "nothing",
+                    options.trace, person.non_finite_frames,
+                    trace.people.size() > 1 ? fmt::format(" of {}", trace.people[i].name) : "",
+                    person.non_finite_segments, trace.people.size() > 1 ? "missing or " : "", *person.first_non_finite),
+        verbosity);
+  }
 }
 
 /// Contacts that nobody feels are a reason to ask for another law or map.
-void warn_of_silence(const ReplayResult& result, const ReplayOptions& options) {
-  if (options.timeline.empty() || result.any_vibrates || result.contacts == 0) return;
+void warn_of_silence(const PersonResult& result, const std::string& timeline, const ReplayOptions& options) {
+  if (result.any_vibrates || result.contacts == 0) return;
   const bool by_place = law_named(options.law.law).needs_poses;
   if (!by_place && result.contacts == result.contacts_of_actuator[0]) return;  // the summary says it
-  warn(fmt::format("{}: {} drove no actuator under the law {}{}", options.timeline, counted(result.contacts, "contact"),
+  warn(fmt::format("{}: {} drove no actuator under the law {}{}", timeline, counted(result.contacts, "contact"),
                    options.law.law,
                    by_place
                        ? ": no sphere covered the place of an actuator deep enough; larger spheres, a map with more "
@@ -216,9 +101,10 @@ void warn_of_silence(const ReplayResult& result, const ReplayOptions& options) {
 }
 
 /// Contacts that are fewer than the colliders are a reason to ask where the colliders were.
-void ask_about_placement(OpenTrace& trace, const ReplayResult& result, const Run& run, const ReplayOptions& options) {
-  if (result.interrupted || result.contacts >= run.colliders) return;
-  PlacementQuestion question(trace.avatar);
+void ask_about_placement(OpenTrace& trace, const ReplayResult& result, const ReplayRun& run,
+                         const ReplayOptions& options) {
+  if (result.interrupted || result.contacts >= run.colliders || trace.people.size() > 1) return;
+  PlacementQuestion question(trace.person().avatar);
   TraceFrame frame;
   trace.reader.rewind();
   while (trace.reader.next(frame)) question.see(frame);
@@ -252,77 +138,114 @@ bool warn_of_ignored_radii(const ReplayOptions& options, const std::string& dete
   return !takes_radii(detector) && trace.reader.has_spheres();
 }
 
+/// Picks what --detector auto runs: for all people what suits the finest avatar.
+std::optional<PickedPath> pick(const ReplayOptions& options, const OpenTrace& trace, std::size_t colliders) {
+  if (options.choice.detector != "auto") return {};
+  std::size_t triangles = 0;
+  for (const TracedPerson& person : trace.people) triangles = std::max(triangles, person.avatar.triangles.size());
+  return pick_path(triangles, colliders, options.choice.skip_kind());
+}
+
+/// The files of contacts and textures, where they are asked for.
+class ResultFiles {
+ public:
+  ResultFiles(const ReplayOptions& options, const ReplayRun& run, PlaneSet texture_planes, ColliderShape shape) {
+    const std::vector<TracedPerson>& people = run.trace.people;
+    const auto attributes = attributes_of(options, run.detectors.first());
+    if (!options.contacts.empty())
+      contacts_ =
+          make_contacts_file(options.contacts, options.common.overwrite(), attributes, {shape, people.size() > 1});
+    if (options.textures.empty()) return;
+    std::vector<std::string> names;
+    names.reserve(people.size());
+    for (const TracedPerson& person : people) names.push_back(person.name);
+    texture_file_.emplace(options.textures, options.common.overwrite());
+    textures_.emplace(texture_planes, run.colliders, attributes, names);
+  }
+
+  ContactsFile* contacts() { return contacts_.get(); }
+  TextureExr* textures() { return textures_ ? &*textures_ : nullptr; }
+
+  void commit() {
+    if (textures_) textures_->write(*texture_file_);
+    if (contacts_) contacts_->commit();
+    if (texture_file_) texture_file_->commit();
+  }
+
+ private:
+  std::unique_ptr<ContactsFile> contacts_;
+  std::optional<TextureExr> textures_;
+  std::optional<OutputFile> texture_file_;
+};
+
+/// Changes of the map are those of the only person.
+std::vector<ReplayPerson> people_of(const OpenTrace& trace, const Timelines& timelines,
+                                    std::span<const MapChange> changes) {
+  std::vector<ReplayPerson> people;
+  for (std::size_t i = 0; i < trace.people.size(); ++i)
+    people.push_back({.avatar = trace.people[i].avatar,
+                      .actuator_count = trace.people[i].map.actuator_count,
+                      .timeline = timelines.file_of(i),
+                      .drive = timelines.drive_of(i),
+                      .changes = changes});
+  return people;
+}
+
 void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
-  const std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
+  std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
   const std::vector<TimedMap> timed_maps = parse_map_at(options);
+  const std::vector<PersonMap> maps = parse_maps(options);
   options.law.check();
   std::vector<std::string> inputs = {options.trace, options.verify, options.law.actuator};
   for (const TimedMap& timed : timed_maps) inputs.push_back(timed.file);
+  for (const PersonMap& map : maps) inputs.push_back(map.file);
   check_outputs(outputs, inputs, options.common);
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);
   auto expected = read_expected(options.verify);
 
-  OpenTrace trace(options.trace, verbosity);
-  require_surface(trace.avatar, options.trace + ", avatar.glb");
-  if (!options.timeline.empty() && trace.map.actuator_count == 0)
-    throw UsageError("--timeline", fmt::format("there is no actuator in {}, so nothing to write", options.trace),
-                     "give the trace an actuator map with 'vestige record --map', or leave --timeline out");
-  const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
+  OpenTrace trace(options.trace, verbosity, People::kSeveral);
+  for (std::size_t i = 0; i < trace.people.size(); ++i)
+    require_surface(
+        trace.people[i].avatar,
+        fmt::format("{}, {}", options.trace, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
+  use_maps(maps, trace, options);
   const ColliderShape shape = trace.reader.has_spheres() ? ColliderShape::kSpheres : ColliderShape::kPoints;
-  PlaneSet planes = planes_of_outputs(options, texture_planes, shape);
-  std::optional<DriveMaker> drives;
-  if (!options.timeline.empty()) {
-    require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
-    drives.emplace(options.law, trace.avatar, trace.map);
-  }
-  if (drives) planes = planes | drives->planes();
-  const std::vector<MapChange> changes = read_maps(timed_maps, trace, drives ? &*drives : nullptr, options);
+  Timelines timelines(options, trace);
+  timelines.add_paths_to(outputs);
+  check_outputs(outputs, inputs, options.common);
+  const std::vector<MapChange> changes = read_maps(timed_maps, trace, timelines.drives_of(0), options);
   const PlaneSet verified = changes.empty() ? kHashedPlanes : kHashedPlanes | Plane::kTextureCoordinate;
-  planes = planes | verified;
-  std::optional<PickedPath> picked;
-  if (options.choice.detector == "auto")
-    picked = pick_path(trace.avatar.triangles.size(), collider_ids.size(), options.choice.skip_kind());
+  const PlaneSet planes = planes_of_outputs(options, texture_planes, shape) | timelines.planes() | verified;
+  const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
+  const std::optional<PickedPath> picked = pick(options, trace, collider_ids.size());
   DetectorTeam detectors(options.threads, [&] {
-    return make_detector(picked ? picked->detector : options.choice.detector, options.choice.context, options.choice,
-                         trace.avatar, trace.map, planes);
+    return make_detectors(picked ? picked->detector : options.choice.detector, options.choice, trace, planes);
   });
-  const bool ignores_radii = warn_of_ignored_radii(options, detectors.first().name(), trace);
-  const Run run = {options,           trace,         collider_ids.size(),        picked,
-                   detectors.first(), ignores_radii, drives ? &*drives : nullptr};
-  const Verification verification = load_verification(options, trace, run.detector, verified, std::move(expected));
+  const Detector& detector = detectors.first();
+  const bool ignores_radii = warn_of_ignored_radii(options, detector.name(), trace);
+  const ReplayRun run = {options, trace, collider_ids.size(), picked, detectors, ignores_radii, timelines.law()};
+  const Verification verification = load_verification(options, trace, detector, verified, std::move(expected));
 
   catch_interrupts();  // before the first temporary file
-  std::unique_ptr<ContactsFile> contacts;
-  std::optional<TextureExr> textures;
-  std::optional<OutputFile> texture_file;
-  std::unique_ptr<TimelineFile> timeline;
-  if (!options.contacts.empty())
-    contacts =
-        make_contacts_file(options.contacts, options.common.overwrite(), attributes_of(options, run.detector), shape);
-  if (!options.timeline.empty())
-    timeline = make_timeline(options.timeline, options.common.overwrite(), trace.map.names);
-  if (!options.textures.empty()) {
-    texture_file.emplace(options.textures, options.common.overwrite());
-    textures.emplace(texture_planes, collider_ids.size(), attributes_of(options, run.detector));
-  }
-
-  const std::unique_ptr<ActuatorDrive> drive = drives ? drives->make() : nullptr;
+  ResultFiles files(options, run, texture_planes, shape);
+  timelines.open();
+  const ReplayPlan plan = {.people = people_of(trace, timelines, changes),
+                           .contacts = files.contacts(),
+                           .textures = files.textures(),
+                           .expectation = verification.expectation()};
   ReplayResult result;
   {
     Progress progress("Replaying", verbosity);
-    const ReplayOutputs sinks = {contacts.get(), textures ? &*textures : nullptr, timeline.get(), drive.get()};
-    const ReplayPlan plan = {trace.avatar, trace.map.actuator_count, sinks, verification.expectation(), changes};
     result = replay(trace.reader, detectors, plan, [&](double share) { return progress.update(share); });
   }
   if (result.frames == 0) require_frames(trace.reader, options.trace);
-  if (textures) textures->write(*texture_file);
-  if (contacts) contacts->commit();
-  if (texture_file) texture_file->commit();
-  if (timeline) timeline->commit();
-  warn_of_gaps(result, timed_maps, options);
-  warn_of_silence(result, options);
+  files.commit();
+  timelines.commit();
+  warn_of_gaps(result, trace, timed_maps, options);
+  for (std::size_t i = 0; i < result.people.size(); ++i)
+    if (timelines.file_of(i) != nullptr) warn_of_silence(result.people[i], timelines.path_of(i), options);
   ask_about_placement(trace, result, run, options);
 
   print_summary(summary(result, run), outputs, options.common);
@@ -354,7 +277,7 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   add_result("--contacts", options->contacts, "Write the contacts, one row each, as CSV or HDF5 (.h5, .hdf5)")
       ->type_name("OUT.csv|OUT.h5|-");
   add_result("--textures", options->textures,
-             "Write the collision textures as OpenEXR: one row per frame, one column per collider")
+             "Write the collision textures as OpenEXR: one row per frame, one column per collider, one part per person")
       ->type_name("OUT.exr|-");
   add_result("--planes", options->planes,
              "Planes of the textures, any of: actuator, t, triangle, barycentric, texture, position, speed, side, "
@@ -364,8 +287,15 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   add_result(
       "--timeline", options->timeline,
       "Write the actuators' duties: as CSV, one row per frame, 0 to 255; as MPEG haptics (.hjif); or for bHaptics "
-      "(.tact, at most 40 actuators)")
+      "(.tact, at most 40 actuators); of the second person OUT.2.csv")
       ->type_name("OUT.csv|OUT.hjif|OUT.tact|-");
+  verb->add_option("--map", options->maps,
+                   "Use another actuator map than the trace's: of a trace of several people, that of person K; repeat "
+                   "for more people")
+      ->group("Results")
+      ->type_name("[K=]FILE.png|LAYOUT|none")
+      ->expected(1)
+      ->take_all();
   verb->add_option(
           "--map-at", options->map_at,
           "Use another actuator map, with as many actuators, from this time of the trace on; repeat for more maps")

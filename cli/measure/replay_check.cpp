@@ -10,13 +10,23 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/hdf5/hdf5_reader.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
+
+PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice, const OpenTrace& trace,
+                               PlaneSet planes) {
+  std::shared_ptr<GlContext> shared;
+  PeopleDetectors detectors;
+  for (const TracedPerson& person : trace.people)
+    detectors.push_back(make_detector(name, choice.context, choice, person.avatar, person.map, planes, shared));
+  return detectors;
+}
 
 std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify) {
   if (verify.empty() || is_detector(verify)) return {};
   if (!verify.ends_with(".csv") && !has_hdf5_name(verify) && !is_hdf5(verify)) return {};
-  return read_contacts(verify);
+  return read_contacts(verify, {.people = trace_format::kMostPeople});
 }
 
 Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector,
@@ -27,9 +37,8 @@ Verification load_verification(const ReplayOptions& options, const OpenTrace& tr
     if (options.verify == detector.name())
       throw UsageError("--verify", fmt::format("'{}' would be compared with itself", options.verify),
                        "name another detector, or a file");
-    verification.detectors = std::make_unique<DetectorTeam>(options.threads, [&] {
-      return make_detector(options.verify, options.choice.context, options.choice, trace.avatar, trace.map, planes);
-    });
+    verification.detectors = std::make_unique<DetectorTeam>(
+        options.threads, [&] { return make_detectors(options.verify, options.choice, trace, planes); });
   } else if (options.verify == "-" || options.verify == "auto") {
     throw UsageError("--verify", fmt::format("'{}' is neither a detector nor a file", options.verify),
                      fmt::format("name {}, or a file that an earlier replay wrote", fmt::join(detector_names(), ", ")));

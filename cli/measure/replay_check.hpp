@@ -11,6 +11,10 @@
 
 namespace vestige::cli {
 
+/// Makes a detector for each person of a trace. They share an OpenGL context.
+PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice, const OpenTrace& trace,
+                               PlaneSet planes);
+
 /// What --verify names: another detector, or a file that an earlier replay wrote. Without --verify, nothing.
 struct Verification {
   std::unique_ptr<DetectorTeam> detectors;

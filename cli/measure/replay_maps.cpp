@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include "analysis/mapping/layouts.hpp"
 #include "traces/base/error.hpp"
+#include "traces/scene/people.hpp"
 
 namespace vestige::cli {
 
@@ -26,6 +28,50 @@ void check_map_at(const ReplayOptions& options) {
 }
 
 }  // namespace
+
+std::vector<PersonMap> parse_maps(const ReplayOptions& options) {
+  std::vector<PersonMap> maps;
+  std::set<std::size_t> people;
+  for (const std::string& text : options.maps) {
+    PersonMap map;
+    const std::size_t sign = std::min(text.find('='), text.size());
+    const bool is_number = sign > 0 && sign < text.size() && text.find_first_not_of("0123456789") == sign;
+    if (is_number) {
+      std::size_t number = 0;
+      const auto read = std::from_chars(text.data(), text.data() + sign, number);
+      if (read.ec != std::errc() || number == 0)
+        throw UsageError("--map", fmt::format("'{}': people count from 1", text), "write for example --map 2=FILE.png");
+      map.person = number - 1;
+    }
+    map.file = is_number ? text.substr(sign + 1) : text;
+    if (map.file.empty()) throw UsageError("--map", fmt::format("'{}' names no map", text), "name a file or a layout");
+    if (!people.insert(map.person.value_or(0)).second)
+      throw UsageError("--map", fmt::format("person {} gets two maps", map.person.value_or(0) + 1),
+                       "leave one of them out");
+    maps.push_back(map);
+  }
+  return maps;
+}
+
+void use_maps(const std::vector<PersonMap>& maps, OpenTrace& trace, const ReplayOptions& options) {
+  for (const PersonMap& map : maps) {
+    if (!map.person && trace.people.size() > 1)
+      throw UsageError("--map", fmt::format("{} holds {} people", options.trace, trace.people.size()),
+                       fmt::format("say whose map it is: --map 1={}", map.file));
+    const std::size_t person = map.person.value_or(0);
+    if (person >= trace.people.size())
+      throw UsageError("--map",
+                       fmt::format("there is no person {} in {}, which holds {}", person + 1, options.trace,
+                                   count_of_people(trace.people.size())),
+                       "choose one who is there");
+    TracedPerson& who = trace.people[person];
+    const ActuatorMapFiles files = read_map_files(who.avatar, map.file);
+    who.map = files.png.empty() ? ActuatorMap() : parse_actuator_map(files, who.avatar, map.file);
+    for (const std::string& warning : who.map.warnings) warn(warning, options.common.verbosity());
+    const std::string other = other_facing(who.avatar.facing, who.map.facing, {options.trace, map.file});
+    if (!other.empty()) warn(other, options.common.verbosity());
+  }
+}
 
 std::vector<TimedMap> parse_map_at(const ReplayOptions& options) {
   check_map_at(options);
@@ -52,18 +98,24 @@ std::vector<TimedMap> parse_map_at(const ReplayOptions& options) {
 std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace,
                                  const DriveMaker* drives, const ReplayOptions& options) {
   const Verbosity verbosity = options.common.verbosity();
+  if (!timed_maps.empty() && trace.people.size() > 1)
+    throw UsageError("--map-at",
+                     fmt::format("changes the map of one person, and {} holds {}", options.trace,
+                                 count_of_people(trace.people.size())),
+                     "use --map K=FILE, which holds from the start");
   std::vector<MapChange> changes;
   for (const TimedMap& timed : timed_maps) {
-    const ActuatorMapFiles files = read_map_files(trace.avatar, timed.file);
+    const ActuatorMapFiles files = read_map_files(trace.person().avatar, timed.file);
     if (files.png.empty()) throw UsageError("--map-at", "'none' is not a map", "name a PNG file, builtin or a layout");
-    MapChange change = {timed.time_s, parse_actuator_map(files, trace.avatar, timed.file), nullptr};
-    if (change.map.actuator_count != trace.map.actuator_count)
+    MapChange change = {timed.time_s, parse_actuator_map(files, trace.person().avatar, timed.file), nullptr};
+    if (change.map.actuator_count != trace.person().map.actuator_count)
       throw Error(timed.file,
                   fmt::format("names {} actuators, and the trace's map has {}", change.map.actuator_count,
-                              trace.map.actuator_count),
+                              trace.person().map.actuator_count),
                   "use maps with the same number of actuators");
     for (const std::string& warning : change.map.warnings) warn(warning, verbosity);
-    const std::string other = other_facing(trace.avatar.facing, change.map.facing, {options.trace, timed.file});
+    const std::string other =
+        other_facing(trace.person().avatar.facing, change.map.facing, {options.trace, timed.file});
     if (!other.empty()) warn(other, verbosity);
     if (drives != nullptr) change.layout = drives->layout_of(change.map);
     changes.push_back(std::move(change));

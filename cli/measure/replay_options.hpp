@@ -17,6 +17,7 @@ struct ReplayOptions {
   std::string trace;
   std::size_t threads = 1;
   LawFlags law;
+  std::vector<std::string> maps;
   std::vector<std::string> map_at;
   std::string contacts;
   std::string textures;

@@ -43,15 +43,16 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
       prepare_sweep(choice, {json_path, times_path}, std::ranges::max(options.settings.counts), invocation);
   OpenTrace trace(path, verbosity);
   leave_out_missing_colliders(choice, trace.reader.collider_ids().size(), options.settings);
-  const std::vector<Contestant> contestants = make_contestants(choice.contestants, trace.avatar, trace.map, verbosity);
+  const std::vector<Contestant> contestants =
+      make_contestants(choice.contestants, trace.person().avatar, trace.person().map, verbosity);
   std::set<std::string> names;
   for (const Contestant& contestant : contestants) names.insert(contestant.detector);
   warn_of_radii({names.begin(), names.end()}, trace.reader, path, verbosity);
-  const std::unique_ptr<Detector> survey = make_survey(choice.contestants, trace.avatar, trace.map);
+  const std::unique_ptr<Detector> survey = make_survey(choice.contestants, trace.person().avatar, trace.person().map);
   Sweep sweep;
   {
     Progress progress("Measuring", verbosity);
-    sweep = run_sweep(trace.reader, trace.avatar, *survey, contestants, options.settings,
+    sweep = run_sweep(trace.reader, trace.person().avatar, *survey, contestants, options.settings,
                       [&](double share) { return progress.update(share); });
   }
   const std::vector<SweepSeries>& series = sweep.series;
@@ -59,7 +60,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["gl"] = first_gl(series);
-  json["avatar"] = to_json(trace.avatar);
+  json["avatar"] = to_json(trace.person().avatar);
   json["trace"] = path;
   json["surface"] = choice.contestants.choice.surface;
   json["runs"] = sweep.places;

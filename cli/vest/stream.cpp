@@ -187,8 +187,9 @@ void check_flags(const StreamOptions& options) {
 
 /// Returns the warnings about the map of --map.
 std::vector<std::string> map_warnings(const OpenTrace& trace, const StreamOptions& options) {
-  std::vector<std::string> warnings = trace.map.warnings;
-  std::string other = other_facing(trace.avatar.facing, trace.map.facing, {options.trace, options.map});
+  std::vector<std::string> warnings = trace.person().map.warnings;
+  std::string other =
+      other_facing(trace.person().avatar.facing, trace.person().map.facing, {options.trace, options.map});
   if (!other.empty()) warnings.push_back(std::move(other));
   return warnings;
 }
@@ -196,10 +197,11 @@ std::vector<std::string> map_warnings(const OpenTrace& trace, const StreamOption
 /// Puts the map of --map in the place of the trace's own, if one is named. Throws `Error` if there is no actuator.
 void choose_map(OpenTrace& trace, const StreamOptions& options) {
   if (!options.map.empty()) {
-    trace.map = parse_actuator_map(read_map_files(trace.avatar, options.map), trace.avatar, options.map);
+    trace.person().map =
+        parse_actuator_map(read_map_files(trace.person().avatar, options.map), trace.person().avatar, options.map);
     for (const std::string& warning : map_warnings(trace, options)) warn(warning, options.common.verbosity());
   }
-  if (trace.map.actuator_count == 0)
+  if (trace.person().map.actuator_count == 0)
     throw Error(options.map.empty() ? options.trace : options.map, "has no actuator, so nothing would be felt",
                 "name a map that has actuators: --map FILE.png");
 }
@@ -207,8 +209,8 @@ void choose_map(OpenTrace& trace, const StreamOptions& options) {
 /// Returns laws for pressures if the sink asks for them, else those of --law.
 LawMaker make_laws(const StreamOptions& options, const OpenTrace& trace) {
   const double rate = options.playback.rate;
-  if (options.sink.quantity() == Quantity::kPressure) return {trace.map, options.law.options(rate).hold_s};
-  return LawMaker(DriveMaker(options.law, trace.avatar, trace.map, rate));
+  if (options.sink.quantity() == Quantity::kPressure) return {trace.person().map, options.law.options(rate).hold_s};
+  return LawMaker(DriveMaker(options.law, trace.person().avatar, trace.person().map, rate));
 }
 
 void run_stream(const StreamOptions& options, Invocation& invocation) {
@@ -221,28 +223,28 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
 
   OpenTrace trace(options.trace, verbosity);
   choose_map(trace, options);
-  const std::size_t actuator_count = trace.map.actuator_count;
+  const std::size_t actuator_count = trace.person().map.actuator_count;
   require_frames(trace.reader, options.trace);
   const std::size_t colliders = trace.reader.collider_ids().size();
   const std::string name =
       options.choice.detector == "auto"
-          ? pick_path(trace.avatar.triangles.size(), colliders, options.choice.skip_kind()).detector
+          ? pick_path(trace.person().avatar.triangles.size(), colliders, options.choice.skip_kind()).detector
           : options.choice.detector;
   warn_of_radii({name}, trace.reader, options.trace, verbosity);
   require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
   LawMaker laws = make_laws(options, trace);
-  const auto detector =
-      make_detector(name, options.choice.context, options.choice, trace.avatar, trace.map, laws.planes());
+  const auto detector = make_detector(name, options.choice.context, options.choice, trace.person().avatar,
+                                      trace.person().map, laws.planes());
 
   catch_interrupts();
   std::optional<StreamLog> log;
   if (!options.log.empty()) log.emplace(options.log, options.common.overwrite(), actuator_count);
-  OpenSink sink(options.sink, trace.map.names, options.common);
+  OpenSink sink(options.sink, trace.person().map.names, options.common);
   sink.warn_of_actuators_beyond(actuator_count, verbosity);
   const auto tell = [verbosity](const std::string& text) { warn(text, verbosity); };
   std::optional<ActuatorMapWatch> watch;
   if (watched)
-    watch.emplace(options.map, map_stamp, actuator_count, trace.avatar,
+    watch.emplace(options.map, map_stamp, actuator_count, trace.person().avatar,
                   laws.needs_layout() ? ActuatorMapWatch::Layouts::kMeasured : ActuatorMapWatch::Layouts::kNone, tell);
 
   Streamed streamed;
@@ -253,8 +255,8 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
     calls.make_law = [&] { return laws.make(); };
     calls.go_on = [&](double share) {
       if (auto taken = watch ? watch->take() : std::nullopt) {
-        trace.map = std::move(taken->map);
-        laws.use(trace.map, taken->layout);
+        trace.person().map = std::move(taken->map);
+        laws.use(trace.person().map, taken->layout);
         ++streamed.maps_reloaded;
         for (const std::string& warning : map_warnings(trace, options)) tell(warning);
       }
@@ -271,7 +273,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
       sender.post(frame, due);
       if (log) log->write(sender.take_log());
     };
-    streamed.playback = play(trace.reader, trace.avatar, *detector, options.playback, calls);
+    streamed.playback = play(trace.reader, trace.person().avatar, *detector, options.playback, calls);
     streamed.sender = sender.finish();
     if (log) log->write(sender.take_log());
   }

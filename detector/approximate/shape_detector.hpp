@@ -42,7 +42,7 @@ class ShapeDetector final : public Detector {
   bool is_approximate() const override { return true; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     if (frame.segments.empty()) return {};
     enter(Stage::kSkinning);
     move_parts(frame);

@@ -27,7 +27,7 @@ class CpuDetector final : public Detector {
   Method method() const override { return method_; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     if (frame.segments.empty()) return {};
     enter(Stage::kSkinning);
     skin_.skin(avatar_, frame, method_);
@@ -72,10 +72,11 @@ class SkippingCpuDetector final : public Detector {
 
   const char* name() const override { return "cpu"; }
   Method method() const override { return method_; }
+  Skip skip() const override { return Skip::kOn; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
-    if (frame.segments.empty()) return {};
+    row.clear(frame.columns);
+    if (frame.segments.empty()) return {.frames_skipped = frame.out_of_reach > 0 ? 1U : 0U};
     enter(Stage::kCandidates);
     candidates_.find(frame, method_);
     DetectorWork work;

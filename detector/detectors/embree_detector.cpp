@@ -116,7 +116,7 @@ class EmbreeDetector final : public Detector {
   const char* name() const override { return mode_ == EmbreeMode::kRobust ? "embree" : "embree_default"; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     if (frame.segments.empty()) return {};
     enter(Stage::kSkinning);
     skin_vertices(avatar_, frame.palette, vertices());

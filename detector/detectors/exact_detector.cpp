@@ -19,7 +19,7 @@ class ExactDetector final : public Detector {
   Method method() const override { return options_.method; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     if (frame.segments.empty()) return {};
     enter(Stage::kSkinning);
     skin_.skin(avatar_, frame, options_.method);

@@ -66,7 +66,7 @@ float least_radius_m(std::span<const SkinMatrix> palette, const glm::dvec3& exte
 /// Tests every segment against every triangle.
 class GeometryDetector final : public Detector {
  public:
-  GeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
+  GeometryDetector(std::shared_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                    const DetectorOptions& options)
       : context_(std::move(context)),
         gl_(current_gl(*context_)),
@@ -82,9 +82,7 @@ class GeometryDetector final : public Detector {
         program_(gl_, head(),
                  {{GL_VERTEX_SHADER, "geometry.vert", shaders::kGeometryVert},
                   {GL_GEOMETRY_SHADER, "geometry.geom", shaders::kGeometryGeom}}) {
-    mesh_.bind();
-    nowhere_.begin(1);  // a draw without any framebuffer fails in a surfaceless context
-    gl_.Enable(GL_RASTERIZER_DISCARD);
+    nowhere_.begin(1);
     check_gl(gl_, "uploading the avatar");
   }
 
@@ -102,11 +100,10 @@ class GeometryDetector final : public Detector {
   bool skins_in_shader() const override { return true; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     if (frame.segments.empty()) return {};
     enter(Stage::kUpload);
-    context_->make_current();
-    gl_.UseProgram(program_.name());
+    begin(program_);
     upload_palette(frame, program_);
     upload_segments(frame);
     std::uint64_t pairs_captured = 0;
@@ -128,20 +125,29 @@ class GeometryDetector final : public Detector {
   }
 
   void skinned_vertices(const DetectorFrame& frame, std::vector<glm::vec3>& out) override {
-    context_->make_current();
     if (!skinning_program_) {
+      context_->make_current();
       skinning_program_.emplace(
           gl_, head(),
           std::initializer_list<GlProgram::Stage>{{GL_VERTEX_SHADER, "geometry.vert", shaders::kGeometryVert}},
           "Skinned.position");
     }
-    gl_.UseProgram(skinning_program_->name());
+    begin(*skinning_program_);
     upload_palette(frame, *skinning_program_);
     mesh_.capture(out);
     check_gl(gl_, "capturing skinned vertices");
   }
 
  private:
+  /// Sets what another detector of the context may have changed.
+  void begin(const GlProgram& program) {
+    context_->make_current();
+    gl_.UseProgram(program.name());
+    mesh_.bind();
+    nowhere_.bind();  // a draw without any framebuffer fails in a surfaceless context
+    gl_.Enable(GL_RASTERIZER_DISCARD);
+  }
+
   /// The capacity of the shaders' palette, in entries.
   std::size_t palette_entries() const {
     return avatar_.palette.size() * (method_ == Method::kStatic ? std::size_t{1} : std::size_t{2});
@@ -199,7 +205,7 @@ class GeometryDetector final : public Detector {
     }
   }
 
-  std::unique_ptr<GlContext> context_;
+  std::shared_ptr<GlContext> context_;
   const GlFunctions& gl_;
   const Avatar& avatar_;
   Method method_;
@@ -218,7 +224,7 @@ class GeometryDetector final : public Detector {
 
 }  // namespace
 
-std::unique_ptr<Detector> make_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+std::unique_ptr<Detector> make_geometry_detector(std::shared_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options) {
   require_proofs(context->info());
   if (options.skip == Skip::kOn) return make_skipping_geometry_detector(std::move(context), avatar, map, options);

@@ -40,7 +40,7 @@ DetectorOptions with_sources(DetectorOptions options) {
 
 class PaperDetector final : public Detector {
  public:
-  PaperDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
+  PaperDetector(std::shared_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                 const DetectorOptions& options)
       : context_(std::move(context)),
         gl_(current_gl(*context_)),
@@ -61,10 +61,6 @@ class PaperDetector final : public Detector {
     largest_share_ = std::bit_floor(std::min(total / components, most));
 
     upload_map(map);
-    gl_.Enable(GL_DEPTH_TEST);
-    gl_.DepthFunc(GL_LESS);
-    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
     check_gl(gl_, "uploading the avatar");
   }
 
@@ -82,7 +78,7 @@ class PaperDetector final : public Detector {
   bool skins_in_shader() const override { return true; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     enter(Stage::kUpload);
     context_->make_current();
     upload_frame(frame);
@@ -128,8 +124,8 @@ class PaperDetector final : public Detector {
     gl_.TextureParameteri(map_texture_, GL_TEXTURE_WRAP_T, GL_REPEAT);
   }
 
-  /// Uploads the palette and the segments of this frame, and restores every binding that another detector of the
-  /// context may have changed.
+  /// Uploads the palette and the segments of this frame, and sets what another detector of the context may have
+  /// changed.
   void upload_frame(const DetectorFrame& frame) {
     palette_.upload(frame.palette.data(), frame.palette.size() * sizeof(SkinMatrix), GL_STREAM_DRAW);
     gpu_segments_.clear();
@@ -139,6 +135,11 @@ class PaperDetector final : public Detector {
     gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_PALETTE, palette_.name());
     gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_SEGMENTS, segments_.name());
     gl_.BindTextureUnit(VESTIGE_TEXTURE_ACTUATOR_MAP, map_texture_);
+    gl_.Disable(GL_RASTERIZER_DISCARD);
+    gl_.Enable(GL_DEPTH_TEST);
+    gl_.DepthFunc(GL_LESS);
+    gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+    gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
   }
 
   void draw(const DetectorFrame& frame) {
@@ -262,7 +263,7 @@ class PaperDetector final : public Detector {
   /// A contact whose triangle plane was not asked for still counts as one.
   static constexpr std::uint32_t kUnreadTriangle = 0;
 
-  std::unique_ptr<GlContext> context_;
+  std::shared_ptr<GlContext> context_;
   const GlFunctions& gl_;
   const Avatar& avatar_;
   DetectorOptions options_;
@@ -283,7 +284,7 @@ class PaperDetector final : public Detector {
 
 }  // namespace
 
-std::unique_ptr<Detector> make_paper_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+std::unique_ptr<Detector> make_paper_detector(std::shared_ptr<GlContext> context, const Avatar& avatar,
                                               const ActuatorMap& map, const DetectorOptions& options) {
   return std::make_unique<PaperDetector>(std::move(context), avatar, map, options);
 }

@@ -69,7 +69,7 @@ struct Draw {
 /// than 2 us.
 class SkippingGeometryDetector final : public Detector {
  public:
-  SkippingGeometryDetector(std::unique_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
+  SkippingGeometryDetector(std::shared_ptr<GlContext> context, const Avatar& avatar, const ActuatorMap& map,
                            const DetectorOptions& options)
       : context_(std::move(context)),
         gl_(current_gl(*context_)),
@@ -90,10 +90,7 @@ class SkippingGeometryDetector final : public Detector {
     gl_.VertexArrayVertexBuffer(vertex_array_, 0, corners_.name(), 0,
                                 static_cast<GLsizei>(corners_per_triangle() * sizeof(glm::vec3)));
     for (GLuint i = 0; i < corners_per_triangle(); ++i) add_attribute(VESTIGE_ATTRIBUTE_CORNERS + i, i);
-    gl_.BindVertexArray(vertex_array_);
-    gl_.UseProgram(program_.name());
-    nowhere_.begin(1);  // a draw without any framebuffer fails in a surfaceless context
-    gl_.Enable(GL_RASTERIZER_DISCARD);
+    nowhere_.begin(1);
     check_gl(gl_, "preparing the candidates' shaders");
   }
 
@@ -108,11 +105,12 @@ class SkippingGeometryDetector final : public Detector {
 
   const char* name() const override { return "geometry"; }
   Method method() const override { return method_; }
+  Skip skip() const override { return Skip::kOn; }
   GlInfo gl_info() const override { return context_->info(); }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
-    if (frame.segments.empty()) return {};
+    row.clear(frame.columns);
+    if (frame.segments.empty()) return {.frames_skipped = frame.out_of_reach > 0 ? 1U : 0U};
     enter(Stage::kCandidates);
     candidates_.find(frame, method_);
     DetectorWork work;
@@ -211,8 +209,13 @@ class SkippingGeometryDetector final : public Detector {
     }
   }
 
+  /// Also sets what another detector of the context may have changed.
   void upload() {
     context_->make_current();
+    gl_.UseProgram(program_.name());
+    gl_.BindVertexArray(vertex_array_);
+    nowhere_.bind();  // a draw without any framebuffer fails in a surfaceless context
+    gl_.Enable(GL_RASTERIZER_DISCARD);
     corners_.upload(gpu_corners_.data(), gpu_corners_.size() * sizeof(glm::vec3), GL_STREAM_DRAW);
     blocks_.upload(nullptr, draws_.size() * sizeof(Block),
                    GL_STREAM_DRAW);  // a uniform block must be backed to its end
@@ -244,7 +247,7 @@ class SkippingGeometryDetector final : public Detector {
     return 1;
   }
 
-  std::unique_ptr<GlContext> context_;
+  std::shared_ptr<GlContext> context_;
   const GlFunctions& gl_;
   const Avatar& avatar_;
   Method method_;
@@ -267,7 +270,7 @@ class SkippingGeometryDetector final : public Detector {
 
 }  // namespace
 
-std::unique_ptr<Detector> make_skipping_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+std::unique_ptr<Detector> make_skipping_geometry_detector(std::shared_ptr<GlContext> context, const Avatar& avatar,
                                                           const ActuatorMap& map, const DetectorOptions& options) {
   return std::make_unique<SkippingGeometryDetector>(std::move(context), avatar, map, options);
 }

@@ -8,7 +8,7 @@
 namespace vestige {
 
 /// `geometry` with Skip::kOn.
-std::unique_ptr<Detector> make_skipping_geometry_detector(std::unique_ptr<GlContext> context, const Avatar& avatar,
+std::unique_ptr<Detector> make_skipping_geometry_detector(std::shared_ptr<GlContext> context, const Avatar& avatar,
                                                           const ActuatorMap& map, const DetectorOptions& options);
 
 }  // namespace vestige

@@ -32,6 +32,7 @@ CapturedPairs::CapturedPairs(const GlFunctions& gl) : gl_(gl), buffer_(gl), time
 }
 
 void CapturedPairs::begin() {
+  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, buffer_.name());
   const Head head = {0, static_cast<std::uint32_t>(capacity_)};
   buffer_.upload(&head, sizeof(head), GL_STREAM_READ);
 }
@@ -68,7 +69,6 @@ std::size_t CapturedPairs::read(std::size_t items) {
 void CapturedPairs::grow(std::size_t pairs) {
   capacity_ = std::min(std::bit_ceil(pairs), largest_);
   buffer_.upload(nullptr, sizeof(Head) + capacity_ * sizeof(CapturedPair), GL_STREAM_READ);
-  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, buffer_.name());
 }
 
 }  // namespace vestige

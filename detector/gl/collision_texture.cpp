@@ -24,8 +24,7 @@ std::size_t largest_side(const GlFunctions& gl) {
 
 void CollisionTexture::begin(std::size_t texels) {
   if (texels > texels_ || framebuffer_ == 0) create(texels);
-  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
-  gl_.Viewport(0, 0, width_, height_);
+  bind();
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr std::array<GLfloat, 4> kNone = {kInfinity, kInfinity, kInfinity, kInfinity};
   constexpr std::array<GLuint, 4> kNoIndex = {kNoTriangle, 0, 0, 0};
@@ -40,6 +39,11 @@ void CollisionTexture::begin(std::size_t texels) {
     }
   }
   gl_.ClearNamedFramebufferfv(framebuffer_, GL_DEPTH, 0, &kFar);
+}
+
+void CollisionTexture::bind() const {
+  gl_.BindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  gl_.Viewport(0, 0, width_, height_);
 }
 
 std::size_t CollisionTexture::values_of(std::size_t plane_index) const {

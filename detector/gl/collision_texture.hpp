@@ -51,6 +51,9 @@ class CollisionTexture {
   /// texture cannot hold that many texels, or if the driver refuses the planes.
   void begin(std::size_t texels);
 
+  /// Binds the framebuffer of the last `begin` as it is.
+  void bind() const;
+
   /// Reads all planes of the set back, and waits once for all of them. The result is valid until the next call.
   void read();
   /// What `read` read of the plane kGlPlanes[plane_index], which must be in the set: width * height * components values

@@ -4,7 +4,7 @@
 
 namespace vestige {
 
-std::vector<Hdf5Column::Description> contact_columns(ColliderShape shape) {
+std::vector<Hdf5Column::Description> contact_columns(OptionalColumns optional) {
   const Hdf5Library& h5 = hdf5();
   const auto column = [](const char* name, hid_t type, std::size_t bytes, const char* units, const char* description) {
     return Hdf5Column::Description{name, type, bytes, {}, units, {}, description};
@@ -24,13 +24,16 @@ std::vector<Hdf5Column::Description> contact_columns(ColliderShape shape) {
       column("x", h5.float64, 8, "m", "place in the world"),
       column("y", h5.float64, 8, "m", "place in the world; up"),
       column("z", h5.float64, 8, "m", "place in the world")};
-  if (shape == ColliderShape::kSpheres)
+  if (optional.shape == ColliderShape::kSpheres)
     columns.push_back(column("depth", h5.float64, 8, "m", "how deep a sphere is in the body at the frame's end"));
+  if (optional.has_avatars)
+    columns.push_back(column("avatar", h5.uint16, 2, "", "number of the person who was touched, from 1 on"));
   return columns;
 }
 
-ContactColumns::ContactColumns(hid_t where, const std::filesystem::path& path, ColliderShape shape) {
-  std::vector<Hdf5Column::Description> columns = contact_columns(shape);
+ContactColumns::ContactColumns(hid_t where, const std::filesystem::path& path, OptionalColumns optional)
+    : optional_(optional) {
+  std::vector<Hdf5Column::Description> columns = contact_columns(optional);
   columns_.reserve(columns.size());
   for (Hdf5Column::Description& column : columns) columns_.emplace_back(where, path, std::move(column));
 }
@@ -42,8 +45,11 @@ void ContactColumns::append(const RecordedContact& contact) {
   const double depth_m = contact.depth_m.value_or(0);
   const void* values[] = {&contact.frame, &contact.time_s, &contact.collider, &contact.triangle, &contact.t,
                           &weights.x,     &weights.y,      &texture.x,        &texture.y,        &contact.actuator,
-                          &contact.side,  &place_m.x,      &place_m.y,        &place_m.z,        &depth_m};
-  for (std::size_t i = 0; i < columns_.size(); ++i) columns_[i].append(values[i]);
+                          &contact.side,  &place_m.x,      &place_m.y,        &place_m.z};
+  auto column = columns_.begin();
+  for (const void* value : values) (column++)->append(value);
+  if (optional_.shape == ColliderShape::kSpheres) (column++)->append(&depth_m);
+  if (optional_.has_avatars) column->append(&contact.avatar);
 }
 
 void ContactColumns::close() {

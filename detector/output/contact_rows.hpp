@@ -13,8 +13,9 @@ namespace vestige {
 
 inline constexpr const char* kContactsRemedy = "write it with 'vestige replay --contacts'";
 
-/// Returns what files say of a contact of `frame`, by the collider with this id.
-RecordedContact recorded(const DetectorFrame& frame, const Contact& contact, std::uint32_t collider);
+/// Returns what files say of a contact of `frame`, by the collider with this id on this avatar.
+RecordedContact recorded(std::uint16_t avatar, const DetectorFrame& frame, const Contact& contact,
+                         std::uint32_t collider);
 
 /// What is wrong with a contact of a file.
 struct ContactFault {
@@ -28,10 +29,10 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
 
 // The two formats, for `make_contacts_file` and `read_contacts`.
 std::unique_ptr<ContactsFile> make_contacts_csv(const std::filesystem::path& path, Overwrite overwrite,
-                                                ColliderShape shape);
+                                                OptionalColumns columns);
 std::unique_ptr<ContactsFile> make_contacts_hdf5(const std::filesystem::path& path, Overwrite overwrite,
                                                  const std::map<std::string, std::string>& attributes,
-                                                 ColliderShape shape);
+                                                 OptionalColumns columns);
 std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path, const ContactLimits& limits);
 std::vector<RecordedContact> read_contacts_hdf5(const std::filesystem::path& path, const ContactLimits& limits);
 

@@ -7,9 +7,9 @@ namespace vestige {
 
 std::unique_ptr<ContactsFile> make_contacts_file(const std::filesystem::path& path, Overwrite overwrite,
                                                  const std::map<std::string, std::string>& attributes,
-                                                 ColliderShape shape) {
-  if (has_hdf5_name(path)) return make_contacts_hdf5(path, overwrite, attributes, shape);
-  return make_contacts_csv(path, overwrite, shape);
+                                                 OptionalColumns columns) {
+  if (has_hdf5_name(path)) return make_contacts_hdf5(path, overwrite, attributes, columns);
+  return make_contacts_csv(path, overwrite, columns);
 }
 
 }  // namespace vestige

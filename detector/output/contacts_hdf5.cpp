@@ -16,24 +16,25 @@ namespace {
 
 constexpr const char* kFormat = "vestige contacts";
 constexpr const char* kVersion = "1";
-constexpr const char* kDepth = "depth";  // only where colliders are spheres
+constexpr const char* kDepth = "depth";    // only where colliders are spheres
+constexpr const char* kAvatar = "avatar";  // only of several people
 constexpr hsize_t kBlockRows = 65536;
 
 class ContactsHdf5 final : public ContactsFile {
  public:
   ContactsHdf5(const std::filesystem::path& path, Overwrite overwrite,
-               const std::map<std::string, std::string>& attributes, ColliderShape shape)
+               const std::map<std::string, std::string>& attributes, OptionalColumns columns)
       : file_(path, overwrite) {
     write_hdf5_attribute(file_.id(), "format", kFormat, path);
     write_hdf5_attribute(file_.id(), "format_version", kVersion, path);
     for (const auto& [key, value] : attributes) write_hdf5_attribute(file_.id(), key, value, path);
-    columns_.emplace(file_.id(), path, shape);
+    columns_.emplace(file_.id(), path, columns);
   }
 
-  void write(const DetectorFrame& frame, const ContactRow& row,
+  void write(std::uint16_t avatar, const DetectorFrame& frame, const ContactRow& row,
              const std::vector<std::uint32_t>& collider_ids) override {
     for (std::size_t i = 0; i < row.size(); ++i)
-      if (row[i].hit()) columns_->append(recorded(frame, row[i], collider_ids[i]));
+      if (row[i].hit()) columns_->append(recorded(avatar, frame, row[i], collider_ids[i]));
   }
 
   void commit() override {
@@ -58,8 +59,9 @@ class ContactTables {
     if (version != kVersion)
       throw Error(path.string(), fmt::format("its format version is '{}', not {}", version, kVersion),
                   "use the later version of vestige that wrote it");
-    if (hdf5().link_exists(file_.id(), kDepth, H5P_DEFAULT) > 0) shape_ = ColliderShape::kSpheres;
-    for (const Hdf5Column::Description& column : contact_columns(shape_))
+    if (hdf5().link_exists(file_.id(), kDepth, H5P_DEFAULT) > 0) optional_.shape = ColliderShape::kSpheres;
+    optional_.has_avatars = hdf5().link_exists(file_.id(), kAvatar, H5P_DEFAULT) > 0;
+    for (const Hdf5Column::Description& column : contact_columns(optional_))
       tables_.emplace_back(file_.id(), path, column.name, kContactsRemedy);
     for (const Hdf5Table& table : tables_) table.expect({rows()});
     // Deflate packs at most 1032 bytes into one.
@@ -85,7 +87,9 @@ class ContactTables {
     tables_[11].read(first, count, x_m_);
     tables_[12].read(first, count, y_m_);
     tables_[13].read(first, count, z_m_);
-    if (shape_ == ColliderShape::kSpheres) tables_[14].read(first, count, depth_m_);
+    const bool has_depths = optional_.shape == ColliderShape::kSpheres;
+    if (has_depths) tables_[14].read(first, count, depth_m_);
+    if (optional_.has_avatars) tables_.back().read(first, count, avatar_);
     for (std::size_t i = 0; i < count; ++i) {
       constexpr std::int64_t kNoSide = 2;  // is refused
       contacts.push_back({.frame = frame_[i],
@@ -98,7 +102,8 @@ class ContactTables {
                           .actuator = actuator_[i],
                           .side = static_cast<std::int8_t>(std::clamp(side_[i], -kNoSide, kNoSide)),
                           .position_m = {x_m_[i], y_m_[i], z_m_[i]}});
-      if (shape_ == ColliderShape::kSpheres) contacts.back().depth_m = depth_m_[i];
+      if (has_depths) contacts.back().depth_m = depth_m_[i];
+      if (optional_.has_avatars) contacts.back().avatar = avatar_[i];
       if (const auto fault = fault_of(contacts.back(), limits))
         throw Error(path_.string(), fmt::format("its table {}, row {}: {}", fault->column, first + i, fault->cause),
                     fault->remedy);
@@ -108,7 +113,7 @@ class ContactTables {
  private:
   std::filesystem::path path_;
   Hdf5Handle file_;
-  ColliderShape shape_ = ColliderShape::kPoints;
+  OptionalColumns optional_;
   std::vector<Hdf5Table> tables_;  ///< in the order of `contact_columns`
   std::vector<std::uint64_t> frame_;
   std::vector<double> time_s_;
@@ -124,7 +129,8 @@ class ContactTables {
   std::vector<double> x_m_;
   std::vector<double> y_m_;
   std::vector<double> z_m_;
-  std::vector<double> depth_m_;  ///< only of spheres
+  std::vector<double> depth_m_;        ///< only of spheres
+  std::vector<std::uint16_t> avatar_;  ///< only of several people
 };
 
 std::vector<RecordedContact> read_all(const std::filesystem::path& path, const ContactLimits& limits) {
@@ -138,8 +144,8 @@ std::vector<RecordedContact> read_all(const std::filesystem::path& path, const C
 
 std::unique_ptr<ContactsFile> make_contacts_hdf5(const std::filesystem::path& path, Overwrite overwrite,
                                                  const std::map<std::string, std::string>& attributes,
-                                                 ColliderShape shape) {
-  return std::make_unique<ContactsHdf5>(path, overwrite, attributes, shape);
+                                                 OptionalColumns columns) {
+  return std::make_unique<ContactsHdf5>(path, overwrite, attributes, columns);
 }
 
 std::vector<RecordedContact> read_contacts_hdf5(const std::filesystem::path& path, const ContactLimits& limits) {

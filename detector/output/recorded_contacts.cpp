@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "detector/output/contact_rows.hpp"
@@ -12,7 +13,8 @@
 
 namespace vestige {
 
-RecordedContact recorded(const DetectorFrame& frame, const Contact& contact, std::uint32_t collider) {
+RecordedContact recorded(std::uint16_t avatar, const DetectorFrame& frame, const Contact& contact,
+                         std::uint32_t collider) {
   return {.frame = frame.index,
           .time_s = frame.time_s,
           .collider = collider,
@@ -23,7 +25,8 @@ RecordedContact recorded(const DetectorFrame& frame, const Contact& contact, std
           .actuator = contact.actuator,
           .side = contact.side,
           .position_m = frame.origin_m + contact.position,
-          .depth_m = contact.depth_m};
+          .depth_m = contact.depth_m,
+          .avatar = avatar};
 }
 
 std::optional<ContactFault> fault_of(const RecordedContact& contact, const ContactLimits& limits) {
@@ -50,6 +53,8 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
       return ContactFault{column, "u and v must be weights from 0 to 1", kContactsRemedy};
   if (contact.depth_m.value_or(0) < 0) return ContactFault{"depth", "depth must not be negative", kContactsRemedy};
   if (contact.side < -1 || contact.side > 1) return ContactFault{"side", "side must be -1, 0 or 1", kContactsRemedy};
+  if (contact.avatar == 0) return ContactFault{"avatar", "avatar must be from 1 on", kContactsRemedy};
+  if (contact.avatar > limits.people) return beyond("avatar", contact.avatar, limits.people);
   if (contact.frame >= limits.frames) return beyond("frame", contact.frame, limits.frames);
   if (contact.triangle >= limits.triangles) return beyond("triangle", contact.triangle, limits.triangles);
   if (contact.actuator > limits.actuators) return beyond("actuator", contact.actuator, limits.actuators);
@@ -59,11 +64,15 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
 std::vector<RecordedContact> read_contacts(const std::filesystem::path& path, const ContactLimits& limits) {
   std::vector<RecordedContact> contacts =
       is_hdf5(path) ? read_contacts_hdf5(path, limits) : read_contacts_csv(path, limits);
-  const auto place = [](const RecordedContact& contact) { return std::pair(contact.frame, contact.collider); };
+  const auto place = [](const RecordedContact& contact) {
+    return std::tuple(contact.frame, contact.avatar, contact.collider);
+  };
   std::ranges::sort(contacts, {}, place);
   const auto twice = std::ranges::adjacent_find(contacts, {}, place);
   if (twice != contacts.end())
-    throw Error(path.string(), fmt::format("collider {} has two contacts in frame {}", twice->collider, twice->frame),
+    throw Error(path.string(),
+                fmt::format("collider {} has two contacts in frame {}{}", twice->collider, twice->frame,
+                            limits.people > 1 ? fmt::format(" with avatar {}", twice->avatar) : ""),
                 kContactsRemedy);
   return contacts;
 }

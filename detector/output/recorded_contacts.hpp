@@ -24,18 +24,21 @@ struct RecordedContact {
   std::int8_t side = 0;
   glm::dvec3 position_m = glm::dvec3(0);  ///< in the world
   std::optional<double> depth_m = {};     ///< of a sphere; empty if the file has no depths
+  std::uint16_t avatar = 1;               ///< the person who was touched, from 1 on; 1 if the file does not say
 };
 
-/// The numbers of triangles, actuators and frames that the contacts of a file can refer to.
+/// The numbers of people, triangles, actuators and frames that the contacts of a file can refer to.
 struct ContactLimits {
+  std::size_t people = 1;
   std::size_t triangles = std::numeric_limits<std::uint32_t>::max();
   std::size_t actuators = std::numeric_limits<std::uint16_t>::max();
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// Reads a file of `ContactsFile`, CSV or HDF5 by its content, with rows in any order, and returns the contacts ordered
-/// by frame and collider. Throws `Error` with file and line, or table and row, also if a contact refers to something
-/// that does not exist. Precondition: no threads have been started, because HDF5 is first read in a child process.
+/// by frame, avatar and collider. Throws `Error` with file and line, or table and row, also if a contact refers to
+/// something that does not exist. Precondition: no threads have been started, because HDF5 is first read in a child
+/// process.
 std::vector<RecordedContact> read_contacts(const std::filesystem::path& path, const ContactLimits& limits = {});
 
 }  // namespace vestige

@@ -4,7 +4,10 @@
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
+#include <ImfMultiPartOutputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
 #include <ImfStringAttribute.h>
 
 #include <array>
@@ -72,54 +75,74 @@ class MemoryStream final : public Imf::OStream {
 
 }  // namespace
 
-TextureExr::TextureExr(PlaneSet planes, std::size_t columns, std::map<std::string, std::string> attributes)
-    : planes_(planes), columns_(columns), attributes_(std::move(attributes)) {}
+TextureExr::TextureExr(PlaneSet planes, std::size_t columns, std::map<std::string, std::string> attributes,
+                       const std::vector<std::string>& people)
+    : planes_(planes), columns_(columns), attributes_(std::move(attributes)) {
+  for (const std::string& name : people) people_.push_back({.name = name});
+}
 
-void TextureExr::add(const DetectorFrame& frame, const ContactRow& row) {
+void TextureExr::add(std::size_t person, const DetectorFrame& frame, const ContactRow& row) {
+  PersonImage& image = people_[person];
   for (std::uint32_t column = 0; column < row.size(); ++column) {
     if (!row[column].hit()) continue;
     Contact contact = row[column];
     contact.position += frame.origin_m;
-    texels_.push_back({rows_, column, contact});
+    image.texels.push_back({image.rows, column, contact});
   }
-  ++rows_;
+  ++image.rows;
 }
 
 void TextureExr::write(OutputFile& file) const {
-  if (rows_ == 0 || columns_ == 0)
+  const std::uint32_t rows = people_.front().rows;
+  if (rows == 0 || columns_ == 0)
     throw Error(file.path().string(), "the trace has no frame or no collider, so there is no texture to write",
                 "replay a trace with frames and colliders");
-  Imf::Header header(static_cast<int>(columns_), static_cast<int>(rows_));
+  Imf::Header header(static_cast<int>(columns_), static_cast<int>(rows));
   header.compression() = Imf::ZIPS_COMPRESSION;
   for (const auto& [name, value] : attributes_) header.insert(name, Imf::StringAttribute(value));
-  std::vector<const ChannelFormat*> channels;
-  for (const ChannelFormat& channel : kChannels) {
-    if (!planes_.has(channel.plane)) continue;
-    channels.push_back(&channel);
-    header.channels().insert(channel.name, Imf::Channel(channel.type));
-  }
+  for (const ChannelFormat& channel : kChannels)
+    if (planes_.has(channel.plane)) header.channels().insert(channel.name, Imf::Channel(channel.type));
   MemoryStream stream;
-  {
+  if (people_.size() == 1) {
     Imf::OutputFile image(stream, header);
-    std::vector<std::uint32_t> line(channels.size() * columns_);
-    Imf::FrameBuffer frame_buffer;
-    for (std::size_t i = 0; i < channels.size(); ++i)
-      // With a y stride of 0, every row is written from the same line.
-      frame_buffer.insert(channels[i]->name, Imf::Slice(channels[i]->type, reinterpret_cast<char*>(&line[i * columns_]),
-                                                        sizeof(std::uint32_t), 0));
-    image.setFrameBuffer(frame_buffer);
-    auto texel = texels_.begin();
-    for (std::uint32_t row = 0; row < rows_; ++row) {
-      for (std::size_t i = 0; i < channels.size(); ++i)
-        std::fill_n(&line[i * columns_], columns_,
-                    channels[i]->type == Imf::UINT ? kNoTriangle : float_bits(std::numeric_limits<double>::infinity()));
-      for (; texel != texels_.end() && texel->row == row; ++texel)
-        for (std::size_t i = 0; i < channels.size(); ++i)
-          line[i * columns_ + texel->column] = channels[i]->bits(texel->contact);
-      image.writePixels(1);
+    write_rows(people_.front(), image);
+  } else {
+    std::vector<Imf::Header> headers(people_.size(), header);
+    for (std::size_t person = 0; person < people_.size(); ++person) {
+      headers[person].setName(people_[person].name);
+      headers[person].setType(Imf::SCANLINEIMAGE);
+    }
+    Imf::MultiPartOutputFile parts(stream, headers.data(), static_cast<int>(headers.size()));
+    for (std::size_t person = 0; person < people_.size(); ++person) {
+      Imf::OutputPart image(parts, static_cast<int>(person));
+      write_rows(people_[person], image);
     }
   }
   file.write(stream.content());
+}
+
+template <typename Image>
+void TextureExr::write_rows(const PersonImage& person, Image& image) const {
+  std::vector<const ChannelFormat*> channels;
+  for (const ChannelFormat& channel : kChannels)
+    if (planes_.has(channel.plane)) channels.push_back(&channel);
+  std::vector<std::uint32_t> line(channels.size() * columns_);
+  Imf::FrameBuffer frame_buffer;
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    // With a y stride of 0, every row is written from the same line.
+    frame_buffer.insert(channels[i]->name, Imf::Slice(channels[i]->type, reinterpret_cast<char*>(&line[i * columns_]),
+                                                      sizeof(std::uint32_t), 0));
+  image.setFrameBuffer(frame_buffer);
+  auto texel = person.texels.begin();
+  for (std::uint32_t row = 0; row < person.rows; ++row) {
+    for (std::size_t i = 0; i < channels.size(); ++i)
+      std::fill_n(&line[i * columns_], columns_,
+                  channels[i]->type == Imf::UINT ? kNoTriangle : float_bits(std::numeric_limits<double>::infinity()));
+    for (; texel != person.texels.end() && texel->row == row; ++texel)
+      for (std::size_t i = 0; i < channels.size(); ++i)
+        line[i * columns_ + texel->column] = channels[i]->bits(texel->contact);
+    image.writePixels(1);
+  }
 }
 
 }  // namespace vestige

@@ -1,7 +1,6 @@
 #include "detector/output/texture_hash.hpp"
 
 #include <bit>
-#include <span>
 
 namespace vestige {
 
@@ -23,6 +22,13 @@ void TextureHash::add(const ContactRow& row) {
     append_little_endian(bytes_, contact.actuator);
   }
   sha_.update(std::as_bytes(std::span(bytes_)));
+}
+
+std::string texture_hash_of(std::span<const std::string> people) {
+  if (people.size() == 1) return people.front();
+  Sha256 sha;
+  for (const std::string& hash : people) sha.update(std::as_bytes(std::span(hash)));
+  return sha.hex();
 }
 
 }  // namespace vestige

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <memory>
+#include <span>
 #include <string>
 
 #include "detector/contact.hpp"
@@ -20,5 +20,9 @@ class TextureHash {
   Sha256 sha_;
   std::string bytes_;
 };
+
+/// Returns the hash of a run with the hashes of its people, in their order: of one person the same, of several SHA-256
+/// over the characters of theirs.
+std::string texture_hash_of(std::span<const std::string> people);
 
 }  // namespace vestige

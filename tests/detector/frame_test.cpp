@@ -51,6 +51,46 @@ TEST_F(FrameBuilderTest, GivesAColliderTheColumnOfItsRankAndASegmentFromItsLastP
   EXPECT_EQ(frame.segments[1].start, glm::vec3(0, 0, 1));
 }
 
+TEST_F(FrameBuilderTest, TakesThePoseOfItsPersonWhomTheirOwnCollidersDoNotTouch) {
+  const auto frame_of_two = [this](std::uint64_t index, double y) {
+    TraceFrame frame = frame_at(index, {{3, {0, y, 1}, 0, 1}, {7, {0, y, 1}, 0, 2}, {9, {0, y, 1}}});
+    frame.poses.push_back(rest_pose(avatar_));
+    frame.poses[1].origin_m = {100, 0, 0};
+    return frame;
+  };
+  for (const std::size_t person : {0U, 1U}) {
+    FrameBuilder builder(avatar_, ids_, Method::kStatic, person);
+    builder.next(frame_of_two(0, 0));
+    const DetectorFrame& frame = builder.next(frame_of_two(1, 1));
+    EXPECT_EQ(frame.origin_m.x, 100.0 * static_cast<double>(person));
+    EXPECT_EQ(frame.columns, 3U) << "a column is the rank of an id in the trace, whoever is touched";
+    ASSERT_EQ(frame.segments.size(), 2U);
+    EXPECT_EQ(frame.segments[0].column, person == 0 ? 1U : 0U);
+    EXPECT_EQ(frame.segments[1].column, 2U);
+  }
+}
+
+TEST_F(FrameBuilderTest, TakesAMissingPoseForOneThatIsNotFinite) {
+  for (const Method method : {Method::kStatic, Method::kCcd}) {
+    FrameBuilder builder(avatar_, ids_, method);
+    std::vector<std::size_t> segments;
+    for (std::uint64_t index = 0; index < 5; ++index) {
+      TraceFrame frame = frame_at(index, {{3, {0, 0, static_cast<double>(index)}}});
+      if (index == 2) frame.poses.front() = {};
+      segments.push_back(builder.next(frame).segments.size());
+    }
+    EXPECT_EQ(segments, (std::vector<std::size_t>{0, 1, 0, method == Method::kStatic ? 1U : 0U, 1}));
+    EXPECT_EQ(builder.non_finite_frames(), 1U);
+    EXPECT_EQ(builder.first_non_finite(), 2U);
+  }
+  FrameBuilder builder(avatar_, ids_);
+  TraceFrame first = frame_at(0, {{3, {0, 0, 0}}});
+  first.poses.front() = {};
+  builder.next(first);
+  EXPECT_EQ(builder.next(frame_at(1, {{3, {0, 0, 1}}})).segments.size(), 1U);
+  EXPECT_EQ(builder.non_finite_frames(), 1U);
+}
+
 TEST_F(FrameBuilderTest, TestsNothingAfterAGapOrATeleport) {
   FrameBuilder builder(avatar_, ids_);
   builder.next(frame_at(0, {{3, {0, 0, 0}}, {7, {0, 0, 0}}}));

@@ -143,7 +143,7 @@ Timeline timeline_of(const ContactRecording& recording, const ScoredLayout& layo
     return layout.covered == nullptr ? std::span<const CoveredPlace>() : layout.covered->of(contact_of[column]);
   };
   for (std::size_t frame = 0; frame < recording.frames(); ++frame) {
-    row.assign(columns, Contact());
+    row.clear(columns);
     for (std::size_t i = recording.first[frame]; i < recording.first[frame + 1]; ++i) {
       Contact contact = recording.contacts[i];
       contact.actuator = map.at(contact.triangle, contact.texture_coordinate);

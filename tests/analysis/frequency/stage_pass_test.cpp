@@ -18,7 +18,7 @@ class Worker final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     if (throws) throw std::runtime_error("tired");
     ++detected;
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     for (std::size_t i = 0; i < frame.columns; ++i) {
       enter(Stage::kTest);
       work_for(std::chrono::microseconds(200));

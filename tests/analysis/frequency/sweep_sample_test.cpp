@@ -47,7 +47,7 @@ class Scripted final : public Detector {
   explicit Scripted(std::function<bool(std::uint64_t)> touches) : touches_(std::move(touches)) {}
   const char* name() const override { return "scripted"; }
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     if (touches_(frame.index)) row[0].triangle = 0;
     return {};
   }

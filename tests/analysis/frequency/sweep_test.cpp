@@ -24,7 +24,7 @@ class Fickle final : public Detector {
   explicit Fickle(PlaneSet planes) : planes_(planes) {}
   const char* name() const override { return "fickle"; }
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
-    row.assign(frame.columns, Contact());
+    row.clear(frame.columns);
     if (planes_ == kHashedPlanes)
       for (Contact& contact : row) contact.triangle = 0;
     return {};

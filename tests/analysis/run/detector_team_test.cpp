@@ -19,8 +19,15 @@ using test::builtin_map;
 constexpr std::uint32_t kColliders = 20;
 constexpr int kBatches = 5;
 
-std::unique_ptr<Detector> make_cpu() {
-  return make_cpu_detector(builtin_avatar(), builtin_map(), {});
+/// The detectors of a trace of one person.
+PeopleDetectors only(std::unique_ptr<Detector> detector) {
+  PeopleDetectors detectors;
+  detectors.push_back(std::move(detector));
+  return detectors;
+}
+
+PeopleDetectors make_cpu() {
+  return only(make_cpu_detector(builtin_avatar(), builtin_map(), {}));
 }
 
 std::string hash_by(std::size_t threads) {
@@ -54,7 +61,7 @@ class FailingDetector : public Detector {
 };
 
 TEST(DetectorTeamTest, PassesOnWhatADetectorThrewOnAnyThread) {
-  DetectorTeam team(3, [] { return std::make_unique<FailingDetector>(); });
+  DetectorTeam team(3, [] { return only(std::make_unique<FailingDetector>()); });
   FrameBatch batch;
   for (int i = 0; i < 20; ++i) batch.add(DetectorFrame());
   team.start(batch);

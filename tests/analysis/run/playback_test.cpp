@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <thread>
 #include <vector>
 
@@ -25,7 +26,8 @@ class AlwaysTouched : public Detector {
     Contact contact;
     contact.triangle = 0;
     contact.actuator = 1;
-    row.assign(frame.columns, contact);
+    row.clear(frame.columns);
+    std::ranges::fill(row, contact);
     return {};
   }
   void skinned_vertices(const DetectorFrame&, std::vector<glm::vec3>&) override {}

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -283,7 +284,11 @@ TEST_P(ShapesDetector, LosesNoContactBecausePartsAreFarAway) {
   for (std::size_t k = 0; k < scene.size(); ++k)
     scene[k].colliders.push_back({colliders, {k % 2 == 0 ? 1e5 : 2e5, 0, 0}});
   test::SceneRun all = test::run_scene(scene, builtin_avatar(), colliders + 1, *detector);
-  for (ContactRow& row : all.rows) row.pop_back();
+  for (ContactRow& row : all.rows) {  // without the last column
+    ContactRow first(colliders);
+    std::copy_n(row.begin(), colliders, first.begin());
+    row = first;
+  }
   EXPECT_GT(near.contacts(), 20U);
   EXPECT_EQ(hash_of(all), hash_of(near));
 }

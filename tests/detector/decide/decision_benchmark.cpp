@@ -70,7 +70,7 @@ class Winners {
  public:
   Winners(const Avatar& avatar, const ActuatorMap& map) : avatar_(avatar), map_(map) {}
 
-  void begin(const DetectorFrame& frame) { row_.assign(frame.columns, Contact()); }
+  void begin(const DetectorFrame& frame) { row_.clear(frame.columns); }
   template <typename Decide>
   void offer(const DetectorFrame& frame, const Segment& segment, std::uint32_t triangle, const Corners& now,
              Decide&& decide) {

@@ -261,8 +261,8 @@ TEST(Depth, IsHowFarASphereReachesIntoTheBodyAtTheEndOfTheFrame) {
   const auto depth_m = [&](const glm::vec3& start, const glm::vec3& end, float radius_m) {
     ContactRow row;
     detector->detect(test::frame_of(avatar, {{0, start, end, radius_m}}), row);
-    EXPECT_TRUE(row.at(0).hit());
-    return row.at(0).depth_m;
+    EXPECT_TRUE(row[0].hit());
+    return row[0].depth_m;
   };
   EXPECT_EQ(depth_m({0, 1.25F, 0}, {1.25F, 0, 0}, 0.5F), 0.25) << "it touched on top, and ends at the side";
   EXPECT_EQ(depth_m({0, 1.25F, 0}, {0, 1, 0}, 0.5F), 0.5);
@@ -290,7 +290,7 @@ TEST(Depth, OfAHandThatIsLaidOnTheBodyIsWhatTheScenarioSays) {
   for (const DetectorFrame& frame : frames_of("brush", 1, Method::kCcd)) {
     ContactRow row;
     detector->detect(frame, row);
-    if (!row.at(0).hit()) continue;
+    if (!row[0].hit()) continue;
     ++contacts;
     deepest_m = std::max(deepest_m, row[0].depth_m);
     EXPECT_GE(row[0].depth_m, 0);

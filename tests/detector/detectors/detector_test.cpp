@@ -249,7 +249,7 @@ TEST_P(DetectorTest, SkinsWithinAMillionthOfTheAvatarsHeight) {
     const auto detector = GetParam().make(avatar, builtin_map(), options());
     SkinningError error;
     swarm_over(avatar, 1, 5, 3, [&](const TraceFrame& trace_frame, const DetectorFrame& frame) {
-      error.add(avatar, trace_frame, frame, *detector);
+      error.add(avatar, trace_frame.poses.front(), frame, *detector);
     });
     EXPECT_EQ(error.vertices, 5 * avatar.position_bind.size());
     EXPECT_LT(error.largest_m, 1e-6 * error.height_m) << name;

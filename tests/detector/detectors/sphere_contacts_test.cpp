@@ -87,7 +87,7 @@ TEST_P(SphereContacts, AreNoneWhereTheSphereIsWhollyInsideTheBody) {
         FrameBuilder builder = test::frame_builder(builtin_avatar(), 1, detector->method());
         ContactRow row;
         for (const TraceFrame& frame : scene) detector->detect(builder.next(frame), row);
-        EXPECT_EQ(row.at(0).hit(), radius_m > 0.1F) << detector->name();
+        EXPECT_EQ(row[0].hit(), radius_m > 0.1F) << detector->name();
       }
     }
   }
@@ -100,7 +100,7 @@ TEST_P(SphereContacts, LastAsLongAsTheTouch) {
   for (const TraceFrame& trace_frame : scene_of_spheres("slide", 1, 30, 0.05F)) {
     const DetectorFrame& frame = builder.next(trace_frame);
     cpu->detect(frame, row);
-    EXPECT_EQ(row.at(0).hit(), frame.index > 0) << frame.index;
+    EXPECT_EQ(row[0].hit(), frame.index > 0) << frame.index;
     if (frame.index > 0) {
       EXPECT_EQ(row[0].t, 0) << "it touches already at the start";
     }
@@ -121,7 +121,7 @@ struct Floors {
                                                      : make_exact_detector(avatar, map, options);
     ContactRow row;
     made->detect(loose_frame(triangles, triangles, {{0, start, end, radius_m}}), row);
-    return row.at(0);
+    return row[0];
   }
 };
 
