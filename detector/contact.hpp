@@ -37,7 +37,7 @@ class ContactRow {
   explicit ContactRow(std::size_t columns) : contacts_(columns) {}
   ContactRow(std::initializer_list<Contact> contacts) : contacts_(contacts), all_touched_(true) {}
 
-  /// Makes this a row without contacts.
+  /// Makes this a row without contacts. References to its contacts must not be written to afterwards.
   void clear(std::size_t columns) {
     if (all_touched_ || columns != contacts_.size()) {
       contacts_.assign(columns, Contact());
@@ -53,6 +53,7 @@ class ContactRow {
   const Contact& operator[](std::size_t column) const { return contacts_[column]; }
   Contact& operator[](std::size_t column) {
     constexpr std::size_t kMost = 16;  // beyond, it is as well to clear all
+    if (!touched_.empty() && touched_.back() == column) return contacts_[column];
     if (touched_.size() == kMost) {
       all_touched_ = true;
     } else {

@@ -6,8 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "traces/scene/radius.hpp"
-
 namespace vestige {
 
 namespace {
@@ -23,16 +21,6 @@ constexpr float kLargestCollider_m = std::numeric_limits<float>::max() / 2;
 bool within_reach(const glm::vec3& v) {
   const glm::vec3 size = glm::abs(v);
   return size.x < kLargestCollider_m && size.y < kLargestCollider_m && size.z < kLargestCollider_m;
-}
-
-using IdPlace = std::vector<std::uint32_t>::const_iterator;
-
-/// Returns the place of `id` in the ascending `ids`, or their end. Looks at `next` first: ids mostly come in ascending
-/// order.
-IdPlace place_of(const std::vector<std::uint32_t>& ids, std::uint32_t id, IdPlace next) {
-  if (next != ids.end() && *next == id) return next;
-  const auto place = std::ranges::lower_bound(ids, id);
-  return place != ids.end() && *place == id ? place : ids.end();
 }
 
 }  // namespace
@@ -54,16 +42,19 @@ SegmentBox box_of(const Segment& segment) {
 FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method,
                            std::size_t person, Skip skip)
     : avatar_(avatar),
-      collider_ids_(collider_ids.begin(), collider_ids.end()),
-      columns_(collider_ids.size()),
+      own_colliders_(collider_ids),
       method_(method),
       person_(person),
       skip_(skip),
-      bind_extent_m_(bind_extent_m(avatar)) {
-  frame_.columns = columns_.size();
-}
+      bind_extent_m_(bind_extent_m(avatar)) {}
 
 const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame) {
+  own_colliders_.next(trace_frame);
+  return next(trace_frame, own_colliders_);
+}
+
+const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame, const ColliderMoves& colliders) {
+  frame_.columns = colliders.columns();
   const double time_s = trace_frame.time_s();
   frame_.duration_s = started_ ? time_s - frame_.time_s : 0;
   frame_.time_s = time_s;
@@ -94,12 +85,15 @@ const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame) {
   glm::dvec3 all_m = glm::max(reach_m.value_or(glm::dvec3(0)), reach_before_m.value_or(glm::dvec3(0)));
   if (method_ == Method::kCarried) all_m += carried_m();
   reach_m_ = glm::vec3(all_m * kRounding);
-  build_segments(trace_frame);
+  build_segments(colliders.moves());
   if (!in_reach || (!before_in_reach && before_was_in_reach_)) {
     ++non_finite_frames_;
     note_non_finite();
   }
-  if (!in_reach || !before_in_reach) frame_.segments.clear();
+  if (!in_reach || !before_in_reach) {
+    frame_.segments.clear();
+    frame_.out_of_reach = 0;
+  }
   before_was_in_reach_ = in_reach;
   return frame_;
 }
@@ -166,42 +160,23 @@ void FrameBuilder::follow_origin(const Pose& pose) {
   frame_.origin_m = origin;
 }
 
-void FrameBuilder::build_segments(const TraceFrame& trace_frame) {
+void FrameBuilder::build_segments(std::span<const ColliderMove> moves) {
   frame_.segments.clear();
   frame_.out_of_reach = 0;
-  IdPlace next = collider_ids_.begin();
-  for (const std::uint32_t id : trace_frame.teleported) {
-    const IdPlace place = place_of(collider_ids_, id, next);
-    if (place == collider_ids_.end()) continue;
-    columns_[static_cast<std::size_t>(place - collider_ids_.begin())].seen_in = 0;
-    next = place + 1;
-  }
-  next = collider_ids_.begin();
   const std::size_t owner = person_ + 1;
-  for (const ColliderSample& sample : trace_frame.colliders) {
-    if (sample.owner == owner) continue;
-    const IdPlace place = place_of(collider_ids_, sample.id, next);
-    if (place == collider_ids_.end()) continue;
-    next = place + 1;
-    const auto column = static_cast<std::size_t>(place - collider_ids_.begin());
-    Column& before = columns_[column];
-    if (before.seen_in != 0 && before.seen_in == trace_frame.index) {
-      const Segment segment = {static_cast<std::uint32_t>(column), glm::vec3(before.position_m - frame_.origin_m),
-                               glm::vec3(sample.position_m - frame_.origin_m),
-                               is_sphere_radius(sample.radius_m) ? sample.radius_m : 0};
-      if (!within_reach(segment.start) || !within_reach(segment.end)) {
-        ++non_finite_segments_;
-        note_non_finite();
-      } else if (skip_ == Skip::kOn && is_out_of_reach(segment)) {
-        ++frame_.out_of_reach;
-      } else {
-        frame_.segments.push_back(segment);
-      }
+  for (const ColliderMove& move : moves) {
+    if (move.owner == owner) continue;
+    const Segment segment = {move.column, glm::vec3(move.start_m - frame_.origin_m),
+                             glm::vec3(move.end_m - frame_.origin_m), move.radius_m};
+    if (!within_reach(segment.start) || !within_reach(segment.end)) {
+      ++non_finite_segments_;
+      note_non_finite();
+    } else if (skip_ == Skip::kOn && is_out_of_reach(segment)) {
+      ++frame_.out_of_reach;
+    } else {
+      frame_.segments.push_back(segment);
     }
-    before = {sample.position_m, trace_frame.index + 1};
   }
-  if (!std::ranges::is_sorted(frame_.segments, {}, &Segment::column))
-    std::ranges::sort(frame_.segments, {}, &Segment::column);
 }
 
 }  // namespace vestige

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "detector/collider_moves.hpp"
 #include "detector/method.hpp"
 #include "detector/skinning.hpp"
 #include "traces/scene/avatar.hpp"
@@ -55,16 +56,18 @@ struct DetectorFrame {
 /// Both are relative to a whole-metre origin that follows the avatar. A trace of several people needs one for each.
 class FrameBuilder {
  public:
-  /// `collider_ids` is ascending; the rank of an id is the column of the collider. Colliders with other ids are
-  /// ignored. `person` counts from 0: the avatar takes that pose of each frame, and this person's own colliders test
-  /// nothing. A frame whose pose is missing or not finite is empty. With a method that uses the previous frame, the
-  /// next frame is empty, too. With Skip::kOn, segments out of the skin's reach are left out.
+  /// `collider_ids` as in `ColliderMoves`; none are needed for the second `next`. `person` counts from 0: the avatar
+  /// takes that pose of each frame, and this person's own colliders test nothing. A frame whose pose is missing or not
+  /// finite is empty. With a method that uses the previous frame, the next frame is empty, too. With Skip::kOn,
+  /// segments out of the skin's reach are left out.
   FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Method method = Method::kStatic,
                std::size_t person = 0, Skip skip = Skip::kOff);
 
   /// Takes the next frame of the trace. If the indices leave a gap (a damaged trace), the frame tests nothing. The
   /// reference is valid until the next call.
   const DetectorFrame& next(const TraceFrame& trace_frame);
+  /// As above, with colliders that have taken this frame: people share them.
+  const DetectorFrame& next(const TraceFrame& trace_frame, const ColliderMoves& colliders);
 
   /// Number of frames whose pose is missing, not finite or close to the end of fp32's range. They test nothing.
   std::uint64_t non_finite_frames() const { return non_finite_frames_; }
@@ -75,23 +78,16 @@ class FrameBuilder {
   std::uint64_t origin_changes() const { return origin_changes_; }
 
  private:
-  struct Column {
-    glm::dvec3 position_m = glm::dvec3(0);
-    /// 1 + index of the last frame that had the collider; 0 if no frame had it, or if it teleported since.
-    std::uint64_t seen_in = 0;
-  };
-
   void place(const Pose& pose);
   void follow_origin(const Pose& pose);
-  void build_segments(const TraceFrame& trace_frame);
+  void build_segments(std::span<const ColliderMove> moves);
   std::optional<glm::dvec3> reach_of(std::span<const SkinMatrix> palette) const;
   glm::dvec3 carried_m() const;
   bool is_out_of_reach(const Segment& segment) const;
   void note_non_finite();
 
   const Avatar& avatar_;
-  std::vector<std::uint32_t> collider_ids_;
-  std::vector<Column> columns_;
+  ColliderMoves own_colliders_;
   Method method_;
   std::size_t person_;
   Skip skip_;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "analysis/mapping/body_surface.hpp"
-#include "analysis/mapping/skin_parts.hpp"
+#include "traces/body/skin_parts.hpp"
 
 namespace vestige {
 

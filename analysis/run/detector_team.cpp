@@ -32,7 +32,7 @@ DetectorTeam::DetectorTeam(std::size_t threads, Make make)
     for (std::thread& helper : helpers_) helper.join();
     throw Error("--threads", "the system cannot start more threads", "use fewer threads");
   }
-  // Now every thread makes its detector, which a batch of frames would else contain.
+  // Now every thread makes its detectors, which a batch of frames would else contain.
   FrameBatch no_frames;
   try {
     start(no_frames);

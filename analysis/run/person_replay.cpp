@@ -1,7 +1,6 @@
 #include "analysis/run/person_replay.hpp"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 namespace vestige {
@@ -15,45 +14,22 @@ void look_up_anew(const ActuatorMap& map, ContactRow& row) {
 
 }  // namespace
 
-RecordedRows::RecordedRows(std::span<const RecordedContact> contacts, std::uint16_t avatar,
-                           std::span<const std::uint32_t> collider_ids)
-    : collider_ids_(collider_ids) {
-  std::ranges::copy_if(contacts, std::back_inserter(contacts_),
-                       [&](const RecordedContact& contact) { return contact.avatar == avatar; });
-}
-
-const ContactRow& RecordedRows::row_of(std::uint64_t frame) {
-  row_.clear(collider_ids_.size());
-  for (; next_ < contacts_.size() && contacts_[next_].frame <= frame; ++next_) {
-    const RecordedContact& recorded = contacts_[next_];
-    const auto place = std::ranges::lower_bound(collider_ids_, recorded.collider);
-    if (recorded.frame < frame || place == collider_ids_.end() || *place != recorded.collider) {
-      ++strangers_;
-      continue;
-    }
-    Contact& contact = row_[static_cast<std::size_t>(place - collider_ids_.begin())];
-    contact.triangle = recorded.triangle;
-    contact.t = recorded.t;
-    contact.actuator = recorded.actuator;
-  }
-  return row_;
-}
-
-PersonReplay::PersonReplay(const ReplayPerson& plan, std::size_t person, std::span<const std::uint32_t> collider_ids,
-                           const Detector& detector, const std::vector<RecordedContact>* expected)
-    : plan_(plan), builder_(plan.avatar, collider_ids, detector.method(), person, detector.skip()) {
+PersonReplay::PersonReplay(const ReplayPerson& plan, std::size_t person, const Detector& detector)
+    : plan_(plan), person_(person), builder_(plan.avatar, {}, detector.method(), person, detector.skip()) {
   result_.contacts_of_actuator.resize(plan.actuator_count + 1);
-  if (expected != nullptr) recorded_.emplace(*expected, static_cast<std::uint16_t>(person + 1), collider_ids);
 }
 
-void PersonReplay::take(const DetectorFrame& frame, ContactRow& row, ContactRow* other, Comparison* comparison) {
+void PersonReplay::check_skinning(const TraceFrame& frame, const DetectorFrame& built, Detector& detector) {
+  const Pose& pose = frame.poses[person_];
+  if (!pose.nodes.empty()) result_.skinning.add(plan_.avatar, pose, built, detector);
+}
+
+void PersonReplay::take(const DetectorFrame& frame, ContactRow& row, ContactRow* other) {
   follow_map_changes(frame.time_s);
   if (changed_map_ != nullptr) {
     look_up_anew(*changed_map_, row);
     if (other != nullptr) look_up_anew(*changed_map_, *other);
   }
-  if (other != nullptr) comparison->add(row, *other);
-  if (recorded_) comparison->add(row, recorded_->row_of(frame.index));
   for (const Contact& contact : std::as_const(row)) {
     if (!contact.hit()) continue;
     ++result_.contacts;
@@ -75,11 +51,7 @@ void PersonReplay::follow_map_changes(double time_s) {
   }
 }
 
-PersonResult PersonReplay::finish(bool interrupted, Comparison* comparison) {
-  if (recorded_ && !interrupted) {
-    comparison->missing += recorded_->strangers();
-    comparison->expected += recorded_->strangers();
-  }
+PersonResult PersonReplay::finish() {
   result_.texture_hash = hash_.hex();
   result_.origin_changes = builder_.origin_changes();
   result_.non_finite_frames = builder_.non_finite_frames();

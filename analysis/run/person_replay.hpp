@@ -8,11 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "analysis/run/comparison.hpp"
+#include "analysis/run/skinning_error.hpp"
 #include "detector/actuators/actuator_drive.hpp"
 #include "detector/detector.hpp"
 #include "detector/frame.hpp"
-#include "detector/output/recorded_contacts.hpp"
 #include "detector/output/texture_hash.hpp"
 #include "traces/timeline/timeline.hpp"
 
@@ -45,56 +44,35 @@ struct PersonResult {
   std::vector<std::uint64_t> contacts_of_actuator;  ///< [0]: contacts on skin that no actuator covers
   bool any_vibrates = false;                        ///< whether any actuator's duty was more than 0; of a timeline only
   std::string texture_hash;
+  SkinningError skinning;  ///< of a few evenly spaced frames
 };
 
-/// Turns the contacts of a file back into one person's rows, frame by frame.
-class RecordedRows {
- public:
-  /// Takes those of `contacts`, ordered by frame, whose avatar this is. `collider_ids` ascend and are those of the
-  /// columns.
-  RecordedRows(std::span<const RecordedContact> contacts, std::uint16_t avatar,
-               std::span<const std::uint32_t> collider_ids);
-
-  /// Frames must ascend. The reference is valid until the next call.
-  const ContactRow& row_of(std::uint64_t frame);
-
-  /// Returns the number of contacts whose frame or collider the trace does not have. It includes contacts that were
-  /// never asked for.
-  std::uint64_t strangers() const { return strangers_ + (contacts_.size() - next_); }
-
- private:
-  std::vector<RecordedContact> contacts_;
-  std::span<const std::uint32_t> collider_ids_;
-  std::size_t next_ = 0;
-  std::uint64_t strangers_ = 0;
-  ContactRow row_;
-};
-
-/// Takes one person through a replay: builds the frames, and counts, compares and turns into a timeline what was found
-/// in them.
+/// Takes one person through a replay: builds the frames, and counts and turns into a timeline what was found in them.
 class PersonReplay {
  public:
-  /// `person` counts from 0. Frames are built as `detector` takes them. The plan, the ids and `expected` are kept by
-  /// reference. `expected` are contacts to compare with, or null.
-  PersonReplay(const ReplayPerson& plan, std::size_t person, std::span<const std::uint32_t> collider_ids,
-               const Detector& detector, const std::vector<RecordedContact>* expected);
+  /// `person` counts from 0. Frames are built as `detector` takes them. The plan is kept by reference.
+  PersonReplay(const ReplayPerson& plan, std::size_t person, const Detector& detector);
 
-  const Avatar& avatar() const { return plan_.avatar; }
-  const DetectorFrame& build(const TraceFrame& frame) { return builder_.next(frame); }
+  /// The colliders have taken this frame.
+  const DetectorFrame& build(const TraceFrame& frame, const ColliderMoves& colliders) {
+    return builder_.next(frame, colliders);
+  }
 
-  /// Takes the row of a frame. After a change of the map it looks up the row's actuators anew. `other` is what another
-  /// detector found, or null. What is compared is added to `comparison`.
-  void take(const DetectorFrame& frame, ContactRow& row, ContactRow* other, Comparison* comparison);
+  /// Compares how `detector` skins a frame. Does nothing if the pose is missing.
+  void check_skinning(const TraceFrame& frame, const DetectorFrame& built, Detector& detector);
 
-  /// Ends the replay. If all frames were taken, what the file of contacts has beyond them is added to `comparison`.
-  PersonResult finish(bool interrupted, Comparison* comparison);
+  /// Takes the row of a frame. After a change of the map it looks up the row's actuators anew, and those of `other`,
+  /// the row of another detector, unless that is null.
+  void take(const DetectorFrame& frame, ContactRow& row, ContactRow* other);
+
+  PersonResult finish();
 
  private:
   void follow_map_changes(double time_s);
 
   const ReplayPerson& plan_;
+  std::size_t person_;
   FrameBuilder builder_;
-  std::optional<RecordedRows> recorded_;
   const ActuatorMap* changed_map_ = nullptr;
   TextureHash hash_;
   PersonResult result_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "analysis/base/clocks.hpp"
@@ -34,6 +36,45 @@ class BatchSize {
   std::size_t size_;
 };
 
+/// Turns the contacts of a file back into rows, frame by frame and person by person.
+class RecordedRows {
+ public:
+  /// `contacts` are ordered by frame and avatar.
+  RecordedRows(std::span<const RecordedContact> contacts, std::span<const std::uint32_t> collider_ids)
+      : contacts_(contacts), collider_ids_(collider_ids) {}
+
+  /// Frames must ascend, and in a frame the avatars, which count from 1. The reference is valid until the next call.
+  const ContactRow& row_of(std::uint64_t frame, std::uint16_t avatar) {
+    const auto place_of = [](const RecordedContact& contact) { return std::pair(contact.frame, contact.avatar); };
+    const std::pair wanted(frame, avatar);
+    row_.clear(collider_ids_.size());
+    for (; next_ < contacts_.size() && place_of(contacts_[next_]) <= wanted; ++next_) {
+      const RecordedContact& recorded = contacts_[next_];
+      const auto place = std::ranges::lower_bound(collider_ids_, recorded.collider);
+      if (place_of(recorded) < wanted || place == collider_ids_.end() || *place != recorded.collider) {
+        ++strangers_;
+        continue;
+      }
+      Contact& contact = row_[static_cast<std::size_t>(place - collider_ids_.begin())];
+      contact.triangle = recorded.triangle;
+      contact.t = recorded.t;
+      contact.actuator = recorded.actuator;
+    }
+    return row_;
+  }
+
+  /// Returns the number of contacts whose frame, avatar or collider the trace does not have. It includes contacts that
+  /// were never asked for.
+  std::uint64_t strangers() const { return strangers_ + (contacts_.size() - next_); }
+
+ private:
+  std::span<const RecordedContact> contacts_;
+  std::span<const std::uint32_t> collider_ids_;
+  std::size_t next_ = 0;
+  std::uint64_t strangers_ = 0;
+  ContactRow row_;
+};
+
 /// One run through a trace. While the team detects in one batch of frames, the next one is read.
 class Replay {
  public:
@@ -42,11 +83,12 @@ class Replay {
         detectors_(detectors),
         plan_(plan),
         frame_count_(trace.frame_count()),
-        skinning_step_(std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames)) {
+        skinning_step_(std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames)),
+        colliders_(trace.collider_ids()) {
     people_.reserve(plan.people.size());
     for (std::size_t person = 0; person < plan.people.size(); ++person)
-      people_.emplace_back(plan.people[person], person, trace.collider_ids(), detectors.first(person),
-                           plan.expectation.contacts);
+      people_.emplace_back(plan.people[person], person, detectors.first(person));
+    if (plan.expectation.contacts != nullptr) recorded_.emplace(*plan.expectation.contacts, trace.collider_ids());
     if (plan.expectation.detectors != nullptr || plan.expectation.contacts != nullptr) result_.comparison.emplace();
   }
 
@@ -75,7 +117,8 @@ class Replay {
       const auto read = Clock::now();
       result_.reading_s += seconds(read - start);
       if (!more) return;
-      for (PersonReplay& person : people_) batch.add(person.build(trace_frame_));
+      colliders_.next(trace_frame_);
+      for (PersonReplay& person : people_) batch.add(person.build(trace_frame_, colliders_));
       building_s_ += seconds(Clock::now() - read);
       if (frames_read_ % skinning_step_ == 0) check_skinning(batch);
       ++frames_read_;
@@ -85,12 +128,9 @@ class Replay {
   /// Checks how the people of the frame that was read last are skinned.
   void check_skinning(const FrameBatch& batch) {
     const auto start = Clock::now();
-    for (std::size_t person = 0; person < people_.size(); ++person) {
-      const Pose& pose = trace_frame_.poses[person];
-      if (pose.nodes.empty()) continue;  // it is missing
-      result_.skinning.add(people_[person].avatar(), pose, batch.frames[batch.count - people_.size() + person],
-                           detectors_.first(person));
-    }
+    for (std::size_t person = 0; person < people_.size(); ++person)
+      people_[person].check_skinning(trace_frame_, batch.frames[batch.count - people_.size() + person],
+                                     detectors_.first(person));
     checking_s_ += seconds(Clock::now() - start);
   }
 
@@ -125,11 +165,13 @@ class Replay {
   void take(std::size_t person, FrameBatch& batch, std::size_t i) {
     const DetectorFrame& frame = batch.frames[i];
     ContactRow& row = batch.rows[i];
+    ContactRow* const other = plan_.expectation.detectors != nullptr ? &expected_.rows[i] : nullptr;
+    const auto avatar = static_cast<std::uint16_t>(person + 1);
     result_.work += batch.work[i];
-    people_[person].take(frame, row, plan_.expectation.detectors != nullptr ? &expected_.rows[i] : nullptr,
-                         comparison());
-    if (plan_.contacts != nullptr)
-      plan_.contacts->write(static_cast<std::uint16_t>(person + 1), frame, row, trace_.collider_ids());
+    people_[person].take(frame, row, other);
+    if (other != nullptr) result_.comparison->add(row, *other);
+    if (recorded_) result_.comparison->add(row, recorded_->row_of(frame.index, avatar));
+    if (plan_.contacts != nullptr) plan_.contacts->write(avatar, frame, row, trace_.collider_ids());
     if (plan_.textures != nullptr) plan_.textures->add(person, frame, row);
   }
 
@@ -137,7 +179,7 @@ class Replay {
     if (is_alone()) result_.detection_s += building_s_;  // several threads had it within their time
     std::vector<std::string> hashes;
     for (PersonReplay& person : people_) {
-      const PersonResult& found = result_.people.emplace_back(person.finish(result_.interrupted, comparison()));
+      const PersonResult& found = result_.people.emplace_back(person.finish());
       hashes.push_back(found.texture_hash);
       result_.contacts += found.contacts;
       result_.origin_changes += found.origin_changes;
@@ -148,23 +190,21 @@ class Replay {
             std::min(*found.first_non_finite, result_.first_non_finite.value_or(*found.first_non_finite));
     }
     result_.texture_hash = texture_hash_of(hashes);
-    if (plan_.expectation.contacts == nullptr || result_.interrupted) return;
-    const auto of_nobody = static_cast<std::uint64_t>(
-        std::ranges::count_if(*plan_.expectation.contacts,
-                              [this](const RecordedContact& contact) { return contact.avatar > people_.size(); }));
-    result_.comparison->missing += of_nobody;
-    result_.comparison->expected += of_nobody;
+    if (!recorded_ || result_.interrupted) return;
+    result_.comparison->missing += recorded_->strangers();
+    result_.comparison->expected += recorded_->strangers();
   }
 
   bool is_alone() const { return detectors_.threads() == 1; }
-  Comparison* comparison() { return result_.comparison ? &*result_.comparison : nullptr; }
 
   TraceReader& trace_;
   DetectorTeam& detectors_;
   const ReplayPlan& plan_;
   std::uint64_t frame_count_;
   std::uint64_t skinning_step_;  ///< of frames whose skinning is checked
+  ColliderMoves colliders_;
   std::vector<PersonReplay> people_;
+  std::optional<RecordedRows> recorded_;
   TraceFrame trace_frame_;
   std::uint64_t frames_read_ = 0;
   FrameBatch expected_;

@@ -9,7 +9,6 @@
 #include "analysis/run/comparison.hpp"
 #include "analysis/run/detector_team.hpp"
 #include "analysis/run/person_replay.hpp"
-#include "analysis/run/skinning_error.hpp"
 #include "detector/detector.hpp"
 #include "detector/output/contacts_file.hpp"
 #include "detector/output/recorded_contacts.hpp"
@@ -46,7 +45,6 @@ struct ReplayResult {
   double reading_s = 0;                           ///< decoding the trace
   /// Whole round trips; excludes decoding, which runs in parallel if there are several threads.
   double detection_s = 0;
-  SkinningError skinning;  ///< of a few evenly spaced frames
   std::optional<Comparison> comparison;
   bool interrupted = false;
 };

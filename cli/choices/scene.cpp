@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "analysis/mapping/body_surface.hpp"
@@ -55,15 +56,30 @@ void complete(Scene& scene, ActuatorMapFiles map, const SceneNames& names, const
     warn(other + kOrSetFacing, verbosity);
 }
 
-/// Returns the people's names. Of several people, one without a name, or with the name of another, gets a number.
+/// Returns a name in one line, of at most 100 bytes.
+std::string readable(std::string name) {
+  constexpr std::size_t kMostBytes = 100;
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  std::ranges::replace_if(name, is_control, ' ');
+  name.resize(std::min(name.size(), kMostBytes));
+  return name;
+}
+
+/// Returns the people's names. Of several people, one without a name, or with the name of an earlier one, gets a
+/// number.
 std::vector<std::string> names_of(const std::vector<RecordedPerson>& people) {
   std::vector<std::string> names;
   names.reserve(people.size());
-  for (const RecordedPerson& person : people) names.push_back(person.name);
+  for (const RecordedPerson& person : people) names.push_back(readable(person.name));
   if (people.size() == 1) return names;
-  for (std::size_t i = 0; i < people.size(); ++i)
-    if (people[i].name.empty() || std::ranges::count(people, people[i].name, &RecordedPerson::name) > 1)
-      names[i] = in_words(static_cast<std::uint16_t>(i + 1));
+  std::set<std::string> taken(names.begin(), names.end());
+  std::set<std::string> seen = {""};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (seen.insert(names[i]).second) continue;
+    std::string name = in_words(static_cast<std::uint16_t>(i + 1));
+    while (!taken.insert(name).second) name += '*';
+    names[i] = name;
+  }
   return names;
 }
 

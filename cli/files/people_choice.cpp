@@ -1,10 +1,12 @@
 #include "cli/files/people_choice.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -13,6 +15,7 @@
 #include "traces/base/number_text.hpp"
 #include "traces/recording/dealt_colliders.hpp"
 #include "traces/scenarios/body.hpp"
+#include "traces/scenarios/touch.hpp"
 #include "traces/scene/reference_skinning.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
@@ -27,17 +30,42 @@ struct PersonFlag {
   const char* name;
   std::string& (*value)(PersonChoice&);
 };
-constexpr std::array<PersonFlag, 5> kPersonFlags = {{
+constexpr std::array<PersonFlag, 6> kPersonFlags = {{
     {"--animation", [](PersonChoice& person) -> std::string& { return person.animation; }},
     {"--map", [](PersonChoice& person) -> std::string& { return person.map; }},
     {"--facing", [](PersonChoice& person) -> std::string& { return person.facing.axis; }},
     {"--at", [](PersonChoice& person) -> std::string& { return person.at; }},
+    {"--limbs", [](PersonChoice& person) -> std::string& { return person.limbs; }},
     {"--name", [](PersonChoice& person) -> std::string& { return person.name; }},
 }};
+
+/// The people of --colliders touch.
+std::vector<PersonChoice> people_who_touch(const CLI::App& verb) {
+  for (const char* flag : {kAvatarFlag, "--animation", "--facing", "--at", "--limbs", "--name", "--count", "--radius"})
+    if (verb.count(flag) != 0)
+      throw UsageError(flag, "--colliders touch brings its own people, who move by themselves",
+                       fmt::format("leave {} out; to put people of your own together, write --avatar A --limbs "
+                                   "hand_right --avatar B --at X,Y,Z,YAW",
+                                   flag));
+  std::vector<PersonChoice> people(2);
+  people[0].name = "giver";
+  people[0].limbs = "hand_right";
+  people[1].name = "receiver";
+  for (PersonChoice& person : people) person.map = verb.get_option("--map")->as<std::string>();
+  return people;
+}
 
 /// Gives each of several people a name of their own: the one asked for, otherwise the avatar's file name.
 void name_people(std::vector<PersonChoice>& people) {
   std::set<std::string> taken;
+  constexpr std::size_t kMostBytes = 100;
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  for (const PersonChoice& person : people) {
+    if (std::ranges::any_of(person.name, is_control))
+      throw UsageError("--name", "has a control character", "give a name in one line");
+    if (person.name.size() > kMostBytes)
+      throw UsageError("--name", fmt::format("is longer than {} bytes", kMostBytes), "give a shorter name");
+  }
   for (const PersonChoice& person : people)
     if (!person.name.empty() && !taken.insert(person.name).second)
       throw UsageError("--name", fmt::format("two people are called '{}'", person.name), "give each another name");
@@ -72,17 +100,24 @@ void add_people_options(CLI::App& verb) {
           "Where the person stands, in metres from --origin, and where they look: YAW in degrees, "
           "counter-clockwise from above, 0 (also without YAW) along +Z [default: 0,0,0 and as the avatar looks]")
       ->type_name("X,Y,Z[,YAW]");
+  const std::string limbs_help = fmt::format(
+      "Limbs of the person that become colliders for the others, as spheres of their size: all, or any of {}. Then "
+      "--colliders is none by default",
+      fmt::join(limb_names(), ", "));
+  verb.add_option("--limbs", limbs_help)->type_name("all|LIST");
   verb.add_option("--name", "The person's name [with several people: the avatar's file name]")->type_name("TEXT");
   CLI::Option* avatar = verb.get_option(kAvatarFlag);
   avatar->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
-  avatar->description(avatar->get_description() +
-                      ". Repeat it for more people: --animation, --map, --facing, --at and --name belong to the latest "
-                      "--avatar before them");
+  avatar->description(
+      avatar->get_description() +
+      ". Repeat it for more people: --animation, --map, --facing, --at, --limbs and --name belong to the "
+      "latest --avatar before them");
   for (const PersonFlag& flag : kPersonFlags)
     verb.get_option(flag.name)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
 
 std::vector<PersonChoice> people_choices(const CLI::App& verb) {
+  if (verb.get_option("--colliders")->as<std::string>() == kTouch) return people_who_touch(verb);
   std::vector<PersonChoice> people(1);
   std::map<const CLI::Option*, std::size_t> seen;  // how many values of each flag
   std::set<std::string> given;                     // for the latest person
@@ -108,6 +143,17 @@ std::vector<PersonChoice> people_choices(const CLI::App& verb) {
                      fmt::format("record at most {}", trace_format::kMostPeople));
   name_people(people);
   return people;
+}
+
+void let_touch(std::vector<Person>& people) {
+  Avatar& giver = people[0].scene.avatar;
+  const Avatar& receiver = people[1].scene.avatar;
+  const TouchStances stances = touch_stances(giver, receiver);
+  giver.animations.push_back(pat_on_shoulder(giver, receiver, stances));
+  people[0].animation = &giver.animations.back();
+  people[1].animation = idle_of(receiver);
+  people[0].stance = stances.giver;
+  people[1].stance = stances.receiver;
 }
 
 Stance stance_of(const PersonChoice& choice, const Avatar& avatar) {
@@ -143,6 +189,62 @@ std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const 
                      people[k].stance});
   }
   return deal_colliders(std::move(hands));
+}
+
+namespace {
+
+std::vector<LimbSphere> spheres_of(const std::string& text, const std::string& name, const Avatar& avatar) {
+  const std::vector<std::string>& known = limb_names();
+  const bool wants_all = text == "all";
+  std::vector<LimbSphere> spheres;
+  std::vector<std::string> told;
+  for (const std::string& limb : known)
+    if (!fit_limb(avatar, limb).empty()) told.push_back(limb);
+  if (told.empty())
+    throw UsageError("--limbs", fmt::format("the joints of {} do not tell its limbs", name),
+                     "rename its joints, or use an avatar whose joints have the names of a known program");
+  std::set<std::string> taken;
+  for (const std::string& limb : wants_all ? told : parse_list(text)) {
+    if (std::ranges::find(known, limb) == known.end())
+      throw UsageError("--limbs", fmt::format("there is no limb '{}'", limb),
+                       fmt::format("write all, or choose from {}", fmt::join(known, ", ")));
+    if (!taken.insert(limb).second)
+      throw UsageError("--limbs", fmt::format("'{}' stands there twice", limb), "leave one of them out");
+    const std::vector<LimbSphere> of_limb = fit_limb(avatar, limb);
+    if (of_limb.empty())
+      throw UsageError("--limbs", fmt::format("the joints of {} do not tell its {}", name, limb),
+                       fmt::format("choose from {}", fmt::join(told, ", ")));
+    spheres.insert(spheres.end(), of_limb.begin(), of_limb.end());
+  }
+  return spheres;
+}
+
+}  // namespace
+
+CarriedLimbs limbs_of(const std::vector<PersonChoice>& choices, const std::vector<Person>& people,
+                      const SceneChoice& scene, const ColliderSource& source) {
+  std::uint64_t first_id = 0;
+  if (const auto largest = source.largest_id()) {
+    first_id = std::uint64_t{*largest} + 1;
+  } else if (scene.colliders != kNoColliders) {
+    // Dealt to people, ids have gaps where one of them has a collider less.
+    first_id = (scene.collider_count() + people.size() - 1) / people.size() * people.size();
+  }
+  std::vector<std::vector<LimbSphere>> spheres;
+  std::uint64_t end_id = first_id;
+  for (std::size_t k = 0; k < people.size(); ++k) {
+    spheres.push_back(choices[k].limbs.empty()
+                          ? std::vector<LimbSphere>()
+                          : spheres_of(choices[k].limbs, choices[k].avatar, people[k].scene.avatar));
+    end_id += spheres.back().size();
+  }
+  if (end_id > std::numeric_limits<std::uint32_t>::max())
+    throw Error("--limbs", fmt::format("their ids would follow {}, the largest of {}", first_id - 1, scene.colliders),
+                "give those colliders smaller ids");
+  CarriedLimbs limbs(static_cast<std::uint32_t>(first_id));
+  for (std::size_t k = 0; k < people.size(); ++k)
+    if (!spheres[k].empty()) limbs.add(k, people[k].scene.avatar, spheres[k]);
+  return limbs;
 }
 
 void warn_of_overlap(const std::vector<Person>& people, Verbosity verbosity) {

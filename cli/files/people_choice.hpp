@@ -8,6 +8,7 @@
 
 #include "cli/choices/scene.hpp"
 #include "cli/choices/scene_choice.hpp"
+#include "traces/recording/carried_limbs.hpp"
 #include "traces/recording/sampled_scene.hpp"
 #include "traces/scene/colliders.hpp"
 #include "traces/scene/stance.hpp"
@@ -20,17 +21,22 @@ struct PersonChoice {
   std::string animation;
   std::string map;
   FacingChoice facing;
-  std::string at;    ///< X,Y,Z[,YAW]; empty: where the scene stands, as the avatar looks
-  std::string name;  ///< empty: made from the avatar's name where there are several people
+  std::string at;     ///< X,Y,Z[,YAW]; empty: where the scene stands, as the avatar looks
+  std::string limbs;  ///< "all", or a list of `limb_names`; empty: none
+  std::string name;   ///< empty: made from the avatar's name where there are several people
 };
 
-/// Adds --at and --name, and lets --avatar, --animation, --map and --facing (`add_scene_options`) be given for several
-/// people.
+/// The value of --colliders that means two people of whom one touches the other.
+inline constexpr const char* kTouch = "touch";
+
+/// Adds --at, --limbs and --name, and lets --avatar, --animation, --map and --facing (`add_scene_options`) be given for
+/// several people.
 void add_people_options(CLI::App& verb);
 
-/// Returns the people that the flags of `verb` describe, at least one. --animation, --map, --facing, --at and --name
-/// belong to the latest --avatar before them; before any, to the first. Throws `UsageError` if a flag is given twice
-/// for a person, two people have one name, or there are too many people.
+/// Returns the people that the flags of `verb` describe, at least one; with --colliders touch its own two. --animation,
+/// --map, --facing, --at, --limbs and
+/// --name belong to the latest --avatar before them; before any, to the first. Throws `UsageError` if a flag is given
+/// twice for a person, two people have one name, or there are too many people.
 std::vector<PersonChoice> people_choices(const CLI::App& verb);
 
 /// A person who is ready to be recorded.
@@ -42,6 +48,9 @@ struct Person {
   SampledPerson sampled() const { return {scene.avatar, animation, stance}; }
 };
 
+/// Places the two people of --colliders touch, and gives them their motions.
+void let_touch(std::vector<Person>& people);
+
 /// Returns where a person stands. Throws `UsageError` if --at is not understood, or the avatar cannot be turned.
 Stance stance_of(const PersonChoice& choice, const Avatar& avatar);
 
@@ -49,6 +58,11 @@ Stance stance_of(const PersonChoice& choice, const Avatar& avatar);
 /// file, those of the scene.
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const std::vector<Person>& people,
                                                std::uint64_t seed);
+
+/// Returns the limbs that people carry as colliders, behind the colliders of `source`. Throws `UsageError` for a limb
+/// that does not exist or that the joints of an avatar do not tell.
+CarriedLimbs limbs_of(const std::vector<PersonChoice>& choices, const std::vector<Person>& people,
+                      const SceneChoice& scene, const ColliderSource& source);
 
 /// Warns if two people stand within each other when the scene begins.
 void warn_of_overlap(const std::vector<Person>& people, Verbosity verbosity);

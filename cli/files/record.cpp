@@ -47,6 +47,7 @@ struct RecordOptions {
   LiveChoice live;
   RecordingSettings recording;
   bool has_duration = false;
+  bool is_touch = false;  ///< --colliders touch: people who bring their colliders
   std::string origin = "0,0,0";
   std::string compression = "zstd";
   bool viz = false;
@@ -86,38 +87,46 @@ Session session_of(const RecordOptions& options, const std::vector<Person>& peop
   for (std::size_t k = 0; k < people.size(); ++k) {
     const Animation* animation = people[k].animation;
     session[trace_format::numbered("animation", k)] = animation == nullptr ? "" : animation->name;
+    if (!options.people[k].limbs.empty()) session[trace_format::numbered("limbs", k)] = options.people[k].limbs;
     if (!options.people[k].at.empty()) session[trace_format::numbered("at", k)] = options.people[k].at;
   }
-  session["colliders"] = options.scene.colliders;
+  session["colliders"] = options.is_touch ? kTouch : options.scene.colliders;
   if (!options.scene.radius.text.empty()) session["radius"] = options.scene.radius.text;
   session["seed"] = fmt::format("{}", options.common.seed);
   if (options.scene.from_file()) note_collider_convention(options.scene.convention, session);
   return session;
 }
 
-TraceWriterOptions writing_of(const RecordOptions& options, ColliderShape shape) {
+/// `colliders` and `limbs` are null in a live recording.
+TraceWriterOptions writing_of(const RecordOptions& options, const ColliderSource* colliders,
+                              const CarriedLimbs* limbs) {
   TraceWriterOptions writing;
   writing.overwrite = options.common.overwrite();
   if (options.compression == "lz4") writing.compression = Compression::kLz4;
   if (options.compression == "none") writing.compression = Compression::kNone;
   if (options.viz) writing.viz = Viz::kScene;
-  writing.shape = shape;
+  writing.shape = colliders == nullptr ? kLiveShape : colliders->shape();
+  if (limbs != nullptr && limbs->sphere_count() > 0) {
+    writing.shape = ColliderShape::kSpheres;
+    writing.has_owners = true;
+  }
   if (options.limits.sync) writing.sync = ChunkSync::kEach;
   if (options.live.is_live()) writing.chunk_s = kLiveChunk_s;
   return writing;
 }
 
 void record_scene(const RecordOptions& options, const std::vector<Person>& people, ColliderSource& colliders,
-                  const RecordingSettings& settings, Recorder& recorder) {
+                  CarriedLimbs& limbs, const RecordingSettings& settings, Recorder& recorder) {
   std::optional<PlacementQuestion> question;
   if (options.scene.from_file() && people.size() == 1)
     question.emplace(people.front().scene.avatar, options.scene.convention.of_colliders(), settings.origin_m);
   std::vector<SampledPerson> sampled;
   sampled.reserve(people.size());
   for (const Person& person : people) sampled.push_back(person.sampled());
-  const auto write = [&](const TraceFrame& frame) {
+  const auto write = [&](TraceFrame& frame) {
     if (snapshot_wanted()) recorder.snapshot();
     if (question) question->see(frame);
+    limbs.carry(frame);
     return recorder.write(frame);
   };
   {
@@ -164,6 +173,7 @@ std::vector<Person> load_people(const RecordOptions& options, const glm::dvec3& 
     person.stance = stance_of(choice, person.scene.avatar);
     require_near(origin_m + person.stance.position_m, "--at", choice.at);
   }
+  if (options.is_touch) let_touch(people);
   return people;
 }
 
@@ -229,16 +239,18 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
                                             options.common.json};
   std::vector<std::string> inputs = {options.scene.colliders};
   for (const PersonChoice& person : options.people)
-    inputs.insert(inputs.end(), {person.avatar, person.map, person.animation});
+    inputs.insert(inputs.end(), {person.avatar, person.map, sidecar_path(person.map).string(), person.animation});
   check_outputs(outputs, inputs, options.common);
   refuse_part_name(options, limits);
   if (options.output == "-") refuse_terminal("-o -");
 
   const std::vector<Person> people = load_people(options, settings.origin_m, outputs);
   std::unique_ptr<ColliderSource> colliders;
+  std::optional<CarriedLimbs> limbs;
   if (!options.live.is_live()) {
     warn_of_overlap(people, verbosity);
     colliders = make_colliders(options.scene, people, options.common.seed);
+    limbs = limbs_of(options.people, people, options.scene, *colliders);
     check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
     if (const std::string how = describe_resampling(colliders->median_step_s(), settings.rate_hz); !how.empty())
       warn(fmt::format("--colliders {}: {}", options.scene.colliders, how), verbosity);
@@ -253,7 +265,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   Recorder recorder({.path = options.output,
                      .session = session_of(options, people, invocation),
                      .people = recorded_people(people),
-                     .writing = writing_of(options, colliders ? colliders->shape() : kLiveShape),
+                     .writing = writing_of(options, colliders.get(), limbs ? &*limbs : nullptr),
                      .limits = limits});
   RecordingResult result;
   if (options.live.is_live()) {
@@ -261,7 +273,7 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
     result.lost = record_live(options.live, people.front().scene, recorder,
                               {.rate_hz = settings.rate_hz, .duration_s = duration_s}, settings.origin_m, verbosity);
   } else {
-    record_scene(options, people, *colliders, settings, recorder);
+    record_scene(options, people, *colliders, *limbs, settings, recorder);
   }
   recorder.finish();
   result.recording_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -280,6 +292,11 @@ void add_record(CLI::App& program, Invocation& invocation) {
                             "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n");
   add_scene_options(*verb, options->scene);
   add_people_options(*verb);
+  CLI::Option* colliders = verb->get_option("--colliders");
+  std::string description = colliders->get_description();
+  description.insert(description.find(fmt::format("\n  {}", kNoColliders)),
+                     fmt::format("\n  {} two people, one of whom pats the other's shoulder", kTouch));
+  colliders->description(description);
   verb->add_option("--rate", options->recording.rate_hz, "Frames per second")
       ->type_name("HZ")
       ->capture_default_str()
@@ -309,6 +326,12 @@ void add_record(CLI::App& program, Invocation& invocation) {
     options->people = people_choices(*verb);
     std::vector<std::string> animations;
     for (const PersonChoice& person : options->people) animations.push_back(person.animation);
+    const bool has_limbs =
+        std::ranges::any_of(options->people, [](const PersonChoice& person) { return !person.limbs.empty(); });
+    if (has_limbs && options->live.is_live())
+      throw UsageError("--limbs", "a live recording has no limbs", "leave --limbs or --live out");
+    options->is_touch = options->scene.colliders == kTouch;
+    if (options->is_touch || (has_limbs && verb->count("--colliders") == 0)) options->scene.colliders = kNoColliders;
     check_scene_choice(options->scene, animations);
     check_live_choice(*verb, options->live);
     if (options->live.is_live() && options->people.size() > 1)

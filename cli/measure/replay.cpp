@@ -76,13 +76,11 @@ void warn_of_gaps(const ReplayResult& result, const OpenTrace& trace, const std:
   for (std::size_t i = 0; i < result.people.size(); ++i) {
     const PersonResult& person = result.people[i];
     if (!person.first_non_finite) continue;
-    warn(
-        fmt::format("{}: {} poses{} and the ends of {} segments are {}not finite, the first in frame {}; they fired "
-                    "nothing",
-                    options.trace, person.non_finite_frames,
-                    trace.people.size() > 1 ? fmt::format(" of {}", trace.people[i].name) : "",
-                    person.non_finite_segments, trace.people.size() > 1 ? "missing or " : "", *person.first_non_finite),
-        verbosity);
+    const std::string who = trace.people.size() > 1 ? fmt::format("{}: ", trace.people[i].name) : "";
+    warn(fmt::format(
+             "{}: {}{} poses and the ends of {} segments are not finite, the first in frame {}; they fired nothing",
+             options.trace, who, person.non_finite_frames, person.non_finite_segments, *person.first_non_finite),
+         verbosity);
   }
 }
 
@@ -182,12 +180,15 @@ class ResultFiles {
 std::vector<ReplayPerson> people_of(const OpenTrace& trace, const Timelines& timelines,
                                     std::span<const MapChange> changes) {
   std::vector<ReplayPerson> people;
-  for (std::size_t i = 0; i < trace.people.size(); ++i)
+  people.reserve(trace.people.size());
+  for (std::size_t i = 0; i < trace.people.size(); ++i) {
+    const Timelines::One* one = timelines.find(i);
     people.push_back({.avatar = trace.people[i].avatar,
                       .actuator_count = trace.people[i].map.actuator_count,
-                      .timeline = timelines.file_of(i),
-                      .drive = timelines.drive_of(i),
+                      .timeline = one == nullptr ? nullptr : one->file.get(),
+                      .drive = one == nullptr ? nullptr : one->drive.get(),
                       .changes = changes});
+  }
   return people;
 }
 
@@ -198,8 +199,8 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const std::vector<PersonMap> maps = parse_maps(options);
   options.law.check();
   std::vector<std::string> inputs = {options.trace, options.verify, options.law.actuator};
-  for (const TimedMap& timed : timed_maps) inputs.push_back(timed.file);
-  for (const PersonMap& map : maps) inputs.push_back(map.file);
+  for (const TimedMap& timed : timed_maps) inputs.insert(inputs.end(), {timed.file, sidecar_path(timed.file).string()});
+  for (const PersonMap& map : maps) inputs.insert(inputs.end(), {map.file, sidecar_path(map.file).string()});
   check_outputs(outputs, inputs, options.common);
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);
@@ -210,12 +211,15 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
     require_surface(
         trace.people[i].avatar,
         fmt::format("{}, {}", options.trace, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
+  check_people(timed_maps, trace, options);
   use_maps(maps, trace, options);
   const ColliderShape shape = trace.reader.has_spheres() ? ColliderShape::kSpheres : ColliderShape::kPoints;
   Timelines timelines(options, trace);
   timelines.add_paths_to(outputs);
-  check_outputs(outputs, inputs, options.common);
-  const std::vector<MapChange> changes = read_maps(timed_maps, trace, timelines.drives_of(0), options);
+  check_outputs(outputs, inputs, options.common);  // again, with those that the trace's people bring
+  const Timelines::One* first = timelines.find(0);
+  const std::vector<MapChange> changes =
+      read_maps(timed_maps, trace.person(), first == nullptr ? nullptr : &first->drives, options);
   const PlaneSet verified = changes.empty() ? kHashedPlanes : kHashedPlanes | Plane::kTextureCoordinate;
   const PlaneSet planes = planes_of_outputs(options, texture_planes, shape) | timelines.planes() | verified;
   const std::vector<std::uint32_t> collider_ids = trace.reader.collider_ids();
@@ -225,7 +229,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   });
   const Detector& detector = detectors.first();
   const bool ignores_radii = warn_of_ignored_radii(options, detector.name(), trace);
-  const ReplayRun run = {options, trace, collider_ids.size(), picked, detectors, ignores_radii, timelines.law()};
+  const ReplayRun run = {options, trace, collider_ids.size(), picked, detectors, ignores_radii, timelines};
   const Verification verification = load_verification(options, trace, detector, verified, std::move(expected));
 
   catch_interrupts();  // before the first temporary file
@@ -245,7 +249,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   timelines.commit();
   warn_of_gaps(result, trace, timed_maps, options);
   for (std::size_t i = 0; i < result.people.size(); ++i)
-    if (timelines.file_of(i) != nullptr) warn_of_silence(result.people[i], timelines.path_of(i), options);
+    if (const Timelines::One* one = timelines.find(i)) warn_of_silence(result.people[i], one->path, options);
   ask_about_placement(trace, result, run, options);
 
   print_summary(summary(result, run), outputs, options.common);
@@ -281,13 +285,13 @@ void add_replay(CLI::App& program, Invocation& invocation) {
       ->type_name("OUT.exr|-");
   add_result("--planes", options->planes,
              "Planes of the textures, any of: actuator, t, triangle, barycentric, texture, position, speed, side, "
-             "pressure")
+             "pressure, depth")
       ->capture_default_str()
       ->type_name("LIST");
   add_result(
       "--timeline", options->timeline,
       "Write the actuators' duties: as CSV, one row per frame, 0 to 255; as MPEG haptics (.hjif); or for bHaptics "
-      "(.tact, at most 40 actuators); of the second person OUT.2.csv")
+      "(.tact, at most 40 actuators); of person 2 OUT.2.csv")
       ->type_name("OUT.csv|OUT.hjif|OUT.tact|-");
   verb->add_option("--map", options->maps,
                    "Use another actuator map than the trace's: of a trace of several people, that of person K; repeat "

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -27,6 +28,17 @@ void check_map_at(const ReplayOptions& options) {
       throw UsageError("--map-at", "the detector 'paper' keeps its first map on the GPU", "choose another detector");
 }
 
+/// Reads a map for a person, and warns of what is odd about it. "none" gives a map without actuators.
+ActuatorMap read_map(const std::string& map, const TracedPerson& person, const ReplayOptions& options) {
+  const ActuatorMapFiles files = read_map_files(person.avatar, map);
+  if (files.png.empty()) return {};
+  ActuatorMap read = parse_actuator_map(files, person.avatar, map);
+  for (const std::string& warning : read.warnings) warn(warning, options.common.verbosity());
+  const std::string other = other_facing(person.avatar.facing, read.facing, {options.trace, map});
+  if (!other.empty()) warn(other, options.common.verbosity());
+  return read;
+}
+
 }  // namespace
 
 std::vector<PersonMap> parse_maps(const ReplayOptions& options) {
@@ -39,11 +51,12 @@ std::vector<PersonMap> parse_maps(const ReplayOptions& options) {
     if (is_number) {
       std::size_t number = 0;
       const auto read = std::from_chars(text.data(), text.data() + sign, number);
-      if (read.ec != std::errc() || number == 0)
+      if (read.ec == std::errc() && number == 0)
         throw UsageError("--map", fmt::format("'{}': people count from 1", text), "write for example --map 2=FILE.png");
-      map.person = number - 1;
+      map.person = read.ec == std::errc() ? number - 1 : std::numeric_limits<std::size_t>::max() - 1;  // nobody
     }
     map.file = is_number ? text.substr(sign + 1) : text;
+    if (map.file == "-") throw UsageError("--map", "a map cannot come from standard input", "name a file or a layout");
     if (map.file.empty()) throw UsageError("--map", fmt::format("'{}' names no map", text), "name a file or a layout");
     if (!people.insert(map.person.value_or(0)).second)
       throw UsageError("--map", fmt::format("person {} gets two maps", map.person.value_or(0) + 1),
@@ -57,19 +70,14 @@ void use_maps(const std::vector<PersonMap>& maps, OpenTrace& trace, const Replay
   for (const PersonMap& map : maps) {
     if (!map.person && trace.people.size() > 1)
       throw UsageError("--map", fmt::format("{} holds {} people", options.trace, trace.people.size()),
-                       fmt::format("say whose map it is: --map 1={}", map.file));
+                       "say whose map it is: --map 1=FILE");
     const std::size_t person = map.person.value_or(0);
     if (person >= trace.people.size())
       throw UsageError("--map",
                        fmt::format("there is no person {} in {}, which holds {}", person + 1, options.trace,
                                    count_of_people(trace.people.size())),
                        "choose one who is there");
-    TracedPerson& who = trace.people[person];
-    const ActuatorMapFiles files = read_map_files(who.avatar, map.file);
-    who.map = files.png.empty() ? ActuatorMap() : parse_actuator_map(files, who.avatar, map.file);
-    for (const std::string& warning : who.map.warnings) warn(warning, options.common.verbosity());
-    const std::string other = other_facing(who.avatar.facing, who.map.facing, {options.trace, map.file});
-    if (!other.empty()) warn(other, options.common.verbosity());
+    trace.people[person].map = read_map(map.file, trace.people[person], options);
   }
 }
 
@@ -95,28 +103,26 @@ std::vector<TimedMap> parse_map_at(const ReplayOptions& options) {
   return maps;
 }
 
-std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace,
+void check_people(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace, const ReplayOptions& options) {
+  if (timed_maps.empty() || trace.people.size() == 1) return;
+  throw UsageError("--map-at",
+                   fmt::format("changes the map of one person, and {} holds {}", options.trace,
+                               count_of_people(trace.people.size())),
+                   "use --map K=FILE, which holds from the start");
+}
+
+std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const TracedPerson& person,
                                  const DriveMaker* drives, const ReplayOptions& options) {
-  const Verbosity verbosity = options.common.verbosity();
-  if (!timed_maps.empty() && trace.people.size() > 1)
-    throw UsageError("--map-at",
-                     fmt::format("changes the map of one person, and {} holds {}", options.trace,
-                                 count_of_people(trace.people.size())),
-                     "use --map K=FILE, which holds from the start");
   std::vector<MapChange> changes;
   for (const TimedMap& timed : timed_maps) {
-    const ActuatorMapFiles files = read_map_files(trace.person().avatar, timed.file);
-    if (files.png.empty()) throw UsageError("--map-at", "'none' is not a map", "name a PNG file, builtin or a layout");
-    MapChange change = {timed.time_s, parse_actuator_map(files, trace.person().avatar, timed.file), nullptr};
-    if (change.map.actuator_count != trace.person().map.actuator_count)
+    if (timed.file == "none")
+      throw UsageError("--map-at", "'none' is not a map", "name a PNG file, builtin or a layout");
+    MapChange change = {timed.time_s, read_map(timed.file, person, options), nullptr};
+    if (change.map.actuator_count != person.map.actuator_count)
       throw Error(timed.file,
-                  fmt::format("names {} actuators, and the trace's map has {}", change.map.actuator_count,
-                              trace.person().map.actuator_count),
+                  fmt::format("names {} actuators, and the map before it has {}", change.map.actuator_count,
+                              person.map.actuator_count),
                   "use maps with the same number of actuators");
-    for (const std::string& warning : change.map.warnings) warn(warning, verbosity);
-    const std::string other =
-        other_facing(trace.person().avatar.facing, change.map.facing, {options.trace, timed.file});
-    if (!other.empty()) warn(other, verbosity);
     if (drives != nullptr) change.layout = drives->layout_of(change.map);
     changes.push_back(std::move(change));
   }

@@ -34,10 +34,13 @@ struct TimedMap {
 /// stands twice, and for flags that cannot follow a change of the map.
 std::vector<TimedMap> parse_map_at(const ReplayOptions& options);
 
-/// Reads the maps, warns of what is odd about them, and measures the layouts that the law of `drives` needs; `drives`
-/// may be null. Throws `Error` for a map with another number of actuators than the person's, and `UsageError` if the
-/// trace holds several people.
-std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace,
+/// Throws `UsageError` if maps would change in a trace of several people.
+void check_people(const std::vector<TimedMap>& timed_maps, const OpenTrace& trace, const ReplayOptions& options);
+
+/// Reads the maps that follow the person's own, warns of what is odd about them, and measures the layouts that the law
+/// of `drives` needs; `drives` may be null. Throws `Error` for a map with another number of actuators than the
+/// person's.
+std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const TracedPerson& person,
                                  const DriveMaker* drives, const ReplayOptions& options);
 
 }  // namespace vestige::cli

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +36,14 @@ nlohmann::ordered_json to_json(const SkinningError& skinning) {
       {"largest_error_of_height", skinning.largest_m / skinning.height_m}};
 }
 
+/// Returns the errors of the person with the largest ones for their height.
+const SkinningError& worst_skinning(const ReplayResult& result) {
+  const auto of_height = [](const PersonResult& person) {
+    return person.skinning.height_m > 0 ? person.skinning.largest_m / person.skinning.height_m : 0;
+  };
+  return std::ranges::max_element(result.people, {}, of_height)->skinning;
+}
+
 /// Whether the GPU passes pairs on to the CPU, which is worth a line.
 bool captures(const Detector& detector) {
   return std::string_view(detector.name()) == "geometry";
@@ -47,13 +56,20 @@ nlohmann::ordered_json actuators_of(const TracedPerson& person, const PersonResu
   return actuators;
 }
 
-nlohmann::ordered_json to_json(const TracedPerson& person, const PersonResult& result) {
+nlohmann::ordered_json to_json(std::size_t i, const PersonResult& result, const ReplayRun& run) {
+  const TracedPerson& person = run.trace.people[i];
+  const Detector& detector = run.detectors.first(i);
   nlohmann::ordered_json json = {{"name", person.name}};
   json.update(vestige::to_json(person.avatar));
+  if (const auto kept = detector.triangles_kept()) json["triangles_kept"] = *kept;
+  if (run.options.choice.surface == "mapped") json["triangles_left_out"] = detector.triangles_left_out();
+  if (const Timelines::One* timeline = run.timelines.find(i)) json["law"] = timeline->drives.to_json();
   json["contacts"] = result.contacts;
   json["texture_hash"] = result.texture_hash;
   json["non_finite_frames"] = result.non_finite_frames;
+  json["non_finite_segments"] = result.non_finite_segments;
   json["actuators"] = actuators_of(person, result);
+  json["skinning"] = to_json(result.skinning);
   return json;
 }
 
@@ -99,7 +115,8 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayRun& run,
   json["skip"] = options.choice.skip;
   json["surface"] = options.choice.surface;
   json["hold_ms"] = options.law.hold_ms;
-  if (!run.law.is_null()) json["law"] = run.law;
+  for (std::size_t i = 0; i < trace.people.size() && !json.contains("law"); ++i)
+    if (const Timelines::One* timeline = run.timelines.find(i)) json["law"] = timeline->drives.to_json();
   for (const std::string& map : options.maps) json["map"].push_back(map);
   for (const std::string& map : options.map_at) json["map_at"].push_back(map);
   json["gl"] = vestige::to_json(detector.gl_info());
@@ -125,9 +142,8 @@ nlohmann::ordered_json to_json(const ReplayResult& result, const ReplayRun& run,
   json["hz"] = static_cast<double>(result.frames) / result.detection_s;
   json["actuators"] = actuators_of(trace.person(), result.people.front());
   json["avatars"] = nlohmann::ordered_json::array();
-  for (std::size_t i = 0; i < trace.people.size(); ++i)
-    json["avatars"].push_back(to_json(trace.people[i], result.people[i]));
-  json["skinning"] = to_json(result.skinning);
+  for (std::size_t i = 0; i < trace.people.size(); ++i) json["avatars"].push_back(to_json(i, result.people[i], run));
+  json["skinning"] = to_json(worst_skinning(result));
   if (result.comparison) json["verify"] = to_json(*result.comparison, options.verify);
   json["complete"] = trace.reader.complete() && !result.interrupted;
   return json;
@@ -148,12 +164,12 @@ std::string summary(const ReplayResult& result, const ReplayRun& run) {
     if (people.size() > 1) text += fmt::format("{}: {}\n", people[i].name, counted(found.contacts, "contact"));
     text += summary_of(people[i], found, run.detectors.first(i));
   }
+  const SkinningError& skinning = worst_skinning(result);
   text += fmt::format("skinning by {}: at most {:.2g} of the avatar's height from the double-precision reference{}\n",
-                      detector.skins_in_shader() ? "a shader" : "the CPU",
-                      result.skinning.largest_m / result.skinning.height_m,
-                      result.skinning.identical ? fmt::format("; {} of {} vertices have the same bits as on the CPU",
-                                                              *result.skinning.identical, result.skinning.vertices)
-                                                : "");
+                      detector.skins_in_shader() ? "a shader" : "the CPU", skinning.largest_m / skinning.height_m,
+                      skinning.identical ? fmt::format("; {} of {} vertices have the same bits as on the CPU",
+                                                       *skinning.identical, skinning.vertices)
+                                         : "");
   if (captures(detector))
     text += fmt::format("captured {} of {} pairs; {} of these pairs touch\n", result.work.pairs_captured,
                         result.work.pairs_tested, result.work.pairs_meeting);

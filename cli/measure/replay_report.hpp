@@ -9,6 +9,7 @@
 #include "cli/choices/scene.hpp"
 #include "cli/command_line.hpp"
 #include "cli/measure/replay_options.hpp"
+#include "cli/measure/replay_timelines.hpp"
 #include "detector/detectors/path_choice.hpp"
 
 namespace vestige::cli {
@@ -20,8 +21,8 @@ struct ReplayRun {
   std::size_t colliders;
   std::optional<PickedPath> picked;  ///< by --detector auto
   const DetectorTeam& detectors;
-  bool ignores_radii;          ///< of colliders that have one
-  nlohmann::ordered_json law;  ///< of the timelines; null without one
+  bool ignores_radii;  ///< of colliders that have one
+  const Timelines& timelines;
 };
 
 /// Returns what --json writes.

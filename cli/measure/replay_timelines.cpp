@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <span>
+#include <utility>
 
 #include "traces/base/error.hpp"
 
@@ -12,12 +13,10 @@ namespace vestige::cli {
 
 namespace {
 
-/// Returns the path of a person's timeline.
-std::string numbered_path(const std::string& path, std::size_t person) {
-  if (person == 0) return path;
-  const std::filesystem::path given(path);
-  const std::string name = fmt::format("{}.{}{}", given.stem().string(), person + 1, given.extension().string());
-  return std::filesystem::path(given).replace_filename(name).string();
+/// Returns the path with the person's number in it.
+std::string numbered_path(std::filesystem::path path, std::size_t person) {
+  const std::string name = fmt::format("{}.{}{}", path.stem().string(), person + 1, path.extension().string());
+  return path.replace_filename(name).string();
 }
 
 bool is_pipe(const std::string& path) {
@@ -32,28 +31,31 @@ Timelines::Timelines(const ReplayOptions& options, OpenTrace& trace) : overwrite
   const auto has_actuators = [](const TracedPerson& person) { return person.map.actuator_count > 0; };
   const auto count = std::ranges::count_if(trace.people, has_actuators);
   if (count == 0)
-    throw UsageError("--timeline", fmt::format("there is no actuator in {}, so nothing to write", options.trace),
-                     "give the trace an actuator map with 'vestige record --map', or leave --timeline out");
-  if (trace.people.size() > 1 && is_pipe(options.timeline))
     throw UsageError(
-        "--timeline",
-        fmt::format("each of {} people has a timeline, and '{}' takes one", trace.people.size(), options.timeline),
-        "name a file: OUT.csv is the first person's, OUT.2.csv the second's");
+        "--timeline", fmt::format("there is no actuator in {}, so nothing to write", options.trace),
+        "give the trace an actuator map with 'vestige record --map', or here with --map, or leave --timeline out");
+  if (count > 1 && is_pipe(options.timeline))
+    throw UsageError("--timeline",
+                     fmt::format("each of {} people has a timeline, and '{}' takes one", count, options.timeline),
+                     "name a file: OUT.csv is the first person's, OUT.2.csv the second's");
   require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
+  of_people_.resize(trace.people.size());
+  bool is_first = true;
   for (std::size_t i = 0; i < trace.people.size(); ++i) {
     const TracedPerson& person = trace.people[i];
-    auto& one = of_people_.emplace_back();
-    const std::string path = numbered_path(options.timeline, i);
-    if (has_actuators(person))
-      one.emplace(One{path, DriveMaker(options.law, person.avatar, person.map), person.map.names});
-    else
-      warn(fmt::format("{}: is not written, as {} has no actuator", path, person.name), options.common.verbosity());
+    if (!has_actuators(person)) {
+      warn(fmt::format("{} has no actuator, and so no timeline", person.name), options.common.verbosity());
+      continue;
+    }
+    const std::string path = std::exchange(is_first, false) ? options.timeline : numbered_path(options.timeline, i);
+    of_people_[i].emplace(One{path, DriveMaker(options.law, person.avatar, person.map), person.map.names});
   }
 }
 
 void Timelines::add_paths_to(std::vector<std::string>& outputs) const {
-  for (std::size_t i = 1; i < of_people_.size(); ++i)
-    if (of_people_[i]) outputs.push_back(of_people_[i]->path);
+  bool is_first = true;
+  for (const auto& one : of_people_)
+    if (one && !std::exchange(is_first, false)) outputs.push_back(one->path);
 }
 
 PlaneSet Timelines::planes() const {
@@ -61,12 +63,6 @@ PlaneSet Timelines::planes() const {
   for (const auto& one : of_people_)
     if (one) planes = planes | one->drives.planes();
   return planes;
-}
-
-nlohmann::ordered_json Timelines::law() const {
-  for (const auto& one : of_people_)
-    if (one) return one->drives.to_json();
-  return {};
 }
 
 void Timelines::open() {
@@ -84,26 +80,6 @@ void Timelines::commit() {
 
 const Timelines::One* Timelines::find(std::size_t person) const {
   return person < of_people_.size() && of_people_[person] ? &*of_people_[person] : nullptr;
-}
-
-const DriveMaker* Timelines::drives_of(std::size_t person) const {
-  const One* one = find(person);
-  return one == nullptr ? nullptr : &one->drives;
-}
-
-TimelineFile* Timelines::file_of(std::size_t person) const {
-  const One* one = find(person);
-  return one == nullptr ? nullptr : one->file.get();
-}
-
-ActuatorDrive* Timelines::drive_of(std::size_t person) const {
-  const One* one = find(person);
-  return one == nullptr ? nullptr : one->drive.get();
-}
-
-std::string Timelines::path_of(std::size_t person) const {
-  const One* one = find(person);
-  return one == nullptr ? "" : one->path;
 }
 
 }  // namespace vestige::cli

@@ -216,7 +216,8 @@ LawMaker make_laws(const StreamOptions& options, const OpenTrace& trace) {
 void run_stream(const StreamOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   const std::vector<std::string> outputs = {options.log, options.common.json, options.sink.output_path()};
-  check_outputs(outputs, {options.trace, options.map, options.law.actuator}, options.common);
+  check_outputs(outputs, {options.trace, options.map, sidecar_path(options.map).string(), options.law.actuator},
+                options.common);
   check_flags(options);
   const bool watched = options.is_map_watched();
   const std::string map_stamp = watched ? ActuatorMapWatch::stamp(options.map) : "";

@@ -93,7 +93,7 @@ void TextureExr::add(std::size_t person, const DetectorFrame& frame, const Conta
 }
 
 void TextureExr::write(OutputFile& file) const {
-  const std::uint32_t rows = people_.front().rows;
+  const std::uint32_t rows = people_.front().rows;  // as many as of everybody
   if (rows == 0 || columns_ == 0)
     throw Error(file.path().string(), "the trace has no frame or no collider, so there is no texture to write",
                 "replay a trace with frames and colliders");

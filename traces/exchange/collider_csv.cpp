@@ -110,6 +110,7 @@ class CsvColliders final : public ColliderSource {
   }
 
   ColliderShape shape() const override { return shape_; }
+  std::optional<std::uint32_t> largest_id() const override { return tracks_.back().id; }
   TimeSpan span_s() const override { return span_s_; }
   double median_step_s() const override { return steps_.median_s; }
 

@@ -176,6 +176,8 @@ class GltfColliders final : public ColliderSource {
 
   ColliderShape shape() const override { return has_radii_ ? ColliderShape::kSpheres : ColliderShape::kPoints; }
 
+  std::optional<std::uint32_t> largest_id() const override { return colliders_.back().id; }
+
   TimeSpan span_s() const override {
     return scene_.animation.channels.empty() ? TimeSpan() : TimeSpan{0, scene_.animation.duration_s};
   }

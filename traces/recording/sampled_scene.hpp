@@ -38,8 +38,8 @@ struct SampledScene {
 /// Returns in `out` poses and colliders at time index / rate.
 void sample_frame(const SampledScene& scene, double rate_hz, std::uint64_t index, TraceFrame& out);
 
-/// Receives a frame. Returns false if it accepts no more frames.
-using FrameSink = std::function<bool(const TraceFrame&)>;
+/// Receives a frame, which it may complete. Returns false if it accepts no more frames.
+using FrameSink = std::function<bool(TraceFrame&)>;
 
 /// Samples poses and colliders at the times k / rate and passes them to `write`. Calls `progress` with the fraction
 /// done; it returns false to stop.

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ class ColliderSource {
   /// The ids of colliders that jumped to their position in the last `sample`. Their path is not a line segment and must
   /// not be tested.
   const std::vector<std::uint32_t>& teleported() const { return teleported_; }
+
+  /// The largest id of the colliders of a file. A scenario has none: it numbers its colliders from 0 on.
+  virtual std::optional<std::uint32_t> largest_id() const { return {}; }
 
   /// First and last time of the samples. A scenario has no bounds.
   virtual TimeSpan span_s() const { return {}; }

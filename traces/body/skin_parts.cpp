@@ -1,4 +1,4 @@
-#include "analysis/mapping/skin_parts.hpp"
+#include "traces/body/skin_parts.hpp"
 
 #include <algorithm>
 #include <array>

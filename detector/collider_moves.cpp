@@ -1,0 +1,53 @@
+#include "detector/collider_moves.hpp"
+
+#include <algorithm>
+
+#include "traces/scene/radius.hpp"
+
+namespace vestige {
+
+namespace {
+
+using IdPlace = std::vector<std::uint32_t>::const_iterator;
+
+/// Returns the place of `id` in the ascending `ids`, or their end. Looks at `next` first: ids mostly come in ascending
+/// order.
+IdPlace place_of(const std::vector<std::uint32_t>& ids, std::uint32_t id, IdPlace next) {
+  if (next != ids.end() && *next == id) return next;
+  const auto place = std::ranges::lower_bound(ids, id);
+  return place != ids.end() && *place == id ? place : ids.end();
+}
+
+}  // namespace
+
+ColliderMoves::ColliderMoves(std::span<const std::uint32_t> collider_ids)
+    : collider_ids_(collider_ids.begin(), collider_ids.end()), columns_(collider_ids.size()) {}
+
+void ColliderMoves::next(const TraceFrame& trace_frame) {
+  moves_.clear();
+  IdPlace next = collider_ids_.begin();
+  for (const std::uint32_t id : trace_frame.teleported) {
+    const IdPlace place = place_of(collider_ids_, id, next);
+    if (place == collider_ids_.end()) continue;
+    columns_[static_cast<std::size_t>(place - collider_ids_.begin())].seen_in = 0;
+    next = place + 1;
+  }
+  next = collider_ids_.begin();
+  for (const ColliderSample& sample : trace_frame.colliders) {
+    const IdPlace place = place_of(collider_ids_, sample.id, next);
+    if (place == collider_ids_.end()) continue;
+    next = place + 1;
+    const auto column = static_cast<std::size_t>(place - collider_ids_.begin());
+    Column& before = columns_[column];
+    if (before.seen_in != 0 && before.seen_in == trace_frame.index)
+      moves_.push_back({.column = static_cast<std::uint32_t>(column),
+                        .owner = sample.owner,
+                        .radius_m = is_sphere_radius(sample.radius_m) ? sample.radius_m : 0,
+                        .start_m = before.position_m,
+                        .end_m = sample.position_m});
+    before = {sample.position_m, trace_frame.index + 1};
+  }
+  if (!std::ranges::is_sorted(moves_, {}, &ColliderMove::column)) std::ranges::sort(moves_, {}, &ColliderMove::column);
+}
+
+}  // namespace vestige
