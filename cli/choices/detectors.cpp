@@ -153,18 +153,14 @@ ContextKind context_kind(const std::string& context) {
 
 namespace {
 
-std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, const std::string& context,
+std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, SharedContext& context,
                                              const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
-                                             PlaneSet planes, std::shared_ptr<GlContext>& shared) {
-  const auto gl = [&] {
-    if (shared == nullptr) shared = make_gl_context(context_kind(context), choice.device);
-    return shared;
-  };
+                                             PlaneSet planes) {
   const DetectorOptions options = {choice.surface_kind(), planes, choice.method_kind(), choice.skip_kind()};
   if (name == "exact") return make_exact_detector(avatar, map, options);
   if (name == "embree") return make_embree_detector(EmbreeMode::kRobust, avatar, map, options);
   if (name == "embree_default") return make_embree_detector(EmbreeMode::kDefault, avatar, map, options);
-  if (name == "geometry") return make_geometry_detector(gl(), avatar, map, options);
+  if (name == "geometry") return make_geometry_detector(context.get(), avatar, map, options);
   if (name == "cpu" || name == "auto") return make_cpu_detector(avatar, map, options);
   if (name == "boxes") return make_boxes_detector(avatar, map, options);
   if (name == "capsules") return make_capsules_detector(avatar, map, options);
@@ -173,23 +169,27 @@ std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, const std:
   if (options.method != Method::kStatic)
     throw UsageError("--method", fmt::format("the published method does not support '{}'", choice.method),
                      "choose --detector geometry or cpu, or --method static");
-  return make_paper_detector(gl(), avatar, map, options);
+  return make_paper_detector(context.get(), avatar, map, options);
 }
 
 }  // namespace
 
-std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
-                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
-                                        PlaneSet planes) {
-  std::shared_ptr<GlContext> unshared;
-  return make_detector(name, context, choice, avatar, map, planes, unshared);
+std::shared_ptr<GlContext> SharedContext::get() {
+  if (made_ == nullptr) made_ = make_gl_context(kind_, device_);
+  return made_;
 }
 
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
-                                        PlaneSet planes, std::shared_ptr<GlContext>& shared) {
+                                        PlaneSet planes) {
+  SharedContext unshared(context, choice.device);
+  return make_detector(name, unshared, choice, avatar, map, planes);
+}
+
+std::unique_ptr<Detector> make_detector(const std::string& name, SharedContext& context, const DetectorChoice& choice,
+                                        const Avatar& avatar, const ActuatorMap& map, PlaneSet planes) {
   const auto make = [&](const Avatar& skin, const ActuatorMap& skin_map) {
-    return make_on_whole_skin(name, context, choice, skin, skin_map, planes, shared);
+    return make_on_whole_skin(name, context, choice, skin, skin_map, planes);
   };
   // The slow truth takes no short cut.
   const bool on_whole_skin = choice.surface_kind() == Surface::kAll || name == "exact";

@@ -94,9 +94,21 @@ std::string describe_methods(const char* verb);
 std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
                                         const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
                                         PlaneSet planes);
-/// As above, in a context that several detectors of a thread share: the first that needs one makes it.
-std::unique_ptr<Detector> make_detector(const std::string& name, const std::string& context,
-                                        const DetectorChoice& choice, const Avatar& avatar, const ActuatorMap& map,
-                                        PlaneSet planes, std::shared_ptr<GlContext>& shared);
+/// The OpenGL context that several detectors of a thread share. The first that needs it makes it.
+class SharedContext {
+ public:
+  /// `context` is "auto", "egl" or "osmesa".
+  SharedContext(const std::string& context, int device) : kind_(context_kind(context)), device_(device) {}
+  std::shared_ptr<GlContext> get();
+
+ private:
+  ContextKind kind_;
+  int device_;
+  std::shared_ptr<GlContext> made_;
+};
+
+/// As above, in a shared context.
+std::unique_ptr<Detector> make_detector(const std::string& name, SharedContext& context, const DetectorChoice& choice,
+                                        const Avatar& avatar, const ActuatorMap& map, PlaneSet planes);
 
 }  // namespace vestige::cli

@@ -16,10 +16,10 @@ namespace vestige::cli {
 
 PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& choice, const OpenTrace& trace,
                                PlaneSet planes) {
-  std::shared_ptr<GlContext> shared;
+  SharedContext context(choice.context, choice.device);
   PeopleDetectors detectors;
   for (const TracedPerson& person : trace.people)
-    detectors.push_back(make_detector(name, choice.context, choice, person.avatar, person.map, planes, shared));
+    detectors.push_back(make_detector(name, context, choice, person.avatar, person.map, planes));
   return detectors;
 }
 
