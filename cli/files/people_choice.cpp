@@ -196,13 +196,16 @@ namespace {
 std::vector<LimbSphere> spheres_of(const std::string& text, const std::string& name, const Avatar& avatar) {
   const std::vector<std::string>& known = limb_names();
   const bool wants_all = text == "all";
-  std::vector<LimbSphere> spheres;
+  std::map<std::string, std::vector<LimbSphere>> fitted;
   std::vector<std::string> told;
-  for (const std::string& limb : known)
-    if (!fit_limb(avatar, limb).empty()) told.push_back(limb);
+  for (const std::string& limb : known) {
+    fitted[limb] = fit_limb(avatar, limb);
+    if (!fitted[limb].empty()) told.push_back(limb);
+  }
   if (told.empty())
     throw UsageError("--limbs", fmt::format("the joints of {} do not tell its limbs", name),
                      "rename its joints, or use an avatar whose joints have the names of a known program");
+  std::vector<LimbSphere> spheres;
   std::set<std::string> taken;
   for (const std::string& limb : wants_all ? told : parse_list(text)) {
     if (std::ranges::find(known, limb) == known.end())
@@ -210,7 +213,7 @@ std::vector<LimbSphere> spheres_of(const std::string& text, const std::string& n
                        fmt::format("write all, or choose from {}", fmt::join(known, ", ")));
     if (!taken.insert(limb).second)
       throw UsageError("--limbs", fmt::format("'{}' stands there twice", limb), "leave one of them out");
-    const std::vector<LimbSphere> of_limb = fit_limb(avatar, limb);
+    const std::vector<LimbSphere>& of_limb = fitted[limb];
     if (of_limb.empty())
       throw UsageError("--limbs", fmt::format("the joints of {} do not tell its {}", name, limb),
                        fmt::format("choose from {}", fmt::join(told, ", ")));

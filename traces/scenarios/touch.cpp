@@ -105,7 +105,9 @@ class Arm {
         lower_(bone_of(avatar, "RightLowerArm")),
         hand_(bone_of(avatar, "RightHand")) {
     const std::vector<LimbSphere> spheres = fit_limb(avatar, "hand_right");
-    if (spheres.empty()) bone_of(avatar, "skin of the right hand");
+    if (spheres.empty())
+      throw Error("--colliders touch", "no skin of an avatar moves with its right hand",
+                  "use an avatar whose hand has a skin");
     const Pose rest = rest_pose(avatar);
     world_matrices(avatar, rest, world_);
     tip_ = *std::ranges::max_element(spheres, {}, [this](const LimbSphere& sphere) {
@@ -140,8 +142,8 @@ class Arm {
     glm::dquat second(1, 0, 0, 0);
     constexpr int kSteps = 8;  // the hand turns with the arm: what it holds is where only when the arm is there
     for (int step = 0; step < kSteps; ++step) {
-      const glm::dvec3 bent = elbow_for(shoulder, goal - second * (first * held));
       const glm::dvec3 goal_of_wrist = wrist_for(shoulder, goal - second * (first * held));
+      const glm::dvec3 bent = elbow_for(shoulder, goal_of_wrist);
       first = turn_between(elbow - shoulder, bent - shoulder);
       second = turn_between(first * (wrist - elbow), goal_of_wrist - bent);
     }
@@ -164,8 +166,7 @@ class Arm {
     return shoulder + away * glm::normalize(goal - shoulder);
   }
 
-  glm::dvec3 elbow_for(const glm::dvec3& shoulder, const glm::dvec3& goal) const {
-    const glm::dvec3 wrist = wrist_for(shoulder, goal);
+  glm::dvec3 elbow_for(const glm::dvec3& shoulder, const glm::dvec3& wrist) const {
     const double away = glm::distance(wrist, shoulder);
     const glm::dvec3 along = (wrist - shoulder) / away;
     const glm::dvec3 down = glm::normalize(glm::dvec3(0, -1, 0) + along.y * along);
