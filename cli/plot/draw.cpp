@@ -214,16 +214,23 @@ int draw_scene(Options options) {
   options.moments.trail_s = options.trail_ms / 1000;
   int damage = cli::kDone;
   const int drawn = write_figure(options, stem_of(options), [&] {
-    TraceReader trace(input);
+    TraceReader trace(input, People::kSeveral);
+    if (trace.people().size() > 1 && !options.map.empty())
+      throw UsageError("--map", fmt::format("{} holds several people", input.string()), "leave --map out");
     Scene scene;
-    scene.subject = read_subject(trace, input, options.map);
-    warn_of(options, scene.subject);
+    ContactLimits limits = {.people = trace.people().size(), .triangles = 0, .actuators = 0};
+    for (std::size_t i = 0; i < trace.people().size(); ++i) {
+      const Subject& subject = scene.subjects.emplace_back(read_subject(trace, input, options.map, i));
+      warn_of(options, subject);
+      const ContactLimits own = limits_of(options, subject);
+      limits.triangles = std::max(limits.triangles, own.triangles);
+      limits.actuators = std::max(limits.actuators, own.actuators);
+    }
     scene.trail_s = options.moments.trail_s;
     scene.has_contacts = !options.contacts.empty();
     scene.colour_by = options.colour_by == "collider" ? ColourBy::kCollider : ColourBy::kKind;
     const std::vector<FrameTime> times = frame_times(trace, input.string());
     damage = report_damage(options, trace);
-    ContactLimits limits = limits_of(options, scene.subject);
     limits.frames = times.back().index + 1;
     std::vector<RecordedContact> contacts;
     if (scene.has_contacts) contacts = read_contacts(options.contacts, limits);

@@ -175,7 +175,7 @@ TEST_F(Bundle, MeasureLeavesAFolderOfResultsAndOneVerdict) {
   // Three methods by three contestants; two methods.
   EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 36000 answers"));
   EXPECT_THAT(verdict, HasSubstr("0 differ, of 4200 answers"));
-  EXPECT_THAT(verdict, HasSubstr("the texture of cpu without skipping: 18 of 18"));
+  EXPECT_THAT(verdict, HasSubstr("the texture of cpu without skipping: 27 of 27"));
   EXPECT_THAT(verdict, HasSubstr("errors: 0, others: "));
   EXPECT_THAT(verdict, HasSubstr("With 100 colliders, against the fastest cpu"));
   EXPECT_THAT(verdict, Not(HasSubstr("FAILED")));
@@ -219,7 +219,7 @@ esac
   EXPECT_EQ(measured.exit_code, 1);
   const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
   EXPECT_THAT(verdict, AllOf(StartsWith("VERDICT: NOT EXACT on "), HasSubstr(": contacts differ\n"),
-                             HasSubstr("the texture of cpu without skipping: 17 of 18"),
+                             HasSubstr("the texture of cpu without skipping: 26 of 27"),
                              HasSubstr("results/log/replay-hug-geometry-carried-on.txt"),
                              HasSubstr("paper, which does not promise to be exact, differ in: replay-swarm-paper")));
 }
@@ -237,7 +237,7 @@ esac
   const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
   EXPECT_THAT(verdict,
               AllOf(StartsWith("VERDICT: NOT KNOWN TO BE EXACT on "), HasSubstr("geometry is refused, it rounds up\n"),
-                    HasSubstr("the texture of cpu without skipping: 6 of 6")));
+                    HasSubstr("the texture of cpu without skipping: 9 of 9")));
 }
 
 }  // namespace

@@ -156,7 +156,7 @@ std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, std:
     passed[frame.index] = time_s;
     trails.add(frame);
     if (frame.index != wanted.index) continue;
-    Moment moment = {frame.index, time_s, frame.poses.front(), trails.paths(time_s), {}};
+    Moment moment = {frame.index, time_s, frame.poses, trails.paths(time_s), {}};
     for (const RecordedContact& contact : contacts) {
       const auto at = passed.find(contact.frame);
       if (at != passed.end() && time_s - at->second <= choice.trail_s + 1e-9) moment.contacts.push_back(contact);

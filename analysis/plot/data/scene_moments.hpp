@@ -38,7 +38,7 @@ struct Path {
 struct Moment {
   std::uint64_t frame = 0;
   double time_s = 0;
-  Pose pose;
+  std::vector<Pose> poses;  ///< of each person; one that is missing has no nodes
   std::vector<Path> paths;
   std::vector<RecordedContact> contacts;  ///< contacts in the time that the paths cover
 };
@@ -51,10 +51,10 @@ struct FrameTime {
 /// Returns the times of all frames, and rewinds the trace. Throws `Error` with `name` if the trace has no frame.
 std::vector<FrameTime> frame_times(TraceReader& trace, std::string_view name);
 
-/// Reads the moments. `times` are the trace's frames. Without contacts, the moments are evenly spaced over the chosen
-/// time. With contacts, they are evenly spaced among the frames that have contacts. Returns fewer moments than asked
-/// for if there are fewer frames. `contacts` may be in any order. Throws `Error` or `UsageError` with `name` if that
-/// time has no frame or no contact.
+/// Reads the moments of all people. `times` are the trace's frames. Without contacts, the moments are evenly spaced
+/// over the chosen time. With contacts, they are evenly spaced among the frames that have contacts. Returns fewer
+/// moments than asked for if there are fewer frames. `contacts` may be in any order. Throws `Error` or `UsageError`
+/// with `name` if that time has no frame or no contact.
 std::vector<Moment> read_moments(TraceReader& trace, std::string_view name, std::vector<FrameTime> times,
                                  const MomentChoice& choice, std::span<const RecordedContact> contacts);
 

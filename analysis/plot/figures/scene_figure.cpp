@@ -11,6 +11,7 @@
 #include "analysis/plot/canvas/region_colours.hpp"
 #include "analysis/plot/canvas/scale_bar.hpp"
 #include "analysis/plot/studio/studio.hpp"
+#include "traces/scene/radius.hpp"
 
 namespace vestige::plot {
 
@@ -24,6 +25,8 @@ constexpr double kFootPt = 20;
 constexpr std::size_t kMostColumns = 4;
 constexpr double kMostCellHeightPt = 300;
 constexpr double kAzimuthDegrees = 35;
+/// Most people reach out with their right hand: from that side it hides nothing.
+constexpr double kAzimuthOfSeveralDegrees = -70;
 constexpr double kElevationDegrees = 14;
 /// Room for colliders around the body, in heights of it.
 constexpr double kRoom = 0.13;
@@ -62,6 +65,51 @@ std::vector<std::uint32_t> colliders_in(const std::vector<Moment>& moments) {
   return ids;
 }
 
+/// All people at a moment.
+struct Crowd {
+  Surface surface;
+  std::vector<std::uint32_t> first_triangle;  ///< of each person, and behind them the number of triangles
+
+  /// Which person a triangle of the surface belongs to.
+  std::size_t person_of(std::uint32_t triangle) const {
+    return static_cast<std::size_t>(std::ranges::upper_bound(first_triangle, triangle) - first_triangle.begin()) - 1;
+  }
+};
+
+/// Poses people. Those whose pose is missing are left out.
+class CrowdPoser {
+ public:
+  explicit CrowdPoser(const std::vector<Subject>& subjects) {
+    for (const Subject& subject : subjects) posers_.emplace_back(subject.avatar);
+  }
+
+  Crowd pose(const std::vector<Pose>& poses, const glm::dvec3& origin_m) const {
+    Crowd crowd;
+    for (std::size_t i = 0; i < posers_.size(); ++i) {
+      crowd.first_triangle.push_back(static_cast<std::uint32_t>(crowd.surface.triangles.size()));
+      if (poses[i].nodes.empty()) continue;
+      Surface surface = posers_[i].pose(poses[i], origin_m);
+      if (crowd.surface.triangles.empty())
+        crowd.surface = std::move(surface);
+      else
+        crowd.surface.append(surface);
+    }
+    crowd.first_triangle.push_back(static_cast<std::uint32_t>(crowd.surface.triangles.size()));
+    return crowd;
+  }
+
+ private:
+  std::vector<SurfacePoser> posers_;
+};
+
+/// Where the first person stands in the world whose pose is not missing.
+glm::dvec3 standing_at(const Scene& scene) {
+  for (const Moment& moment : scene.moments)
+    for (std::size_t i = 0; i < scene.subjects.size(); ++i)
+      if (!moment.poses[i].nodes.empty()) return standing_at(scene.subjects[i].avatar, moment.poses[i]);
+  return glm::dvec3(0);
+}
+
 struct Panel {
   Raster raster;
   double time_s = 0;
@@ -71,7 +119,7 @@ struct Panel {
 class SceneFigure : public Figure {
  public:
   explicit SceneFigure(const Scene& scene)
-      : title_(fmt::format("{}: {}", scene.subject.title, in_words(most_colliders(scene), "collider"))),
+      : title_(title_of(scene)),
         trail_s_(scene.trail_s),
         has_contacts_(scene.has_contacts),
         colliders_(colliders_in(scene.moments)) {
@@ -82,13 +130,14 @@ class SceneFigure : public Figure {
                                                           : fmt::format(", {} colours in turn", path_colours_.size());
     }
     // Far from the world's origin floats are coarse: everything is drawn relative to where the avatar first stands.
-    const glm::dvec3 origin_m = standing_at(scene.subject.avatar, scene.moments.front().pose);
-    const SurfacePoser poser(scene.subject.avatar);
-    std::vector<Surface> surfaces;
-    for (const Moment& moment : scene.moments) surfaces.push_back(poser.pose(moment.pose, origin_m));
-    lay_out(surfaces);
-    for (std::size_t i = 0; i < surfaces.size(); ++i)
-      panels_.push_back(make_panel(scene, scene.moments[i], surfaces[i], origin_m));
+    const glm::dvec3 origin_m = standing_at(scene);
+    const CrowdPoser poser(scene.subjects);
+    std::vector<Crowd> crowds;
+    crowds.reserve(scene.moments.size());
+    for (const Moment& moment : scene.moments) crowds.push_back(poser.pose(moment.poses, origin_m));
+    lay_out(crowds, scene.subjects.size() > 1 ? kAzimuthOfSeveralDegrees : kAzimuthDegrees);
+    for (std::size_t i = 0; i < crowds.size(); ++i)
+      panels_.push_back(make_panel(scene, scene.moments[i], crowds[i], origin_m));
   }
 
   double width_pt() const override { return kWidthPt; }
@@ -119,6 +168,13 @@ class SceneFigure : public Figure {
   }
 
  private:
+  /// "man.mcap: 40 colliders", and of several people how many they are.
+  static std::string title_of(const Scene& scene) {
+    std::string title = scene.subjects.front().title + ": ";
+    if (scene.subjects.size() > 1) title += fmt::format("{} people, ", scene.subjects.size());
+    return title + in_words(most_colliders(scene), "collider");
+  }
+
   static std::size_t most_colliders(const Scene& scene) {
     std::size_t most = 0;
     for (const Moment& moment : scene.moments)
@@ -126,12 +182,12 @@ class SceneFigure : public Figure {
     return most;
   }
 
-  void lay_out(const std::vector<Surface>& surfaces) {
-    camera_ = Camera::from(kAzimuthDegrees, kElevationDegrees, surfaces.front().facing);
-    glm::dvec3 low = surfaces.front().low;
-    glm::dvec3 high = surfaces.front().high;
+  void lay_out(const std::vector<Crowd>& crowds, double azimuth_deg) {
+    camera_ = Camera::from(azimuth_deg, kElevationDegrees, crowds.front().surface.facing);
+    glm::dvec3 low = crowds.front().surface.low;
+    glm::dvec3 high = crowds.front().surface.high;
     glm::dvec3 largest(0);
-    for (const Surface& surface : surfaces) {
+    for (const auto& [surface, first_triangle] : crowds) {
       low = glm::min(low, surface.low);
       high = glm::max(high, surface.high);
       largest = glm::max(largest, surface.high - surface.low);
@@ -145,7 +201,7 @@ class SceneFigure : public Figure {
     middle_ = (low + high) / 2.0;
     seen_low_ = glm::dvec3(std::numeric_limits<double>::max());
     glm::dvec3 seen_high = -seen_low_;
-    for (const Surface& surface : surfaces) {
+    for (const auto& [surface, first_triangle] : crowds) {
       for (const glm::uvec3& triangle : surface.triangles) {
         for (int corner = 0; corner < 3; ++corner) {
           const glm::dvec3 point(surface.position[triangle[corner]]);
@@ -161,7 +217,7 @@ class SceneFigure : public Figure {
     const double width = std::max(seen_high.x - seen_low_.x, 2 * kRoom * extent_);
     seen_width_ = width;
     const double height = std::max(seen_high.y - seen_low_.y, 2 * kRoom * extent_);
-    const std::size_t count = surfaces.size();
+    const std::size_t count = crowds.size();
     rows_ = (count + kMostColumns - 1) / kMostColumns;
     columns_ = (count + rows_ - 1) / rows_;
     cell_width_pt_ = whole_dots_pt((kWidthPt - 2 * kLeftPt) / static_cast<double>(std::max<std::size_t>(columns_, 3)));
@@ -176,7 +232,8 @@ class SceneFigure : public Figure {
     return {own.x, middle_.y, own.z};
   }
 
-  Panel make_panel(const Scene& scene, const Moment& moment, const Surface& surface, const glm::dvec3& origin_m) const {
+  Panel make_panel(const Scene& scene, const Moment& moment, const Crowd& crowd, const glm::dvec3& origin_m) const {
+    const Surface& surface = crowd.surface;
     View view = view_of_cell(camera_, cell_width_pt_, cell_height_pt_, unit_per_pt_);
     const glm::dvec3 seen = camera_.seen(middle_of(surface)) + seen_low_;
     view.left = seen.x - (static_cast<double>(view.width) * view.unit_per_dot - seen_width_) / 2;
@@ -188,7 +245,7 @@ class SceneFigure : public Figure {
     overlays.reserve(2 * colours + 3);
     StudioShot::Overlay& spheres = overlays.emplace_back(shot, kSphereColour);
     for (const Path& path : moment.paths)
-      if (path.is_current && path.radius_m > 0)
+      if (path.is_current && is_sphere_radius(path.radius_m))
         spheres.sphere(path.stops.back().position_m - origin_m, double{path.radius_m}, kSphere, kHidden);
     for (const Colour& colour : path_colours_) overlays.emplace_back(shot, colour);
     StudioShot::Overlay& segments = overlays.emplace_back(shot, kInk);
@@ -199,14 +256,18 @@ class SceneFigure : public Figure {
       draw_path(path, origin_m, many, overlays[1 + colour_of(path.collider)], segments);
     const double dot = dots_of(kContactPt);
     for (const RecordedContact& contact : moment.contacts) {
-      const glm::dvec3 at = surface.point(contact.triangle, contact.barycentric.x, contact.barycentric.y);
+      const std::size_t person = contact.avatar - 1U;
+      const std::uint32_t triangle = crowd.first_triangle[person] + contact.triangle;
+      if (triangle >= crowd.first_triangle[person + 1]) continue;  // of a person whose pose is missing
+      const glm::dvec3 at = surface.point(triangle, contact.barycentric.x, contact.barycentric.y);
       rings.dot(at, 1.5 * dot, 1, 0, 0.01 * extent_);
       overlays[colours + 3 + colour_of(contact.collider)].dot(at, dot, 1, 0.35, 0.01 * extent_);
     }
-    const std::size_t count = scene.subject.map.actuator_count;
     const Paint paint = [&](std::uint32_t triangle, double u, double v) {
-      const std::uint16_t actuator = scene.subject.actuator_at(triangle, u, v);
-      return actuator == 0 ? kSkin : blend(region_colour(actuator, count), kSkin, 0.6);
+      const std::size_t person = crowd.person_of(triangle);
+      const Subject& subject = scene.subjects[person];
+      const std::uint16_t actuator = subject.actuator_at(triangle - crowd.first_triangle[person], u, v);
+      return actuator == 0 ? kSkin : blend(region_colour(actuator, subject.map.actuator_count), kSkin, 0.6);
     };
     return {shot.picture(paint, overlays), moment.time_s, moment.contacts.size()};
   }
@@ -232,7 +293,7 @@ class SceneFigure : public Figure {
     }
     if (!path.is_current) return;
     const glm::dvec3 head = path.stops.back().position_m - origin_m;
-    if (!(path.radius_m > 0)) segments.dot(head, dots_of(many ? 1.2 : 2.2), 1, kHidden, tolerance);
+    if (!is_sphere_radius(path.radius_m)) segments.dot(head, dots_of(many ? 1.2 : 2.2), 1, kHidden, tolerance);
     if (path.stops.size() < 2) return;
     const glm::dvec3 tail = path.stops[path.stops.size() - 2].position_m - origin_m;
     segments.line({tail, 1}, {head, 1}, dots_of(many ? 0.8 : 1.4), kHidden, tolerance);

@@ -8,6 +8,7 @@
 #include "analysis/mapping/layouts.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/builtin_avatar.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::plot {
 
@@ -41,21 +42,26 @@ Subject read_subject(const std::string& avatar, const std::string& map, std::str
   return subject;
 }
 
-Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map) {
+Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map,
+                     std::size_t person) {
+  const RecordedPerson& recorded = trace.people()[person];
+  const auto attachment = [&](trace_format::AttachmentKind kind) {
+    return fmt::format("{}, {}", path.string(), trace_format::attachment_name(kind, person));
+  };
+  const std::string map_name = attachment(trace_format::AttachmentKind::kMapImage);
   Subject subject;
   subject.title = path.filename().string();
-  subject.avatar = parse_avatar_glb(trace.people().front().avatar_glb, path.string() + ", avatar.glb");
-  take_recorded_facing(subject.avatar.facing, trace.people().front().facing);
+  subject.avatar = parse_avatar_glb(recorded.avatar_glb, attachment(trace_format::AttachmentKind::kAvatar));
+  take_recorded_facing(subject.avatar.facing, recorded.facing);
   if (!map.empty())
     subject.map = read_map(map, subject.avatar);
-  else if (!trace.people().front().actuator_map_png.empty())
-    subject.map = parse_actuator_map(actuator_map_files(trace.people().front()), subject.avatar,
-                                     path.string() + ", actuator_map.png");
+  else if (!recorded.actuator_map_png.empty())
+    subject.map = parse_actuator_map(actuator_map_files(recorded), subject.avatar, map_name);
   if (subject.avatar.facing.lies_deg)
     subject.warnings.push_back(fmt::format("{}: its avatar {}; its left and its front are not known", path.string(),
                                            describe_lying(subject.avatar.facing)));
-  if (std::string other = other_facing(subject.avatar.facing, subject.map.facing,
-                                       {path.string(), map.empty() ? path.string() + ", actuator_map.png" : map});
+  if (std::string other =
+          other_facing(subject.avatar.facing, subject.map.facing, {path.string(), map.empty() ? map_name : map});
       !other.empty())
     subject.warnings.push_back(std::move(other));
   return subject;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -37,7 +38,9 @@ ActuatorMap read_map(const std::string& map, const Avatar& avatar);
 /// `Error`.
 Subject read_subject(const std::string& avatar, const std::string& map, std::string_view facing);
 
-/// Returns the avatar of a trace with the trace's map, or with `map` if `map` is not empty. Throws `Error`.
-Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map);
+/// Returns a person of a trace, counted from 0, with the person's map, or with `map` if `map` is not empty. Throws
+/// `Error`.
+Subject read_subject(const TraceReader& trace, const std::filesystem::path& path, const std::string& map,
+                     std::size_t person = 0);
 
 }  // namespace vestige::plot

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <string>
@@ -36,6 +37,15 @@ glm::dvec3 Surface::point(std::uint32_t triangle, double u, double v) const {
 glm::dvec3 Surface::normal(std::uint32_t triangle, double u, double v) const {
   const std::array<glm::vec3, 3>& normals = corner_normals[triangle];
   return unit((1 - u - v) * glm::dvec3(normals[0]) + u * glm::dvec3(normals[1]) + v * glm::dvec3(normals[2]));
+}
+
+void Surface::append(const Surface& other) {
+  const auto first = static_cast<std::uint32_t>(position.size());
+  position.insert(position.end(), other.position.begin(), other.position.end());
+  for (const glm::uvec3& triangle : other.triangles) triangles.push_back(triangle + first);
+  corner_normals.insert(corner_normals.end(), other.corner_normals.begin(), other.corner_normals.end());
+  low = glm::min(low, other.low);
+  high = glm::max(high, other.high);
 }
 
 SurfacePoser::SurfacePoser(const Avatar& avatar) : avatar_(avatar) {

@@ -23,6 +23,9 @@ struct Surface {
   /// Returns the point of `triangle` at which its second and third vertex weigh `u` and `v`.
   glm::dvec3 point(std::uint32_t triangle, double u, double v) const;
   glm::dvec3 normal(std::uint32_t triangle, double u, double v) const;
+
+  /// Adds another surface, posed about the same origin, behind the triangles of this one. The facing stays.
+  void append(const Surface& other);
 };
 
 /// Poses an avatar. Edges sharper than 50 degrees stay sharp. Texture seams are not visible.

@@ -111,6 +111,30 @@ TEST_F(PlotSceneTest, ColoursByColliderTellCollidersApart) {
   EXPECT_THAT(words_of(folder_ / "box-scene.svg"), HasSubstr("2 colliders, a colour for each"));
 }
 
+TEST_F(PlotSceneTest, SeveralPeopleStandWhereTheyAreWithEachOnesContacts) {
+  // The second stands 1 m to the right of the first, and is touched there.
+  write_text(folder_ / "through.csv", "time_s,id,x,y,z\n0,7,-0.9,0.75,0.6\n1,7,-0.9,0.75,0.03\n");
+  const std::string people = " --name first --avatar box.gltf --map box.png --animation none --at -1,0,0 --name second";
+  record("--animation none --colliders through.csv --rate 10 --duration 1" + people);
+  ASSERT_EQ(test::run("vestige replay box.mcap --contacts contacts.csv -q", folder_.path()).exit_code, 0);
+  const test::Outcome outcome = run("scene box.mcap --contacts contacts.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(words_of(folder_ / "box-scene.svg"), HasSubstr("box.mcap: 2 people, 1 collider"));
+  constexpr Pixel kContact = {213, 94, 0};
+  const Picture both = read_png(folder_ / "box-scene.png");
+  EXPECT_GT(both.count(kContact, 0, 800), 50U);
+
+  // Alone, the second is half of what was seen.
+  record("--animation none --colliders through.csv --rate 10 --duration 1 --at -1,0,0 --force");
+  ASSERT_EQ(run("scene box.mcap --frames 1 --force").exit_code, 0);
+  EXPECT_NE(read_png(folder_ / "box-scene.png").pixels, both.pixels);
+
+  record("--animation none --colliders through.csv --rate 10 --duration 1 --force" + people);
+  const test::Outcome mapped = run("scene box.mcap --map box.png --force");
+  EXPECT_EQ(mapped.exit_code, 2);
+  EXPECT_THAT(mapped.standard_error, HasSubstr("box.mcap holds several people"));
+}
+
 TEST_F(PlotSceneTest, ContactsOfAnotherTraceAreRefusedNamingTheirLine) {
   record("--count 1 --rate 10 --duration 1");
   for (const auto& [row, cause] : {std::pair("10,1,0,11,0,0,0,0,0,3,1,0,0,0", "line 2: refers to frame 10"),
