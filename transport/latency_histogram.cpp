@@ -23,6 +23,13 @@ void LatencyHistogram::add(double latency_s) {
   max_us_ = std::max(max_us_, us);
 }
 
+LatencyHistogram& LatencyHistogram::operator+=(const LatencyHistogram& other) {
+  for (std::size_t i = 0; i < kClasses; ++i) counts_[i] += other.counts_[i];
+  count_ += other.count_;
+  max_us_ = std::max(max_us_, other.max_us_);
+  return *this;
+}
+
 double LatencyHistogram::quantile_us(double share) const {
   if (count_ == 0) return 0;
   const auto rank = static_cast<std::uint64_t>(std::max(1.0, std::ceil(share * static_cast<double>(count_))));

@@ -10,6 +10,7 @@ namespace vestige {
 class LatencyHistogram {
  public:
   void add(double latency_s);
+  LatencyHistogram& operator+=(const LatencyHistogram& other);
 
   std::uint64_t count() const { return count_; }
   /// Returns the value, in microseconds, that a fraction `share` (0 … 1) of the latencies does not exceed. It is at

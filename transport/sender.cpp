@@ -31,6 +31,25 @@ double seconds(Sender::Clock::duration duration) {
 
 }  // namespace
 
+SenderStatistics& SenderStatistics::operator+=(const SenderStatistics& other) {
+  sent += other.sent;
+  changes += other.changes;
+  superseded += other.superseded;
+  acknowledged += other.acknowledged;
+  fail_safes += other.fail_safes;
+  overruns += other.overruns;
+  receive_errors += other.receive_errors;
+  links_lost += other.links_lost;
+  bytes += other.bytes;
+  most_unanswered = std::max(most_unanswered, other.most_unanswered);
+  written += other.written;
+  acknowledged_after += other.acknowledged_after;
+  off_sent = off_sent && other.off_sent;
+  off_acknowledged = off_acknowledged && other.off_acknowledged;
+  zeros_acknowledged = zeros_acknowledged && other.zeros_acknowledged;
+  return *this;
+}
+
 Sender::Sender(ActuatorSink& sink, const SenderOptions& options, std::function<void(const std::string&)> on_event)
     : sink_(sink),
       options_(options),
@@ -78,9 +97,13 @@ void Sender::supersede() {
   mailbox_.reset();
 }
 
-SenderStatistics Sender::finish() {
+void Sender::stop() {
   stopping_ = true;
   wake();
+}
+
+SenderStatistics Sender::finish() {
+  stop();
   thread_.join();
   if (mailbox_) supersede();  // it was replaced by the switching off only
   if (failed_) std::rethrow_exception(failure_);

@@ -36,6 +36,7 @@ struct SentState {
   double written_s = 0;  ///< from `since` until its last byte was written
 };
 
+/// What a sender has done. Of several senders together: sums, the largest number unanswered, and whether all are off.
 struct SenderStatistics {
   std::uint64_t sent = 0;     ///< frames passed to the system: changes, refreshes and the final frames that switch off
   std::uint64_t changes = 0;  ///< frames with a changed state
@@ -54,6 +55,8 @@ struct SenderStatistics {
   bool off_sent = false;
   bool off_acknowledged = false;    ///< the board acknowledged the frame OFF; false if it never answers
   bool zeros_acknowledged = false;  ///< it acknowledged the state before OFF, in which all levels are 0
+
+  SenderStatistics& operator+=(const SenderStatistics& other);
 };
 
 /// Sends states to a sink from its own thread, at the sink's pace. States go through a mailbox of one slot, in which
@@ -84,6 +87,9 @@ class Sender {
 
   /// With `keep_log`: returns the fates of states, in order, as far as they are known and were not returned before.
   std::vector<SentState> take_log();
+
+  /// Begins what `finish` does, and returns at once.
+  void stop();
 
   /// Sends the last state and waits at most 0.25 s for its answer. Then switches everything off: by a state with all
   /// levels 0, which every board understands, and by OFF. Waits at most 1 s for the answer to OFF (0.25 s if nothing

@@ -6,7 +6,6 @@
 #include <thread>
 
 #include "analysis/base/clocks.hpp"
-#include "analysis/run/detection_run.hpp"
 
 namespace vestige {
 
@@ -31,7 +30,7 @@ class Run {
       std::size_t columns)
       : rate_(rate),
         calls_(calls),
-        law_(calls.make_law()),
+        laws_(calls.make_laws()),
         first_s_(first_s),
         last_s_(first_s),
         offset_s_(offset_s),
@@ -46,16 +45,19 @@ class Run {
     for (auto now = Clock::now(); now < until; now = Clock::now()) {
       if (!calls_.go_on(share)) return false;
       const double now_s = first_s_ + seconds(now - begin_) * rate_;
-      if (now_s > last_s_ + kGap_s && now_s < time_s) calls_.take(law_(now_s + offset_s_, nothing_, nullptr), now);
+      if (now_s > last_s_ + kGap_s && now_s < time_s)
+        for (std::size_t i = 0; i < laws_.size(); ++i)
+          calls_.take(i, laws_[i](now_s + offset_s_, nothing_, nullptr), now);
       std::this_thread::sleep_until(std::min(until, now + kSlice));
     }
     return calls_.go_on(share);
   }
 
-  void take(double time_s, const ContactRow& row, const DetectorFrame& frame) {
+  void take(double time_s, const DetectionRun& detection) {
     ++frames_;
     last_s_ = time_s;
-    calls_.take(law_(time_s + offset_s_, row, &frame), due(time_s));
+    for (std::size_t i = 0; i < laws_.size(); ++i)
+      calls_.take(i, laws_[i](time_s + offset_s_, detection.row(i), &detection.frame(i)), due(time_s));
   }
 
   std::uint64_t frames() const { return frames_; }
@@ -69,7 +71,7 @@ class Run {
  private:
   double rate_;
   const PlaybackCalls& calls_;
-  PlaybackCalls::Law law_;
+  std::vector<PlaybackCalls::Law> laws_;
   double first_s_;
   double last_s_;
   double offset_s_;
@@ -80,11 +82,12 @@ class Run {
 
 }  // namespace
 
-PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector, const PlaybackOptions& options,
+PlaybackResult play(TraceReader& trace, std::span<const DetectedPerson> people, const PlaybackOptions& options,
                     const PlaybackCalls& calls) {
   const std::vector<std::uint32_t>& ids = trace.collider_ids();
   const auto frame_count = static_cast<double>(trace.frame_count());
   PlaybackResult result;
+  result.people.resize(people.size());
   const auto start = Clock::now();
   auto begin = start;
   double offset_s = 0;
@@ -92,7 +95,7 @@ PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector
   bool going = frame_count > 0;
   while (going) {
     trace.rewind();
-    DetectionRun detection(avatar, ids, detector);
+    DetectionRun detection(people, ids);
     std::optional<Run> run;
     while (going && trace.next(trace_frame)) {
       const double time_s = trace_frame.time_s();
@@ -107,12 +110,15 @@ PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector
       result.most_late_s = std::max(result.most_late_s, seconds(Clock::now() - run->due(time_s)));
       if (result.fell_behind() && !was_behind) calls.fell_behind();
       detection.step(trace_frame);
-      run->take(time_s, detection.row(), detection.frame());
+      run->take(time_s, detection);
       ++result.frames;
-      result.contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(), &Contact::hit));
+      for (std::size_t i = 0; i < people.size(); ++i)
+        result.people[i].contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(i), &Contact::hit));
     }
-    result.non_finite_frames += detection.builder().non_finite_frames();
-    result.non_finite_segments += detection.builder().non_finite_segments();
+    for (std::size_t i = 0; i < people.size(); ++i) {
+      result.people[i].non_finite_frames += detection.builder(i).non_finite_frames();
+      result.people[i].non_finite_segments += detection.builder(i).non_finite_segments();
+    }
     if (going) ++result.loops;
     going = going && options.loop && run;
     if (!going) break;

@@ -1,9 +1,13 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
+#include "analysis/run/detection_run.hpp"
 #include "detector/detector.hpp"
 #include "traces/timeline/timeline.hpp"
 #include "traces/trace_file/trace_reader.hpp"
@@ -16,20 +20,24 @@ struct PlaybackOptions {
 };
 
 struct PlaybackResult {
+  /// What was found on one person.
+  struct Person {
+    std::uint64_t contacts = 0;
+    std::uint64_t non_finite_frames = 0;  ///< counted by `FrameBuilder`
+    std::uint64_t non_finite_segments = 0;
+  };
   std::uint64_t frames = 0;
-  std::uint64_t contacts = 0;
-  std::uint64_t loops = 0;              ///< complete runs through the trace
-  std::uint64_t missed_deadlines = 0;   ///< frames that were not done when the next frame was due
-  std::uint64_t non_finite_frames = 0;  ///< counted by `FrameBuilder`
-  std::uint64_t non_finite_segments = 0;
-  double most_late_s = 0;  ///< largest delay between a frame's due time and its start
-  double duration_s = 0;   ///< wall-clock time
+  std::vector<Person> people;          ///< in the order in which they were given
+  std::uint64_t loops = 0;             ///< complete runs through the trace
+  std::uint64_t missed_deadlines = 0;  ///< frames that were not done when the next frame was due
+  double most_late_s = 0;              ///< largest delay between a frame's due time and its start
+  double duration_s = 0;               ///< wall-clock time
 
   /// Returns whether a frame began more than a second late: the detector is too slow, or the process was stopped.
   bool fell_behind() const { return most_late_s > 1; }
 };
 
-/// The calls that a playback makes, all in the thread that runs `play`.
+/// The calls that a playback makes, all in the thread that runs `play`. `person` is a place in the list of people.
 struct PlaybackCalls {
   using Clock = std::chrono::steady_clock;
 
@@ -37,22 +45,22 @@ struct PlaybackCalls {
   /// valid until the next call.
   using Law = std::function<const ActuatorFrame&(double time_s, const ContactRow& row, const DetectorFrame* frame)>;
 
-  /// Makes the law for one run through the trace.
-  std::function<Law()> make_law;
+  /// Makes each person's law for one run through the trace.
+  std::function<std::vector<Law>()> make_laws;
   /// Called before each frame, and repeatedly while the playback waits for one. Returns false to end the playback. May
   /// exchange the actuator map.
   std::function<bool(double share)> go_on;
   /// Called once, as soon as `PlaybackResult::fell_behind` is true.
   std::function<void()> fell_behind;
-  /// Called after each frame, and during gaps, with what to tell the vest and when that was due.
-  std::function<void(const ActuatorFrame&, Clock::time_point due)> take;
+  /// Called for each person after each frame, and during gaps, with what to tell the vest and when that was due.
+  std::function<void(std::size_t person, const ActuatorFrame&, Clock::time_point due)> take;
 };
 
-/// Replays `trace` through `detector` at the trace's own pace. The first frame is due at once. Deadlines are absolute,
-/// so a late frame does not delay the frames that follow. All frames are replayed, however late, since contacts depend
-/// on the frame before. In a gap of the trace, the law continues without contacts, so that no actuator is held on. When
-/// the playback loops, the times that are handed on continue to rise.
-PlaybackResult play(TraceReader& trace, const Avatar& avatar, Detector& detector, const PlaybackOptions& options,
+/// Replays the people of `trace` through their detectors at the trace's own pace. The first frame is due at once.
+/// Deadlines are absolute, so a late frame does not delay the frames that follow. All frames are replayed, however
+/// late, since contacts depend on the frame before. In a gap of the trace, the law continues without contacts, so that
+/// no actuator is held on. When the playback loops, the times that are handed on continue to rise.
+PlaybackResult play(TraceReader& trace, std::span<const DetectedPerson> people, const PlaybackOptions& options,
                     const PlaybackCalls& calls);
 
 }  // namespace vestige

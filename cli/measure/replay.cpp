@@ -13,6 +13,7 @@
 #include "analysis/base/provenance.hpp"
 #include "cli/choices/detectors.hpp"
 #include "cli/choices/law_choice.hpp"
+#include "cli/choices/person_maps.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/measure/replay_check.hpp"
@@ -196,11 +197,11 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
   std::vector<std::string> outputs = {options.contacts, options.textures, options.timeline, options.common.json};
   const std::vector<TimedMap> timed_maps = parse_map_at(options);
-  const std::vector<PersonMap> maps = parse_maps(options);
+  const std::vector<PersonValue> maps = parse_maps(options.maps);
   options.law.check();
   std::vector<std::string> inputs = {options.trace, options.verify, options.law.actuator};
   for (const TimedMap& timed : timed_maps) inputs.insert(inputs.end(), {timed.file, sidecar_path(timed.file).string()});
-  for (const PersonMap& map : maps) inputs.insert(inputs.end(), {map.file, sidecar_path(map.file).string()});
+  for (const PersonValue& map : maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
   check_outputs(outputs, inputs, options.common);
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);
@@ -212,7 +213,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
         trace.people[i].avatar,
         fmt::format("{}, {}", options.trace, trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, i)));
   check_people(timed_maps, trace, options);
-  use_maps(maps, trace, options);
+  use_maps(maps, trace, options.trace, verbosity);
   const ColliderShape shape = trace.reader.has_spheres() ? ColliderShape::kSpheres : ColliderShape::kPoints;
   Timelines timelines(options, trace);
   timelines.add_paths_to(outputs);

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
-#include <set>
 #include <utility>
 
-#include "analysis/mapping/layouts.hpp"
+#include "cli/choices/person_maps.hpp"
 #include "traces/base/error.hpp"
 #include "traces/scene/people.hpp"
 
@@ -28,58 +26,7 @@ void check_map_at(const ReplayOptions& options) {
       throw UsageError("--map-at", "the detector 'paper' keeps its first map on the GPU", "choose another detector");
 }
 
-/// Reads a map for a person, and warns of what is odd about it. "none" gives a map without actuators.
-ActuatorMap read_map(const std::string& map, const TracedPerson& person, const ReplayOptions& options) {
-  const ActuatorMapFiles files = read_map_files(person.avatar, map);
-  if (files.png.empty()) return {};
-  ActuatorMap read = parse_actuator_map(files, person.avatar, map);
-  for (const std::string& warning : read.warnings) warn(warning, options.common.verbosity());
-  const std::string other = other_facing(person.avatar.facing, read.facing, {options.trace, map});
-  if (!other.empty()) warn(other, options.common.verbosity());
-  return read;
-}
-
 }  // namespace
-
-std::vector<PersonMap> parse_maps(const ReplayOptions& options) {
-  std::vector<PersonMap> maps;
-  std::set<std::size_t> people;
-  for (const std::string& text : options.maps) {
-    PersonMap map;
-    const std::size_t sign = std::min(text.find('='), text.size());
-    const bool is_number = sign > 0 && sign < text.size() && text.find_first_not_of("0123456789") == sign;
-    if (is_number) {
-      std::size_t number = 0;
-      const auto read = std::from_chars(text.data(), text.data() + sign, number);
-      if (read.ec == std::errc() && number == 0)
-        throw UsageError("--map", fmt::format("'{}': people count from 1", text), "write for example --map 2=FILE.png");
-      map.person = read.ec == std::errc() ? number - 1 : std::numeric_limits<std::size_t>::max() - 1;  // nobody
-    }
-    map.file = is_number ? text.substr(sign + 1) : text;
-    if (map.file == "-") throw UsageError("--map", "a map cannot come from standard input", "name a file or a layout");
-    if (map.file.empty()) throw UsageError("--map", fmt::format("'{}' names no map", text), "name a file or a layout");
-    if (!people.insert(map.person.value_or(0)).second)
-      throw UsageError("--map", fmt::format("person {} gets two maps", map.person.value_or(0) + 1),
-                       "leave one of them out");
-    maps.push_back(map);
-  }
-  return maps;
-}
-
-void use_maps(const std::vector<PersonMap>& maps, OpenTrace& trace, const ReplayOptions& options) {
-  for (const PersonMap& map : maps) {
-    if (!map.person && trace.people.size() > 1)
-      throw UsageError("--map", fmt::format("{} holds {} people", options.trace, trace.people.size()),
-                       "say whose map it is: --map 1=FILE");
-    const std::size_t person = map.person.value_or(0);
-    if (person >= trace.people.size())
-      throw UsageError("--map",
-                       fmt::format("there is no person {} in {}, which holds {}", person + 1, options.trace,
-                                   count_of_people(trace.people.size())),
-                       "choose one who is there");
-    trace.people[person].map = read_map(map.file, trace.people[person], options);
-  }
-}
 
 std::vector<TimedMap> parse_map_at(const ReplayOptions& options) {
   check_map_at(options);
@@ -117,7 +64,7 @@ std::vector<MapChange> read_maps(const std::vector<TimedMap>& timed_maps, const 
   for (const TimedMap& timed : timed_maps) {
     if (timed.file == "none")
       throw UsageError("--map-at", "'none' is not a map", "name a PNG file, builtin or a layout");
-    MapChange change = {timed.time_s, read_map(timed.file, person, options), nullptr};
+    MapChange change = {timed.time_s, read_map(timed.file, person, options.trace, options.common.verbosity()), nullptr};
     if (change.map.actuator_count != person.map.actuator_count)
       throw Error(timed.file,
                   fmt::format("names {} actuators, and the map before it has {}", change.map.actuator_count,

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,19 +8,6 @@
 #include "cli/measure/replay_options.hpp"
 
 namespace vestige::cli {
-
-/// One --map: whose, and a map's file.
-struct PersonMap {
-  std::optional<std::size_t> person;  ///< from 0 on; none if the flag does not say it
-  std::string file;
-};
-
-/// Reads the --map of a replay. Throws `UsageError` for what is no FILE or K=FILE, or if a person gets two.
-std::vector<PersonMap> parse_maps(const ReplayOptions& options);
-
-/// Gives people the maps of --map, and warns of what is odd about them. Throws `UsageError` for a person who is not
-/// there.
-void use_maps(const std::vector<PersonMap>& maps, OpenTrace& trace, const ReplayOptions& options);
 
 /// One --map-at: when, and a map's file.
 struct TimedMap {

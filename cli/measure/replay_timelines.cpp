@@ -3,28 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <span>
 #include <utility>
 
+#include "cli/choices/person_value.hpp"
 #include "traces/base/error.hpp"
 
 namespace vestige::cli {
-
-namespace {
-
-/// Returns the path with the person's number in it.
-std::string numbered_path(std::filesystem::path path, std::size_t person) {
-  const std::string name = fmt::format("{}.{}{}", path.stem().string(), person + 1, path.extension().string());
-  return path.replace_filename(name).string();
-}
-
-bool is_pipe(const std::string& path) {
-  std::error_code missing;
-  return path == "-" || (std::filesystem::exists(path, missing) && !std::filesystem::is_regular_file(path, missing));
-}
-
-}  // namespace
 
 Timelines::Timelines(const ReplayOptions& options, OpenTrace& trace) : overwrite_(options.common.overwrite()) {
   if (options.timeline.empty()) return;

@@ -7,6 +7,7 @@
 #include <charconv>
 #include <utility>
 
+#include "cli/choices/person_value.hpp"
 #include "cli/help/validators.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
@@ -45,45 +46,45 @@ std::optional<XbeeOptions> xbee_options(const SinkChoice& choice) {
 }
 
 /// Refuses flags that would say nothing, or not what they seem to.
-void check_sink_flags(const CLI::App& verb, const SinkChoice& choice) {
-  if (choice.ttl_ms % 10 != 0)
-    throw UsageError("--ttl", fmt::format("a vest frame cannot hold {} ms", choice.ttl_ms), "choose a multiple of 10");
-  if (choice.port == SinkChoice::kFilePrefix) throw UsageError("--port", "names no file", "write file:OUT");
-  if (choice.is_osc() && verb.count("--ttl") != 0) throw UsageError("--ttl", "OSC has no time to live", "leave it out");
-  const bool is_serial = !choice.is_osc() && !choice.is_file();
+void check_sink_flags(const CLI::App& verb, const std::vector<SinkChoice>& sinks) {
+  const SinkChoice& first = sinks.front();
+  if (first.ttl_ms % 10 != 0)
+    throw UsageError("--ttl", fmt::format("a vest frame cannot hold {} ms", first.ttl_ms), "choose a multiple of 10");
+  if (std::ranges::find(sinks, SinkChoice::kFilePrefix, &SinkChoice::port) != sinks.end())
+    throw UsageError("--port", "names no file", "write file:OUT");
+  if (std::ranges::all_of(sinks, &SinkChoice::is_osc) && verb.count("--ttl") != 0)
+    throw UsageError("--ttl", "OSC has no time to live", "leave it out");
   for (const char* flag : {"--baud", "--xbee-api"})
-    if (!is_serial && verb.count(flag) != 0)
-      throw UsageError(flag, fmt::format("does not apply to '{}', which is not a serial port", choice.port),
+    if (std::ranges::none_of(sinks, &SinkChoice::is_serial) && verb.count(flag) != 0)
+      throw UsageError(flag, fmt::format("does not apply to '{}', which is not a serial port", first.port),
                        "leave it out");
   for (const char* flag : {"--osc-address", "--osc-value"})
-    if (!choice.is_osc() && verb.count(flag) != 0)
-      throw UsageError(flag, fmt::format("does not apply to '{}', which is not OSC", choice.port),
+    if (std::ranges::none_of(sinks, &SinkChoice::is_osc) && verb.count(flag) != 0)
+      throw UsageError(flag, fmt::format("does not apply to '{}', which is not OSC", first.port),
                        "send to osc://HOST:PORT, or leave it out");
 }
 
 }  // namespace
+
+SinkChoice SinkChoice::at(std::string other_port) const {
+  SinkChoice other = *this;
+  other.port = std::move(other_port);
+  return other;
+}
 
 std::string SinkChoice::output_path() const {
   if (port == "-") return port;
   return port.starts_with(kFilePrefix) ? port.substr(kFilePrefix.size()) : "";
 }
 
-void add_sink_options(CLI::App& verb, SinkChoice& choice, const std::string& levels_remark) {
+namespace {
+
+/// Adds all but --port.
+void add_sink_settings(CLI::App& verb, SinkChoice& choice, const std::string& levels_remark) {
   choice.baud = kDefaultBaud;
   const auto add = [&](const char* name, auto& value, const std::string& description) {
     return verb.add_option(name, value, description)->group(kVestGroup);
   };
-  add("--port", choice.port,
-      "Where frames go: a serial device (/dev/ttyUSB0: an XBee, or the board's USB); osc://HOST:PORT, parameters over "
-      "UDP; file:OUT, a file of frames as on the wire; '-', the same on standard output")
-      ->required()
-      ->transform(CLI::Validator(
-          [](std::string& port) {
-            port = with_small_scheme(port);
-            return std::string();
-          },
-          ""))
-      ->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
   add("--baud", choice.baud, "Baud of the serial line; the board must be built for the same")
       ->capture_default_str()
       ->check(help::whole_number(1, 4'000'000))
@@ -119,7 +120,46 @@ void add_sink_options(CLI::App& verb, SinkChoice& choice, const std::string& lev
   add("--osc-value", choice.osc_value, "float: level / 255; integer: 0 to 255; boolean: on and off")
       ->capture_default_str()
       ->check(CLI::IsMember({"float", "integer", "boolean"}));
-  verb.parse_complete_callback([&verb, &choice] { check_sink_flags(verb, choice); });
+}
+
+/// Adds --port, for one or for several.
+CLI::Option* add_port(CLI::App& verb, auto& value, const std::string& remark) {
+  return verb
+      .add_option("--port", value,
+                  "Where frames go: a serial device (/dev/ttyUSB0: an XBee, or the board's USB); osc://HOST:PORT, "
+                  "parameters over UDP; file:OUT, a file of frames as on the wire; '-', the same on standard output" +
+                      remark)
+      ->group(kVestGroup)
+      ->required()
+      ->transform(CLI::Validator(
+          [](std::string& port) {
+            const std::size_t size = parse_person_value(port).value.size();
+            port = port.substr(0, port.size() - size) + with_small_scheme(port.substr(port.size() - size));
+            return std::string();
+          },
+          ""));
+}
+
+}  // namespace
+
+void add_sink_options(CLI::App& verb, SinkChoice& choice) {
+  add_port(verb, choice.port, "")->type_name("DEVICE|osc://HOST:PORT|file:OUT|-");
+  add_sink_settings(verb, choice, "");
+  verb.parse_complete_callback([&verb, &choice] { check_sink_flags(verb, {choice}); });
+}
+
+void add_sinks_options(CLI::App& verb, SinkChoice& settings, std::vector<std::string>& ports,
+                       const std::string& levels_remark) {
+  add_port(verb, ports, "; of several people, that of person K; repeat for more people")
+      ->type_name("[K=]DEVICE|osc://HOST:PORT|file:OUT|-")
+      ->expected(1)
+      ->take_all();
+  add_sink_settings(verb, settings, levels_remark);
+  verb.parse_complete_callback([&verb, &settings, &ports] {
+    std::vector<SinkChoice> sinks;
+    for (const std::string& port : ports) sinks.push_back(settings.at(parse_person_value(port).value));
+    check_sink_flags(verb, sinks);
+  });
 }
 
 namespace {

@@ -36,7 +36,10 @@ struct SinkChoice {
 
   Quantity quantity() const { return levels == "pressure" ? Quantity::kPressure : Quantity::kDuty; }
   bool is_osc() const { return port.starts_with(kOscPrefix); }
+  bool is_serial() const { return !is_osc() && !is_file(); }
   bool is_file() const { return port == "-" || port.starts_with(kFilePrefix); }
+  /// The same settings for another port.
+  SinkChoice at(std::string other_port) const;
   /// Returns the path of the file that receives frames, "-" for standard output, or empty.
   std::string output_path() const;
 
@@ -45,8 +48,12 @@ struct SinkChoice {
 };
 
 /// Adds --port, --baud, --ttl, --levels, --xbee-api, --xbee-request, --xbee-address, --xbee-escaped, --osc-address and
-/// --osc-value. `levels_remark` follows the help of --levels.
-void add_sink_options(CLI::App& verb, SinkChoice& choice, const std::string& levels_remark = "");
+/// --osc-value.
+void add_sink_options(CLI::App& verb, SinkChoice& choice);
+/// The same for several sinks, which differ in their port: --port may say whose it is. `levels_remark` follows the help
+/// of --levels.
+void add_sinks_options(CLI::App& verb, SinkChoice& settings, std::vector<std::string>& ports,
+                       const std::string& levels_remark);
 
 /// The actuators that a frame addresses, if a board reports how many it has.
 enum class Driven { kThoseNamed, kAllOfTheBoard };

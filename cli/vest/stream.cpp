@@ -2,288 +2,178 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
 
-#include "analysis/base/provenance.hpp"
 #include "analysis/mapping/layouts.hpp"
 #include "analysis/run/playback.hpp"
-#include "cli/choices/detectors.hpp"
 #include "cli/choices/law_choice.hpp"
+#include "cli/choices/person_maps.hpp"
+#include "cli/choices/person_value.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "cli/vest/sink_choice.hpp"
-#include "detector/actuators/actuator_map_watch.hpp"
+#include "cli/vest/stream_options.hpp"
+#include "cli/vest/stream_report.hpp"
+#include "cli/vest/wearer.hpp"
 #include "detector/detectors/path_choice.hpp"
 #include "traces/base/error.hpp"
-#include "traces/base/number_text.hpp"
-#include "transport/sender.hpp"
 
 namespace vestige::cli {
 
 namespace {
 
-struct StreamOptions {
-  CommonOptions common;
-  DetectorChoice choice;
-  SinkChoice sink;
-  PlaybackOptions playback;
-  std::string trace;
-  std::string map;
-  LawFlags law;
-  std::string log;
+constexpr PersonFlag kPortFlag = {"--port", "port", "/dev/ttyUSB0"};
 
-  /// Returns whether the map is a file that may change during the playback.
-  bool is_map_watched() const { return !map.empty() && map != "builtin" && !is_layout(map); }
-};
-
-/// Writes what became of each changed state: `time_s,state,written_us,actuator_1,…`.
-class StreamLog {
- public:
-  StreamLog(const std::string& path, Overwrite overwrite, std::size_t actuator_count) : file_(path, overwrite) {
-    std::string header = "time_s,state,written_us";
-    for (std::size_t i = 1; i <= actuator_count; ++i) header += fmt::format(",actuator_{}", i);
-    file_.write(header + "\n");
-  }
-
-  void write(const std::vector<SentState>& states) {
-    for (const SentState& state : states) {
-      const bool sent = state.fate == SentState::Fate::kSent;
-      std::string line = fmt::format("{},{},{}", state.frame.time_s, sent ? "sent" : "superseded",
-                                     sent ? fmt::format("{:.1f}", state.written_s * 1e6) : "");
-      for (const std::uint8_t duty : state.frame.duty) line += fmt::format(",{}", duty);
-      file_.write(line + "\n");
-    }
-  }
-
-  void commit() { file_.commit(); }
-
- private:
-  OutputFile file_;
-};
-
-/// A playback that has ended, and where it went.
-struct Streamed {
-  PlaybackResult playback;
-  SenderStatistics sender;
-  std::uint64_t maps_reloaded = 0;
-};
-
-nlohmann::ordered_json to_json(const LatencyHistogram& latency) {
-  return {{"p50", latency.quantile_us(0.5)},
-          {"p95", latency.quantile_us(0.95)},
-          {"p99", latency.quantile_us(0.99)},
-          {"max", latency.max_us()}};
+/// Returns whether a map is a file that may change during the playback.
+bool is_watched(const std::string& map) {
+  return map != "builtin" && !is_layout(map);
 }
 
-nlohmann::ordered_json to_json(const Streamed& streamed, const StreamOptions& options, const OpenSink& sink,
-                               const Detector& detector, const LawMaker& laws, const Invocation& invocation) {
-  const SenderStatistics& sender = streamed.sender;
-  nlohmann::ordered_json json = provenance(invocation.argv);
-  json["trace"] = options.trace;
-  json["detector"] = detector.name();
-  json["approximate"] = detector.is_approximate();
-  if (const auto kept = detector.triangles_kept()) json["triangles_kept"] = *kept;
-  json["law"] = laws.to_json();
-  json["gl"] = vestige::to_json(detector.gl_info());
-  json["frames"] = streamed.playback.frames;
-  json["contacts"] = streamed.playback.contacts;
-  json["loops"] = streamed.playback.loops;
-  json["duration_s"] = streamed.playback.duration_s;
-  json["missed_deadlines"] = streamed.playback.missed_deadlines;
-  json["most_late_s"] = streamed.playback.most_late_s;
-  json["sent"] = sender.sent;
-  json["changes"] = sender.changes;
-  json["superseded"] = sender.superseded;
-  json["acknowledged"] = sender.acknowledged;
-  json["off_sent"] = sender.off_sent;
-  json["off_acknowledged"] = sender.off_acknowledged;
-  json["zeros_acknowledged"] = sender.zeros_acknowledged;
-  json["most_unanswered"] = sender.most_unanswered;
-  json["fail_safes"] = sender.fail_safes;
-  json["overruns"] = sender.overruns;
-  json["receive_errors"] = sender.receive_errors;
-  json["links_lost"] = sender.links_lost;
-  json["maps_reloaded"] = streamed.maps_reloaded;
-  json["floor_us"] = SenderOptions().floor.count();
-  json["latency_us"] = {{"written", to_json(sender.written)}, {"acknowledged", to_json(sender.acknowledged_after)}};
-  json["complete"] = (!interrupted() || options.playback.loop) && sender.links_lost == 0;
-  json["link"] = sink.link_json();
-  json["link"]["bytes"] = sender.bytes;
-  return json;
-}
-
-std::string describe(const LatencyHistogram& latency) {
-  return fmt::format("p50 {:.2f}, p95 {:.2f}, p99 {:.2f}, max {:.2f} ms", latency.quantile_us(0.5) / 1e3,
-                     latency.quantile_us(0.95) / 1e3, latency.quantile_us(0.99) / 1e3, latency.max_us() / 1e3);
-}
-
-/// Returns what is known of the frames that switch everything off at the end.
-const char* off_at_end(const SenderStatistics& sender, const ActuatorSink& sink) {
-  if (doubt_about_off(sender, sink).empty()) return sink.acknowledges() ? "acknowledged" : "sent";
-  return sender.zeros_acknowledged ? "all levels 0 acknowledged, OFF not" : "NOT CONFIRMED";
-}
-
-std::string summary(const Streamed& streamed, const OpenSink& sink, const Detector& detector) {
-  const PlaybackResult& playback = streamed.playback;
-  const SenderStatistics& sender = streamed.sender;
-  std::string text =
-      fmt::format("{} in {:.2f} s, {}{}, {} missed{}\n", counted(playback.frames, "frame"), playback.duration_s,
-                  counted(playback.contacts, "contact"), detector.is_approximate() ? " (approximate)" : "",
-                  counted(playback.missed_deadlines, "deadline"),
-                  playback.fell_behind() ? fmt::format(", up to {:.1f} s late", playback.most_late_s) : "");
-  text += fmt::format("sent {} frames, {} of them changes; {} changes superseded by newer ones", sender.sent,
-                      sender.changes, sender.superseded);
-  text += sink.sink().acknowledges() ? fmt::format("; {} acknowledged\n", sender.acknowledged) : "\n";
-  if (sender.written.count() != 0) text += fmt::format("contact to last byte written: {}\n", describe(sender.written));
-  if (sender.acknowledged_after.count() != 0)
-    text += fmt::format("contact to acknowledgement:   {}\n", describe(sender.acknowledged_after));
-  text += fmt::format("all actuators off at the end: {}\n", off_at_end(sender, sink.sink()));
-  return text + sink.describe_link(sender.bytes);
-}
-
-/// What went wrong on the way, to standard error; returns the exit code.
-int report_losses(const Streamed& streamed, const OpenSink& sink, Verbosity verbosity) {
-  const SenderStatistics& sender = streamed.sender;
-  const PlaybackResult& playback = streamed.playback;
-  const std::string name = sink.sink().name();
-  int code = sender.links_lost == 0 ? kDone : kDataLost;
-  const auto say = [&](const std::string& text) {
-    warn(name + ": " + text, verbosity);
-    code = kDataLost;
-  };
-  if (playback.non_finite_frames + playback.non_finite_segments != 0)
-    say(fmt::format("{} poses and the ends of {} segments are not finite; they fired nothing",
-                    playback.non_finite_frames, playback.non_finite_segments));
-  if (sender.receive_errors + sender.overruns != 0)
-    say(fmt::format("the board counted {} damaged frames and lost bytes {} times; check the wires and the baud",
-                    sender.receive_errors, sender.overruns));
-  if (sender.fail_safes != 0)
-    say(fmt::format("the board switched itself off or restarted {} times", sender.fail_safes));
-  if (const std::string radio = sink.radio_failure(); !radio.empty()) say(radio);
-  const bool acknowledges = sink.sink().acknowledges();
-  if (acknowledges && sender.acknowledged != sender.sent)
-    say(fmt::format("{} of {} frames were not acknowledged{}", sender.sent - sender.acknowledged, sender.sent,
-                    sink.greeting() && sender.acknowledged <= 2 ? "; check that the board takes these --levels" : ""));
-  if (const std::string doubt = doubt_about_off(sender, sink.sink()); !doubt.empty()) say(doubt);
-  return code;
-}
-
-void check_flags(const StreamOptions& options) {
+void check_flags(const StreamOptions& options, const std::vector<PersonValue>& maps) {
   options.law.check();
   if (options.sink.quantity() == Quantity::kPressure && options.law.any())
     throw UsageError(options.law.actuator.empty() ? "--law" : "--actuator",
                      "pressures have their own law, which uses the speed of contacts", "leave it out");
-  if (!options.map.empty() && options.choice.surface == "mapped")
+  if (!maps.empty() && options.choice.surface == "mapped")
     throw UsageError("--map", "may change during the playback, which --surface mapped cannot follow",
                      "leave one of the two out");
-  if (options.map == "none")
-    throw UsageError("--map", "'none' has no actuator to switch",
-                     "name a map, or leave the flag out to use the trace's map");
-  if (options.is_map_watched() && options.choice.detector == "paper")
-    throw UsageError("--map", "may change during the playback, which --detector paper cannot follow",
-                     "choose another detector");
-}
-
-/// Returns the warnings about the map of --map.
-std::vector<std::string> map_warnings(const OpenTrace& trace, const StreamOptions& options) {
-  std::vector<std::string> warnings = trace.person().map.warnings;
-  std::string other =
-      other_facing(trace.person().avatar.facing, trace.person().map.facing, {options.trace, options.map});
-  if (!other.empty()) warnings.push_back(std::move(other));
-  return warnings;
-}
-
-/// Puts the map of --map in the place of the trace's own, if one is named. Throws `Error` if there is no actuator.
-void choose_map(OpenTrace& trace, const StreamOptions& options) {
-  if (!options.map.empty()) {
-    trace.person().map =
-        parse_actuator_map(read_map_files(trace.person().avatar, options.map), trace.person().avatar, options.map);
-    for (const std::string& warning : map_warnings(trace, options)) warn(warning, options.common.verbosity());
+  for (const PersonValue& map : maps) {
+    if (map.value == "none")
+      throw UsageError("--map", "'none' has no actuator to switch",
+                       "name a map, or leave the flag out to use the trace's map");
+    if (is_watched(map.value) && options.choice.detector == "paper")
+      throw UsageError("--map", "may change during the playback, which --detector paper cannot follow",
+                       "choose another detector");
   }
-  if (trace.person().map.actuator_count == 0)
-    throw Error(options.map.empty() ? options.trace : options.map, "has no actuator, so nothing would be felt",
-                "name a map that has actuators: --map FILE.png");
 }
 
-/// Returns laws for pressures if the sink asks for them, else those of --law.
-LawMaker make_laws(const StreamOptions& options, const OpenTrace& trace) {
-  const double rate = options.playback.rate;
-  if (options.sink.quantity() == Quantity::kPressure) return {trace.person().map, options.law.options(rate).hold_s};
-  return LawMaker(DriveMaker(options.law, trace.person().avatar, trace.person().map, rate));
+/// Reads the ports. Throws `UsageError` if two people would get the same one.
+std::vector<PersonValue> parse_ports(const StreamOptions& options) {
+  std::vector<PersonValue> ports = parse_person_values(kPortFlag, options.ports);
+  std::set<std::string> taken;
+  for (const PersonValue& port : ports)
+    if (!taken.insert(port.value).second)
+      throw UsageError("--port", fmt::format("'{}' would be the vest of two people", port.value),
+                       "give each person a port of their own");
+  return ports;
+}
+
+/// Returns the vests, by person. `stamps` are those of the files of --map.
+std::vector<WornVest> vests_of(const StreamOptions& options, const std::vector<PersonValue>& ports,
+                               const std::vector<PersonValue>& maps, const std::vector<std::string>& stamps,
+                               const OpenTrace& trace) {
+  std::vector<WornVest> vests;
+  vests.reserve(ports.size());
+  for (const PersonValue& port : ports) {
+    WornVest& vest = vests.emplace_back();
+    vest.person = person_of(port, kPortFlag, trace, options.trace);
+    vest.port = port.value;
+  }
+  std::ranges::sort(vests, {}, &WornVest::person);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    const auto vest = std::ranges::find(vests, maps[i].person.value_or(0), &WornVest::person);
+    if (vest == vests.end())
+      throw UsageError("--map",
+                       fmt::format("person {} has no --port, so nobody feels the map '{}'",
+                                   maps[i].person.value_or(0) + 1, maps[i].value),
+                       "leave it out, or give that person a port");
+    vest->map = maps[i].value;
+    vest->map_stamp = stamps[i];
+  }
+  if (options.log.empty()) return vests;
+  if (vests.size() > 1 && is_pipe(options.log))
+    throw UsageError("--log", fmt::format("each of {} vests has a log, and '{}' takes one", vests.size(), options.log),
+                     "name a file: OUT.csv is the first person's, OUT.2.csv the second's");
+  for (WornVest& vest : vests)
+    vest.log = &vest == &vests.front() ? options.log : numbered_path(options.log, vest.person);
+  return vests;
+}
+
+/// Returns the name of the detector for all vests: what suits the finest avatar.
+std::string detector_name(const StreamOptions& options, const std::vector<WornVest>& vests, OpenTrace& trace) {
+  if (options.choice.detector != "auto") return options.choice.detector;
+  std::size_t triangles = 0;
+  for (const WornVest& vest : vests) triangles = std::max(triangles, trace.people[vest.person].avatar.triangles.size());
+  return pick_path(triangles, trace.reader.collider_ids().size(), options.choice.skip_kind()).detector;
+}
+
+/// Plays the trace to those who wear vests.
+PlaybackResult play_to(const std::vector<std::unique_ptr<Wearer>>& wearers, OpenTrace& trace,
+                       const std::string& detector, const StreamOptions& options) {
+  const Verbosity verbosity = options.common.verbosity();
+  const auto tell = [verbosity](const std::string& text) { warn(text, verbosity); };
+  for (const auto& wearer : wearers) wearer->open(tell);
+  for (const auto& wearer : wearers) wearer->start(tell);
+  std::vector<DetectedPerson> people;
+  people.reserve(wearers.size());
+  for (const auto& wearer : wearers) people.push_back({wearer->number(), wearer->person().avatar, wearer->detector()});
+
+  Progress progress("Streaming", verbosity);
+  PlaybackCalls calls;
+  calls.make_laws = [&] {
+    std::vector<PlaybackCalls::Law> laws;
+    laws.reserve(wearers.size());
+    for (const auto& wearer : wearers) laws.push_back(wearer->make_law());
+    return laws;
+  };
+  calls.go_on = [&](double share) {
+    for (const auto& wearer : wearers) wearer->still_here(tell);
+    return progress.update(share);
+  };
+  calls.fell_behind = [&] {
+    tell(
+        fmt::format("{}: the playback is a second late: '{}' does not keep up with the trace, or the machine was busy; "
+                    "contacts are felt late and for longer\n  Use a faster --detector, or a lower --rate.",
+                    options.trace, detector));
+  };
+  calls.take = [&](std::size_t i, const ActuatorFrame& frame, Sender::Clock::time_point due) {
+    wearers[i]->take(frame, due);
+  };
+  PlaybackResult result = play(trace.reader, people, options.playback, calls);
+  for (const auto& wearer : wearers) wearer->stop();  // all at once: nobody waits for the answers of another's vest
+  for (const auto& wearer : wearers) wearer->finish();
+  return result;
 }
 
 void run_stream(const StreamOptions& options, Invocation& invocation) {
   const Verbosity verbosity = options.common.verbosity();
-  const std::vector<std::string> outputs = {options.log, options.common.json, options.sink.output_path()};
-  check_outputs(outputs, {options.trace, options.map, sidecar_path(options.map).string(), options.law.actuator},
-                options.common);
-  check_flags(options);
-  const bool watched = options.is_map_watched();
-  const std::string map_stamp = watched ? ActuatorMapWatch::stamp(options.map) : "";
+  const std::vector<PersonValue> ports = parse_ports(options);
+  const std::vector<PersonValue> maps = parse_maps(options.maps);
+  std::vector<std::string> outputs = {options.log, options.common.json};
+  for (const PersonValue& port : ports) outputs.push_back(options.sink.at(port.value).output_path());
+  std::vector<std::string> inputs = {options.trace, options.law.actuator};
+  for (const PersonValue& map : maps) inputs.insert(inputs.end(), {map.value, sidecar_path(map.value).string()});
+  check_outputs(outputs, inputs, options.common);
+  check_flags(options, maps);
+  std::vector<std::string> stamps;
+  stamps.reserve(maps.size());
+  for (const PersonValue& map : maps) stamps.push_back(is_watched(map.value) ? ActuatorMapWatch::stamp(map.value) : "");
 
-  OpenTrace trace(options.trace, verbosity);
-  choose_map(trace, options);
-  const std::size_t actuator_count = trace.person().map.actuator_count;
+  OpenTrace trace(options.trace, verbosity, People::kSeveral);
+  use_maps(maps, trace, options.trace, verbosity);
+  const std::vector<WornVest> vests = vests_of(options, ports, maps, stamps, trace);
+  for (auto vest = vests.begin() + 1; vest != vests.end(); ++vest) outputs.push_back(vest->log);
+  check_outputs(outputs, inputs, options.common);  // again, with the logs of the other people
   require_frames(trace.reader, options.trace);
-  const std::size_t colliders = trace.reader.collider_ids().size();
-  const std::string name =
-      options.choice.detector == "auto"
-          ? pick_path(trace.person().avatar.triangles.size(), colliders, options.choice.skip_kind()).detector
-          : options.choice.detector;
+  const std::string name = detector_name(options, vests, trace);
   warn_of_radii({name}, trace.reader, options.trace, verbosity);
   require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
-  LawMaker laws = make_laws(options, trace);
-  const auto detector = make_detector(name, options.choice.context, options.choice, trace.person().avatar,
-                                      trace.person().map, laws.planes());
+  SharedContext context(options.choice.context, options.choice.device);
+  std::vector<std::unique_ptr<Wearer>> wearers;
+  for (const WornVest& vest : vests)
+    wearers.push_back(std::make_unique<Wearer>(options, vest, trace.people[vest.person], name, context));
 
   catch_interrupts();
-  std::optional<StreamLog> log;
-  if (!options.log.empty()) log.emplace(options.log, options.common.overwrite(), actuator_count);
-  OpenSink sink(options.sink, trace.person().map.names, options.common);
-  sink.warn_of_actuators_beyond(actuator_count, verbosity);
-  const auto tell = [verbosity](const std::string& text) { warn(text, verbosity); };
-  std::optional<ActuatorMapWatch> watch;
-  if (watched)
-    watch.emplace(options.map, map_stamp, actuator_count, trace.person().avatar,
-                  laws.needs_layout() ? ActuatorMapWatch::Layouts::kMeasured : ActuatorMapWatch::Layouts::kNone, tell);
+  Streamed streamed = {options, trace, wearers};
+  streamed.playback = play_to(wearers, trace, name, options);
 
-  Streamed streamed;
-  {
-    Sender sender(sink.sink(), {.keep_log = log.has_value()}, tell);
-    Progress progress("Streaming", verbosity);
-    PlaybackCalls calls;
-    calls.make_law = [&] { return laws.make(); };
-    calls.go_on = [&](double share) {
-      if (auto taken = watch ? watch->take() : std::nullopt) {
-        trace.person().map = std::move(taken->map);
-        laws.use(trace.person().map, taken->layout);
-        ++streamed.maps_reloaded;
-        for (const std::string& warning : map_warnings(trace, options)) tell(warning);
-      }
-      sender.still_here();
-      return progress.update(share);
-    };
-    calls.fell_behind = [&] {
-      tell(fmt::format(
-          "{}: the playback is a second late: '{}' does not keep up with the trace, or the machine was busy; "
-          "contacts are felt late and for longer\n  Use a faster --detector, or a lower --rate.",
-          options.trace, name));
-    };
-    calls.take = [&](const ActuatorFrame& frame, Sender::Clock::time_point due) {
-      sender.post(frame, due);
-      if (log) log->write(sender.take_log());
-    };
-    streamed.playback = play(trace.reader, trace.person().avatar, *detector, options.playback, calls);
-    streamed.sender = sender.finish();
-    if (log) log->write(sender.take_log());
-  }
-  sink.commit();
-  if (log) log->commit();
-
-  print_summary(summary(streamed, sink, *detector), outputs, options.common);
-  write_json(options.common.json, to_json(streamed, options, sink, *detector, laws, invocation), options.common);
-  const int losses = report_losses(streamed, sink, verbosity);
+  print_summary(summary(streamed), outputs, options.common);
+  write_json(options.common.json, to_json(streamed, invocation), options.common);
+  const int losses = report_losses(streamed);
   const int damage = report_damage(trace.reader, options.trace, verbosity);
   const bool cut_short = interrupted() && !options.playback.loop;
   if (cut_short) warn(fmt::format("stopped after {} frames", streamed.playback.frames), verbosity);
@@ -299,8 +189,8 @@ void add_stream(CLI::App& program, Invocation& invocation) {
                             "  vestige stream man.mcap --port /dev/ttyUSB0\n"
                             "  vestige stream man.mcap --port osc://127.0.0.1:9000 --rate 2\n");
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
-  add_sink_options(*verb, options->sink,
-                   ", by the speed at which a collider pushes into the skin, as a share of 1 m/s");
+  add_sinks_options(*verb, options->sink, options->ports,
+                    ", by the speed at which a collider pushes into the skin, as a share of 1 m/s");
   const auto add_playing = [&](const char* name, auto& value, const char* description) {
     return verb->add_option(name, value, description)->group("Playing");
   };
@@ -309,15 +199,18 @@ void add_stream(CLI::App& program, Invocation& invocation) {
       ->check(help::between(1e-3, 1e3))
       ->type_name("X");
   verb->add_flag("--loop", options->playback.loop, "Begin again at the trace's end, until Ctrl-C")->group("Playing");
-  add_playing("--map", options->map,
-              "Use this actuator map instead of the trace's, and read it again whenever it changes on disk")
-      ->type_name("builtin|LAYOUT|FILE.png");
+  add_playing("--map", options->maps,
+              "Use this actuator map instead of the trace's, and read it again whenever it changes on disk; of several "
+              "people, that of person K")
+      ->type_name("[K=]builtin|LAYOUT|FILE.png")
+      ->expected(1)
+      ->take_all();
   add_law_options(*verb, options->law, "Intensity", "; --rate does not change it");
   add_detector_and_context(*verb, options->choice);
   add_detector_options(*verb, options->choice);
   verb->add_option("--log", options->log,
                    "Write every changed state: its due time, whether it was sent or superseded, after how many "
-                   "microseconds, and its levels")
+                   "microseconds, and its levels; of person 2 OUT.2.csv")
       ->group("Results")
       ->type_name("OUT.csv|-");
   add_common_options(*verb, options->common);

@@ -61,23 +61,24 @@ class PlaybackTest : public ::testing::Test {
     std::vector<Taken> taken;
     PlaybackCalls::Clock::time_point first;
     PlaybackCalls calls;
-    calls.make_law = [] {
+    calls.make_laws = [] {
       ActuatorMap map;
       map.actuator_count = 1;
-      return [law = std::make_shared<ActuatorDrive>(make_law("binary", map, {}))](
-                 double time_s, const ContactRow& row, const DetectorFrame*) -> const ActuatorFrame& {
-        return law->next(time_s, row);
+      const auto law = [drive = std::make_shared<ActuatorDrive>(make_law("binary", map, {}))](
+                           double time_s, const ContactRow& row, const DetectorFrame*) -> const ActuatorFrame& {
+        return drive->next(time_s, row);
       };
+      return std::vector<PlaybackCalls::Law>{law};
     };
     calls.go_on = [&](double) { return taken.size() < frames; };
     calls.fell_behind = [&] { ++fell_behind; };
-    calls.take = [&](const ActuatorFrame& frame, PlaybackCalls::Clock::time_point due) {
+    calls.take = [&](std::size_t, const ActuatorFrame& frame, PlaybackCalls::Clock::time_point due) {
       if (taken.empty()) first = due;
       EXPECT_GE(PlaybackCalls::Clock::now(), due);
       taken.push_back({frame.time_s, frame.duty[0], due - first});
       std::this_thread::sleep_for(nap);
     };
-    result = play(reader, avatar, detector, options, calls);
+    result = play(reader, std::vector<DetectedPerson>{{0, avatar, detector}}, options, calls);
     return taken;
   }
 
@@ -102,7 +103,7 @@ TEST_F(PlaybackTest, EachFrameIsDueAtTheTracesOwnTimeWhateverTheOthersTook) {
   EXPECT_THAT(due, ElementsAre(0ms, 20ms, 30ms, 100ms));
   EXPECT_EQ(result.frames, 4U);
   EXPECT_EQ(result.loops, 1U);
-  EXPECT_EQ(result.contacts, 4U * test::kColliders);
+  EXPECT_EQ(result.people[0].contacts, 4U * test::kColliders);
   due.clear();
   for (const Taken& taken : played({.rate = 10})) due.push_back(taken.due);
   EXPECT_THAT(due, ElementsAre(0ms, 2ms, 3ms, 10ms));

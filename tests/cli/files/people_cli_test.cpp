@@ -117,8 +117,7 @@ TEST_F(PeopleOfATrace, WhoStandWithinEachOtherAreNamed) {
 
 TEST_F(PeopleOfATrace, VerbsThatKnowOnePersonSayWhoTheyMiss) {
   record_two();
-  for (const char* verb : {"export two.mcap -o a.glb", "stream two.mcap --port -", "plot scene two.mcap -o a.png",
-                           "batch --traces two.mcap --maps builtin -o b"})
+  for (const char* verb : {"export two.mcap -o a.glb", "sweep two.mcap -o a.glb", "batch --traces two.mcap --maps builtin -o b"})
     expect_failure(std::string("vestige ") + verb, 1, {"two.mcap: holds 2 people"}, "a.glb");
 }
 

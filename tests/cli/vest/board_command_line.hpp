@@ -15,10 +15,20 @@ class BoardCommandLine : public CommandLineTest {
 
   /// Runs `command` beside a board whose pty is called 'vest' and whose pins end up in pins.csv.
   Outcome run_with_board(const std::string& command, const std::string& firmware = "vest-atmega1280") const {
-    return run("simulated_board '" VESTIGE_FIRMWARE_DIR "/" + firmware +
-               ".elf' --link vest --duties pins.csv >board.txt 2>&1 & board=$!\n"
-               "for i in $(seq 200); do [ -e vest ] && break; sleep 0.05; done\n" +
-               command + "\ncode=$?; kill -INT $board; wait $board; exit $code");
+    return run(board(firmware, "") + command + "\ncode=$?; kill -INT $board; wait $board; exit $code");
+  }
+
+  /// The same beside a second board, 'vest2', whose pins end up in pins2.csv.
+  Outcome run_with_two_boards(const std::string& command) const {
+    return run(board("vest-atmega1280", "2") + board("vest-atmega1280", "") + command +
+               "\ncode=$?; kill -INT $board $board2; wait $board $board2; exit $code");
+  }
+
+ private:
+  static std::string board(const std::string& firmware, const std::string& number) {
+    return "simulated_board '" VESTIGE_FIRMWARE_DIR "/" + firmware + ".elf' --link vest" + number + " --duties pins" +
+           number + ".csv >board" + number + ".txt 2>&1 & board" + number + "=$!\n" +
+           "for i in $(seq 200); do [ -e vest" + number + " ] && break; sleep 0.05; done\n";
   }
 };
 

@@ -86,6 +86,40 @@ TEST_F(StreamCommand, WhatTheTimelineSaysHappensAtThePinsOfTheSimulatedBoard) {
   EXPECT_THAT(outcome.standard_output, HasSubstr("of them changes"));
 }
 
+TEST_F(StreamCommand, EachOfTwoPeopleFeelsTheirOwnTimelineOnTheirOwnBoard) {
+  record(
+      "--avatar builtin --name ann --colliders hug --count 60 --rate 500 --duration 2 --avatar builtin --name bob "
+      "--animation none --at 0,0,3,180");
+  ASSERT_EQ(run("vestige replay -q trace.mcap --timeline timeline.csv").exit_code, 0);
+  const test::Outcome outcome = run_with_two_boards(
+      "vestige stream trace.mcap --port 2=vest2 --port 1=vest --ttl 2000 --log log.csv --json stream.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+  EXPECT_THAT(outcome.standard_output, ::testing::AllOf(HasSubstr("ann: "), HasSubstr("bob: ")));
+  const nlohmann::json json = json_in("stream.json");
+  std::vector<std::vector<Row>> logs;
+  for (const auto& [number, place] : {std::pair("", 0), std::pair("2", 1)}) {
+    const std::string suffix = place == 0 ? "" : ".2";
+    std::vector<Row> log = read_log(folder_ / ("log" + suffix + ".csv"));
+    const std::vector<Row> expected = changes(read_timeline(folder_ / ("timeline" + suffix + ".csv")));
+    ASSERT_EQ(log.size(), expected.size());
+    EXPECT_GT(log.size(), 5U);
+    for (std::size_t i = 0; i < log.size(); ++i) EXPECT_EQ(log[i].level, expected[i].level) << place << " " << i;
+    logs.push_back(log);
+    std::erase_if(log, [](const Row& row) { return row.state != "sent"; });
+    const std::vector<Row> pins = read_timeline(folder_ / ("pins" + std::string(number) + ".csv"));
+    for (std::size_t motor = 0; motor < 6; ++motor)
+      EXPECT_EQ(steps_of(motor, pins).size(), steps_of(motor, log).size()) << place << ", motor " << motor + 1;
+    const nlohmann::json& person = json["avatars"][static_cast<std::size_t>(place)];
+    EXPECT_EQ(person["name"], place == 0 ? "ann" : "bob");
+    EXPECT_EQ(person["link"]["port"], "vest" + std::string(number));
+    EXPECT_EQ(person["changes"], log.size());
+    EXPECT_TRUE(person["off_acknowledged"]);
+  }
+  EXPECT_NE(logs[0].size(), logs[1].size()) << "both felt the same";
+  for (const char* count : {"contacts", "sent", "changes", "acknowledged"})
+    EXPECT_EQ(json[count], json["avatars"][0][count].get<int>() + json["avatars"][1][count].get<int>()) << count;
+}
+
 TEST_F(StreamCommand, NothingIsLostInSilenceWhenEveryProcessorIsBusy) {
   record("--count 60 --rate 500 --duration 3");
   const test::Outcome outcome = run_with_board(

@@ -36,6 +36,32 @@ class StreamToOtherSinks : public test::CommandLineTest {
   }
 };
 
+TEST_F(StreamToOtherSinks, PortsBelongToPeopleWhoAreThere) {
+  record(
+      "--avatar builtin --name ann --colliders hug --rate 100 --duration 0.2 --avatar builtin --name bob --at 0,0,3");
+  for (const auto& [flags, cause] :
+       {std::pair("--port file:a", "trace.mcap holds 2 people"),
+        std::pair("--port 3=file:a", "there is no person 3 in trace.mcap, which holds 2 people"),
+        std::pair("--port 0=file:a", "people count from 1"), std::pair("--port 1=", "names no port"),
+        std::pair("--port 1=file:a --port 1=file:b", "person 1 gets two ports"),
+        std::pair("--port 1=file:a --port 2=file:a", "'file:a' would be the vest of two people"),
+        std::pair("--port 1=file:a --map 2=builtin", "person 2 has no --port"),
+        std::pair("--port 1=file:a --map 1=builtin --map 1=paper6", "person 1 gets two maps"),
+        std::pair("--port 1=file:a --port 2=file:b --log -", "each of 2 vests has a log"),
+        std::pair("--port 1=file:a --port 2=file:log.2.csv --log log.csv", "log.2.csv"),
+        std::pair("--port 1=osc://127.0.0.1:9 --port 2=OSC://127.0.0.1:10 --baud 9600", "not a serial port"),
+        std::pair("--port 1=file:a --port 2=osc://127.0.0.1:9 --xbee-api", "not a serial port")}) {
+    const test::Outcome outcome = run(std::string("vestige stream trace.mcap ") + flags);
+    EXPECT_EQ(outcome.exit_code, 2) << flags;
+    EXPECT_THAT(outcome.standard_error, HasSubstr(cause)) << flags;
+    EXPECT_EQ(run("ls a b log.csv log.2.csv 2>/dev/null").standard_output, "") << flags;
+  }
+  // One of the two may wear no vest.
+  ASSERT_EQ(run("vestige stream trace.mcap --port 2=file:b --log log.csv --json stream.json").exit_code, 0);
+  EXPECT_TRUE(json_in("stream.json")["avatars"][0]["link"].is_null());
+  EXPECT_EQ(json_in("stream.json")["avatars"][1]["link"]["port"], "file:b");
+}
+
 TEST_F(StreamToOtherSinks, AMapThatIsEditedWhileItIsFeltIsReadAgainAndABadOneIsNot) {
   record("--colliders hug --rate 100 --duration 0.5");
   // A map of one actuator everywhere, then of the second everywhere, then no map at all.

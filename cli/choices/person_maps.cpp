@@ -1,0 +1,47 @@
+#include "cli/choices/person_maps.hpp"
+
+#include <utility>
+
+#include "analysis/mapping/layouts.hpp"
+#include "traces/base/error.hpp"
+
+namespace vestige::cli {
+
+namespace {
+
+constexpr PersonFlag kMapFlag = {"--map", "map", "FILE.png"};
+
+}  // namespace
+
+std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts) {
+  std::vector<PersonValue> maps = parse_person_values(kMapFlag, texts);
+  for (const PersonValue& map : maps)
+    if (map.value == "-")
+      throw UsageError(kMapFlag.name, "a map cannot come from standard input", "name a file or a layout");
+  return maps;
+}
+
+std::vector<std::string> map_warnings(const ActuatorMap& map, const TracedPerson& person, const SceneNames& names) {
+  std::vector<std::string> warnings = map.warnings;
+  std::string other = other_facing(person.avatar.facing, map.facing, names);
+  if (!other.empty()) warnings.push_back(std::move(other));
+  return warnings;
+}
+
+ActuatorMap read_map(const std::string& map, const TracedPerson& person, const std::string& trace,
+                     Verbosity verbosity) {
+  const ActuatorMapFiles files = read_map_files(person.avatar, map);
+  if (files.png.empty()) return {};
+  ActuatorMap read = parse_actuator_map(files, person.avatar, map);
+  for (const std::string& warning : map_warnings(read, person, {trace, map})) warn(warning, verbosity);
+  return read;
+}
+
+void use_maps(const std::vector<PersonValue>& maps, OpenTrace& trace, const std::string& name, Verbosity verbosity) {
+  for (const PersonValue& map : maps) {
+    TracedPerson& person = trace.people[person_of(map, kMapFlag, trace, name)];
+    person.map = read_map(map.value, person, name, verbosity);
+  }
+}
+
+}  // namespace vestige::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/choices/person_value.hpp"
+#include "cli/choices/scene.hpp"
+
+namespace vestige::cli {
+
+/// Reads the values of --map of a verb that replays traces. Throws `UsageError` as `parse_person_values`.
+std::vector<PersonValue> parse_maps(const std::vector<std::string>& texts);
+
+/// Reads a map for a person, and warns of what is odd about it. `trace` is the trace's name. "none" gives a map without
+/// actuators.
+ActuatorMap read_map(const std::string& map, const TracedPerson& person, const std::string& trace, Verbosity verbosity);
+
+/// Returns what is odd about a map that a person has.
+std::vector<std::string> map_warnings(const ActuatorMap& map, const TracedPerson& person, const SceneNames& names);
+
+/// Gives people the maps of --map. Throws `UsageError` as `person_of`.
+void use_maps(const std::vector<PersonValue>& maps, OpenTrace& trace, const std::string& name, Verbosity verbosity);
+
+}  // namespace vestige::cli

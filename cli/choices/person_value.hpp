@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/choices/scene.hpp"
+
+namespace vestige::cli {
+
+/// A value of a flag that may say whose it is: VALUE, or K=VALUE for person K, who counts from 1.
+struct PersonValue {
+  std::optional<std::size_t> person;  ///< from 0 on; none if the value does not say it
+  std::string value;
+};
+
+/// A flag that takes such values, for messages.
+struct PersonFlag {
+  const char* name;     ///< "--map"
+  const char* noun;     ///< "map"
+  const char* example;  ///< what may stand in the place of VALUE: "FILE.png"
+};
+
+/// Splits one value.
+PersonValue parse_person_value(const std::string& text);
+
+/// Reads all values of a flag. Throws `UsageError` for person 0, for an empty value, and if a person gets two.
+std::vector<PersonValue> parse_person_values(const PersonFlag& flag, const std::vector<std::string>& texts);
+
+/// Returns the person, counted from 0, whose value this is. Throws `UsageError` for a person who is not in the trace,
+/// and if a trace of several people leaves open who is meant. `name` is the trace's.
+std::size_t person_of(const PersonValue& value, const PersonFlag& flag, const OpenTrace& trace,
+                      const std::string& name);
+
+/// Returns the path with the person's number in it: OUT.2.csv for the second. `person` counts from 0.
+std::string numbered_path(std::filesystem::path path, std::size_t person);
+
+/// Whether a result goes to standard output, a pipe or a device, which take only one.
+bool is_pipe(const std::string& path);
+
+}  // namespace vestige::cli
