@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -36,8 +37,8 @@ TracedAvatar avatar_of(const std::vector<BatchTrace>& traces) {
   for (const BatchTrace& trace : traces) {
     if (trace.scenario != nullptr) return {.given = "builtin", .glb = builtin_avatar_glb(), .facing = ""};
     try {
-      const TraceReader reader(trace.given);
-      const RecordedPerson& person = reader.people().front();
+      const TraceReader reader(trace.given, People::kSeveral);
+      const RecordedPerson& person = reader.people()[trace.person.value_or(0)];
       return {
           .given = trace.given, .glb = {person.avatar_glb.begin(), person.avatar_glb.end()}, .facing = person.facing};
     } catch (const Error&) {
@@ -102,6 +103,21 @@ void load_map(BatchMap& map, const BatchPlan& plan, bool builtin_avatar) {
   map.sha256 = sha256_of(map.files);
 }
 
+/// Of a file that cannot be read: 1. What is wrong with it shows when its turn comes.
+std::size_t people_in(const std::string& file) {
+  try {
+    return TraceReader(file, People::kSeveral).people().size();
+  } catch (const Error&) {
+    return 1;
+  }
+}
+
+/// pair.mcap: pair-2.mcap.
+std::string numbered(const std::filesystem::path& file, std::size_t number) {
+  return (file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), number, file.extension().string()))
+      .string();
+}
+
 /// Calls `work` for each of 0 … count - 1. After all threads have ended, rethrows an exception of `work`, if any.
 template <typename Work>
 void in_threads(std::size_t threads, std::size_t count, const Work& work) {
@@ -164,9 +180,16 @@ std::vector<BatchTrace> name_traces(const std::vector<std::string>& given, const
   std::vector<std::string> words;  // of which names are made
   for (const std::string& word : given) {
     const Scenario* scenario = find_scenario(word);
+    if (const std::size_t people = scenario != nullptr ? 1 : people_in(word); people > 1) {
+      for (std::size_t person = 0; person < people; ++person) {
+        words.push_back(numbered(word, person + 1));
+        traces.push_back({"", word, nullptr, 0, person});
+      }
+      continue;
+    }
     for (const std::uint64_t seed : scenario == nullptr ? std::vector<std::uint64_t>{0} : seeds) {
       words.push_back(scenario != nullptr && seeds.size() > 1 ? fmt::format("{}-{}", word, seed) : word);
-      traces.push_back({"", word, scenario, seed});
+      traces.push_back({"", word, scenario, seed, std::nullopt});
     }
   }
   const std::vector<std::string> names = unique_names(words);

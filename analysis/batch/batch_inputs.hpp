@@ -20,7 +20,9 @@ std::vector<BatchFailure> load_inputs(BatchPlan& plan, const std::string& avatar
                                       const std::function<bool()>& go_on);
 
 /// Returns named traces from the command line's words. A word is a scenario's name, otherwise a file. Each scenario is
-/// there once for each of the seeds. The name of the trace is made of the word, and of the seed if there are several.
+/// there once for each of the seeds, and a file of several people once for each of them. The name of the trace is made
+/// of the word, and of the seed or of the person's number if there are several. A file that cannot be read is there
+/// once.
 std::vector<BatchTrace> name_traces(const std::vector<std::string>& given, const std::vector<std::uint64_t>& seeds);
 
 }  // namespace vestige

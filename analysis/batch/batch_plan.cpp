@@ -117,6 +117,7 @@ nlohmann::ordered_json to_json(const BatchPlan& plan) {
   for (const BatchTrace& trace : plan.traces) {
     json["traces"].push_back({{"name", trace.name}, {"given", trace.given}});
     if (trace.scenario != nullptr) json["traces"].back()["seed"] = trace.seed;
+    if (trace.person) json["traces"].back()["avatar"] = *trace.person + 1;
   }
   return as_read_back(json);
 }

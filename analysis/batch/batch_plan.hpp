@@ -48,10 +48,11 @@ struct BatchActuators {
 };
 
 struct BatchTrace {
-  std::string name;                    ///< unique, as for maps
-  std::string given;                   ///< a file or a scenario's name
-  const Scenario* scenario = nullptr;  ///< the scenario to record; null for a file
-  std::uint64_t seed = 1;              ///< of the scenario
+  std::string name;                        ///< unique, as for maps
+  std::string given;                       ///< a file or a scenario's name
+  const Scenario* scenario = nullptr;      ///< the scenario to record; null for a file
+  std::uint64_t seed = 1;                  ///< of the scenario
+  std::optional<std::size_t> person = {};  ///< counted from 0, if the file holds several people
 };
 
 /// How scenarios among the traces are recorded.

@@ -9,6 +9,7 @@ namespace vestige {
 nlohmann::ordered_json trace_record(const BatchTrace& trace, const nlohmann::ordered_json& item,
                                     const BatchFolder& folder, bool earlier) {
   nlohmann::ordered_json record = {{"name", trace.name}, {"given", trace.given}, {"sha256", item["trace_sha256"]}};
+  if (trace.person) record["avatar"] = *trace.person + 1;
   for (const char* field : {"frames", "colliders", "contacts", "damage"}) record[field] = item[field];
   record["earlier"] = earlier;
   const std::string path = folder.item_times(trace.name);

@@ -265,13 +265,15 @@ class BatchRun {
       const double now_s = thread_cpu_s();
       return now_s - std::exchange(mark_s, now_s);
     };
-    TraceReader reader(path);
-    if (sha256_hex(reader.people().front().avatar_glb) != plan_.avatar_sha256)
+    const std::size_t number = plan_.traces[mine_[i]].person.value_or(0);
+    TraceReader reader(path, People::kSeveral);
+    const RecordedPerson& person = reader.people()[number];
+    if (sha256_hex(person.avatar_glb) != plan_.avatar_sha256)
       throw Error(path,
                   fmt::format("was recorded with another avatar than that of the batch, '{}'", plan_.avatar_given),
                   "run one batch for each avatar, or name the avatar of the traces with --avatar");
     const Facing facing = plan_.avatar.facing.axis;
-    if (const auto recorded = facing_named(reader.people().front().facing); recorded && *recorded != facing)
+    if (const auto recorded = facing_named(person.facing); recorded && *recorded != facing)
       throw Error(path,
                   fmt::format("records that its avatar faces {}, and that of the batch faces {}", to_string(*recorded),
                               to_string(facing)),
@@ -287,7 +289,8 @@ class BatchRun {
     recorded.shape = reader.has_spheres() ? ColliderShape::kSpheres : ColliderShape::kPoints;
     ContactRecording& recording = recorded.contacts;
     CoverFinder cover(plan_, recorded.covered);
-    DetectionRun detection(plan_.avatar, ids, detector);
+    const std::vector<DetectedPerson> detected = {{number, plan_.avatar, detector}};
+    DetectionRun detection(detected, ids);
     TraceFrame trace_frame;
     std::uint64_t frames = 0;
     std::uint64_t contacts = 0;

@@ -83,6 +83,10 @@ std::string series_name(const JsonField& series) {
   if (text_or_empty(series, "skip") == "on") add("skip on");
   if (text_or_empty(series, "method") != "static") add(text_or_empty(series, "method"));
   if (text_or_empty(series, "renderer") == "on") add("rendering");
+  // Version 0.4 did not know several people.
+  if (const std::uint64_t people = series.has("avatars") ? whole(series.at("avatars"), 1) : 1; people > 1)
+    add(fmt::format("{} people", people));
+  if (text_or_empty(series, "colliders_around") == "first") add("colliders around the first");
   return name;
 }
 

@@ -120,6 +120,7 @@ constexpr Field kBatch[] = {
     {"batch/traces/name", "", "name of a trace in results"},
     {"batch/traces/given", "", "the trace or scenario, as given"},
     {"batch/traces/seed", "", "the scenario's seed"},
+    {"batch/traces/avatar", "", "whose contacts these are, of a trace of several people, from 1 on"},
 };
 
 constexpr Field kBatchRun[] = {
@@ -134,6 +135,7 @@ constexpr Field kBatchRun[] = {
     {"maps/warnings", "", "what was odd about it"},
     {"traces/name", "", "name of a trace"},
     {"traces/given", "", "the trace or scenario, as given"},
+    {"traces/avatar", "", "whose contacts these are, of a trace of several people, from 1 on"},
     {"traces/sha256", "", "SHA-256 of its file"},
     {"traces/frames", "", "its frames"},
     {"traces/colliders", "", "its colliders"},

@@ -30,6 +30,8 @@ constexpr Field kSeries[] = {
     {"planes", "", "planes (render targets) that it delivered"},
     {"renderer", "", "on: the scene was drawn meanwhile"},
     {"renderer_gl", "", "OpenGL that drew the scene; null: none did"},
+    {"avatars", "", "number of people at once, each with a detector of their own"},
+    {"colliders_around", "", "all: each copy of the trace's people has as many colliders; first: only the first copy"},
 };
 
 constexpr Field kPoint[] = {
@@ -74,6 +76,8 @@ constexpr Field kFrameTimes[] = {
     {"skip", "", "on: what cannot touch was skipped"},
     {"planes", "", "planes (render targets) that it delivered"},
     {"renderer", "", "on: the scene was drawn meanwhile"},
+    {"avatars", "", "number of people at once"},
+    {"colliders_around", "", "all of them, or only the first, or of several copies the first"},
     {"colliders", "", "number of colliders"},
     {"repetition", "", "measured stretch, from 0 on: repetition r measured place r modulo runs"},
     {"frame", "", "frame within the stretch, from 0 on"},

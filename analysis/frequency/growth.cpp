@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "analysis/frequency/sweep_report.hpp"
@@ -45,8 +44,9 @@ void append(std::vector<SweepSeries>& all, std::vector<SweepSeries> more) {
 
 }  // namespace
 
-Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& map, const ContestantMaker& make,
-                  const GrowthSettings& settings, const std::function<bool(double)>& progress) {
+Growth run_growth(TraceReader& trace, SweptPerson person, const ContestantMaker& survey,
+                  const std::vector<Contestant>& contestants, const GrowthSettings& settings,
+                  const std::function<bool(double)>& progress) {
   Growth growth;
   bool goes_on = true;
   const double steps = static_cast<double>(settings.sweep.counts.size()) + settings.subdivisions + 1;
@@ -57,22 +57,21 @@ Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& m
   };
   for (const std::uint32_t count : settings.sweep.counts) {
     if (!goes_on) return growth;
-    const GrowthContestants made = make(avatar, map);
-    append(growth.by_colliders, run_sweep(trace, avatar, *made.survey, made.contestants,
-                                          settings_for(settings, avatar, count), step_progress)
+    append(growth.by_colliders, run_sweep(trace, {&person, 1}, survey, contestants,
+                                          settings_for(settings, person.avatar, count), step_progress)
                                     .series);
     ++step;
   }
-  Avatar fine = avatar;
-  ActuatorMap fine_map = map;
+  Avatar fine = person.avatar;
+  ActuatorMap fine_map = person.map;
+  const SweptPerson fine_person = {fine, fine_map};
   for (std::uint32_t level = 0; goes_on && level <= settings.subdivisions; ++level) {
     if (level > 0) {
       fine = subdivided(fine);
       fine_map = subdivided(fine_map);
     }
     const SweepSettings sweep = settings_for(settings, fine, settings.colliders);
-    const GrowthContestants made = make(fine, fine_map);
-    Sweep measured = run_sweep(trace, fine, *made.survey, made.contestants, sweep, step_progress);
+    Sweep measured = run_sweep(trace, {&fine_person, 1}, survey, contestants, sweep, step_progress);
     growth.by_triangles.push_back({fine.triangles.size(), fine.position_bind.size(),
                                    measured.places * measured.place_frames, std::move(measured.series)});
     ++step;
@@ -83,8 +82,7 @@ Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& m
 std::vector<double> mean_us(const SweepSeries& series) {
   std::vector<double> us;
   us.reserve(series.points.size());
-  for (const SweepPoint& point : series.points)
-    us.push_back(point.repetitions.empty() ? std::numeric_limits<double>::quiet_NaN() : 1e6 / point.hz());
+  for (const SweepPoint& point : series.points) us.push_back(point.mean_us());
   return us;
 }
 

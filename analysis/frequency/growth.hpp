@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,20 +35,12 @@ struct Growth {
 /// places are measured, whatever the settings say.
 inline constexpr std::uint64_t kManyPairs = 500'000;
 
-/// What is measured on one avatar.
-struct GrowthContestants {
-  std::unique_ptr<Detector> survey;  ///< as in `run_sweep`
-  std::vector<Contestant> contestants;
-};
-
-/// Makes the contestants for an avatar and its map. They keep references to both.
-using ContestantMaker = std::function<GrowthContestants(const Avatar&, const ActuatorMap&)>;
-
 /// Measures the cost against colliders on the avatar, then against triangles on subdivisions of the avatar. Within one
 /// size (of colliders or of triangles), all contestants take turns. The sizes follow one another, since the largest
-/// fill the memory. `progress` is used as in `run_sweep`.
-Growth run_growth(TraceReader& trace, const Avatar& avatar, const ActuatorMap& map, const ContestantMaker& make,
-                  const GrowthSettings& settings, const std::function<bool(double)>& progress);
+/// fill the memory. `survey` and `progress` are used as in `run_sweep`.
+Growth run_growth(TraceReader& trace, SweptPerson person, const ContestantMaker& survey,
+                  const std::vector<Contestant>& contestants, const GrowthSettings& settings,
+                  const std::function<bool(double)>& progress);
 
 /// Returns the mean microseconds of a frame at each point. NaN where nothing was measured.
 std::vector<double> mean_us(const SweepSeries& series);

@@ -4,9 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "detector/detector.hpp"
+#include "analysis/run/detection_run.hpp"
 #include "detector/stages.hpp"
-#include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {
@@ -28,8 +27,8 @@ struct StagePlace {
 
 /// Measures how long each stage of a frame takes, as means over all frames but the first of each place. Reading clocks
 /// slows the detector down, so nothing else may be concluded from these frames. All places are run once to warm up.
-/// Then they are run again and again, at least three times and for at least `least_s`. Afterwards, the detector times
-/// no stages.
-StageMeans measure_stages(const Avatar& avatar, std::span<const StagePlace> places, Detector& detector, double least_s);
+/// Then they are run again and again, at least three times and for at least `least_s`. The stages of all `people` are
+/// added up. Afterwards, their detectors time no stages.
+StageMeans measure_stages(std::span<const DetectedPerson> people, std::span<const StagePlace> places, double least_s);
 
 }  // namespace vestige

@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iterator>
+#include <limits>
+#include <map>
 #include <random>
 #include <utility>
 
@@ -25,14 +26,14 @@ constexpr double kRenderedStretch_s = 0.2;
 /// Means need less time than intervals.
 constexpr double kStageShare = 0.2;
 
-/// The colliders of one place: those that are drawn for one count, or for any count.
-using Colliders = std::vector<std::uint32_t>;
+/// The rows of a frame, by person.
+using Rows = std::vector<ContactRow>;
 
 /// The rows of one contestant with all colliders that were drawn at a place for any count, by place, then frame.
-using Reference = std::vector<std::vector<ContactRow>>;
+using Reference = std::vector<std::vector<Rows>>;
 
 /// Returns where the colliders of one count stand in a row with all drawn colliders. Both lists are ascending.
-std::vector<std::size_t> columns_of(const Colliders& some, const Colliders& all) {
+std::vector<std::size_t> columns_of(const DrawnIds& some, const DrawnIds& all) {
   std::vector<std::size_t> columns;
   columns.reserve(some.size());
   for (const std::uint32_t id : some)
@@ -50,6 +51,15 @@ std::uint64_t differing(const ContactRow& timed, const ContactRow& reference, co
   return count;
 }
 
+/// A contestant in the race.
+struct Racer {
+  const SweepScene* scene = nullptr;
+  std::vector<std::unique_ptr<Detector>> detectors = {};
+  std::vector<DetectedPerson> people = {};
+  std::unique_ptr<RenderThread> renderer = nullptr;  ///< null if it is measured alone
+  Reference reference = {};
+};
+
 /// What one measurement of one place showed.
 struct PlaceRun {
   Repetition repetition;
@@ -62,23 +72,15 @@ struct PlaceRun {
 
 class RunningSweep {
  public:
-  RunningSweep(const std::vector<std::uint32_t>& ids, const Avatar& avatar, SweepSample sample,
+  RunningSweep(const std::vector<std::uint32_t>& ids, std::span<const SweptPerson> people, SweepSample sample,
                const std::vector<Contestant>& contestants, const SweepSettings& settings)
-      : avatar_(avatar), contestants_(contestants), settings_(settings), places_(std::move(sample.places)) {
-    sweep_.places = static_cast<std::uint32_t>(places_.size());
-    if (!places_.empty()) sweep_.place_frames = static_cast<std::uint32_t>(places_.front().size() - 1);
+      : ids_(ids), people_(people), contestants_(contestants), settings_(settings), place_count_(sample.places.size()) {
+    sweep_.places = static_cast<std::uint32_t>(place_count_);
+    if (place_count_ != 0) sweep_.place_frames = static_cast<std::uint32_t>(sample.places.front().size() - 1);
     sweep_.sample_sha256 = sample.sha256;
     sweep_.trace = sample.trace;
     sweep_.sampled = sample.sampled;
-    drawn_for_any_.resize(places_.size());
-    for (const std::uint32_t count : settings.counts) {
-      drawn_.push_back(draw_colliders(ids, count, places_.size(), settings.seed));
-      for (std::size_t i = 0; i < places_.size(); ++i) {
-        Colliders both;
-        std::ranges::set_union(drawn_for_any_[i], drawn_.back()[i], std::back_inserter(both));
-        drawn_for_any_[i] = std::move(both);
-      }
-    }
+    recorded_ = make_sweep_scene(std::move(sample.places), ids, settings.counts, settings.seed);
     for (const Contestant& contestant : contestants) add_series(contestant);
   }
 
@@ -88,7 +90,7 @@ class RunningSweep {
       for (std::size_t p = 0; p < settings_.counts.size(); ++p) open.push_back({s, p});
     for (std::size_t s = 0; s < sweep_.series.size(); ++s) {
       if (!progress(0)) return std::move(sweep_);
-      references_.push_back(make_reference(contestants_[s]));
+      racers_[s].reference = make_reference(s);
       for (std::size_t p = 0; p < settings_.counts.size(); ++p) describe({s, p});
     }
     for (const Entry& entry : open) {
@@ -107,7 +109,7 @@ class RunningSweep {
     while (!open.empty()) {
       std::ranges::shuffle(open, random);
       for (const Entry& entry : open) {
-        const double seconds = renderers_[entry.series] == nullptr ? measure(entry) : measure_rendered(entry);
+        const double seconds = racers_[entry.series].renderer == nullptr ? measure(entry) : measure_rendered(entry);
         spent_s += std::min(seconds, settings_.min_time_s);
         if (!progress(total_s > 0 ? std::min(spent_s / total_s, 1.0) : 1.0)) return std::move(sweep_);
       }
@@ -126,21 +128,27 @@ class RunningSweep {
   SweepPoint& point_of(const Entry& entry) { return sweep_.series[entry.series].points[entry.point]; }
 
   void add_series(const Contestant& contestant) {
-    detectors_.push_back(contestant.make(contestant.planes));
+    Racer& racer = racers_.emplace_back();
+    racer.scene = &scene_of(contestant.crowd);
+    racer.detectors = make_detectors(contestant, contestant.planes);
+    racer.people = detected(racer.detectors);
+    if (contestant.make_renderer_context) racer.renderer = make_renderer(contestant);
+    const Detector& detector = *racer.detectors.front();
     SweepSeries series;
     series.detector = contestant.detector;
     series.skip = contestant.skip;
     series.planes = contestant.planes;
-    series.method = detectors_.back()->method();
-    series.approximate = detectors_.back()->is_approximate();
-    series.triangles_kept = detectors_.back()->triangles_kept();
-    renderers_.push_back(make_renderer(contestant));
-    if (renderers_.back() != nullptr) series.renderer = renderers_.back()->gl_info();
-    series.gl = detectors_.back()->gl_info();
+    series.method = detector.method();
+    series.approximate = detector.is_approximate();
+    series.triangles_kept = detector.triangles_kept();
+    series.people = static_cast<std::uint32_t>(racer.people.size());
+    series.first_only = contestant.crowd.first_only;
+    if (racer.renderer != nullptr) series.renderer = racer.renderer->gl_info();
+    series.gl = detector.gl_info();
     for (const std::uint32_t count : settings_.counts) {
       SweepPoint point;
       point.colliders = count;
-      point.places = places_.size();
+      point.places = place_count_;
       series.points.push_back(std::move(point));
     }
     sweep_.series.push_back(std::move(series));
@@ -149,38 +157,65 @@ class RunningSweep {
   /// In a pass of its own, so that no timed frame reads these clocks.
   void measure_stages(const std::function<bool(double)>& progress) {
     for (std::size_t s = 0; s < sweep_.series.size(); ++s) {
-      if (renderers_[s] != nullptr) continue;
+      const Racer& racer = racers_[s];
+      if (racer.renderer != nullptr) continue;
       for (std::size_t p = 0; p < settings_.counts.size(); ++p) {
         if (!progress(1)) return;
         std::vector<StagePlace> places;
-        places.reserve(places_.size());
-        for (std::size_t number = 0; number < places_.size(); ++number)
-          places.push_back({places_[number], drawn_[p][number]});
-        point_of({s, p}).stages =
-            vestige::measure_stages(avatar_, places, *detectors_[s], kStageShare * settings_.min_time_s);
+        places.reserve(place_count_);
+        for (std::size_t number = 0; number < place_count_; ++number)
+          places.push_back({racer.scene->places[number], racer.scene->drawn[p][number]});
+        point_of({s, p}).stages = vestige::measure_stages(racer.people, places, kStageShare * settings_.min_time_s);
       }
     }
   }
 
-  std::unique_ptr<RenderThread> make_renderer(const Contestant& contestant) const {
-    if (!contestant.make_renderer_context) return nullptr;
-    std::vector<const TraceFrame*> frames;
-    for (const Place& place : places_)
-      for (const TraceFrame& frame : place) frames.push_back(&frame);
-    return std::make_unique<RenderThread>(contestant.make_renderer_context, avatar_, std::move(frames));
+  /// Contestants with equal crowds share a scene.
+  const SweepScene& scene_of(Crowd crowd) {
+    if (crowd.copies == 1) return recorded_;
+    std::unique_ptr<SweepScene>& scene = copied_[{crowd.copies, crowd.first_only}];
+    if (scene == nullptr) scene = std::make_unique<SweepScene>(with_copies(recorded_, ids_, crowd));
+    return *scene;
   }
 
-  Reference make_reference(const Contestant& contestant) const {
-    const auto detector = contestant.make(kHashedPlanes);
+  /// One for each person of the crowd.
+  std::vector<std::unique_ptr<Detector>> make_detectors(const Contestant& contestant, PlaneSet planes) const {
+    std::vector<std::unique_ptr<Detector>> detectors;
+    detectors.reserve(contestant.crowd.copies * people_.size());
+    for (std::uint32_t copy = 0; copy < contestant.crowd.copies; ++copy)
+      for (const SweptPerson& person : people_) detectors.push_back(contestant.make(person.avatar, person.map, planes));
+    return detectors;
+  }
+
+  std::vector<DetectedPerson> detected(const std::vector<std::unique_ptr<Detector>>& detectors) const {
+    std::vector<DetectedPerson> people;
+    people.reserve(detectors.size());
+    for (std::size_t i = 0; i < detectors.size(); ++i)
+      people.push_back({i, people_[i % people_.size()].avatar, *detectors[i]});
+    return people;
+  }
+
+  std::unique_ptr<RenderThread> make_renderer(const Contestant& contestant) const {
+    std::vector<const TraceFrame*> frames;
+    for (const Place& place : recorded_.places)
+      for (const TraceFrame& frame : place) frames.push_back(&frame);
+    return std::make_unique<RenderThread>(contestant.make_renderer_context, people_.front().avatar, std::move(frames));
+  }
+
+  Reference make_reference(std::size_t series) const {
+    const SweepScene& scene = *racers_[series].scene;
+    const auto detectors = make_detectors(contestants_[series], kHashedPlanes);
+    const std::vector<DetectedPerson> people = detected(detectors);
     Reference reference;
-    for (std::size_t number = 0; number < places_.size(); ++number) {
-      const Place& place = places_[number];
-      DetectionRun detection(avatar_, drawn_for_any_[number], *detector);
+    for (std::size_t number = 0; number < place_count_; ++number) {
+      const Place& place = scene.places[number];
+      DetectionRun detection(people, scene.drawn_for_any[number]);
       detection.begin(place.front());
-      auto& rows = reference.emplace_back();
+      auto& frames = reference.emplace_back();
       for (std::size_t i = 1; i < place.size(); ++i) {
         detection.step(place[i]);
-        rows.push_back(detection.row());
+        Rows& rows = frames.emplace_back();
+        for (std::size_t person = 0; person < people.size(); ++person) rows.push_back(detection.row(person));
       }
     }
     return reference;
@@ -188,57 +223,74 @@ class RunningSweep {
 
   void describe(const Entry& entry) {
     SweepPoint& point = point_of(entry);
-    TextureHash hash;
+    const Racer& racer = racers_[entry.series];
+    std::vector<TextureHash> hashes(racer.people.size());
     ContactRow row;
-    for (std::size_t number = 0; number < places_.size(); ++number) {
-      const std::vector<std::size_t> columns = columns_of(drawn_[entry.point][number], drawn_for_any_[number]);
-      for (const ContactRow& all : references_[entry.series][number]) {
-        row.clear(columns.size());
-        for (std::size_t i = 0; i < columns.size(); ++i)
-          if (all[columns[i]].hit()) row[i] = all[columns[i]];
-        hash.add(row);
-        const auto contacts = static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
+    for (std::size_t number = 0; number < place_count_; ++number) {
+      const std::vector<std::size_t> columns = columns_at(entry, number);
+      for (const Rows& rows : racer.reference[number]) {
+        std::uint64_t contacts = 0;
+        for (std::size_t person = 0; person < rows.size(); ++person) {
+          row.clear(columns.size());
+          for (std::size_t i = 0; i < columns.size(); ++i)
+            if (const Contact& one = rows[person][columns[i]]; one.hit()) row[i] = one;
+          hashes[person].add(row);
+          point.results += row.size();
+          contacts += static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
+        }
         point.contacts += contacts;
         if (contacts == 0) ++point.empty_frames;
         ++point.pass_frames;
       }
     }
-    point.texture_hash = hash.hex();
+    std::vector<std::string> texts;
+    texts.reserve(hashes.size());
+    for (TextureHash& hash : hashes) texts.push_back(hash.hex());
+    point.texture_hash = texture_hash_of(texts);
+  }
+
+  /// Where the colliders of a point stand in the reference's rows.
+  std::vector<std::size_t> columns_at(const Entry& entry, std::size_t place) const {
+    const SweepScene& scene = *racers_[entry.series].scene;
+    return columns_of(scene.drawn[entry.point][place], scene.drawn_for_any[place]);
   }
 
   /// Runs at every place, since a place with another number of segments may need another program.
   void warm_up(const Entry& entry) {
-    for (std::size_t number = 0; number < places_.size(); ++number) {
-      DetectionRun detection(avatar_, drawn_[entry.point][number], *detectors_[entry.series]);
-      for (std::size_t i = 0; i < std::min(kWarmUpFrames, places_[number].size()); ++i)
-        detection.step(places_[number][i]);
+    const Racer& racer = racers_[entry.series];
+    for (std::size_t number = 0; number < place_count_; ++number) {
+      const Place& place = racer.scene->places[number];
+      DetectionRun detection(racer.people, racer.scene->drawn[entry.point][number]);
+      for (std::size_t i = 0; i < std::min(kWarmUpFrames, place.size()); ++i) detection.step(place[i]);
     }
   }
 
   void measure_cold(const Entry& entry) {
     SweepPoint& point = point_of(entry);
-    if (renderers_[entry.series] != nullptr) renderers_[entry.series]->resume();
-    for (std::size_t number = 0; number < places_.size(); ++number) {
+    RenderThread* const renderer = racers_[entry.series].renderer.get();
+    if (renderer != nullptr) renderer->resume();
+    for (std::size_t number = 0; number < place_count_; ++number) {
       const PlaceRun run = run_place(entry, number);
       point.cold.push_back(run.repetition);
       point.work += run.work;
       point.disagreements += run.disagreements;
     }
-    if (renderers_[entry.series] != nullptr) renderers_[entry.series]->pause();
+    if (renderer != nullptr) renderer->pause();
   }
 
   /// Measures as many places as fit into one stretch beside the renderer. Returns the seconds timed.
   double measure_rendered(const Entry& entry) {
     SweepPoint& point = point_of(entry);
+    RenderThread& renderer = *racers_[entry.series].renderer;
     const auto start = std::chrono::steady_clock::now();
     std::chrono::duration<double> elapsed = {};
     double seconds = 0;
-    renderers_[entry.series]->resume();
+    renderer.resume();
     do {
       seconds += measure(entry);
       elapsed = std::chrono::steady_clock::now() - start;
     } while (elapsed.count() < kRenderedStretch_s);
-    point.rendered_frames += renderers_[entry.series]->pause();
+    point.rendered_frames += renderer.pause();
     point.rendered_s += elapsed.count();
     return seconds;
   }
@@ -246,7 +298,7 @@ class RunningSweep {
   /// Measures the place whose turn it is. Returns the seconds timed.
   double measure(const Entry& entry) {
     SweepPoint& point = point_of(entry);
-    const PlaceRun run = run_place(entry, point.repetitions.size() % places_.size());
+    const PlaceRun run = run_place(entry, point.repetitions.size() % place_count_);
     point.frame_us.insert(point.frame_us.end(), run.frame_us.begin(), run.frame_us.end());
     point.skipped_timed += run.skipped_frames;
     point.skipped_us += run.skipped_us;
@@ -255,10 +307,11 @@ class RunningSweep {
   }
 
   PlaceRun run_place(const Entry& entry, std::size_t number) {
-    const Place& place = places_[number];
-    const Colliders& ids = drawn_[entry.point][number];
-    const std::vector<std::size_t> columns = columns_of(ids, drawn_for_any_[number]);
-    DetectionRun detection(avatar_, ids, *detectors_[entry.series]);
+    const Racer& racer = racers_[entry.series];
+    const Place& place = racer.scene->places[number];
+    const DrawnIds& ids = racer.scene->drawn[entry.point][number];
+    const std::vector<std::size_t> columns = columns_at(entry, number);
+    DetectionRun detection(racer.people, ids);
     detection.begin(place.front());
     PlaceRun run;
     for (std::size_t i = 1; i < place.size(); ++i) {
@@ -268,58 +321,69 @@ class RunningSweep {
       run.frame_us.push_back(elapsed.count() * 1e6);
       run.repetition.seconds += elapsed.count();
       ++run.repetition.frames;
-      if (done.frames_skipped != 0) {
+      if (done.frames_skipped == racer.people.size()) {
         ++run.skipped_frames;
         run.skipped_us += run.frame_us.back();
       }
       run.work += done;
-      const std::uint64_t different = differing(detection.row(), references_[entry.series][number][i - 1], columns);
+      std::uint64_t different = 0;
+      for (std::size_t person = 0; person < racer.people.size(); ++person)
+        different += differing(detection.row(person), racer.reference[number][i - 1][person], columns);
       run.disagreements += different;
       if (different != 0 && promises_same_bits(contestants_[entry.series].detector))
         throw Error(contestants_[entry.series].detector,
                     fmt::format("frame {} gave other contacts with {} colliders than with {}", place[i].index,
-                                ids.size(), drawn_for_any_[number].size()),
+                                ids.size(), racer.scene->drawn_for_any[number].size()),
                     "this is a bug in Vestige or in the GL driver: try another --context, and report it");
     }
     return run;
   }
 
   bool is_measured(const SweepPoint& point) const {
-    const std::size_t passes = point.repetitions.size() / places_.size();
-    if (point.repetitions.size() % places_.size() != 0 || passes < kFewestPasses) return false;
+    const std::size_t passes = point.repetitions.size() / place_count_;
+    if (point.repetitions.size() % place_count_ != 0 || passes < kFewestPasses) return false;
     double seconds = 0;
     for (const Repetition& repetition : point.repetitions) seconds += repetition.seconds;
     return seconds >= settings_.min_time_s;
   }
 
-  const Avatar& avatar_;
+  const std::vector<std::uint32_t>& ids_;
+  std::span<const SweptPerson> people_;
   const std::vector<Contestant>& contestants_;
   const SweepSettings& settings_;
-  std::vector<Place> places_;
-  std::vector<std::vector<Colliders>> drawn_;  // by count, then place
-  std::vector<Colliders> drawn_for_any_;       // by place
-  std::vector<std::unique_ptr<Detector>> detectors_;
-  std::vector<std::unique_ptr<RenderThread>> renderers_;  // null for a contestant that is measured alone
-  std::vector<Reference> references_;
+  std::size_t place_count_;
+  SweepScene recorded_;
+  std::map<std::pair<std::uint32_t, bool>, std::unique_ptr<SweepScene>> copied_;  // by copies and first_only
+  std::vector<Racer> racers_;
   Sweep sweep_;
 };
 
 }  // namespace
 
+double SweepPoint::mean_us() const {
+  return repetitions.empty() ? std::numeric_limits<double>::quiet_NaN() : 1e6 / hz();
+}
+
 bool promises_same_bits(std::string_view detector) {
   return detector == "cpu" || detector == "geometry" || detector == "exact";
 }
 
-Sweep run_sweep(TraceReader& trace, const Avatar& avatar, Detector& survey, const std::vector<Contestant>& contestants,
-                const SweepSettings& settings, const std::function<bool(double)>& progress) {
+Sweep run_sweep(TraceReader& trace, std::span<const SweptPerson> people, const ContestantMaker& survey,
+                const std::vector<Contestant>& contestants, const SweepSettings& settings,
+                const std::function<bool(double)>& progress) {
   // Before the survey, which takes long for a long trace.
   const std::size_t colliders = trace.collider_ids().size();
   if (const std::uint32_t most = std::ranges::max(settings.counts); most > colliders)
     throw Error("--counts", fmt::format("asks for {} colliders, but the trace has {}", most, colliders),
                 "record a trace with more colliders (--count), or ask for fewer");
-  SweepSample sample =
-      sample_places(trace, avatar, survey, settings.runs, settings.run_frames, [&] { return progress(0); });
-  return RunningSweep(trace.collider_ids(), avatar, std::move(sample), contestants, settings).run(progress);
+  std::vector<std::unique_ptr<Detector>> surveys;
+  std::vector<DetectedPerson> surveyed;
+  for (std::size_t i = 0; i < people.size(); ++i) {
+    surveys.push_back(survey(people[i].avatar, people[i].map, PlaneSet()));
+    surveyed.push_back({i, people[i].avatar, *surveys.back()});
+  }
+  SweepSample sample = sample_places(trace, surveyed, settings.runs, settings.run_frames, [&] { return progress(0); });
+  return RunningSweep(trace.collider_ids(), people, std::move(sample), contestants, settings).run(progress);
 }
 
 }  // namespace vestige

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "analysis/base/statistics.hpp"
 #include "analysis/frequency/stage_pass.hpp"
 #include "analysis/frequency/sweep_sample.hpp"
+#include "analysis/frequency/sweep_scene.hpp"
 #include "detector/detector.hpp"
 #include "detector/gl/gl_context.hpp"
 #include "traces/scene/avatar.hpp"
@@ -21,15 +23,24 @@ namespace vestige {
 /// Returns whether a detector promises the same bits as all others that do (detector/CONTRACT.md, 10).
 bool promises_same_bits(std::string_view detector);
 
+/// A person of the trace that is measured.
+struct SweptPerson {
+  const Avatar& avatar;
+  const ActuatorMap& map;
+};
+
+/// Makes a detector that is able to deliver these planes. It keeps references to avatar and map.
+using ContestantMaker = std::function<std::unique_ptr<Detector>(const Avatar&, const ActuatorMap&, PlaneSet)>;
+
 /// A detector that is measured against others.
 struct Contestant {
   std::string detector;
   Skip skip = Skip::kOff;  ///< for the report only: `make` decides
   PlaneSet planes = {};    ///< the planes that it delivers during the measurement
-  /// Makes the detector, able to deliver these planes. Called twice: for timing and for the hash.
-  std::function<std::unique_ptr<Detector>(PlaneSet)> make;
+  ContestantMaker make;    ///< called twice for each person of the crowd: for timing and for the hash
   /// Makes the context in which the scene is drawn during measurement (`RenderThread`). Empty: the scene is not drawn.
   std::function<std::unique_ptr<GlContext>()> make_renderer_context = {};
+  Crowd crowd = {};
 };
 
 struct SweepSettings {
@@ -41,8 +52,9 @@ struct SweepSettings {
   bool stages = false;                ///< afterwards, measure where the time goes (`measure_stages`)
 };
 
-/// One point of HAVE 2010 Fig. 2: the detection frequency for a number of colliders. At every place, other colliders
-/// are drawn. One pass measures every place once, with the colliders drawn for it.
+/// One point of HAVE 2010 Fig. 2: the detection frequency for a number of colliders, of which each copy of a crowd may
+/// have as many. At every place, other colliders are drawn. One pass measures every place once, with the colliders
+/// drawn for it.
 struct SweepPoint {
   std::uint32_t colliders = 0;
   /// The first pass. The detector has seen the first frames of every place before, but the caches hold nothing of it.
@@ -51,11 +63,12 @@ struct SweepPoint {
   std::size_t places = 0;               ///< number of places in one pass
   std::vector<double> frame_us;         ///< duration of every frame of the further passes
   std::uint64_t pass_frames = 0;        ///< frames in one pass
+  std::uint64_t results = 0;            ///< results of one pass: one for each person, collider and frame
   std::uint64_t contacts = 0;           ///< contacts in one pass
-  std::uint64_t empty_frames = 0;       ///< frames without a contact in one pass
+  std::uint64_t empty_frames = 0;       ///< frames in which nobody has a contact, in one pass
   DetectorWork work;                    ///< work of one pass
-  std::string texture_hash;             ///< hash of one pass
-  /// Results of one pass (one for each collider and frame) whose hit or actuator differs from the reference.
+  std::string texture_hash;             ///< `texture_hash_of` the people's hashes of one pass
+  /// Results of one pass whose hit or actuator differs from the reference.
   std::uint64_t disagreements = 0;
 
   std::uint64_t skipped_timed = 0;    ///< frames of the further passes that bounds alone showed to be without contact
@@ -67,16 +80,23 @@ struct SweepPoint {
 
   double hz() const { return frequency_hz(repetitions); }
   double cold_hz() const { return frequency_hz(cold); }
+  /// Mean duration of a frame. NaN where nothing was measured.
+  double mean_us() const;
   double rendered_hz() const { return static_cast<double>(rendered_frames) / rendered_s; }
 };
 
 struct SweepSeries {
+  /// Whether both were measured on the same people and colliders.
+  bool same_crowd(const SweepSeries& other) const { return people == other.people && first_only == other.first_only; }
+
   std::string detector;
   Skip skip = Skip::kOff;
   Method method = Method::kStatic;
   bool approximate = false;
   std::optional<std::size_t> triangles_kept;  ///< as in Detector
   PlaneSet planes;
+  std::uint32_t people = 1;  ///< measured at once, each by a detector of their own
+  bool first_only = false;   ///< as in Crowd
   GlInfo gl;
   std::optional<GlInfo> renderer;  ///< context that drew the scene during the measurement, if any
   std::vector<SweepPoint> points;
@@ -91,21 +111,24 @@ struct Sweep {
   FrameContacts sampled;           ///< of the frames that were measured, with all colliders of the trace
 };
 
-/// Measures every contestant at every count, on frames (`sample_places`, by the contacts that `survey` finds) and
-/// colliders (`draw_colliders`) that are the same for all. Each round shuffles the order anew, so that other load on
-/// the machine affects all alike. A timing covers the whole round trip from a pose and collider positions to a row of
-/// contacts: joint palette, segments, skinning or upload, test, read-back. A timing excludes decoding the trace and
-/// hashing. Every point is measured in whole passes, and at least twice after the first.
+/// Measures every contestant at every count, on frames (`sample_places`, by the contacts that a detector of `survey`
+/// finds) and colliders (`draw_colliders`) that are the same for all. `people` are all of the trace. Each round
+/// shuffles the order anew, so that other load on the machine affects all alike. A timing covers the whole round trip
+/// from a pose and collider positions to a row of contacts: joint palette, segments, skinning or upload, test,
+/// read-back. A timing excludes decoding the trace and hashing. Every point is measured in whole passes, and at least
+/// twice after the first.
 ///
 /// If the scene is drawn during the measurement of a contestant, it is measured in stretches of a fifth of a second, so
-/// that the renderer's 90 Hz take effect. Outside of these stretches, the scene is not drawn.
+/// that the renderer's 90 Hz take effect. Outside of these stretches, the scene is not drawn. Precondition: the trace
+/// then has one person, and the crowd one copy.
 ///
 /// Every timed row is compared with a reference: a row that was computed separately, with all planes that the hash
 /// needs and with all colliders that were drawn at this place for any count. If hits or actuators of the two rows
 /// differ, the point counts it, or, if the detector promises the same bits, this function throws `Error`. `progress`
 /// receives the share done, 0 … 1, and returns false to stop. A stopped sweep returns what was measured so far, which
 /// may lack repetitions.
-Sweep run_sweep(TraceReader& trace, const Avatar& avatar, Detector& survey, const std::vector<Contestant>& contestants,
-                const SweepSettings& settings, const std::function<bool(double)>& progress);
+Sweep run_sweep(TraceReader& trace, std::span<const SweptPerson> people, const ContestantMaker& survey,
+                const std::vector<Contestant>& contestants, const SweepSettings& settings,
+                const std::function<bool(double)>& progress);
 
 }  // namespace vestige

@@ -40,11 +40,12 @@ struct Rival {
 constexpr std::array<Rival, 2> kRivals = {
     {{"paper", "the fastest paper", "times_paper"}, {"embree", "the fastest Embree", "times_embree"}}};
 
-/// Returns the highest frequency of a rival at the p-th count, or 0 if none was measured.
-double fastest_hz(std::span<const SweepSeries> series, const Rival& rival, std::size_t p) {
+/// Returns the highest frequency of a rival of this series at the p-th count, or 0 if none was measured.
+double fastest_hz(std::span<const SweepSeries> series, const Rival& rival, const SweepSeries& of, std::size_t p) {
   double fastest = 0;
   for (const SweepSeries& one : series)
-    if (one.detector.starts_with(rival.prefix) && !one.renderer && !one.points[p].repetitions.empty())
+    if (one.detector.starts_with(rival.prefix) && one.same_crowd(of) && !one.renderer &&
+        !one.points[p].repetitions.empty())
       fastest = std::max(fastest, one.points[p].hz());
   return fastest;
 }
@@ -76,6 +77,10 @@ std::uint64_t stored_frames(const SweepPoint& point) {
   std::uint64_t frames = 0;
   for (const std::size_t repetition : stored_repetitions(point)) frames += point.repetitions[repetition].frames;
   return frames;
+}
+
+const char* around(const SweepSeries& series) {
+  return series.first_only ? "first" : "all";
 }
 
 nlohmann::ordered_json number_or_null(double value) {
@@ -142,7 +147,7 @@ std::string ratio_table(std::span<const SweepSeries> series, const Rival& rival)
   if (std::ranges::none_of(series, is_rival)) return "";
   return table_of(series, fmt::format("Times as fast as {}", rival.title), std::not_fn(is_rival),
                   [&](const SweepSeries& one, std::size_t p) {
-                    const double rival_hz = fastest_hz(series, rival, p);
+                    const double rival_hz = fastest_hz(series, rival, one, p);
                     return rival_hz > 0 ? fmt::format("{:.2f}", one.points[p].hz() / rival_hz) : "";
                   });
 }
@@ -166,7 +171,7 @@ std::string rendered_table(std::span<const SweepSeries> series) {
 /// Whether two series differ in nothing but their planes.
 bool differ_in_planes(const SweepSeries& a, const SweepSeries& b) {
   return a.detector == b.detector && a.gl.context == b.gl.context && a.skip == b.skip && a.method == b.method &&
-         a.renderer.has_value() == b.renderer.has_value() && a.planes.count() != b.planes.count();
+         a.renderer.has_value() == b.renderer.has_value() && a.same_crowd(b) && a.planes.count() != b.planes.count();
 }
 
 /// Says what planes cost beyond those of the series with the fewest. Empty unless a detector was measured with several
@@ -219,7 +224,7 @@ std::string disagreement_lines(std::span<const SweepSeries> series) {
                        "{} with {} collider{}: {} of {} results differ from its own with other planes and the most "
                        "colliders.\n",
                        name_of(one), point.colliders, point.colliders == 1 ? "" : "s", point.disagreements,
-                       point.pass_frames * point.colliders);
+                       point.results);
   return lines.empty() ? "" : "\n" + lines;
 }
 
@@ -231,7 +236,7 @@ std::size_t column_width(std::span<const SweepSeries> series) {
   return width;
 }
 
-std::string name_of(const SweepSeries& series) {
+std::string detector_name(const SweepSeries& series) {
   std::string name = series.detector;
   if (series.approximate)
     name +=
@@ -243,6 +248,13 @@ std::string name_of(const SweepSeries& series) {
   return name;
 }
 
+std::string name_of(const SweepSeries& series) {
+  std::string name = detector_name(series);
+  if (series.people > 1) name += fmt::format(", {} people", series.people);
+  if (series.first_only) name += ", colliders around the first";
+  return name;
+}
+
 nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_t seed) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const SweepSeries& one : series) {
@@ -251,7 +263,7 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
       if (one.points[p].repetitions.empty()) continue;
       nlohmann::ordered_json point = to_json(one.points[p], seed);
       for (const Rival& rival : kRivals)
-        if (const double rival_hz = fastest_hz(series, rival, p); rival_hz > 0)
+        if (const double rival_hz = fastest_hz(series, rival, one, p); rival_hz > 0)
           point[rival.field] = one.points[p].hz() / rival_hz;
       if (one.renderer) point["rendered_hz"] = one.points[p].rendered_hz();
       point.update(to_json(one.points[p].stages));
@@ -266,6 +278,8 @@ nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_
                     {"planes", one.planes.count()},
                     {"renderer", one.renderer ? "on" : "off"},
                     {"renderer_gl", one.renderer ? to_json(*one.renderer) : nullptr},
+                    {"avatars", one.people},
+                    {"colliders_around", around(one)},
                     {"gl", to_json(one.gl)},
                     {"points", points}});
   }
@@ -289,7 +303,7 @@ std::string sample_sentence(const Sweep& sweep) {
 }
 
 std::string frame_times_csv(std::span<const SweepSeries> series) {
-  std::string csv = "detector,context,skip,planes,renderer,colliders,repetition,frame,us\n";
+  std::string csv = "detector,context,skip,planes,renderer,avatars,colliders_around,colliders,repetition,frame,us\n";
   for (const SweepSeries& one : series)
     for (const SweepPoint& point : one.points) {
       std::vector<std::size_t> first_frame = {0};  // of each repetition
@@ -298,9 +312,10 @@ std::string frame_times_csv(std::span<const SweepSeries> series) {
         first_frame.push_back(first_frame.back() + repetition.frames);
       for (const std::size_t r : stored_repetitions(point))
         for (std::size_t frame = first_frame[r]; frame < first_frame[r + 1]; ++frame)
-          fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{:.2f}\n", one.detector, one.gl.context,
-                         one.skip == Skip::kOn ? "on" : "off", one.planes.count(), one.renderer ? "on" : "off",
-                         point.colliders, r, frame - first_frame[r], point.frame_us[frame]);
+          fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{:.2f}\n", one.detector,
+                         one.gl.context, one.skip == Skip::kOn ? "on" : "off", one.planes.count(),
+                         one.renderer ? "on" : "off", one.people, around(one), point.colliders, r,
+                         frame - first_frame[r], point.frame_us[frame]);
     }
   return csv;
 }
@@ -336,10 +351,10 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
 
 std::vector<std::string> disagreements(std::span<const SweepSeries> series) {
   std::vector<std::string> found;
-  const SweepSeries* first = nullptr;
   for (const SweepSeries& one : series) {
     if (!promises_same_bits(one.detector)) continue;
-    if (first == nullptr) first = &one;
+    const auto first = std::ranges::find_if(
+        series, [&](const SweepSeries& other) { return promises_same_bits(other.detector) && other.same_crowd(one); });
     for (std::size_t p = 0; p < one.points.size(); ++p) {
       const std::string& expected = first->points[p].texture_hash;
       const std::string& hash = one.points[p].texture_hash;

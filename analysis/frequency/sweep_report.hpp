@@ -16,8 +16,9 @@ namespace vestige {
 /// `paper` or Embree detector at the same count, where one was measured.
 nlohmann::ordered_json to_json(std::span<const SweepSeries> series, std::uint64_t seed);
 
-/// Returns the durations of frames as CSV: `detector,context,skip,planes,renderer,colliders,repetition,frame,us`. Of
-/// each point, these are at most 100 whole passes, evenly spread over its repetitions; stored_frames is their number.
+/// Returns the durations of frames as CSV:
+/// `detector,context,skip,planes,renderer,avatars,colliders_around,colliders,repetition,frame,us`. Of each point, these
+/// are at most 100 whole passes, evenly spread over its repetitions; stored_frames is their number.
 std::string frame_times_csv(std::span<const SweepSeries> series);
 
 /// Returns a table for people: the frequency of every series at every count, beside the paper's figures. Below, the
@@ -41,7 +42,10 @@ std::vector<std::string> disagreements(std::span<const SweepSeries> series);
 /// Returns the width of the columns of a table whose heads are the names of these series, in characters.
 std::size_t column_width(std::span<const SweepSeries> series);
 
-/// Returns the name of a series, for example "paper, egl-surfaceless" or "cpu, skip on".
+/// Returns the name of a series' detector, for example "paper, egl-surfaceless" or "cpu, skip on".
+std::string detector_name(const SweepSeries& series);
+
+/// Returns the name of a series: the detector's, and on whom it was measured if that was not one person.
 std::string name_of(const SweepSeries& series);
 
 }  // namespace vestige

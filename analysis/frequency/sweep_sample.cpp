@@ -7,7 +7,6 @@
 #include <limits>
 #include <random>
 
-#include "analysis/run/detection_run.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/sha256.hpp"
 
@@ -18,17 +17,19 @@ namespace {
 constexpr std::uint64_t kTriedShifts = 64;
 
 /// Returns the number of contacts in every frame of the trace. Empty if `goes_on` said no.
-std::vector<std::uint32_t> count_contacts(TraceReader& trace, const Avatar& avatar, Detector& survey,
+std::vector<std::uint32_t> count_contacts(TraceReader& trace, std::span<const DetectedPerson> people,
                                           const std::function<bool()>& goes_on) {
   constexpr std::size_t kFramesBetweenQuestions = 256;
-  DetectionRun detection(avatar, trace.collider_ids(), survey);
+  DetectionRun detection(people, trace.collider_ids());
   std::vector<std::uint32_t> contacts;
   TraceFrame frame;
   trace.rewind();
   while (trace.next(frame)) {
     if (contacts.size() % kFramesBetweenQuestions == 0 && !goes_on()) return {};
     detection.step(frame);
-    contacts.push_back(static_cast<std::uint32_t>(std::ranges::count_if(detection.row(), &Contact::hit)));
+    std::uint32_t& count = contacts.emplace_back(0);
+    for (std::size_t i = 0; i < people.size(); ++i)
+      count += static_cast<std::uint32_t>(std::ranges::count_if(detection.row(i), &Contact::hit));
   }
   return contacts;
 }
@@ -85,11 +86,13 @@ Grid best_grid(Grid grid, std::span<const std::uint32_t> contacts, const FrameCo
 void add(const TraceFrame& frame, Sha256& sha) {
   const auto add_value = [&sha](const auto& value) { sha.update(std::as_bytes(std::span(&value, 1))); };
   add_value(frame.time_ns);
-  add_value(frame.poses.front().origin_m);
-  for (const auto& node : frame.poses.front().nodes) {
-    add_value(node.translation);
-    add_value(node.rotation);
-    add_value(node.scale);
+  for (const Pose& pose : frame.poses) {
+    add_value(pose.origin_m);
+    for (const NodeLocal& node : pose.nodes) {
+      add_value(node.translation);
+      add_value(node.rotation);
+      add_value(node.scale);
+    }
   }
   for (const auto& collider : frame.colliders) {
     add_value(collider.id);
@@ -106,13 +109,13 @@ std::string sha256_of(const std::vector<Place>& places) {
 
 }  // namespace
 
-SweepSample sample_places(TraceReader& trace, const Avatar& avatar, Detector& survey, std::uint32_t places,
+SweepSample sample_places(TraceReader& trace, std::span<const DetectedPerson> people, std::uint32_t places,
                           std::uint32_t place_frames, const std::function<bool()>& goes_on) {
   const std::uint64_t frames = trace.frame_count();
   if (frames < 2)
     throw Error("the trace", fmt::format("has {} frame{}; at least two are needed", frames, frames == 1 ? "" : "s"),
                 "record a longer trace");
-  const std::vector<std::uint32_t> contacts = count_contacts(trace, avatar, survey, goes_on);
+  const std::vector<std::uint32_t> contacts = count_contacts(trace, people, goes_on);
   SweepSample sample;
   if (contacts.size() < 2) return sample;
   sample.trace = describe(std::span(contacts).subspan(1));

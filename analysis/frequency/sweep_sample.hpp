@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "detector/detector.hpp"
-#include "traces/scene/avatar.hpp"
+#include "analysis/run/detection_run.hpp"
 #include "traces/scene/trace.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
@@ -33,9 +32,9 @@ struct SweepSample {
 /// Chooses `places` evenly spaced places, or as many as the trace has room for, but at least one. Each has
 /// `place_frames` frames and the frame before them, or the whole trace if it is shorter. Of 64 ways to put
 /// such a grid, it takes the one in which contacts, and frames without contacts, are as frequent as in the whole trace.
-/// `survey` finds these contacts: a fast detector. `goes_on` is asked now and then; if it returns false, the sample has
-/// no places. Throws `Error` if the trace has fewer than two frames.
-SweepSample sample_places(TraceReader& trace, const Avatar& avatar, Detector& survey, std::uint32_t places,
+/// The detectors of `people`, who are all of the trace, find these contacts: fast ones. `goes_on` is asked now and
+/// then; if it returns false, the sample has no places. Throws `Error` if the trace has fewer than two frames.
+SweepSample sample_places(TraceReader& trace, std::span<const DetectedPerson> people, std::uint32_t places,
                           std::uint32_t place_frames, const std::function<bool()>& goes_on);
 
 /// Draws `count` of the ids for each place, at random without replacement: ascending ids, by place. Places share as few

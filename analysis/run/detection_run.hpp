@@ -37,10 +37,13 @@ class DetectionRun {
   DetectionRun(const Avatar& avatar, std::span<const std::uint32_t> collider_ids, Detector& detector)
       : DetectionRun(std::vector<DetectedPerson>{{0, avatar, detector}}, collider_ids) {}
 
-  /// Only says where everything comes from: nothing is detected in this frame.
+  /// Only says where everything comes from: nothing is detected in this frame. Makes room for the rows.
   void begin(const TraceFrame& first) {
     colliders_.next(first);
-    for (Person& one : people_) one.builder.next(first, colliders_);
+    for (Person& one : people_) {
+      one.builder.next(first, colliders_);
+      one.row.clear(colliders_.columns());
+    }
   }
 
   /// Detects in the frame after the one given before. Its results stay good until the next call.

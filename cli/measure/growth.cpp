@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <memory>
-#include <utility>
 
 #include "analysis/base/provenance.hpp"
 #include "analysis/frequency/growth_report.hpp"
 #include "analysis/frequency/sweep_report.hpp"
 #include "cli/choices/scene.hpp"
-#include "cli/choices/sweep_choice.hpp"
 #include "cli/help/validators.hpp"
+#include "cli/measure/sweep_choice.hpp"
 #include "cli/verbs.hpp"
 
 namespace vestige::cli {
@@ -54,13 +53,8 @@ void run_growth_verb(GrowthOptions& options, Invocation& invocation) {
   Growth growth;
   {
     Progress progress("Measuring", verbosity);
-    Verbosity once = verbosity;  // what the machine lacks is said for the first size only
-    const auto make = [&](const Avatar& avatar, const ActuatorMap& map) {
-      return GrowthContestants{
-          make_survey(choice.contestants, avatar, map),
-          make_contestants(choice.contestants, avatar, map, std::exchange(once, Verbosity::kQuiet))};
-    };
-    growth = run_growth(trace.reader, trace.person().avatar, trace.person().map, make, options.settings,
+    growth = run_growth(trace.reader, {trace.person().avatar, trace.person().map}, survey_maker(choice.contestants),
+                        make_contestants(choice.contestants, verbosity), options.settings,
                         [&](double share) { return progress.update(share); });
   }
   check_measured("growth", growth.by_colliders);

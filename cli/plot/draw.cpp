@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "analysis/mapping/layouts.hpp"
+#include "analysis/plot/data/crowd_data.hpp"
 #include "analysis/plot/figures/accuracy_figure.hpp"
 #include "analysis/plot/figures/avatar_figure.hpp"
 #include "analysis/plot/figures/body_figure.hpp"
@@ -97,8 +98,10 @@ int draw_accuracy(const Options& options) {
 }
 
 int draw_sweep(const Options& options) {
-  return write_figure(options, sweep_folder(options) / "frequency",
-                      [&] { return sweep_figure(read_sweeps(options.inputs)); });
+  const Sweeps sweeps = read_sweeps(options.inputs);
+  if (has_crowds(sweeps))
+    return write_figure(options, sweep_folder(options) / "people", [&] { return growth_figure(crowd_growth(sweeps)); });
+  return write_figure(options, sweep_folder(options) / "frequency", [&] { return sweep_figure(sweeps); });
 }
 
 int draw_stages(const Options& options) {

@@ -54,7 +54,9 @@ CLI::App& add_results(CLI::App& app, Options& options, const char* name, const c
 }
 
 CLI::App& add_sweep(CLI::App& app, Options& options) {
-  CLI::App& sweep = add_command(app, "sweep", "Detection frequency over the number of colliders (frequency.svg, .png)",
+  CLI::App& sweep = add_command(app, "sweep",
+                                "Detection frequency over the number of colliders (frequency.svg, .png), or cost over "
+                                "that of people (people.svg, .png)",
                                 "  vestige plot sweep results/sweep\n"
                                 "  vestige plot sweep gpu/sweep.json software/sweep.json -o figures\n");
   sweep

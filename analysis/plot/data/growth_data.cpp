@@ -1,5 +1,7 @@
 #include "analysis/plot/data/growth_data.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "analysis/base/json_field.hpp"
@@ -49,7 +51,9 @@ GrowthResult read_growth(const std::filesystem::path& folder) {
   const JsonField document(json, path, kRemedy);
   if (!json.is_object()) document.refuse("is not a JSON object");
   GrowthResult result;
-  auto& [by_colliders, by_triangles] = result.panels;
+  result.panels.resize(2);
+  GrowthPanel& by_colliders = result.panels[0];
+  GrowthPanel& by_triangles = result.panels[1];
   by_colliders.along = "Number of colliders";
   by_triangles.along = "Number of triangles";
   const JsonField all = document.at("by_colliders").at("series");
@@ -73,10 +77,12 @@ GrowthResult read_growth(const std::filesystem::path& folder) {
   }
   finish(by_colliders);
   finish(by_triangles);
-  result.colliders = document.at("colliders").within(1, kMostSize);
+  by_triangles.title = fmt::format("{:.0f} colliders", document.at("colliders").within(1, kMostSize));
   if (document.has("machine"))
     result.machine = phrase(document.at("machine"), {{"processor", ""}, {"cores", " cores"}});
   result.avatar = phrase(document.at("avatar"), {{"triangles", " triangles"}, {"vertices", " vertices"}});
+  by_colliders.title = result.avatar;
+  result.legend = "Triangles: those of the avatar, each split into four repeatedly.";
   result.commit = commit_of(document);
   return result;
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,7 +8,7 @@ namespace vestige::plot {
 
 /// The cost of a frame at one size.
 struct GrowthPoint {
-  double size = 0;  ///< number of colliders or triangles, at least 1
+  double size = 0;  ///< number of colliders, triangles or people, at least 1
   double us = 0;    ///< mean microseconds of a frame, above 0
 };
 
@@ -18,25 +17,27 @@ struct GrowthLine {
   std::string detector;
   std::string context;  ///< empty without OpenGL
   std::string skip;
+  bool first_only = false;  ///< of several people, only the first has colliders
   std::vector<GrowthPoint> points;
 };
 
 struct GrowthPanel {
+  std::string title;
   std::string along;  ///< "Number of colliders"
   std::vector<GrowthLine> lines;
 };
 
-/// The part of growth.json that is drawn.
+/// What is drawn of costs that grow.
 struct GrowthResult {
-  std::array<GrowthPanel, 2> panels;  ///< against colliders and against triangles
-  std::string renderer;               ///< empty without OpenGL
+  std::vector<GrowthPanel> panels;  ///< at least one
+  std::string legend;               ///< what the small print says of the lines
+  std::string renderer;             ///< empty without OpenGL
   std::string machine;
   std::string avatar;
   std::string commit;
-  double colliders = 0;  ///< number of colliders in the second panel
 };
 
-/// Reads FOLDER/growth.json. Throws `Error` with file and field.
+/// Reads the cost against colliders and against triangles from FOLDER/growth.json. Throws `Error` with file and field.
 GrowthResult read_growth(const std::filesystem::path& folder);
 
 }  // namespace vestige::plot

@@ -21,6 +21,7 @@ std::string setting(const JsonField& field) {
 /// What an axis can show; nothing real lies outside.
 constexpr double kMostColliders = 1e9;
 constexpr double kMostPlanes = 16;
+constexpr double kMostPeople = 1e4;
 constexpr double kLeastHz = 1e-6;
 constexpr double kMostHz = 1e12;
 constexpr double kMostUs = 1e12;
@@ -65,6 +66,8 @@ SweepSeries read_series(const JsonField& field) {
   if (field.has("renderer")) series.renderer = setting(field.at("renderer"));
   if (field.has("approximate")) series.approximate = field.at("approximate").flag();
   if (field.has("planes")) series.planes = field.at("planes").within(1, kMostPlanes);
+  if (field.has("avatars")) series.people = field.at("avatars").within(1, kMostPeople);
+  if (field.has("colliders_around")) series.first_only = field.at("colliders_around").text() == "first";
   const JsonField points = field.at("points");
   for (std::size_t i = 0; i < points.count(); ++i) series.points.push_back(read_point(points.at(i)));
   std::ranges::sort(series.points, {}, &SweepPoint::colliders);

@@ -35,6 +35,8 @@ struct SweepSeries {
   std::string renderer;      ///< "on": measured while a renderer was drawing
   bool approximate = false;  ///< simpler shapes stand in for the avatar's skin
   double planes = 0;         ///< number of planes (render targets); 0 if the file does not have it
+  double people = 1;         ///< measured at once
+  bool first_only = false;   ///< only the first of them, or of several copies of them, has colliders
   std::size_t sweep = 0;     ///< index of the file
   std::vector<SweepPoint> points;
 };

@@ -36,8 +36,7 @@ std::vector<std::string> wrapped(const std::string& text) {
 }
 
 std::vector<std::string> small_print(const GrowthResult& result) {
-  std::string text =
-      "Mean time of a frame, whole round trip. Triangles: those of the avatar, each split into four repeatedly. ";
+  std::string text = fmt::format("Mean time of a frame, whole round trip. {} ", result.legend);
   if (!result.renderer.empty()) text += fmt::format("OpenGL: {}. ", result.renderer);
   if (!result.machine.empty()) text += fmt::format("Machine: {}. ", result.machine);
   text += fmt::format("Avatar: {}. Commit\u00a0{}.", result.avatar, result.commit);
@@ -57,14 +56,15 @@ class GrowthFigure : public Figure {
     std::string text = "Microseconds a frame.";
     for (const GrowthPanel& panel : result_.panels)
       for (const GrowthLine& line : panel.lines)
-        text += fmt::format(" {}, {} {:.0f}: {:.4g}.", name(line), panel.along, line.points.back().size,
-                            line.points.back().us);
+        text += fmt::format(" {}, {}, {} {:.0f}: {:.4g}.", panel.title, name(line), panel.along,
+                            line.points.back().size, line.points.back().us);
     return text;
   }
 
   void draw(Canvas& canvas) const override {
     const double top_pt = height_pt() - kMarginPt - kTitlePt;
-    const double panel_pt = (kWidthPt - kLeftPt - kPanelGapPt - kRightPt) / 2;
+    const auto panels = static_cast<double>(result_.panels.size());
+    const double panel_pt = (kWidthPt - kLeftPt - (panels - 1) * kPanelGapPt - kRightPt) / panels;
     double left_pt = kLeftPt;
     for (std::size_t i = 0; i < result_.panels.size(); ++i) {
       draw_panel(canvas, i, {left_pt, top_pt - kPlotHeightPt, left_pt + panel_pt, top_pt});
@@ -86,10 +86,12 @@ class GrowthFigure : public Figure {
 
   bool has_twin(const GrowthLine& line) const {
     return std::ranges::any_of(lines(), [&](const GrowthLine& one) {
-      return one.detector == line.detector && one.context == line.context && one.skip != line.skip;
+      return one.detector == line.detector && one.context == line.context && one.first_only == line.first_only &&
+             one.skip != line.skip;
     });
   }
   Dash dash(const GrowthLine& line) const {
+    if (line.first_only) return Dash::kDotted;
     return line.skip == "off" && has_twin(line) ? Dash::kDashed : Dash::kSolid;
   }
   /// By its detector and by whatever else tells it from the others.
@@ -100,6 +102,7 @@ class GrowthFigure : public Figure {
     };
     if (!line.context.empty() && std::ranges::any_of(lines(), other_context)) text += ", " + line.context;
     if (has_twin(line)) text += line.skip == "off" ? ", no skipping" : ", skipping";
+    if (line.first_only) text += ", colliders around the first";
     return text;
   }
 
@@ -140,6 +143,7 @@ class GrowthFigure : public Figure {
     constexpr std::size_t kColumns = 4;
     std::vector<LegendPlace> places;
     for (const GrowthLine& line : lines()) {
+      if (line.first_only) continue;  // the small print explains the dots
       const std::size_t column = kind(line) % kColumns;
       const auto above = std::ranges::count_if(places, [&](const LegendPlace& one) { return one.column == column; });
       places.push_back({&line, column, static_cast<std::size_t>(above)});
@@ -188,8 +192,7 @@ class GrowthFigure : public Figure {
       for (Tick& tick : y_ticks) tick.label.clear();  // the first panel's
     draw_x_axis(canvas, plot, x, x_ticks, panel.along);
     draw_y_axis(canvas, plot, y, y_ticks, index == 0 ? "Cost of a frame (\u00b5s)" : "");
-    canvas.text({plot.left_pt, plot.top_pt + 4},
-                index == 0 ? result_.avatar : fmt::format("{} colliders", grouped(result_.colliders)), kTitleStyle);
+    canvas.text({plot.left_pt, plot.top_pt + 4}, panel.title, kTitleStyle);
     for (const GrowthLine& line : panel.lines) {
       std::vector<Place> places;
       places.reserve(line.points.size());

@@ -16,7 +16,7 @@
 #include "analysis/base/statistics.hpp"
 #include "analysis/compare/compare.hpp"
 #include "analysis/frequency/sweep_report.hpp"
-#include "cli/choices/contestants.hpp"
+#include "cli/measure/contestants.hpp"
 #include "tests/support/builtin_avatar.hpp"
 #include "tests/support/builtin_map.hpp"
 #include "traces/files/output_file.hpp"
@@ -191,13 +191,13 @@ int run(const std::filesystem::path& folder) {
   choice.detectors = "paper,geometry,cpu,embree";
   choice.contexts = "egl";
   choice.skips = "off,on";
-  const auto survey = cli::make_survey(choice, test::builtin_avatar(), test::builtin_map());
-  const auto contestants =
-      cli::make_contestants(choice, test::builtin_avatar(), test::builtin_map(), cli::Verbosity::kNormal);
+  const std::vector<SweptPerson> people = {{test::builtin_avatar(), test::builtin_map()}};
+  const auto contestants = cli::make_contestants(choice, cli::Verbosity::kNormal);
   std::vector<Contestant> slowed = contestants;
   for (Contestant& contestant : slowed)
-    contestant.make = [make = contestant.make, &pose_us](PlaneSet planes) {
-      return std::make_unique<Slowed>(make(planes), pose_us);
+    contestant.make = [make = contestant.make, &pose_us](const Avatar& avatar, const ActuatorMap& map,
+                                                         PlaneSet planes) {
+      return std::make_unique<Slowed>(make(avatar, map, planes), pose_us);
     };
   const Machine machine = this_machine();
   fmt::print("{}, {} cores; commit {}; {}\n", machine.processor, machine.cores, commit(), utc_now());
@@ -208,7 +208,7 @@ int run(const std::filesystem::path& folder) {
     const auto& raced = kOrder[i] == 's' ? slowed : contestants;
     const auto place = folder / fmt::format("{}-{}", i + 1, kOrder[i] == 's' ? "slower" : "equal");
     write_sweep(place,
-                run_sweep(trace, test::builtin_avatar(), *survey, raced, kSettings, [](double) { return true; }));
+                run_sweep(trace, people, cli::survey_maker(choice), raced, kSettings, [](double) { return true; }));
     sweeps.push_back(read_measured_sweeps(place));
   }
   fmt::print("Processes that ran or waited to run, at the end: {} (one of them is this one)\n\n", running_processes());

@@ -48,11 +48,12 @@ class StagePass : public ::testing::Test {
   /// 4 frames with two colliders, then 2 with one.
   const std::vector<StagePlace> places_ = {{std::span(frames_).first(5), two_}, {std::span(frames_).last(3), one_}};
   Worker worker_;
+  const std::vector<DetectedPerson> people_ = {{0, test::builtin_avatar(), worker_}};
 };
 
 TEST_F(StagePass, GivesTheMeanOfAFrameOverPlacesWithTheirOwnColliders) {
   const auto start = std::chrono::steady_clock::now();
-  const StageMeans means = measure_stages(test::builtin_avatar(), places_, worker_, 0);
+  const StageMeans means = measure_stages(people_, places_, 0);
   const std::chrono::duration<double, std::micro> wall = std::chrono::steady_clock::now() - start;
   ASSERT_EQ(means.stages.size(), 3U);
   EXPECT_EQ(means.stages[0].stage, Stage::kPose);
@@ -67,11 +68,24 @@ TEST_F(StagePass, GivesTheMeanOfAFrameOverPlacesWithTheirOwnColliders) {
   EXPECT_LE(means.total_us() * static_cast<double>(worker_.detected - 6), wall.count());
 }
 
+TEST_F(StagePass, AddsUpThoseOfAllPeople) {
+  Worker other;
+  std::vector<TraceFrame> frames = frames_;
+  for (TraceFrame& frame : frames) frame.poses.push_back(frame.poses.front());
+  const std::vector<StagePlace> places = {{frames, one_}};
+  const std::vector<DetectedPerson> both = {{0, test::builtin_avatar(), worker_}, {1, test::builtin_avatar(), other}};
+  const StageMeans means = measure_stages(both, places, 0);
+  ASSERT_EQ(means.stages.size(), 3U);
+  EXPECT_GT(means.stages[1].us, 0.99 * 2 * 200);
+  EXPECT_EQ(worker_.detected, other.detected);
+  EXPECT_EQ(other.stage_clock(), nullptr);
+}
+
 TEST_F(StagePass, LeavesTheDetectorUntimedEvenIfItThrows) {
-  measure_stages(test::builtin_avatar(), places_, worker_, 0);
+  measure_stages(people_, places_, 0);
   EXPECT_EQ(worker_.stage_clock(), nullptr);
   worker_.throws = true;
-  EXPECT_THROW(measure_stages(test::builtin_avatar(), places_, worker_, 0), std::runtime_error);
+  EXPECT_THROW(measure_stages(people_, places_, 0), std::runtime_error);
   EXPECT_EQ(worker_.stage_clock(), nullptr);
 }
 

@@ -65,7 +65,8 @@ class SampledTrace : public ::testing::Test {
   SweepSample sample(std::function<bool(std::uint64_t)> touches, std::uint32_t places, std::uint32_t frames) {
     TraceReader trace(path_);
     Scripted survey(std::move(touches));
-    return sample_places(trace, avatar_, survey, places, frames, [] { return true; });
+    const std::vector<DetectedPerson> people = {{0, avatar_, survey}};
+    return sample_places(trace, people, places, frames, [] { return true; });
   }
 
   static constexpr std::uint64_t kFrames = 400;

@@ -42,15 +42,17 @@ class SweptFickleDetector : public ::testing::Test {
 
   std::vector<SweepSeries> sweep_as(const std::string& detector) {
     TraceReader trace(path_);
-    const Contestant fickle = {
-        detector, Skip::kOff, {}, [](PlaneSet planes) { return std::make_unique<Fickle>(planes); }};
-    Fickle survey(kHashedPlanes);
-    return run_sweep(trace, avatar_, survey, {fickle}, {.counts = {1, 2}, .runs = 1, .min_time_s = 0},
-                     [](double) { return true; })
+    const ContestantMaker make = [](const Avatar&, const ActuatorMap&, PlaneSet planes) {
+      return std::make_unique<Fickle>(planes);
+    };
+    const std::vector<SweptPerson> people = {{avatar_, map_}};
+    return run_sweep(trace, people, make, {{detector, Skip::kOff, {}, make}},
+                     {.counts = {1, 2}, .runs = 1, .min_time_s = 0}, [](double) { return true; })
         .series;
   }
 
   const Avatar avatar_ = test::skeleton(test::kNodes);
+  const ActuatorMap map_;
   const std::filesystem::path path_ = std::filesystem::path(::testing::TempDir()) / "fickle.mcap";
 };
 

@@ -117,8 +117,22 @@ TEST_F(PeopleOfATrace, WhoStandWithinEachOtherAreNamed) {
 
 TEST_F(PeopleOfATrace, VerbsThatKnowOnePersonSayWhoTheyMiss) {
   record_two();
-  for (const char* verb : {"export two.mcap -o a.glb", "sweep two.mcap -o a.glb", "batch --traces two.mcap --maps builtin -o b"})
+  for (const char* verb : {"export two.mcap -o a.glb", "growth two.mcap -o a.glb"})
     expect_failure(std::string("vestige ") + verb, 1, {"two.mcap: holds 2 people"}, "a.glb");
+}
+
+TEST_F(PeopleOfATrace, AreJudgedAsTracesOfTheirOwn) {
+  ASSERT_EQ(run("vestige record --colliders touch -q -o touch.mcap").exit_code, 0);
+  ASSERT_EQ(run("vestige batch --traces touch.mcap --maps paper6 -o b").exit_code, 0);
+  const nlohmann::json replay = json_of("vestige replay touch.mcap --json -");
+  const nlohmann::json traces = json_in("b/run.json")["traces"];
+  ASSERT_EQ(traces.size(), 2U);
+  for (const std::size_t person : {0U, 1U}) {
+    EXPECT_EQ(traces[person]["name"], person == 0 ? "touch-1" : "touch-2");
+    EXPECT_EQ(traces[person]["avatar"], person + 1);
+    EXPECT_EQ(traces[person]["contacts"], replay["avatars"][person]["contacts"]);
+  }
+  EXPECT_GT(traces[1]["contacts"], 0);
 }
 
 TEST_F(PeopleOfATrace, AreCutJoinedAndPrinted) {

@@ -57,7 +57,7 @@ TEST_F(SweepCommandLine, MeasuresEverySeriesAndKeepsEveryFrame) {
   }
   EXPECT_EQ(json["series"][0]["points"][4]["texture_hash"], json["series"][1]["points"][4]["texture_hash"]);
   EXPECT_EQ(run("zstd -qdc s/frame_times.csv.zst | head -1").standard_output,
-            "detector,context,skip,planes,renderer,colliders,repetition,frame,us\n");
+            "detector,context,skip,planes,renderer,avatars,colliders_around,colliders,repetition,frame,us\n");
 }
 
 TEST_F(SweepCommandLine, MeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) {
@@ -92,6 +92,48 @@ TEST_F(SweepCommandLine, MeasuresWithAndWithoutSkippingAndOnceWhoeverIgnoresIt) 
   expect_failure("vestige sweep small.mcap -o t --skip on,on", 2, {"--skip", "twice"}, "t/sweep.json");
 }
 
+TEST_F(SweepCommandLine, MeasuresCopiesOfThePeopleSideBySide) {
+  record_small();
+  const std::string flags = " --min-time 0.01 --runs 2 --run-frames 10 -o s ";
+  const test::Outcome sweep =
+      run("vestige sweep small.mcap --avatars 1,3 --detector cpu,geometry --counts 5,20 --json "
+          "c.json" +
+          flags + test::gl_flags("osmesa"));
+  ASSERT_EQ(sweep.exit_code, 0) << sweep.standard_error;
+  const nlohmann::json json = json_in("s/sweep.json");
+  std::map<std::string, nlohmann::json> points;  // with 20 colliders
+  for (const auto& series : json["series"])
+    points[series["detector"].get<std::string>() + series["avatars"].dump() +
+           series["colliders_around"].get<std::string>()] = series["points"][1];
+  ASSERT_EQ(points.size(), 6U);
+  for (const std::string detector : {"cpu", "geometry"}) {
+    const auto contacts = points[detector + "1all"]["contacts"].get<int>();
+    EXPECT_GT(contacts, 0);
+    EXPECT_EQ(points[detector + "3all"]["contacts"], 3 * contacts);
+    EXPECT_EQ(points[detector + "3first"]["contacts"], contacts);
+  }
+  for (const char* crowd : {"1all", "3all", "3first"})
+    EXPECT_EQ(points[std::string("cpu") + crowd]["texture_hash"],
+              points[std::string("geometry") + crowd]["texture_hash"]);
+  EXPECT_THAT(sweep.standard_output, AllOf(HasSubstr("cpu, skip on, µs a frame:"), HasSubstr("20 around the first")));
+  EXPECT_GT(std::filesystem::file_size(folder_ / "s/people.png"), 10000U);
+  EXPECT_EQ(run("cp -r s again && vestige compare s again").exit_code, 0);
+
+  ASSERT_EQ(
+      run("vestige record --avatar builtin --avatar builtin --at 0,0,0.9,180 --rate 100 --duration 0.3 --count 10 "
+          "-q -o pair.mcap")
+          .exit_code,
+      0);
+  const nlohmann::json pair = json_of("vestige sweep pair.mcap --detector cpu --counts 10 --force --json -" + flags);
+  EXPECT_EQ(pair["series"][0]["avatars"], 2);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "s/people.png"));
+  expect_failure("vestige sweep pair.mcap --avatars 3 -o t", 2, {"--avatars", "all 2 people of pair.mcap"},
+                 "t/sweep.json");
+  expect_failure("vestige sweep pair.mcap --renderer on -o t", 2, {"--renderer", "one person"}, "t/sweep.json");
+  expect_failure("vestige sweep --avatars 1:65 -o t", 2, {"--avatars", "65 people", "64"}, "t");
+  expect_failure("vestige sweep --avatars 2 --counts 1:4 -o t", 2, {"--counts", "3 numbers"}, "t");
+}
+
 TEST_F(SweepCommandLine, StoresAHundredPassesOfManyAndComparesThem) {
   record_small();
   ASSERT_EQ(
@@ -107,7 +149,7 @@ TEST_F(SweepCommandLine, StoresAHundredPassesOfManyAndComparesThem) {
   }
   EXPECT_EQ(run("zstdcat many/frame_times.csv.zst | wc -l").standard_output, "1201\n");
   // The first repetition and one near the end are among them.
-  const test::Outcome last = run("zstdcat many/frame_times.csv.zst | awk -F, '$6 == 20 { r = $7 } END { print r }'");
+  const test::Outcome last = run("zstdcat many/frame_times.csv.zst | awk -F, '$8 == 20 { r = $9 } END { print r }'");
   const auto repetitions = points[1]["repetitions"].get<double>();
   EXPECT_GT(std::stod(last.standard_output), 0.95 * repetitions);
   EXPECT_EQ(run("cp -r many again && vestige compare many again").exit_code, 0);

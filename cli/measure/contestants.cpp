@@ -1,4 +1,4 @@
-#include "cli/choices/contestants.hpp"
+#include "cli/measure/contestants.hpp"
 
 #include <fmt/format.h>
 
@@ -70,14 +70,15 @@ void check_contestant_choice(const ContestantChoice& choice) {
                      "ask for 1 to 8 planes");
 }
 
-std::unique_ptr<Detector> make_survey(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map) {
+ContestantMaker survey_maker(const ContestantChoice& choice) {
   DetectorChoice survey = choice.choice;
   survey.skip = "on";
-  return make_detector("cpu", "", survey, avatar, map, PlaneSet());
+  return [survey](const Avatar& avatar, const ActuatorMap& map, PlaneSet planes) {
+    return make_detector("cpu", "", survey, avatar, map, planes);
+  };
 }
 
-std::vector<Contestant> make_contestants(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map,
-                                         Verbosity verbosity) {
+std::vector<Contestant> make_contestants(const ContestantChoice& choice, Verbosity verbosity) {
   std::vector<Contestant> contestants;
   const auto add = [&](const std::string& detector, const std::string& context) {
     const std::vector<std::string> skips =
@@ -86,10 +87,12 @@ std::vector<Contestant> make_contestants(const ContestantChoice& choice, const A
       DetectorChoice one = choice.choice;
       one.skip = skip;
       for (const PlaneSet planes : planes_of(detector, choice)) {
-        contestants.push_back(
-            {detector, one.skip_kind(), planes, [&avatar, &map, one, detector, context](PlaneSet set) {
-               return make_detector(detector, context, one, avatar, map, set);
-             }});
+        // One context serves all people of a crowd.
+        const auto shared = std::make_shared<SharedContext>(context, one.device);
+        contestants.push_back({detector, one.skip_kind(), planes,
+                               [one, detector, shared](const Avatar& avatar, const ActuatorMap& map, PlaneSet set) {
+                                 return make_detector(detector, *shared, one, avatar, map, set);
+                               }});
         if (choice.renderer == "off") continue;
         Contestant beside_renderer = contestants.back();
         beside_renderer.make_renderer_context = [one, context] {

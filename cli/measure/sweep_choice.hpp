@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "analysis/frequency/sweep.hpp"
-#include "cli/choices/contestants.hpp"
+#include "cli/measure/contestants.hpp"
 #include "cli/options.hpp"
 
 namespace vestige::cli {
@@ -33,7 +33,8 @@ void add_measuring_options(CLI::App& verb, SweepChoice& choice, SweepSettings& s
 /// Copies counts and seed to `settings`. Throws `UsageError` for values that cannot be measured.
 void check_sweep_choice(const SweepChoice& choice, SweepSettings& settings);
 
-/// Leaves out the default counts that are above the trace's number of colliders. Those that --counts asks for stay.
+/// Leaves out the default counts that are above the trace's number of colliders. If that leaves none, all colliders are
+/// measured. Counts that --counts asks for stay.
 void leave_out_missing_colliders(const SweepChoice& choice, std::size_t colliders, SweepSettings& settings);
 
 /// Makes the folder of the results, and checks the outputs (`check_outputs`) before any work is done. Returns the trace

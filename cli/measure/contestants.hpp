@@ -27,15 +27,13 @@ void add_contestant_options(CLI::App& verb, ContestantChoice& choice);
 /// Throws `UsageError` if a list has an unknown entry, or the same entry twice.
 void check_contestant_choice(const ContestantChoice& choice);
 
-/// Returns the detector by whose contacts `run_sweep` chooses frames. It keeps references to avatar and map.
-std::unique_ptr<Detector> make_survey(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map);
+/// Makes the detectors by whose contacts `run_sweep` chooses frames.
+ContestantMaker survey_maker(const ContestantChoice& choice);
 
 /// Returns every requested detector: those of OpenGL once in every requested context that this machine has, those that
 /// can skip with every requested setting of --skip, and `paper` with every requested number of planes. If a renderer is
 /// requested, each detector runs a second time beside it. Reports a context or a library that the machine lacks, by
-/// `verbosity`. Throws `Error` if no detector remains, or if a requested device cannot be used. The contestants keep
-/// references to avatar and map.
-std::vector<Contestant> make_contestants(const ContestantChoice& choice, const Avatar& avatar, const ActuatorMap& map,
-                                         Verbosity verbosity);
+/// `verbosity`. Throws `Error` if no detector remains, or if a requested device cannot be used.
+std::vector<Contestant> make_contestants(const ContestantChoice& choice, Verbosity verbosity);
 
 }  // namespace vestige::cli

@@ -1,4 +1,4 @@
-#include "cli/choices/sweep_choice.hpp"
+#include "cli/measure/sweep_choice.hpp"
 
 #include <algorithm>
 
@@ -45,6 +45,7 @@ void check_sweep_choice(const SweepChoice& choice, SweepSettings& settings) {
 void leave_out_missing_colliders(const SweepChoice& choice, std::size_t colliders, SweepSettings& settings) {
   if (!choice.counts_option->empty() || colliders == 0) return;
   std::erase_if(settings.counts, [&](std::uint32_t count) { return count > colliders; });
+  if (settings.counts.empty()) settings.counts = {static_cast<std::uint32_t>(colliders)};
 }
 
 std::string prepare_sweep(const SweepChoice& choice, std::vector<std::string> results, std::uint32_t colliders,
