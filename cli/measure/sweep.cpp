@@ -38,7 +38,7 @@ struct SweepOptions {
 /// Returns the numbers of people that --avatars asks for, or none. Throws `UsageError` if flags do not go together.
 std::vector<std::uint32_t> people_counts(const SweepOptions& options) {
   if (options.avatars.empty()) return {};
-  const std::vector<std::uint32_t> counts = parse_counts(options.avatars, "--avatars");
+  std::vector<std::uint32_t> counts = parse_counts(options.avatars, "--avatars");
   if (counts.back() > kMostPeople)
     throw UsageError("--avatars",
                      fmt::format("asks for {} people; at most {} are measured", counts.back(), kMostPeople),
@@ -102,6 +102,7 @@ void run_sweep_verb(SweepOptions& options, Invocation& invocation) {
   leave_out_missing_colliders(choice, trace.reader.collider_ids().size(), options.settings);
   const std::vector<Contestant> contestants = with_crowds(make_contestants(choice.contestants, verbosity), crowds);
   std::vector<SweptPerson> people;
+  people.reserve(trace.people.size());
   for (const TracedPerson& person : trace.people) people.push_back({person.avatar, person.map});
   std::set<std::string> names;
   for (const Contestant& contestant : contestants) names.insert(contestant.detector);

@@ -157,6 +157,7 @@ void add_sinks_options(CLI::App& verb, SinkChoice& settings, std::vector<std::st
   add_sink_settings(verb, settings, levels_remark);
   verb.parse_complete_callback([&verb, &settings, &ports] {
     std::vector<SinkChoice> sinks;
+    sinks.reserve(ports.size());
     for (const std::string& port : ports) sinks.push_back(settings.at(parse_person_value(port).value));
     check_sink_flags(verb, sinks);
   });

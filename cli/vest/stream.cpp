@@ -164,6 +164,7 @@ void run_stream(const StreamOptions& options, Invocation& invocation) {
   require_spheres(std::span(&options.law.law, 1), trace.reader.has_spheres(), options.trace);
   SharedContext context(options.choice.context, options.choice.device);
   std::vector<std::unique_ptr<Wearer>> wearers;
+  wearers.reserve(vests.size());
   for (const WornVest& vest : vests)
     wearers.push_back(std::make_unique<Wearer>(options, vest, trace.people[vest.person], name, context));
 
