@@ -23,13 +23,17 @@ struct Curve {
   std::map<int, std::string> hz;  ///< by count of colliders, with interval
 };
 
+int people_of(const nlohmann::json& series) {
+  return series.value("avatars", 1);
+}
+
 Curve curve_of(const nlohmann::json& series, ContextName context) {
   Curve curve;
   curve.who = fmt::format("`{}`{}{}", series.at("detector").get<std::string>(), approximate_words(series),
                           on_renderer(series.at("gl"), context));
   if (const auto planes = series.value("planes", 1); planes > 1) curve.who += fmt::format(" with {} planes", planes);
-  if (const auto people = series.value("avatars", 1); people > 1) curve.who += fmt::format(" on {} people", people);
-  if (series.value("colliders_around", "all") == "first") curve.who += " of whom only the first has colliders";
+  if (const int people = people_of(series); people > 1) curve.who += fmt::format(" on {} people", people);
+  if (series.value("colliders_around", "all") == "first") curve.who += " of whom only the first has colliders,";
   curve.skips = series.value("skip", "off") == "on";
   if (series.value("renderer", "off") == "on")
     curve.beside = " beside a renderer" + on_renderer(series.value("renderer_gl", nlohmann::json()));
@@ -102,7 +106,10 @@ Sweep read_sweep(const nlohmann::json& json, const std::string& file) {
   const std::string context = shared_context(json.at("series"));
   Sweep sweep;
   std::vector<std::vector<Curve>> detectors;  // the curves of one detector stand together
+  const auto [fewest, most] = std::ranges::minmax_element(json["series"], {}, people_of);
   for (const auto& series : json["series"]) {
+    // Of several numbers of people, the fewest and the most tell enough.
+    if (people_of(series) != people_of(*fewest) && people_of(series) != people_of(*most)) continue;
     const Curve curve = curve_of(series, context.empty() ? ContextName::kSaid : ContextName::kLeftOut);
     sweep.counts = std::max(sweep.counts, curve.hz.size());
     auto same = std::ranges::find_if(detectors, [&](const auto& curves) { return curves[0].who == curve.who; });
