@@ -10,6 +10,7 @@
 
 #include "analysis/frequency/sweep_report.hpp"
 #include "tests/support/message_of.hpp"
+#include "tests/support/test_data.hpp"
 #include "tests/traces/trace_file/trace_fixture.hpp"
 
 namespace vestige {
@@ -38,7 +39,6 @@ class Fickle final : public Detector {
 class SweptFickleDetector : public ::testing::Test {
  protected:
   SweptFickleDetector() { test::write_trace(path_, 5, test::steady_options()); }
-  ~SweptFickleDetector() override { std::filesystem::remove(path_); }
 
   std::vector<SweepSeries> sweep_as(const std::string& detector) {
     TraceReader trace(path_);
@@ -53,7 +53,8 @@ class SweptFickleDetector : public ::testing::Test {
 
   const Avatar avatar_ = test::skeleton(test::kNodes);
   const ActuatorMap map_;
-  const std::filesystem::path path_ = std::filesystem::path(::testing::TempDir()) / "fickle.mcap";
+  const test::TemporaryFolder folder_;
+  const std::filesystem::path path_ = folder_ / "fickle.mcap";
 };
 
 TEST_F(SweptFickleDetector, ThatPromisesNoBitsIsCountedNotRefused) {
