@@ -269,11 +269,16 @@ void write_ranking(const BatchFolder& folder, const BatchResults& results, std::
 }
 
 /// Traces of the same bytes count twice, and make intervals narrower than they are.
-void warn_of_copies(std::span<const nlohmann::ordered_json> items, std::vector<std::string>& warnings) {
-  std::map<std::string, std::string> first;
+void warn_of_copies(const nlohmann::ordered_json& batch, std::span<const nlohmann::ordered_json> items,
+                    std::vector<std::string>& warnings) {
+  std::map<std::string, std::size_t> person_of;
+  for (const nlohmann::ordered_json& planned : batch.at("traces"))
+    person_of[planned.at("name").get<std::string>()] = planned.value("avatar", std::size_t{1});
+  std::map<std::pair<std::string, std::size_t>, std::string> first;  // by bytes and person
   for (const nlohmann::ordered_json& item : items) {
     const auto name = item.at("trace").get<std::string>();
-    const auto [place, is_new] = first.emplace(item.at("trace_sha256").get<std::string>(), name);
+    const auto [place, is_new] =
+        first.emplace(std::pair(item.at("trace_sha256").get<std::string>(), person_of[name]), name);
     if (!is_new)
       warnings.push_back(
           fmt::format("traces '{}' and '{}' have the same bytes, so they count twice", place->second, name));
@@ -314,6 +319,50 @@ void warn_of_gaps(BatchResults& results) {
         low, high, headline.name));
 }
 
+/// What could have been otherwise: seeds and files. The people of one file are not independent of each other, so they
+/// count once, with the mean of their values.
+struct Recordings {
+  std::vector<std::string> names;       ///< of the traces, of several people that of the first
+  std::vector<CandidateValues> values;  ///< in the order of the names
+};
+
+Recordings recordings_of(const nlohmann::ordered_json& batch, const ScoreTable& table) {
+  std::map<std::string, std::string> file_of;  // of one person of several, by the trace's name
+  for (const nlohmann::ordered_json& planned : batch.at("traces"))
+    if (planned.contains("avatar"))
+      file_of[planned.at("name").get<std::string>()] = planned.at("given").get<std::string>();
+  Recordings recordings;
+  std::map<std::string, std::size_t> place_of;   // by file
+  std::vector<std::vector<std::size_t>> traces;  // of each recording
+  for (std::size_t i = 0; i < table.traces().size(); ++i) {
+    const std::string& name = table.traces()[i].name;
+    const auto file = file_of.find(name);
+    const auto [place, is_new] =
+        file == file_of.end() ? std::pair(place_of.end(), true) : place_of.try_emplace(file->second, traces.size());
+    if (is_new) {
+      recordings.names.push_back(name);
+      traces.push_back({i});
+    } else {
+      traces[place->second].push_back(i);
+    }
+  }
+  for (const CandidateValues& all : table.values()) {
+    CandidateValues& values = recordings.values.emplace_back(all.size());
+    for (std::size_t m = 0; m < all.size(); ++m)
+      for (const std::vector<std::size_t>& people : traces) {
+        double sum = 0;
+        std::size_t count = 0;
+        for (const std::size_t i : people)
+          if (std::isfinite(all[m][i])) {
+            sum += all[m][i];
+            ++count;
+          }
+        values[m].push_back(count == 0 ? kNotANumber : sum / static_cast<double>(count));
+      }
+  }
+  return recordings;
+}
+
 /// Returns what tells each candidate from the others: its map, its law, or both.
 std::vector<std::string> names_of(const std::vector<BatchResults::Candidate>& candidates) {
   const auto all_have = [&](const auto& part) {
@@ -337,23 +386,24 @@ BatchResults write_results(const BatchFolder& folder, const nlohmann::ordered_js
     BatchResults results;
     results.candidates = table.candidates();
     results.headline = headline;
-    results.traces = items.size();
+    const Recordings recordings = recordings_of(batch, table);
+    results.traces = recordings.names.size();
     const auto seed = batch.at("options").at("seed").get<std::uint64_t>();
-    const TraceGroups groups = group_traces(batch, items);
+    const TraceGroups groups = group_traces(batch, recordings.names);
     const RankDirection direction =
         metrics()[headline].better == Better::kHigher ? RankDirection::kHigherIsBetter : RankDirection::kLowerIsBetter;
-    results.ranking = rank_candidates(table.values(), groups.strata, headline, direction, seed);
+    results.ranking = rank_candidates(recordings.values, groups.strata, headline, direction, seed);
     results.over = groups.over;
     results.why_no_intervals = groups.why_no_intervals;
     std::vector<std::vector<double>> headlines;
-    headlines.reserve(table.values().size());
-    for (const CandidateValues& values : table.values()) headlines.push_back(values[headline]);
+    headlines.reserve(recordings.values.size());
+    for (const CandidateValues& values : recordings.values) headlines.push_back(values[headline]);
     results.by_scenario = rank_by_scenario(headlines, groups, direction, seed);
     results.reversals = describe_reversals(results.by_scenario, results.ranking, names_of(results.candidates));
     write_scores(folder, table, batch.at("laws").size());
     write_ranking(folder, results, seed);
     write_ranking_by_scenario(folder, results);
-    warn_of_copies(items, results.warnings);
+    warn_of_copies(batch, items, results.warnings);
     warn_of_gaps(results);
     return results;
   } catch (const nlohmann::json::exception& error) {

@@ -68,15 +68,15 @@ std::string why_no_intervals(const TraceCount& count) {
 
 }  // namespace
 
-TraceGroups group_traces(const nlohmann::ordered_json& batch, std::span<const nlohmann::ordered_json> items) {
+TraceGroups group_traces(const nlohmann::ordered_json& batch, std::span<const std::string> names) {
   std::map<std::string, std::string> group_of;                    // by the trace's name
   for (const nlohmann::ordered_json& trace : batch.at("traces"))  // a batch of an earlier version has no seeds
     group_of[trace.at("name").get<std::string>()] =
         trace.contains("seed") ? trace.at("given").get<std::string>() : kFiles;
   TraceGroups groups;
-  groups.of_trace.reserve(items.size());
-  for (const nlohmann::ordered_json& item : items) {
-    const std::string& name = group_of[item.at("trace").get<std::string>()];
+  groups.of_trace.reserve(names.size());
+  for (const std::string& trace : names) {
+    const std::string& name = group_of[trace];
     const auto found = std::ranges::find(groups.names, name);
     groups.of_trace.push_back(static_cast<std::size_t>(found - groups.names.begin()));
     if (found == groups.names.end()) groups.names.push_back(name);

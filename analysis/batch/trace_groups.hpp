@@ -18,7 +18,7 @@ struct TraceGroups {
   std::string why_no_intervals;  ///< a clause without a comma; empty if there are enough traces
 };
 
-/// Groups the traces of `items`, in their order. `batch` is `to_json(plan)`.
-TraceGroups group_traces(const nlohmann::ordered_json& batch, std::span<const nlohmann::ordered_json> items);
+/// Groups the traces of these names, in their order. `batch` is `to_json(plan)`.
+TraceGroups group_traces(const nlohmann::ordered_json& batch, std::span<const std::string> names);
 
 }  // namespace vestige

@@ -13,10 +13,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-/// Traces of a batch, and the items of those that could be used.
+/// Traces of a batch, and the names of those that could be used.
 struct Traces {
   nlohmann::ordered_json batch = {{"traces", nlohmann::ordered_json::array()}};
-  std::vector<nlohmann::ordered_json> items;
+  std::vector<std::string> names;
 
   void add_scenario(const std::string& scenario, int seeds) {
     for (int seed = 1; seed <= seeds; ++seed)
@@ -28,9 +28,9 @@ struct Traces {
   }
   void add(const nlohmann::ordered_json& trace) {
     batch["traces"].push_back(trace);
-    items.push_back({{"trace", trace["name"]}});
+    names.push_back(trace["name"].get<std::string>());
   }
-  TraceGroups groups() const { return group_traces(batch, items); }
+  TraceGroups groups() const { return group_traces(batch, names); }
 };
 
 TEST(TraceGroups, SeedsOfAScenarioAndFilesBelongTogether) {
