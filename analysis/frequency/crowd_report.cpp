@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "analysis/frequency/stage_report.hpp"
 #include "analysis/frequency/sweep_report.hpp"
 
 namespace vestige {
@@ -70,7 +71,8 @@ bool has_crowds(std::span<const SweepSeries> series) {
 std::string crowd_table(std::span<const SweepSeries> series) {
   std::string table;
   for (const Crowds& crowds : by_detector(series)) table += table_of(crowds);
-  return table + "Mean time of a frame, whole round trip; in brackets: times that of the first line.\n";
+  table += "Mean time of a frame, whole round trip; in brackets: times that of the first line.\n";
+  return table + stage_table(series) + disagreement_lines(series);
 }
 
 }  // namespace vestige

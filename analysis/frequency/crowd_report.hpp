@@ -10,8 +10,9 @@ namespace vestige {
 /// Returns whether several numbers of people were measured.
 bool has_crowds(std::span<const SweepSeries> series);
 
-/// Returns, for each detector, a table for people: the mean time of a frame over the number of people, for each count
-/// of colliders, and how many times that of the fewest people it is.
+/// Returns, for each detector, a table of the mean time of a frame with each number of people and of colliders, and how
+/// many times that of the fewest people it is. Below stand the times of stages, where they were measured, and the
+/// points that disagreed with their reference.
 std::string crowd_table(std::span<const SweepSeries> series);
 
 }  // namespace vestige

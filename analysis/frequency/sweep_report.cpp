@@ -214,20 +214,6 @@ std::string contacts_table(std::span<const SweepSeries> series) {
                   });
 }
 
-/// Returns one line for each point that disagreed with its reference.
-std::string disagreement_lines(std::span<const SweepSeries> series) {
-  std::string lines;
-  for (const SweepSeries& one : series)
-    for (const SweepPoint& point : one.points)
-      if (point.disagreements != 0)
-        fmt::format_to(std::back_inserter(lines),
-                       "{} with {} collider{}: {} of {} results differ from its own with other planes and the most "
-                       "colliders.\n",
-                       name_of(one), point.colliders, point.colliders == 1 ? "" : "s", point.disagreements,
-                       point.results);
-  return lines.empty() ? "" : "\n" + lines;
-}
-
 }  // namespace
 
 std::size_t column_width(std::span<const SweepSeries> series) {
@@ -347,6 +333,19 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
   table += stage_table(series);
   table += disagreement_lines(series);
   return table;
+}
+
+std::string disagreement_lines(std::span<const SweepSeries> series) {
+  std::string lines;
+  for (const SweepSeries& one : series)
+    for (const SweepPoint& point : one.points)
+      if (point.disagreements != 0)
+        fmt::format_to(std::back_inserter(lines),
+                       "{} with {} collider{}: {} of {} results differ from its own with other planes and the most "
+                       "colliders.\n",
+                       name_of(one), point.colliders, point.colliders == 1 ? "" : "s", point.disagreements,
+                       point.results);
+  return lines.empty() ? "" : "\n" + lines;
 }
 
 std::vector<std::string> disagreements(std::span<const SweepSeries> series) {

@@ -36,6 +36,9 @@ std::string sample_sentence(const Sweep& sweep);
 /// Returns one sentence, with cause and remedy, for each series whose repetitions scatter too much to be quoted.
 std::vector<std::string> noise_warnings(std::span<const SweepSeries> series);
 
+/// Returns one line for each point whose contacts were not those of its reference, though its detector promises none.
+std::string disagreement_lines(std::span<const SweepSeries> series);
+
 /// Returns one sentence for each count at which detectors that promise the same bits gave different bits.
 std::vector<std::string> disagreements(std::span<const SweepSeries> series);
 

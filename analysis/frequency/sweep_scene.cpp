@@ -1,15 +1,46 @@
 #include "analysis/frequency/sweep_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <iterator>
+#include <limits>
 
 namespace vestige {
 
 namespace {
 
-/// Between two copies: more than people and colliders of a measured trace are apart.
-constexpr double kDistance_m = 64;
+/// The least distance between two copies.
+constexpr double kLeastDistance_m = 64;
+
+/// What a scene reaches along x.
+struct Reach {
+  double low_m = std::numeric_limits<double>::infinity();
+  double high_m = -std::numeric_limits<double>::infinity();
+
+  void take(double x_m, double around_m) {
+    if (!std::isfinite(x_m) || !std::isfinite(around_m)) return;
+    low_m = std::min(low_m, x_m - around_m);
+    high_m = std::max(high_m, x_m + around_m);
+  }
+};
+
+/// Returns a distance at which no copy reaches another: a power of two, so that copies hardly differ by rounding.
+double distance_m(const std::vector<Place>& places) {
+  Reach reach;
+  for (const Place& place : places)
+    for (const TraceFrame& frame : place) {
+      for (const Pose& pose : frame.poses) {
+        double around_m = 0;  // no joint is farther from the origin, as long as nothing is scaled
+        for (const NodeLocal& node : pose.nodes) around_m += glm::length(glm::dvec3(node.translation));
+        reach.take(pose.origin_m.x, around_m);
+      }
+      for (const ColliderSample& collider : frame.colliders) reach.take(collider.position_m.x, collider.radius_m);
+    }
+  const double most_m = std::max(2 * (reach.high_m - reach.low_m), kLeastDistance_m);
+  return std::exp2(std::ceil(std::log2(most_m)));
+}
 
 /// Gives the colliders of each copy ids of their own: their places in the trace's list, then those after it.
 class CopiedIds {
@@ -37,8 +68,8 @@ class CopiedIds {
   std::uint32_t copies_;
 };
 
-TraceFrame with_copies(const TraceFrame& frame, std::uint32_t people, const CopiedIds& ids) {
-  const auto shift_m = [](std::uint32_t copy) { return glm::dvec3(kDistance_m * copy, 0, 0); };
+TraceFrame with_copies(const TraceFrame& frame, std::uint32_t people, const CopiedIds& ids, double apart_m) {
+  const auto shift_m = [apart_m](std::uint32_t copy) { return glm::dvec3(apart_m * copy, 0, 0); };
   TraceFrame copied;
   copied.index = frame.index;
   copied.time_ns = frame.time_ns;
@@ -79,9 +110,10 @@ SweepScene make_sweep_scene(std::vector<Place> places, std::span<const std::uint
 SweepScene with_copies(const SweepScene& scene, std::span<const std::uint32_t> ids, Crowd crowd) {
   if (crowd.copies == 1) return scene;
   const CopiedIds copied_ids(ids, crowd);
+  const double apart_m = distance_m(scene.places);
   SweepScene copied = scene;
   for (Place& place : copied.places)
-    for (TraceFrame& frame : place) frame = with_copies(frame, crowd.copies, copied_ids);
+    for (TraceFrame& frame : place) frame = with_copies(frame, crowd.copies, copied_ids, apart_m);
   for (auto& places : copied.drawn)
     for (DrawnIds& drawn : places) drawn = copied_ids.all(drawn);
   for (DrawnIds& drawn : copied.drawn_for_any) drawn = copied_ids.all(drawn);

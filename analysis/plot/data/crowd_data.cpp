@@ -11,17 +11,23 @@ namespace vestige::plot {
 
 namespace {
 
+/// With more than one plane, a detector is another one.
+std::string detector_of(const SweepSeries& series) {
+  return series.planes > 1 ? fmt::format("{}, {} planes", series.detector, series.planes) : series.detector;
+}
+
 /// The line of a series, which its crowds share.
 GrowthLine& line_of(GrowthPanel& panel, const SweepSeries& series) {
+  const std::string detector = detector_of(series);
   const auto same = std::ranges::find_if(panel.lines, [&](const GrowthLine& line) {
-    return line.detector == series.detector && line.context == series.context && line.skip == series.skip &&
+    return line.detector == detector && line.context == series.context && line.skip == series.skip &&
            line.first_only == series.first_only;
   });
   if (same != panel.lines.end()) return *same;
-  return panel.lines.emplace_back(GrowthLine{series.detector, series.context, series.skip, series.first_only, {}});
+  return panel.lines.emplace_back(GrowthLine{detector, series.context, series.skip, series.first_only, {}});
 }
 
-/// Lines end where all people have colliders: with the fewest people.
+/// Lines begin where all people have colliders: with the fewest people.
 void join(GrowthPanel& panel) {
   for (GrowthLine& line : panel.lines) {
     if (!line.first_only) continue;
@@ -38,7 +44,9 @@ void join(GrowthPanel& panel) {
 
 bool has_crowds(const Sweeps& sweeps) {
   return std::ranges::any_of(sweeps.series, [&](const SweepSeries& one) {
-    return one.people != sweeps.series.front().people || one.first_only;
+    return one.first_only || std::ranges::any_of(sweeps.series, [&](const SweepSeries& other) {
+             return other.sweep == one.sweep && other.people != one.people;
+           });
   });
 }
 
@@ -51,7 +59,7 @@ GrowthResult crowd_growth(const Sweeps& sweeps) {
   GrowthResult result;
   for (const double count : counts) {
     GrowthPanel& panel = result.panels.emplace_back();
-    panel.title = fmt::format("{:.0f} colliders around each", count);
+    panel.title = fmt::format("{:.0f} colliders around each copy", count);
     panel.along = "Number of people";
     for (const SweepSeries& series : sweeps.series)
       for (const SweepPoint& point : series.points)
@@ -60,7 +68,7 @@ GrowthResult crowd_growth(const Sweeps& sweeps) {
     join(panel);
   }
   const SweepSource& source = sweeps.sources.front();
-  result.legend = "Dotted: colliders around the first person only.";
+  result.legend = "Dotted: colliders around the first copy only.";
   result.renderer = source.renderer;
   result.machine = source.machine;
   result.avatar = source.avatar;

@@ -44,6 +44,8 @@ std::string details_of(const SweepSeries& series, const Sweeps& sweeps) {
     });
   };
   if (series.approximate) details.emplace_back("approximate");
+  if (series.people > 1) details.push_back(fmt::format("{} people", series.people));
+  if (series.first_only) details.emplace_back("colliders around the first");
   if (!series.context.empty()) details.push_back(series.context);
   if (series.skip == "on") details.emplace_back("skipping");
   if (series.skip == "off" && differs(&SweepSeries::skip)) details.emplace_back("no skipping");

@@ -91,6 +91,7 @@ std::vector<std::string> series_names(const Sweeps& sweeps) {
   for (const SweepSeries& series : sweeps.series) {
     std::string name = series.detector;
     if (series.approximate) name += " (approximate)";
+    if (series.people > 1) name += fmt::format(", {} people", series.people);
     if (contexts.size() > 1 && !series.context.empty()) name.append(", ").append(series.context);
     if (methods.size() > 1) name.append(", ").append(series.method);
     if (has_twin(sweeps, series, &SweepSeries::planes))

@@ -57,6 +57,18 @@ TEST_F(CrowdOfThree, HasThreeTimesTheContactsIfEachHasColliders) {
   EXPECT_THAT(contacts_of(first, first.drawn[1][0]), ElementsAre(one, 0U, 0U));
 }
 
+TEST_F(CrowdOfThree, IsFartherApartThanTheSceneIsWide) {
+  // A second person, who would stand where the first's copy is 64 m away.
+  SweepScene recorded = recorded_;
+  for (TraceFrame& frame : recorded.places[0]) {
+    frame.poses.push_back(frame.poses.front());
+    frame.poses.back().origin_m.x += 64;
+  }
+  const std::uint64_t one = contacts_of(recorded, recorded.drawn[1][0]).front();
+  const SweepScene each = with_copies(recorded, ids_, {2, false});
+  EXPECT_THAT(contacts_of(each, each.drawn[1][0]), ElementsAre(one, 0U, one, 0U));
+}
+
 TEST_F(CrowdOfThree, KeepsLimbsWithThoseWhomTheyBelongTo) {
   SweepScene recorded = recorded_;
   for (TraceFrame& frame : recorded.places[0])
