@@ -26,7 +26,7 @@ PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& ch
 std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify) {
   if (verify.empty() || is_detector(verify)) return {};
   if (!verify.ends_with(".csv") && !has_hdf5_name(verify) && !is_hdf5(verify)) return {};
-  return read_contacts(verify, {.people = trace_format::kMostPeople});
+  return read_contacts(verify, {.people = std::vector<PersonLimits>(trace_format::kMostPeople)});
 }
 
 Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector,

@@ -24,6 +24,7 @@ struct Options {
   std::string avatar;
   cli::FacingChoice facing;
   std::string map;
+  std::size_t person = 0;  ///< counted from 1; 0: not chosen
   std::filesystem::path contacts;
   std::filesystem::path measured;
   std::string actuators;

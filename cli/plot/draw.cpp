@@ -24,6 +24,7 @@
 #include "traces/base/error.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/motion/animation_choice.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::plot {
@@ -62,8 +63,8 @@ int report_damage(const Options& options, const TraceReader& trace) {
 }
 
 /// Contacts of another avatar or map are not drawn. With --map, contacts name actuators of a map that is not there.
-ContactLimits limits_of(const Options& options, const Subject& subject) {
-  ContactLimits limits;
+PersonLimits limits_of(const Options& options, const Subject& subject) {
+  PersonLimits limits;
   limits.triangles = subject.avatar.triangles.size();
   if (options.map.empty() && subject.map.actuator_count > 0) limits.actuators = subject.map.actuator_count;
   return limits;
@@ -80,11 +81,37 @@ ActuatorMap map_of(const Options& options) {
 /// Larger than that, a figure fits neither on a page nor into OpenGL's windows.
 constexpr std::size_t kMostAnimations = 4;
 
-/// `damage` becomes the trace's part of the exit code.
-Subject body_subject(const Options& options, int& damage) {
+/// Returns whom --person chooses, counted from 0. Throws `UsageError` if several are there and nobody is chosen, or if
+/// there is nobody of that number.
+std::size_t person_of(const Options& options, std::size_t people) {
+  const std::string file = options.inputs.front().string();
+  if (options.person == 0 && people > 1)
+    throw UsageError("--person", fmt::format("{} holds {} people", file, people), "choose one of them, from 1 on");
+  if (options.person > people)
+    throw UsageError(
+        "--person",
+        fmt::format("there is no person {} in {}, which holds {}", options.person, file, count_of_people(people)),
+        "people count from 1");
+  return options.person == 0 ? 0 : options.person - 1;
+}
+
+/// Reads the contacts of one person of a trace.
+std::vector<RecordedContact> contacts_on(const Options& options, const Subject& subject, std::size_t people) {
+  const std::size_t person = person_of(options, people);
+  ContactLimits limits;
+  limits.people.resize(people);
+  limits.people[person] = limits_of(options, subject);
+  std::vector<RecordedContact> contacts = read_contacts(options.contacts, limits);
+  std::erase_if(contacts, [&](const RecordedContact& contact) { return contact.avatar != person + 1; });
+  return contacts;
+}
+
+/// `damage` becomes the trace's part of the exit code, and `people` the number of its people.
+Subject body_subject(const Options& options, int& damage, std::size_t& people) {
   if (options.inputs.empty()) return read_subject(options.avatar, options.map, options.facing.axis);
-  TraceReader trace(options.inputs.front());
-  Subject subject = read_subject(trace, options.inputs.front(), options.map);
+  TraceReader trace(options.inputs.front(), People::kSeveral);
+  people = trace.people().size();
+  Subject subject = read_subject(trace, options.inputs.front(), options.map, person_of(options, people));
   trace.frame_count();  // reads all of it
   damage = report_damage(options, trace);
   return subject;
@@ -151,7 +178,8 @@ int draw_timeline(const Options& options) {
 
 int draw_textures(const Options& options) {
   return write_figure(options, stem_of(options), [&] {
-    TextureContacts textures = read_texture_contacts(options.inputs.front());
+    const std::filesystem::path& file = options.inputs.front();
+    TextureContacts textures = read_texture_contacts(file, person_of(options, people_in_textures(file)));
     if (!options.map.empty()) {
       const ActuatorMap map = map_of(options);
       for (const TextureContact& contact : textures.contacts)
@@ -198,14 +226,15 @@ int draw_body(Options options) {
   int damage = cli::kDone;
   const int drawn = write_figure(options, stem_of(options), [&] {
     Body body;
-    body.subject = body_subject(options, damage);
+    std::size_t people = 1;
+    body.subject = body_subject(options, damage, people);
     warn_of(options, body.subject);
     body.has_contacts = !options.contacts.empty();
     if (body.subject.map.actuator_count == 0 && !body.has_contacts && !options.map.empty() && options.map != "none")
       throw Error(options.map, "has no actuator", "paint regions other than black");
     if (body.subject.map.actuator_count == 0 && !body.has_contacts)
       throw Error(input, "there is no actuator map, and no contact", "name a --map, or --contacts, or both");
-    if (body.has_contacts) body.contacts = read_contacts(options.contacts, limits_of(options, body.subject));
+    if (body.has_contacts) body.contacts = contacts_on(options, body.subject, people);
     return body_figure(std::move(body));
   });
   return drawn == cli::kDone ? damage : drawn;
@@ -221,13 +250,12 @@ int draw_scene(Options options) {
     if (trace.people().size() > 1 && !options.map.empty())
       throw UsageError("--map", fmt::format("{} holds several people", input.string()), "leave --map out");
     Scene scene;
-    ContactLimits limits = {.people = trace.people().size(), .triangles = 0, .actuators = 0};
+    ContactLimits limits;
+    limits.people.clear();
     for (std::size_t i = 0; i < trace.people().size(); ++i) {
       const Subject& subject = scene.subjects.emplace_back(read_subject(trace, input, options.map, i));
       warn_of(options, subject);
-      const ContactLimits own = limits_of(options, subject);
-      limits.triangles = std::max(limits.triangles, own.triangles);
-      limits.actuators = std::max(limits.actuators, own.actuators);
+      limits.people.push_back(limits_of(options, subject));
     }
     scene.trail_s = options.moments.trail_s;
     scene.has_contacts = !options.contacts.empty();
@@ -277,8 +305,9 @@ int draw_paraview(const Options& options) {
     stem.replace_extension();
   else
     stem /= input.stem();
-  TraceReader trace(input);
-  const Subject subject = read_subject(trace, input, options.map);
+  TraceReader trace(input, People::kSeveral);
+  const std::size_t person = person_of(options, trace.people().size());
+  const Subject subject = read_subject(trace, input, options.map, person);
   warn_of(options, subject);
   if (subject.map.actuator_count == 0) warn(options, "there is no actuator map, so every amplitude is 0");
   ParaviewOptions settings;
@@ -288,6 +317,7 @@ int draw_paraview(const Options& options) {
   require_spheres(std::span(&options.law.law, 1), trace.has_spheres(), input.string());
   settings.rate_hz = options.rate_hz;
   if (options.every != 0) settings.every = options.every;
+  settings.person = person;
   if (!stem.parent_path().empty()) make_folder(stem.parent_path());
   ParaviewSeries series(stem, overwrite_of(options), subject);
   cli::catch_interrupts();

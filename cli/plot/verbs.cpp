@@ -42,6 +42,12 @@ void add_other_map(CLI::App& command, Options& options) {
       ->type_name("builtin|none|LAYOUT|FILE.png");
 }
 
+void add_person(CLI::App& command, Options& options) {
+  command.add_option("--person", options.person, "Of a trace of several people: whom to draw, from 1 on")
+      ->type_name("K")
+      ->check(help::whole_number(1, 100));
+}
+
 /// Draws the folder that the verb of the same name wrote.
 CLI::App& add_results(CLI::App& app, Options& options, const char* name, const char* what, const char* output_help) {
   CLI::App& command = add_command(app, name, what,
@@ -107,6 +113,7 @@ CLI::App& add_textures(CLI::App& app, Options& options) {
                   "  vestige plot textures textures.exr --map builtin -o figures/textures\n");
   add_input(textures, options, "EXR", "The file that 'vestige replay --textures FILE.exr' wrote");
   add_naming_map(textures, options);
+  add_person(textures, options);
   add_common_options(textures, options, "OUT", "Write OUT.svg and OUT.png [default: the input's name]");
   return textures;
 }
@@ -126,6 +133,7 @@ CLI::App& add_body(CLI::App& app, Options& options) {
           "The actuator map: a greyscale PNG (FILE.json names the actuators, if it exists), or a layout ('vestige map "
           "make --help' lists the layouts) [default: the trace's]")
       ->type_name("builtin|none|LAYOUT|FILE.png");
+  add_person(body, options);
   body.add_option("--contacts", options.contacts,
                   "The contacts (.csv, .h5) that 'vestige replay --contacts FILE' wrote")
       ->type_name("FILE");
@@ -207,6 +215,7 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
                                    "  vestige plot paraview man.mcap --every 1 -o paraview/man.pvd\n");
   add_input(paraview, options, "MCAP", "The trace");
   add_other_map(paraview, options);
+  add_person(paraview, options);
   paraview
       .add_option("--law", options.law.law, "The intensity law, which says how strongly a contact drives the actuators")
       ->capture_default_str()

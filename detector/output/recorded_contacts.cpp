@@ -43,8 +43,8 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
   for (const auto& [column, number] : finite)
     if (!std::isfinite(number))
       return ContactFault{column, fmt::format("{} must be finite, and is {}", column, number), kContactsRemedy};
-  const auto beyond = [](const char* what, std::uint64_t number, std::uint64_t count) {
-    return ContactFault{what, fmt::format("refers to {} {}, but there are only {}", what, number, count),
+  const auto beyond = [](const char* what, std::uint64_t number, std::uint64_t count, const std::string& who) {
+    return ContactFault{what, fmt::format("refers to {} {}, but {} only {}", what, number, who, count),
                         "use the contacts of this trace, avatar and map"};
   };
   if (!(contact.t >= 0 && contact.t <= 1)) return ContactFault{"t", "t must be from 0 to 1", kContactsRemedy};
@@ -54,10 +54,14 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
   if (contact.depth_m.value_or(0) < 0) return ContactFault{"depth", "depth must not be negative", kContactsRemedy};
   if (contact.side < -1 || contact.side > 1) return ContactFault{"side", "side must be -1, 0 or 1", kContactsRemedy};
   if (contact.avatar == 0) return ContactFault{"avatar", "avatar must be from 1 on", kContactsRemedy};
-  if (contact.avatar > limits.people) return beyond("avatar", contact.avatar, limits.people);
-  if (contact.frame >= limits.frames) return beyond("frame", contact.frame, limits.frames);
-  if (contact.triangle >= limits.triangles) return beyond("triangle", contact.triangle, limits.triangles);
-  if (contact.actuator > limits.actuators) return beyond("actuator", contact.actuator, limits.actuators);
+  if (contact.avatar > limits.people.size()) return beyond("avatar", contact.avatar, limits.people.size(), "there are");
+  if (contact.frame >= limits.frames) return beyond("frame", contact.frame, limits.frames, "there are");
+  const PersonLimits& person = limits.people[contact.avatar - 1U];
+  const auto who = [&] {
+    return limits.people.size() == 1 ? "there are" : fmt::format("person {} has", contact.avatar);
+  };
+  if (contact.triangle >= person.triangles) return beyond("triangle", contact.triangle, person.triangles, who());
+  if (contact.actuator > person.actuators) return beyond("actuator", contact.actuator, person.actuators, who());
   return {};
 }
 
@@ -72,7 +76,7 @@ std::vector<RecordedContact> read_contacts(const std::filesystem::path& path, co
   if (twice != contacts.end())
     throw Error(path.string(),
                 fmt::format("collider {} has two contacts in frame {}{}", twice->collider, twice->frame,
-                            limits.people > 1 ? fmt::format(" with avatar {}", twice->avatar) : ""),
+                            limits.people.size() > 1 ? fmt::format(" with avatar {}", twice->avatar) : ""),
                 kContactsRemedy);
   return contacts;
 }

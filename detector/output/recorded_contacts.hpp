@@ -27,11 +27,15 @@ struct RecordedContact {
   std::uint16_t avatar = 1;               ///< the person who was touched, from 1 on; 1 if the file does not say
 };
 
-/// The numbers of people, triangles, actuators and frames that the contacts of a file can refer to.
-struct ContactLimits {
-  std::size_t people = 1;
+/// The numbers of triangles and actuators that the contacts on a person can refer to.
+struct PersonLimits {
   std::size_t triangles = std::numeric_limits<std::uint32_t>::max();
   std::size_t actuators = std::numeric_limits<std::uint16_t>::max();
+};
+
+/// The people and the number of frames that the contacts of a file can refer to.
+struct ContactLimits {
+  std::vector<PersonLimits> people = {PersonLimits()};
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
 };
 

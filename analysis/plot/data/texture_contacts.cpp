@@ -3,7 +3,8 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
 #include <ImfTestFile.h>
 #include <fmt/format.h>
 
@@ -24,8 +25,9 @@ constexpr std::int64_t kMostColliders = std::int64_t{1} << 20;
 constexpr std::int64_t kMostTexels = std::int64_t{1} << 32;
 constexpr std::int64_t kTexelsAtOnce = std::int64_t{1} << 20;
 
-void read_plane(const std::filesystem::path& path, TextureContacts& result) {
-  Imf::InputFile file(path.c_str());
+void read_plane(const std::filesystem::path& path, std::size_t person, TextureContacts& result) {
+  Imf::MultiPartInputFile parts(path.c_str());
+  Imf::InputPart file(parts, static_cast<int>(person));
   const Imf::Channel* channel = file.header().channels().findChannel(kPlane);
   if (channel == nullptr) throw Error(path.string(), fmt::format("has no plane '{}'", kPlane), kRemedy);
   if (channel->xSampling != 1 || channel->ySampling != 1)
@@ -66,22 +68,37 @@ void read_plane(const std::filesystem::path& path, TextureContacts& result) {
   }
 }
 
-}  // namespace
-
-TextureContacts read_texture_contacts(const std::filesystem::path& path) {
+/// Calls `read`, and turns what OpenEXR throws into an `Error`.
+template <typename Read>
+auto read_exr(const std::filesystem::path& path, const Read& read) {
   if (!std::filesystem::exists(path)) throw Error(path.string(), "there is no such file", "check the name");
   if (std::filesystem::is_directory(path)) throw Error(path.string(), "is a folder", "name a file");
   if (!Imf::isOpenExrFile(path.c_str()))
     throw Error(path.string(), "is not an OpenEXR file, or cannot be read", kRemedy);
-  TextureContacts result;
   try {
-    read_plane(path, result);
+    return read();
   } catch (const Error&) {
     throw;
   } catch (const std::exception& error) {
     throw Error(path.string(), fmt::format("is damaged or cut off ({})", error.what()), "write it again");
   }
-  return result;
+}
+
+}  // namespace
+
+std::size_t people_in_textures(const std::filesystem::path& path) {
+  return read_exr(path, [&] {
+    const Imf::MultiPartInputFile file(path.c_str());
+    return static_cast<std::size_t>(file.parts());
+  });
+}
+
+TextureContacts read_texture_contacts(const std::filesystem::path& path, std::size_t person) {
+  return read_exr(path, [&] {
+    TextureContacts result;
+    read_plane(path, person, result);
+    return result;
+  });
 }
 
 }  // namespace vestige::plot

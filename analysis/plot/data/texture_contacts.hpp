@@ -21,9 +21,12 @@ struct TextureContacts {
   std::vector<std::string> names;        ///< names of actuators 1, 2, …; not filled from the file
 };
 
-/// Reads the plane `actuator` of an OpenEXR file that 'vestige replay --textures' wrote: width = colliders, height =
-/// frames, +inf where there is no contact. Throws `Error` if the file is missing, is not OpenEXR, is cut off, lacks the
-/// plane, or has a value that is not an actuator number.
-TextureContacts read_texture_contacts(const std::filesystem::path& path);
+/// Returns the number of people in an OpenEXR file that 'vestige replay --textures' wrote: a part for each. Throws
+/// `Error` if the file is missing, is not OpenEXR, or is cut off.
+std::size_t people_in_textures(const std::filesystem::path& path);
+
+/// Reads the plane `actuator` of a person, counted from 0: width = colliders, height = frames, +inf where there is no
+/// contact. Throws `Error` as above, or if the file lacks the plane, or has a value that is not an actuator number.
+TextureContacts read_texture_contacts(const std::filesystem::path& path, std::size_t person);
 
 }  // namespace vestige::plot

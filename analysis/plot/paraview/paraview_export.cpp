@@ -67,17 +67,19 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
   if (actuators > 0)
     law =
         make_law(options.law, std::make_shared<const ActuatorLayout>(subject.avatar, subject.map), options.law_options);
-  DetectionRun detection(subject.avatar, ids, *detector);
+  const std::vector<DetectedPerson> people = {{options.person, subject.avatar, *detector}};
+  DetectionRun detection(people, ids);
   StepClock clock(options);
   Pending pending;
   pending.amplitude.assign(actuators, 0);
   ParaviewResult result;
   // A step is written when time goes on, so that it has all frames of its time.
   TraceFrame last;
+  Pose shown = rest_pose(subject.avatar);  // where a pose is missing, the one before stays
   double last_s = 0;
   bool is_due = false;
   const auto write_last = [&] {
-    series.write({last_s, &last.poses.front(), pending.amplitude, last.colliders, pending.contacts});
+    series.write({last_s, &shown, pending.amplitude, last.colliders, pending.contacts});
     pending.clear();
     is_due = false;
   };
@@ -105,6 +107,7 @@ ParaviewResult export_to_paraview(TraceReader& trace, const Subject& subject, co
     is_due |= clock.is_due(built.time_s);
     last_s = built.time_s;
     std::swap(frame, last);
+    if (!last.poses[options.person].nodes.empty()) shown = last.poses[options.person];
     if (!progress(static_cast<double>(result.frames) / frame_count)) {
       result.interrupted = true;
       break;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -16,6 +17,7 @@ struct ParaviewOptions {
   std::string law = "binary";
   LawOptions law_options;
   double rate_hz = 60;                 ///< most steps a second, above 0
+  std::size_t person = 0;              ///< whose skin is written, counted from 0
   std::optional<std::uint64_t> every;  ///< instead of a rate: one step every so many frames, at least 1
 };
 

@@ -18,6 +18,7 @@ using test::read_png;
 using test::words_of;
 using test::write_text;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// How many dots of two panels in a row of four differ.
 std::size_t difference(const Picture& picture, std::size_t panel, std::size_t other) {
@@ -133,6 +134,29 @@ TEST_F(PlotSceneTest, SeveralPeopleStandWhereTheyAreWithEachOnesContacts) {
   const test::Outcome mapped = run("scene box.mcap --map box.png --force");
   EXPECT_EQ(mapped.exit_code, 2);
   EXPECT_THAT(mapped.standard_error, HasSubstr("box.mcap holds several people"));
+}
+
+TEST_F(PlotSceneTest, OnePersonOfSeveralIsChosenByNumber) {
+  // Only the second is touched.
+  write_text(folder_ / "through.csv", "time_s,id,x,y,z\n0,1,1,0.75,-2\n1,1,1,0.75,2\n");
+  record(
+      "--animation none --colliders through.csv --rate 10 --duration 1 --name first --at -1,0,0 --avatar box.gltf "
+      "--map box.png --animation none --name second --at 1,0,0");
+  ASSERT_EQ(test::run("vestige replay box.mcap -q --contacts c.csv --textures t.exr", folder_.path()).exit_code, 0);
+  for (const std::string command : {"body box.mcap -o b", "textures t.exr -o x", "paraview box.mcap -o p.pvd"}) {
+    const test::Outcome several = run(command);
+    EXPECT_EQ(several.exit_code, 2) << command;
+    EXPECT_THAT(several.standard_error, HasSubstr("holds 2 people")) << command;
+    EXPECT_EQ(run(command + " --person 3").exit_code, 2) << command;
+  }
+  EXPECT_EQ(run("body box.mcap --person 1 --contacts c.csv -o first").exit_code, 0);
+  EXPECT_EQ(run("body box.mcap --person 2 --contacts c.csv -o second").exit_code, 0);
+  EXPECT_NE(words_of(folder_ / "first.svg"), words_of(folder_ / "second.svg")) << "the number of contacts differs";
+  EXPECT_EQ(run("textures t.exr --person 1 -o first-textures").exit_code, 0);
+  EXPECT_EQ(run("textures t.exr --person 2 -o second-textures").exit_code, 0);
+  EXPECT_FALSE(read_png(folder_ / "first-textures.png").pixels == read_png(folder_ / "second-textures.png").pixels);
+  EXPECT_THAT(run("paraview box.mcap --person 1 -o first.pvd").standard_error, HasSubstr(" 0 contacts"));
+  EXPECT_THAT(run("paraview box.mcap --person 2 -o second.pvd").standard_error, Not(HasSubstr(" 0 contacts")));
 }
 
 TEST_F(PlotSceneTest, ContactsOfAnotherTraceAreRefusedNamingTheirLine) {
