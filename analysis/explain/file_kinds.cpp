@@ -2,6 +2,7 @@
 
 #include <fnmatch.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "analysis/explain/fields.hpp"
@@ -76,7 +77,7 @@ std::vector<FileKind> trace_kinds() {
       {"poses.csv", kCsv, "Poses, a row for each frame", "vestige export -o DIR", pose_table_fields()},
       {"colliders.csv", kCsv, "Colliders, a row for each collider and frame", "vestige export -o DIR",
        collider_table_fields()},
-      {"session.json", kJson, "Which way the avatar faces", "vestige export -o DIR", session_fields()},
+      {"session.json", kJson, "Names, and which way avatars face", "vestige export -o DIR", session_fields()},
       {"trace.ndjson", kLines, "Frames, a line of JSON for each", "vestige export -o OUT.ndjson", frame_line_fields()},
       {"trace.h5", kHdf5, "A whole trace; with --contacts, its contacts too", "vestige export -o OUT.h5",
        trace_hdf5_fields()},
@@ -123,6 +124,22 @@ std::string path_of(std::string_view below, std::string_view name) {
   return below.empty() ? std::string(name) : std::string(below) + "/" + std::string(name);
 }
 
+namespace {
+
+bool matches(std::string_view pattern, std::string_view name) {
+  return ::fnmatch(std::string(pattern).c_str(), std::string(name).c_str(), FNM_NOESCAPE) == 0;
+}
+
+/// Whether a name of the field `pattern` can stand below `path`.
+bool stands_below(std::string_view pattern, std::string_view path) {
+  const auto levels = std::ranges::count(path, '/');
+  std::size_t end = pattern.find('/');
+  for (std::ptrdiff_t i = 0; i < levels && end != std::string_view::npos; ++i) end = pattern.find('/', end + 1);
+  return end != std::string_view::npos && matches(pattern.substr(0, end), path);
+}
+
+}  // namespace
+
 PlacedField find_field(const FileKind& kind, const std::string& name) {
   PlacedField by_pattern = {name, nullptr};
   for (const FieldGroup& group : kind.groups) {
@@ -134,8 +151,7 @@ PlacedField find_field(const FileKind& kind, const std::string& name) {
     }
     for (const Field& field : group.fields) {
       if (field.name == rest) return {name, &field};
-      if (by_pattern.field == nullptr && field.name.find('*') != std::string_view::npos &&
-          ::fnmatch(std::string(field.name).c_str(), std::string(rest).c_str(), FNM_NOESCAPE) == 0)
+      if (by_pattern.field == nullptr && field.name.find('*') != std::string_view::npos && matches(field.name, rest))
         by_pattern = {path_of(group.below, field.name), &field};
     }
   }
@@ -150,10 +166,9 @@ std::vector<std::string> required_names(const FileKind& kind) {
 }
 
 bool holds_fields(const FileKind& kind, std::string_view path) {
-  const std::string start = std::string(path) + "/";
   for (const FieldGroup& group : kind.groups)
     for (const Field& field : group.fields)
-      if (path_of(group.below, field.name).starts_with(start)) return true;
+      if (stands_below(path_of(group.below, field.name), path)) return true;
   return false;
 }
 

@@ -30,6 +30,7 @@ constexpr Field kColliders[] = {
     {"y", "m", "its place in the world; up"},
     {"z", "m", "its place in the world"},
     {"radius_m", "m", "its radius, below 2^-30: a point; only in traces with radii"},
+    {"owner", "", "person whose limb it is, from 1 on; 0: nobody's; only in traces of several people or with limbs"},
     {"teleported", "", "1: it jumped here, so that no segment leads to it; 0: it moved"},
 };
 
@@ -43,6 +44,9 @@ constexpr Field kFrameLine[] = {
     {"colliders/id", "", "id of a collider; one that is not listed is absent"},
     {"colliders/position", "m", "its place in the world: x, y, z"},
     {"colliders/radius", "m", "its radius; without it, it is a point"},
+    {"colliders/owner", "", "person whose limb it is, from 1 on; without it, it is nobody's"},
+    {"pose.*/origin", "m", "as pose, of a later person: pose.2 is the second's; without it, the pose is missing"},
+    {"pose.*/nodes", "", "likewise"},
     {"teleported", "", "ids of colliders that jumped here, so that no segment leads to them"},
 };
 
@@ -60,14 +64,23 @@ constexpr Field kTraceHdf5[] = {
     {"colliders/teleported", "", "frames x colliders, uint8: 1: it jumped here"},
     {"colliders/radius", "m",
      "frames x colliders, float32: below 2^-30: a point; NaN: absent; only in traces with radii"},
+    {"colliders/owner", "",
+     "person whose limb each collider is, from 1 on; 0: nobody's; uint16; only in traces of several people or with "
+     "limbs"},
     {"avatar.glb", "", "the avatar's file, byte by byte"},
     {"actuator_map.png", "", "the actuator map's file, byte by byte"},
     {"actuator_map.json", "", "the actuator map's names, byte by byte"},
+    {"pose.*/*", "", "as in pose, of a later person: pose.2 is the second's"},
+    {"avatar.*.glb", "", "avatar of a later person"},
+    {"actuator_map.*", "", "actuator map of a later person, and its names"},
     {"session", "", "group whose attributes are the trace's metadata: where the recording came from"},
 };
 
 constexpr Field kSessionFile[] = {
     {"facing", "", "axis along which the avatar looks at rest: +z, -z, +x, -x"},
+    {"facing.*", "", "that of a later person: facing.2 is the second's"},
+    {"name", "", "name of the person"},
+    {"name.*", "", "name of a later person: name.2 is the second's"},
     {"radius", "m", "the --radius that every collider was given; mesh: by the meshes of a glTF's nodes"},
 };
 
@@ -88,6 +101,7 @@ constexpr Field kImport[] = {
     {"trace", "", "the trace that was written"},
     {"frames", "", "frames written"},
     {"bytes", "bytes", "size of what was written"},
+    {"avatars/name", "", "with several people: the name of each, in order"},
     {"motion/frames", "", "frames of the motion capture"},
     {"motion/frame_time_s", "s", "time from frame to frame"},
     {"motion/matched/joint", "", "joint of the motion capture"},
@@ -252,7 +266,7 @@ FieldGroups record_fields() {
 }
 
 FieldGroups import_fields() {
-  return {{"", kImport}, {"avatar", avatar_fields()}, {"", origin_fields()}};
+  return {{"", kImport}, {"avatar", avatar_fields()}, {"avatars", avatar_fields()}, {"", origin_fields()}};
 }
 
 FieldGroups inspect_fields() {

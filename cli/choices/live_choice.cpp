@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <deque>
+#include <set>
+
 #include "cli/choices/snapshots.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/host_port.hpp"
@@ -36,50 +39,95 @@ void report_bones(const VmcState& state, const Humanoid& humanoid, const std::st
 
 }  // namespace
 
-void add_live_options(CLI::App& verb, LiveChoice& choice) {
-  verb.add_option("--live", choice.source,
+void add_live_options(CLI::App& verb) {
+  verb.add_option("--live",
                   "Record live input until its end or Ctrl-C: lines of JSON on standard input (-), or the VMC protocol "
-                  "and colliders by OSC on a UDP port (vmc://0.0.0.0:39539)")
+                  "and colliders by OSC on a UDP port (vmc://0.0.0.0:39539); of several people, a port for each")
       ->type_name("-|URL");
 }
 
 void check_live_choice(const CLI::App& verb, const LiveChoice& choice) {
   if (!choice.is_live()) return;
-  if (!choice.is_lines()) parse_host_port(choice.source, kScheme, "--live");
-  for (const char* flag : {"--animation", "--ignore-morphs", "--colliders", "--count", "--radius", "--at"})
+  std::set<std::string> taken;
+  for (std::size_t k = 0; k < choice.sources.size(); ++k) {
+    const std::string& source = choice.sources[k];
+    if (source.empty())
+      throw UsageError("--live", fmt::format("person {} has none, and the motion of others comes in live", k + 1),
+                       "give each --avatar a --live after it, with a port of its own");
+    if (source == "-" && choice.sources.size() > 1)
+      throw UsageError("--live", "lines on standard input are of one person",
+                       "name one avatar, or ports: vmc://HOST:PORT");
+    if (source != "-") parse_host_port(source, kScheme, "--live");
+    if (!taken.insert(source).second)
+      throw UsageError("--live", fmt::format("two people have the source {}", source), "give each a port of their own");
+  }
+  for (const char* flag : {"--animation", "--ignore-morphs", "--colliders", "--count", "--radius"})
     if (verb.count(flag) != 0)
       throw UsageError(flag, "the motion and the colliders come from the live source",
                        fmt::format("leave out {} or --live", flag));
-  if (choice.is_lines() && verb.count("--rate") != 0)
+  if (!choice.is_lines()) return;
+  if (verb.count("--rate") != 0)
     throw UsageError("--rate", "each line on standard input is a frame", "leave --rate out");
-  if (choice.is_lines() && verb.count("--origin") != 0)
-    throw UsageError("--origin", "each line says where avatar and colliders stand", "leave --origin out");
+  for (const char* flag : {"--origin", "--at"})
+    if (verb.count(flag) != 0)
+      throw UsageError(flag, "each line says where avatar and colliders stand", fmt::format("leave {} out", flag));
+  if (verb.count("--limbs") != 0)
+    throw UsageError("--limbs", "lines on standard input are of one person, whom their own limbs never touch",
+                     "leave it out");
 }
 
-LiveCounts record_live(const LiveChoice& choice, const Scene& scene, Recorder& recorder, LiveSettings settings,
-                       const glm::dvec3& origin_m, Verbosity verbosity) {
-  settings.asked = asked;
-  LiveCounts counts;
-  if (choice.is_lines()) {
-    LiveNdjson lines(scene.avatar);
-    RecordingThread thread(recorder);
-    counts = record_lines(STDIN_FILENO, lines, thread, settings);
-    thread.stop();
-    warn_of(lines.problems(), "standard input", verbosity);
-  } else {
-    VmcState state(scene.avatar, origin_m);
-    UdpReceiver datagrams(parse_host_port(choice.source, kScheme, "--live"), choice.source);
-    RecordingThread thread(recorder);
-    if (verbosity != Verbosity::kQuiet)
-      print_message(
-          fmt::format("vestige: listening on {}; the recording begins with the first datagram, and Ctrl-C ends it\n",
-                      choice.source));
-    counts = record_state(datagrams, state, thread, settings);
-    thread.stop();
-    warn_of(state.problems(), choice.source, verbosity);
-    report_bones(state, scene.avatar.humanoid, choice.source, verbosity);
+namespace {
+
+LiveCounts record_from_lines(const Avatar& avatar, Recorder& recorder, const LiveSettings& settings,
+                             Verbosity verbosity) {
+  LiveNdjson lines(avatar);
+  RecordingThread thread(recorder);
+  const LiveCounts counts = record_lines(STDIN_FILENO, lines, thread, settings);
+  thread.stop();
+  warn_of(lines.problems(), "standard input", verbosity);
+  return counts;
+}
+
+LiveCounts record_from_ports(const LiveChoice& choice, std::span<const LivePerson> people, Recorder& recorder,
+                             const LiveSettings& settings, const glm::dvec3& origin_m, Verbosity verbosity) {
+  std::deque<VmcState> states;
+  std::deque<UdpReceiver> receivers;
+  std::vector<LiveSource> sources;
+  sources.reserve(people.size());
+  for (std::size_t k = 0; k < people.size(); ++k) {
+    const std::string& source = choice.sources[k];
+    states.emplace_back(people[k].avatar, origin_m, people[k].stance);
+    receivers.emplace_back(parse_host_port(source, kScheme, "--live"), source);
+    sources.push_back({receivers.back(), states.back()});
   }
-  const std::string source = choice.is_lines() ? "standard input" : choice.source;
+  RecordingThread thread(recorder);
+  if (verbosity != Verbosity::kQuiet)
+    print_message(
+        fmt::format("vestige: listening on {}; the recording begins with the first datagram, and Ctrl-C ends it\n",
+                    fmt::join(choice.sources, " and ")));
+  const LiveCounts counts = record_states(sources, thread, settings);
+  thread.stop();
+  for (std::size_t k = 0; k < people.size(); ++k) {
+    warn_of(states[k].problems(), choice.sources[k], verbosity);
+    report_bones(states[k], people[k].avatar.humanoid, choice.sources[k], verbosity);
+  }
+  if (counts.ids_clash)
+    warn(
+        "several sources sent colliders of one id; the first person's were recorded\n  Give each sender ids of its "
+        "own.",
+        verbosity);
+  return counts;
+}
+
+}  // namespace
+
+LiveCounts record_live(const LiveChoice& choice, std::span<const LivePerson> people, Recorder& recorder,
+                       LiveSettings settings, const glm::dvec3& origin_m, Verbosity verbosity) {
+  settings.asked = asked;
+  const LiveCounts counts = choice.is_lines()
+                                ? record_from_lines(people.front().avatar, recorder, settings, verbosity)
+                                : record_from_ports(choice, people, recorder, settings, origin_m, verbosity);
+  const std::string source = choice.is_lines() ? "standard input" : fmt::format("{}", fmt::join(choice.sources, ", "));
   if (counts.frames == 0)
     throw Error(source, "no frame arrived, so there is no trace",
                 choice.is_lines()

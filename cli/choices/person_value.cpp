@@ -18,7 +18,8 @@ PersonValue parse_person_value(const std::string& text) {
   std::size_t number = 0;
   const auto read = std::from_chars(text.data(), text.data() + sign, number);
   constexpr std::size_t kNobodyThere = std::numeric_limits<std::size_t>::max() - 1;
-  return {read.ec == std::errc() && number > 0 ? number - 1 : kNobodyThere, text.substr(sign + 1)};
+  return {read.ec == std::errc() && number > 0 ? number - 1 : kNobodyThere, text.substr(sign + 1),
+          text.substr(0, sign)};
 }
 
 std::vector<PersonValue> parse_person_values(const PersonFlag& flag, const std::vector<std::string>& texts) {
@@ -26,7 +27,7 @@ std::vector<PersonValue> parse_person_values(const PersonFlag& flag, const std::
   std::set<std::size_t> people;
   for (const std::string& text : texts) {
     const PersonValue& value = values.emplace_back(parse_person_value(text));
-    if (value.person && text.find_first_not_of('0') == text.find('='))
+    if (value.person && value.number.find_first_not_of('0') == std::string::npos)
       throw UsageError(flag.name, fmt::format("'{}': people count from 1", text),
                        fmt::format("write for example {} 2={}", flag.name, flag.example));
     if (value.value.empty())
@@ -44,13 +45,13 @@ std::size_t person_of(const PersonValue& value, const PersonFlag& flag, const Op
                       const std::string& name) {
   const std::size_t people = trace.people.size();
   if (!value.person && people > 1)
-    throw UsageError(flag.name, fmt::format("{} holds {}", name, count_of_people(people)),
+    throw UsageError(flag.name, fmt::format("'{}': {} holds {}", value.value, name, count_of_people(people)),
                      fmt::format("say whose {} it is: {} 1={}", flag.noun, flag.name, flag.example));
   const std::size_t person = value.person.value_or(0);
   if (person >= people)
     throw UsageError(
         flag.name,
-        fmt::format("there is no person {} in {}, which holds {}", person + 1, name, count_of_people(people)),
+        fmt::format("there is no person {} in {}, which holds {}", value.number, name, count_of_people(people)),
         "choose one who is there");
   return person;
 }

@@ -14,6 +14,7 @@ namespace vestige::cli {
 struct PersonValue {
   std::optional<std::size_t> person;  ///< from 0 on; none if the value does not say it
   std::string value;
+  std::string number = {};  ///< of the person, as written
 };
 
 /// A flag that takes such values, for messages.

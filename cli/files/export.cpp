@@ -1,12 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
 
 #include "analysis/base/provenance.hpp"
+#include "cli/choices/person_value.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/files/export_formats.hpp"
 #include "cli/files/exported_contacts.hpp"
@@ -20,6 +22,7 @@
 #include "traces/exchange/trace_export.hpp"
 #include "traces/files/output_file.hpp"
 #include "traces/scene/facing.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
@@ -50,28 +53,36 @@ std::string format_of(const ExportOptions& options) {
                    "end the name in .csv, .ndjson, .h5, .glb or .pvd, name a folder (for CSV), or add --format");
 }
 
+constexpr const char* kPosesName = "poses.csv";
+
 struct Attachment {
   std::string path;
   std::span<const std::byte> bytes;  ///< empty: the trace has none
 };
 
-/// The frames' files beside the avatar, its map and its facing, so that `import` finds all of it.
+/// The frames' files beside the avatars, their maps, names and facing, so that `import` finds all of it.
 class CsvFolder {
  public:
-  CsvFolder(const std::string& folder, const TraceReader& trace) {
-    const auto inside = [&](const char* name) { return (std::filesystem::path(folder) / name).string(); };
-    poses = inside("poses.csv");
+  CsvFolder(const std::string& folder, const TraceReader& trace) : folder_(folder) {
+    using trace_format::attachment_name;
+    using trace_format::AttachmentKind;
     colliders = inside("colliders.csv");
-    const RecordedPerson& person = trace.people().front();
-    attachments = {{inside("avatar.glb"), person.avatar_glb},
-                   {inside("actuator_map.png"), person.actuator_map_png},
-                   {inside("actuator_map.json"), person.actuator_map_json}};
     session = inside("session.json");
-    if (facing_named(person.facing))
-      session_json = nlohmann::ordered_json({{trace_format::kFacingKey, person.facing}}).dump(2) + "\n";
+    nlohmann::ordered_json json;
+    for (std::size_t i = 0; i < trace.people().size(); ++i) {
+      const RecordedPerson& person = trace.people()[i];
+      poses.push_back(inside(trace_format::numbered(kPosesName, i)));
+      attachments.push_back({inside(attachment_name(AttachmentKind::kAvatar, i)), person.avatar_glb});
+      attachments.push_back({inside(attachment_name(AttachmentKind::kMapImage, i)), person.actuator_map_png});
+      attachments.push_back({inside(attachment_name(AttachmentKind::kMapText, i)), person.actuator_map_json});
+      if (facing_named(person.facing)) json[trace_format::numbered(trace_format::kFacingKey, i)] = person.facing;
+      if (!person.name.empty()) json[trace_format::numbered(trace_format::kNameKey, i)] = person.name;
+    }
+    if (!json.empty()) session_json = json.dump(2) + "\n";
   }
   std::vector<std::string> written() const {
-    std::vector<std::string> all = {poses, colliders};
+    std::vector<std::string> all = poses;
+    all.push_back(colliders);
     for (const Attachment& attachment : attachments)
       if (!attachment.bytes.empty()) all.push_back(attachment.path);
     if (!session_json.empty()) all.push_back(session);
@@ -83,22 +94,27 @@ class CsvFolder {
     for (const Attachment& attachment : attachments)
       if (attachment.bytes.empty()) all.push_back(attachment.path);
     if (session_json.empty()) all.push_back(session);
+    for (std::size_t i = poses.size(); i < trace_format::kMostPeople; ++i) {
+      const std::string more = inside(trace_format::numbered(kPosesName, i));
+      if (!std::filesystem::exists(more)) break;
+      all.push_back(more);
+      for (const trace_format::AttachmentKind kind : trace_format::kAttachmentKinds)
+        all.push_back(inside(trace_format::attachment_name(kind, i)));
+    }
     return all;
   }
 
-  std::string poses;
+  std::vector<std::string> poses;  ///< by person
   std::string colliders;
   std::vector<Attachment> attachments;
   std::string session;
-  std::string session_json;  ///< empty: the trace does not say where its avatar faces
-};
+  std::string session_json;  ///< empty: the trace says neither names nor where its avatars face
 
-ContactLimits limits_of(const OpenTrace& trace) {
-  ContactLimits limits;
-  limits.triangles = trace.person().avatar.triangles.size();
-  limits.actuators = trace.person().map.actuator_count;
-  return limits;
-}
+ private:
+  std::string inside(const std::string& name) const { return (std::filesystem::path(folder_) / name).string(); }
+
+  std::string folder_;
+};
 
 void check_flags(const ExportOptions& options, const std::string& format) {
   if (!options.contacts.empty() && format != "hdf5")
@@ -144,19 +160,35 @@ int export_for_paraview(const ExportOptions& options) {
   return run_plot(arguments);
 }
 
+/// The files of --what poses: OUT.csv, OUT.2.csv, one for each person.
+std::vector<std::string> pose_paths(const ExportOptions& options, const OpenTrace& trace) {
+  std::vector<std::string> paths = {options.output};
+  for (std::size_t i = 1; i < trace.people.size(); ++i) paths.push_back(numbered_path(options.output, i));
+  if (paths.size() > 1 && is_pipe(options.output))
+    throw UsageError(
+        "-o", fmt::format("each of {} people has a table of poses, and '{}' takes one", paths.size(), options.output),
+        "name a file: OUT.csv is the first person's, OUT.2.csv the second's");
+  return paths;
+}
+
 std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& options, const std::string& format,
                                                      const std::optional<CsvFolder>& folder, OpenTrace& trace,
                                                      const std::optional<ExportedContacts>& contacts) {
   TraceReader& reader = trace.reader;
   const Overwrite overwrite = options.common.overwrite();
   std::vector<std::unique_ptr<TraceExport>> files;
+  const auto add_poses = [&](const std::vector<std::string>& paths) {
+    for (std::size_t i = 0; i < paths.size(); ++i)
+      files.push_back(make_pose_csv(paths[i], overwrite, reader.people()[i].node_names, i));
+  };
   if (folder) {
-    files.push_back(make_pose_csv(folder->poses, overwrite, reader.people().front().node_names));
-    files.push_back(make_collider_csv(folder->colliders, overwrite, reader.shape()));
+    add_poses(folder->poses);
+    files.push_back(make_collider_csv(folder->colliders, overwrite, reader.shape(), reader.owners()));
   } else if (format == "csv") {
-    files.push_back(options.what == "poses"
-                        ? make_pose_csv(options.output, overwrite, reader.people().front().node_names)
-                        : make_collider_csv(options.output, overwrite, reader.shape()));
+    if (options.what == "poses")
+      add_poses(pose_paths(options, trace));
+    else
+      files.push_back(make_collider_csv(options.output, overwrite, reader.shape(), reader.owners()));
   } else if (format == "ndjson") {
     files.push_back(make_frame_ndjson(options.output, overwrite));
   } else if (format == "hdf5") {
@@ -164,8 +196,10 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
     if (contacts) write_contacts = [&contacts, &options](hid_t file) { contacts->write(file, options.output); };
     files.push_back(make_frame_hdf5(options.output, overwrite, reader, std::move(write_contacts)));
   } else {
-    files.push_back(make_frame_gltf(options.output, overwrite, trace.person().avatar,
-                                    reader.people().front().avatar_glb,
+    std::vector<GltfPerson> people;
+    for (std::size_t i = 0; i < trace.people.size(); ++i)
+      people.push_back({trace.people[i].name, trace.people[i].avatar, reader.people()[i].avatar_glb});
+    files.push_back(make_frame_gltf(options.output, overwrite, people,
                                     {.all = reader.collider_ids(), .spheres = reader.sphere_ids()}));
   }
   return files;
@@ -205,10 +239,16 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   const bool is_folder = format == "csv" && options.what == "all";
   if (!is_folder)
     check_outputs({options.output, options.common.json}, {options.file, options.contacts}, options.common);
-  OpenTrace trace(options.file, verbosity);
+  OpenTrace trace(options.file, verbosity, People::kSeveral);
   TraceReader& reader = trace.reader;
   std::optional<CsvFolder> folder;
   std::vector<std::string> outputs = {options.output};
+  if (options.what == "poses" && trace.people.size() > 1) {
+    outputs = pose_paths(options, trace);
+    std::vector<std::string> all = outputs;
+    all.push_back(options.common.json);
+    check_outputs(all, {options.file}, options.common);
+  }
   if (is_folder) {
     folder.emplace(options.output, reader);
     outputs = folder->written();
@@ -222,7 +262,7 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   require_frames(reader, options.file);
   const std::uint64_t total = reader.frame_count();
   std::optional<ExportedContacts> contacts;
-  if (!options.contacts.empty()) contacts.emplace(options.contacts, reader, limits_of(trace));
+  if (!options.contacts.empty()) contacts.emplace(options.contacts, trace);
   const std::vector<std::unique_ptr<TraceExport>> files = make_files(options, format, folder, trace, contacts);
   const std::uint64_t written = write_frames(reader, files, contacts, options);
   std::vector<std::string> losses;
@@ -248,7 +288,8 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   write_json(options.common.json, json, options.common);
   print_summary(fmt::format("{}: {} of {} and {}{}\n", options.output, counted(written, "frame"),
                             counted(reader.collider_ids().size(), "collider"),
-                            counted(reader.people().front().node_names.size(), "node"),
+                            trace.people.size() == 1 ? counted(reader.people().front().node_names.size(), "node")
+                                                     : count_of_people(trace.people.size()),
                             contacts ? ", " + counted(contacts->count(), "contact") : ""),
                 {options.output, options.common.json}, options.common);
 }
@@ -263,7 +304,8 @@ void add_export(CLI::App& program, Invocation& invocation) {
   verb->add_option("FILE", options->file, "The trace, or '-' for standard input")->required();
   verb->add_option("-o,--output", options->output,
                    "The file to write; its extension sets the format. A name without an extension is a folder with "
-                   "poses.csv, colliders.csv, the avatar, its map and its facing. '-' is standard output")
+                   "poses.csv, colliders.csv, the avatar, its map and its facing; of several people, the second's are "
+                   "poses.2.csv and so on. '-' is standard output")
       ->required()
       ->type_name("OUT|-");
   verb->add_option("--format", options->format,
@@ -271,7 +313,7 @@ void add_export(CLI::App& program, Invocation& invocation) {
                    "  csv       poses: a row for each frame; colliders: a row for each collider and frame; lossless\n"
                    "  ndjson    a line of JSON for each frame, which 'record --live' can read; lossless\n"
                    "  hdf5      (.h5) for Python, MATLAB and others; lossless\n"
-                   "  gltf      (.glb) the avatar's animation and a sphere for each collider; fp32\n"
+                   "  gltf      (.glb) the avatars' animation and a sphere for each collider; fp32\n"
                    "  paraview  (.pvd) posed surfaces, which vestige-plot writes [default: by the extension]")
       ->check(CLI::IsMember({"csv", "ndjson", "hdf5", "gltf", "paraview"}));
   verb->add_option("--what", options->what, "Which of the two tables to write; CSV only")

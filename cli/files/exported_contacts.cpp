@@ -11,9 +11,24 @@
 
 namespace vestige::cli {
 
-ExportedContacts::ExportedContacts(const std::string& file, TraceReader& trace, const ContactLimits& limits)
-    : file_(file), has_spheres_(trace.has_spheres()), contacts_(read_contacts(file, limits)) {
-  const std::vector<std::uint32_t>& collider_ids = trace.collider_ids();
+namespace {
+
+ContactLimits limits_of(const OpenTrace& trace) {
+  ContactLimits limits;
+  limits.people.clear();
+  for (const TracedPerson& person : trace.people)
+    limits.people.push_back({person.avatar.triangles.size(), person.map.actuator_count});
+  return limits;
+}
+
+}  // namespace
+
+ExportedContacts::ExportedContacts(const std::string& file, OpenTrace& trace)
+    : file_(file),
+      has_spheres_(trace.reader.has_spheres()),
+      has_avatars_(trace.people.size() > 1),
+      contacts_(read_contacts(file, limits_of(trace))) {
+  const std::vector<std::uint32_t>& collider_ids = trace.reader.collider_ids();
   for (const RecordedContact& contact : contacts_)
     if (!std::ranges::binary_search(collider_ids, contact.collider))
       refuse(fmt::format("has a contact of collider {}, which the trace does not have", contact.collider));
@@ -35,7 +50,8 @@ void ExportedContacts::write(hid_t file, const std::filesystem::path& path) cons
   const Hdf5Handle group(hdf5().create_group(file, "contacts", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                          hdf5().close_group, path, "make a group");
   const bool has_depths = contacts_.empty() ? has_spheres_ : contacts_.front().depth_m.has_value();
-  ContactColumns columns(group.id(), path, {has_depths ? ColliderShape::kSpheres : ColliderShape::kPoints});
+  ContactColumns columns(group.id(), path,
+                         {has_depths ? ColliderShape::kSpheres : ColliderShape::kPoints, has_avatars_});
   for (const RecordedContact& contact : contacts_) columns.append(contact);
   columns.close();
 }

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "cli/choices/scene.hpp"
 #include "detector/output/recorded_contacts.hpp"
 #include "traces/scene/trace.hpp"
-#include "traces/trace_file/trace_reader.hpp"
 
 namespace vestige::cli {
 
@@ -18,9 +18,9 @@ namespace vestige::cli {
 /// belong to the trace.
 class ExportedContacts {
  public:
-  /// Reads the contacts of `file`, which must be of colliders of `trace`. `limits` are what the trace has.
-  /// Precondition: no threads have been started.
-  ExportedContacts(const std::string& file, TraceReader& trace, const ContactLimits& limits);
+  /// Reads the contacts of `file`, which must be of people and colliders of `trace`. Precondition: no threads have been
+  /// started.
+  ExportedContacts(const std::string& file, OpenTrace& trace);
 
   /// Checks the contacts of the next frame of the trace.
   void check(const TraceFrame& frame);
@@ -35,6 +35,7 @@ class ExportedContacts {
 
   std::string file_;
   bool has_spheres_;
+  bool has_avatars_;
   std::vector<RecordedContact> contacts_;  ///< by frame
   std::size_t next_ = 0;                   ///< those before it are checked
 };

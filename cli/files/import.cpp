@@ -1,74 +1,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <optional>
 
 #include "analysis/base/provenance.hpp"
-#include "cli/choices/convention_choice.hpp"
 #include "cli/choices/motion.hpp"
 #include "cli/choices/scene.hpp"
 #include "cli/choices/scene_choice.hpp"
 #include "cli/files/export_formats.hpp"
+#include "cli/files/import_frames.hpp"
 #include "cli/help/validators.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
 #include "traces/base/strict_json.hpp"
-#include "traces/exchange/collider_files.hpp"
-#include "traces/exchange/collider_rows.hpp"
-#include "traces/exchange/pose_csv.hpp"
-#include "traces/exchange/trace_hdf5.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/hdf5/hdf5_reader.hpp"
 #include "traces/questions/placement_question.hpp"
 #include "traces/questions/pose_question.hpp"
-#include "traces/scene/colliders.hpp"
+#include "traces/scene/people.hpp"
+#include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
 namespace vestige::cli {
 
 namespace {
-
-struct ImportOptions {
-  CommonOptions common;
-  std::string from;
-  std::string motion;
-  std::string poses;
-  std::string colliders;
-  std::string nodes;
-  RadiusChoice radius;
-  std::string avatar;
-  std::string map;
-  std::string session;  ///< session.json of the folder; empty without one
-  MotionChoice motion_choice;
-  ConventionChoice convention;
-  bool are_collider_axes_given = false;
-  FacingChoice facing;
-  std::optional<double> rate_hz;
-  std::string compression = "zstd";
-  std::string output;
-};
-
-/// Gives frame after frame: first whoever knows index, time and pose, then whoever knows the colliders.
-struct Frames {
-  bool next(TraceFrame& frame) const {
-    if (!next_pose(frame)) return false;
-    add_colliders(frame);
-    return true;
-  }
-
-  std::function<bool(TraceFrame&)> next_pose;
-  std::function<void(TraceFrame&)> add_colliders = [](TraceFrame&) {};
-  std::function<void()> finish = [] {};
-  std::shared_ptr<const ColliderSource> sampled = {};  ///< colliders that are sampled at the times of the frames
-  ColliderShape shape = ColliderShape::kPoints;
-  std::function<double()> share;
-  std::vector<bool> placed;  ///< for each node, whether a file of poses says where it is
-};
 
 /// What `export` wrote stands for all of its parts: none may be named beside it.
 void refuse_parts(const ImportOptions& options) {
@@ -101,7 +59,7 @@ void expand_folder(ImportOptions& options) {
     throw Error(options.from,
                 std::filesystem::exists(folder) ? "is neither a folder nor an .h5 file" : "there is no such folder",
                 "name a folder or an .h5 file that 'vestige export' wrote, or give --poses or --motion");
-  const auto take = [&](const char* name, std::string& option) {
+  const auto take = [&](const std::string& name, std::string& option) {
     if (std::filesystem::exists(folder / name)) option = (folder / name).string();
   };
   take("poses.csv", options.poses);
@@ -115,18 +73,32 @@ void expand_folder(ImportOptions& options) {
     throw Error(options.from, "holds no avatar.glb",
                 "put avatar.glb back, or give --poses, --colliders and --avatar one by one");
   if (options.map.empty()) options.map = "none";
+  for (std::size_t k = 1; k < trace_format::kMostPeople; ++k) {
+    PersonFiles other;
+    take(trace_format::numbered("poses.csv", k), other.poses);
+    if (other.poses.empty()) break;
+    const std::string avatar = trace_format::numbered("avatar.glb", k);
+    take(avatar, other.avatar);
+    if (other.avatar.empty())
+      throw Error(options.from, fmt::format("holds poses of person {}, but no {}", k + 1, avatar),
+                  fmt::format("put {} back, or remove that person's files", avatar));
+    take(trace_format::numbered("actuator_map.png", k), other.map);
+    if (other.map.empty()) other.map = "none";
+    options.others.push_back(std::move(other));
+  }
 }
 
-/// Returns the facing that a session.json records; empty if it records none.
-std::string recorded_facing(const std::string& session) {
+/// Returns a text that a session.json records of a person, such as the facing; empty if it records none.
+std::string recorded_text(const std::string& session, std::string_view key, std::size_t person) {
   if (session.empty()) return {};
   constexpr const char* kRemedy = "export the trace again, or remove the file";
+  const std::string numbered = trace_format::numbered(key, person);
   const nlohmann::json json = parse_strict_json(read_text_file(session), session, kRemedy);
   const bool is_object = json.is_object();
-  if (is_object && !json.contains("facing")) return {};
-  if (!is_object || !json["facing"].is_string())
-    throw Error(session, "is not a JSON object with a text 'facing'", kRemedy);
-  return json["facing"].get<std::string>();
+  if (is_object && !json.contains(numbered)) return {};
+  if (!is_object || !json[numbered].is_string())
+    throw Error(session, fmt::format("is not a JSON object with a text '{}'", numbered), kRemedy);
+  return json[numbered].get<std::string>();
 }
 
 void check_flags(const ImportOptions& options) {
@@ -158,105 +130,26 @@ void check_flags(const ImportOptions& options) {
     throw UsageError("-", "two inputs cannot share standard input", "give a file name for one of them");
 }
 
-double seconds(const TraceFrame& frame) {
-  return static_cast<double>(frame.time_ns) / 1e9;
-}
-
-void read_colliders(const ImportOptions& options, Frames& frames) {
-  const std::string& path = options.colliders;
-  if (path.empty()) return;
-  const auto sample_from = [&](std::unique_ptr<ColliderSource> of_file) {
-    const std::shared_ptr<ColliderSource> source = options.radius.apply(std::move(of_file));
-    for (const std::string& warning : source->warnings())
-      warn(fmt::format("--colliders {}: {}", path, warning), options.common.verbosity());
-    frames.sampled = source;
-    frames.shape = source->shape();
-    frames.add_colliders = [source](TraceFrame& frame) {
-      source->sample(seconds(frame), frame.colliders);
-      frame.teleported = source->teleported();
-    };
-  };
-  if (path.ends_with(".glb") || path.ends_with(".gltf")) {
-    sample_from(read_collider_gltf(path, options.nodes, options.convention.of_colliders(), options.radius.of_gltf()));
-    return;
+/// The people of the files: the first, and those after it in a folder.
+std::vector<Scene> load_scenes(const ImportOptions& options) {
+  std::vector<PersonFiles> files = {{options.poses, options.avatar, options.map}};
+  files.insert(files.end(), options.others.begin(), options.others.end());
+  std::vector<Scene> scenes;
+  scenes.reserve(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    scenes.push_back(load_scene(files[i].avatar, files[i].map, options.facing, options.common.verbosity(),
+                                recorded_text(options.session, trace_format::kFacingKey, i)));
+    scenes.back().name = recorded_text(options.session, trace_format::kNameKey, i);
   }
-  if (!options.poses.empty()) {
-    // Rows that say their frame go to it, and nothing is made up between them.
-    auto rows = std::make_shared<ColliderFrames>(path, options.convention.of_colliders());
-    if (rows->columns() == ColliderColumns::kFrames) {
-      const std::optional<float> radius_m = options.radius.radius_m();
-      frames.shape = radius_m.value_or(0) > 0 ? ColliderShape::kSpheres : rows->shape();
-      frames.add_colliders = [rows, radius_m](TraceFrame& frame) {
-        rows->fill(frame);
-        for (ColliderSample& collider : frame.colliders) collider.radius_m = radius_m.value_or(collider.radius_m);
-      };
-      frames.finish = [rows] { rows->expect_end(); };
-      return;
-    }
-    if (path == "-")
-      throw UsageError("--colliders -", "these rows have no frame numbers",
-                       "put the rows into a file, which can be read twice");
-  }
-  sample_from(read_collider_csv(path, options.convention.of_colliders()));
+  return scenes;
 }
 
-/// Each frame of the motion once, or at a rate of one's own.
-void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional<double> rate_hz, Frames& frames) {
-  const double duration_s = static_cast<double>(motion.frame_count - 1) * motion.frame_time_s;
-  const double step_s = rate_hz ? 1 / *rate_hz : motion.frame_time_s;
-  if (rate_hz) refuse_too_many_frames(duration_s * *rate_hz + 1, "--rate", "import at a lower --rate");
-  // The last frame is there even where division has left a little too much.
-  const std::uint64_t count =
-      rate_hz ? static_cast<std::uint64_t>(std::floor(duration_s * *rate_hz + 1e-6)) + 1 : motion.frame_count;
-  const auto next = std::make_shared<std::uint64_t>(0);
-  frames.next_pose = [&avatar, step_s, count, next](TraceFrame& frame) {
-    if (*next == count) return false;
-    frame.index = *next;
-    const double time_s = static_cast<double>((*next)++) * step_s;
-    frame.time_ns = std::llround(time_s * 1e9);
-    // Keys are at times of fp32: on them, nothing is interpolated.
-    frame.poses.front() = sample_animation(avatar, avatar.animations.back(), double{static_cast<float>(time_s)});
-    return true;
-  };
-  frames.share = [count, next] { return static_cast<double>(*next) / static_cast<double>(count); };
-}
-
-/// Throws where a file names nodes, and not those of its avatar in their order.
-void require_names(const std::string& file, const std::vector<std::string>& names, const Avatar& avatar) {
-  const auto is_same = [](const std::string& name, const Node& node) { return name == node.name.c_str(); };
-  if (names.empty() || std::ranges::equal(names, avatar.nodes, is_same)) return;
-  throw Error(file, "its table pose/node_names does not name its avatar's nodes",
-              "give the poses the nodes of avatar.glb, in the same order");
-}
-
-/// The scene of an .h5, whose frames follow.
-Scene read_hdf5(const std::string& path, const FacingChoice& facing, Frames& frames, Verbosity verbosity) {
-  const auto file = std::make_shared<TraceHdf5>(path);
-  Scene scene = make_scene({.avatar_glb = file->avatar_glb(),
-                            .map = {file->actuator_map_png(), std::string(text_of(file->actuator_map_json()))},
-                            .facing = file->facing()},
-                           {path + ", avatar.glb", path + ", actuator_map.png"}, facing, verbosity);
-  require_names(path, file->node_names(), scene.avatar);
-  frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
-  frames.share = [file] { return file->share(); };
-  frames.shape = file->shape();
-  return scene;
-}
-
-void read_poses(const ImportOptions& options, const Avatar& avatar, Frames& frames) {
-  const auto reader = std::make_shared<PoseCsvReader>(options.poses, avatar, options.convention.of_poses());
-  warn_of_names(options.poses, "these nodes of the avatar keep their rest pose", reader->resting(),
-                options.common.verbosity());
-  frames.next_pose = [reader](TraceFrame& frame) { return reader->next(frame); };
-  frames.share = [reader] { return reader->share(); };
-  frames.placed = reader->placed();
-}
-
-TraceWriterOptions writing_of(const ImportOptions& options, ColliderShape shape) {
+TraceWriterOptions writing_of(const ImportOptions& options, const ImportedFrames& frames) {
   TraceWriterOptions writing;
   writing.overwrite = options.common.overwrite();
   writing.unfinished = Unfinished::kRemoved;
-  writing.shape = shape;
+  writing.shape = frames.shape;
+  writing.owners = frames.owners;
   if (options.compression == "lz4") writing.compression = Compression::kLz4;
   if (options.compression == "none") writing.compression = Compression::kNone;
   return writing;
@@ -277,7 +170,7 @@ std::string doubt_of_axes(const ImportOptions& options) {
 /// What is asked about files of other programs once they are read.
 class Questions {
  public:
-  Questions(const Avatar& avatar, const ImportOptions& options, const Frames& frames)
+  Questions(const Avatar& avatar, const ImportOptions& options, const ImportedFrames& frames)
       : pose_(avatar, options.convention.of_poses(), frames.placed) {
     if (!options.colliders.empty()) placement_.emplace(avatar, options.convention.of_colliders());
   }
@@ -288,7 +181,7 @@ class Questions {
     any_collider_ = any_collider_ || !frame.colliders.empty();
   }
 
-  void ask(const ImportOptions& options, const Frames& frames, std::uint64_t frame_count, double last_s) const {
+  void ask(const ImportOptions& options, const ImportedFrames& frames, std::uint64_t frame_count, double last_s) const {
     const auto doubt_of = [&](const std::string& file, const std::string& doubt) {
       if (!doubt.empty() && !file.empty()) warn(fmt::format("{}: {}", file, doubt), options.common.verbosity());
     };
@@ -323,16 +216,19 @@ void run_import(ImportOptions options, Invocation& invocation) {
   if (!from_hdf5) check_flags(options);
   if (options.avatar.empty() && !from_hdf5) options.avatar = "builtin";
   const std::vector<std::string> outputs = {options.output, options.common.json};
-  check_outputs(
-      outputs,
-      {options.from, options.motion, options.poses, options.colliders, options.avatar, options.map, options.session},
-      options.common);
+  std::vector<std::string> inputs = {options.from,   options.motion, options.poses,  options.colliders,
+                                     options.avatar, options.map,    options.session};
+  for (const PersonFiles& other : options.others) inputs.insert(inputs.end(), {other.poses, other.avatar, other.map});
+  check_outputs(outputs, inputs, options.common);
   if (options.output == "-") refuse_terminal("-o -");
 
-  Frames frames;
-  Scene scene =
-      from_hdf5 ? read_hdf5(options.from, options.facing, frames, verbosity)
-                : load_scene(options.avatar, options.map, options.facing, verbosity, recorded_facing(options.session));
+  ImportedFrames frames;
+  std::vector<Scene> scenes =
+      from_hdf5 ? read_hdf5(options.from, options.facing, frames, verbosity) : load_scenes(options);
+  if (scenes.size() > 1 && options.facing.axis != FacingChoice().axis)
+    throw UsageError("--facing", fmt::format("'{}' holds {}", options.from, count_of_people(scenes.size())),
+                     "leave it out, or change who looks where in the session of the export");
+  Scene& scene = scenes.front();
   std::optional<LoadedMotion> motion;
   Session session = provenance_texts(invocation.argv);
   session["colliders"] = options.colliders;
@@ -342,7 +238,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
     session["animation"] = options.motion;
     session["rate_hz"] = fmt::format("{}", options.rate_hz.value_or(1 / motion->frame_time_s));
   } else if (!from_hdf5) {
-    read_poses(options, scene.avatar, frames);
+    read_poses(options, scenes, frames);
     session["animation"] = options.poses;
     note_pose_convention(options.convention, session);
   }
@@ -357,7 +253,10 @@ void run_import(ImportOptions options, Invocation& invocation) {
   bool more = frames.next(frame);
   std::optional<Questions> questions;  // what 'vestige export' wrote is not in doubt
   if (options.from.empty()) questions.emplace(scene.avatar, options, frames);
-  TraceWriter trace(options.output, session, {scene.person()}, writing_of(options, frames.shape));
+  std::vector<TracePerson> people;
+  people.reserve(scenes.size());
+  for (const Scene& one : scenes) people.push_back(one.person());
+  TraceWriter trace(options.output, session, people, writing_of(options, frames));
   {
     Progress progress("Importing", verbosity);
     for (; more; more = frames.next(frame)) {
@@ -368,7 +267,7 @@ void run_import(ImportOptions options, Invocation& invocation) {
   }
   frames.finish();
   trace.finish();
-  if (questions) questions->ask(options, frames, trace.frame_count(), seconds(frame));
+  if (questions) questions->ask(options, frames, trace.frame_count(), frame.time_s());
 
   nlohmann::ordered_json json = provenance(invocation.argv);
   json["trace"] = options.output;
@@ -376,9 +275,14 @@ void run_import(ImportOptions options, Invocation& invocation) {
   json["bytes"] = trace.bytes_written();
   if (motion) json["motion"] = to_json(*motion);
   json["avatar"] = to_json(scene.avatar);
+  if (scenes.size() > 1)
+    for (const Scene& one : scenes) {
+      json["avatars"].push_back(to_json(one.avatar));
+      json["avatars"].back()["name"] = one.name;
+    }
   write_json(options.common.json, json, options.common);
   std::string text = fmt::format("{}: {} of {} s, {:.1f} MB\n", options.output, counted(trace.frame_count(), "frame"),
-                                 seconds(frame), static_cast<double>(trace.bytes_written()) / 1e6);
+                                 frame.time_s(), static_cast<double>(trace.bytes_written()) / 1e6);
   if (motion) text += describe(*motion);
   print_summary(text, {options.output, options.common.json}, options.common);
 }

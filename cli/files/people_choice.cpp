@@ -26,17 +26,18 @@ namespace {
 constexpr const char* kAvatarFlag = "--avatar";
 
 /// The flags that belong to a person, and where their values go.
-struct PersonFlag {
+struct FlagOfPerson {
   const char* name;
   std::string& (*value)(PersonChoice&);
 };
-constexpr std::array<PersonFlag, 6> kPersonFlags = {{
+constexpr std::array<FlagOfPerson, 7> kFlagsOfPerson = {{
     {"--animation", [](PersonChoice& person) -> std::string& { return person.animation; }},
     {"--map", [](PersonChoice& person) -> std::string& { return person.map; }},
     {"--facing", [](PersonChoice& person) -> std::string& { return person.facing.axis; }},
     {"--at", [](PersonChoice& person) -> std::string& { return person.at; }},
     {"--limbs", [](PersonChoice& person) -> std::string& { return person.limbs; }},
     {"--name", [](PersonChoice& person) -> std::string& { return person.name; }},
+    {"--live", [](PersonChoice& person) -> std::string& { return person.live; }},
 }};
 
 /// The people of --colliders touch.
@@ -110,9 +111,9 @@ void add_people_options(CLI::App& verb) {
   avatar->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   avatar->description(
       avatar->get_description() +
-      ". Repeat it for more people: --animation, --map, --facing, --at, --limbs and --name belong to the "
-      "latest --avatar before them");
-  for (const PersonFlag& flag : kPersonFlags)
+      ". Repeat it for more people: --animation, --map, --facing, --at, --limbs, --name and --live belong to "
+      "the latest --avatar before them");
+  for (const FlagOfPerson& flag : kFlagsOfPerson)
     verb.get_option(flag.name)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
 
@@ -123,9 +124,9 @@ std::vector<PersonChoice> people_choices(const CLI::App& verb) {
   std::set<std::string> given;                     // for the latest person
   for (const CLI::Option* option : verb.parse_order()) {
     const auto flag = std::ranges::find_if(
-        kPersonFlags, [&](const PersonFlag& each) { return option == verb.get_option(each.name); });
+        kFlagsOfPerson, [&](const FlagOfPerson& each) { return option == verb.get_option(each.name); });
     const bool is_avatar = option == verb.get_option(kAvatarFlag);
-    if (!is_avatar && flag == kPersonFlags.end()) continue;
+    if (!is_avatar && flag == kFlagsOfPerson.end()) continue;
     const std::string& value = option->results().at(seen[option]++);
     const std::string name = is_avatar ? kAvatarFlag : flag->name;
     if (is_avatar && given.contains(name)) {
@@ -224,15 +225,15 @@ std::vector<LimbSphere> spheres_of(const std::string& text, const std::string& n
 
 }  // namespace
 
+std::uint64_t first_limb_id(const SceneChoice& scene, const ColliderSource& source, std::size_t people) {
+  if (const auto largest = source.largest_id()) return std::uint64_t{*largest} + 1;
+  if (scene.colliders == kNoColliders) return 0;
+  // Dealt to people, ids have gaps where one of them has a collider less.
+  return (scene.collider_count() + people - 1) / people * people;
+}
+
 CarriedLimbs limbs_of(const std::vector<PersonChoice>& choices, const std::vector<Person>& people,
-                      const SceneChoice& scene, const ColliderSource& source) {
-  std::uint64_t first_id = 0;
-  if (const auto largest = source.largest_id()) {
-    first_id = std::uint64_t{*largest} + 1;
-  } else if (scene.colliders != kNoColliders) {
-    // Dealt to people, ids have gaps where one of them has a collider less.
-    first_id = (scene.collider_count() + people.size() - 1) / people.size() * people.size();
-  }
+                      std::uint64_t first_id) {
   std::vector<std::vector<LimbSphere>> spheres;
   std::uint64_t end_id = first_id;
   for (std::size_t k = 0; k < people.size(); ++k) {
@@ -242,7 +243,7 @@ CarriedLimbs limbs_of(const std::vector<PersonChoice>& choices, const std::vecto
     end_id += spheres.back().size();
   }
   if (end_id > std::numeric_limits<std::uint32_t>::max())
-    throw Error("--limbs", fmt::format("their ids would follow {}, the largest of {}", first_id - 1, scene.colliders),
+    throw Error("--limbs", fmt::format("their ids would follow {}, the largest of the colliders", first_id - 1),
                 "give those colliders smaller ids");
   CarriedLimbs limbs(static_cast<std::uint32_t>(first_id));
   for (std::size_t k = 0; k < people.size(); ++k)

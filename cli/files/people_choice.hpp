@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <string>
@@ -24,6 +25,7 @@ struct PersonChoice {
   std::string at;     ///< X,Y,Z[,YAW]; empty: where the scene stands, as the avatar looks
   std::string limbs;  ///< "all", or a list of `limb_names`; empty: none
   std::string name;   ///< empty: made from the avatar's name where there are several people
+  std::string live;   ///< where the motion comes from: "-", or vmc://HOST:PORT; empty: nothing is live
 };
 
 /// The value of --colliders that means two people of whom one touches the other.
@@ -34,9 +36,9 @@ inline constexpr const char* kTouch = "touch";
 void add_people_options(CLI::App& verb);
 
 /// Returns the people that the flags of `verb` describe, at least one; with --colliders touch its own two. --animation,
-/// --map, --facing, --at, --limbs and
-/// --name belong to the latest --avatar before them; before any, to the first. Throws `UsageError` if a flag is given
-/// twice for a person, two people have one name, or there are too many people.
+/// --map, --facing, --at, --limbs, --name and --live belong to the latest --avatar before them; before any, to the
+/// first. Throws `UsageError` if a flag is given twice for a person, two people have one name, or there are too many
+/// people.
 std::vector<PersonChoice> people_choices(const CLI::App& verb);
 
 /// A person who is ready to be recorded.
@@ -59,10 +61,13 @@ Stance stance_of(const PersonChoice& choice, const Avatar& avatar);
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const std::vector<Person>& people,
                                                std::uint64_t seed);
 
-/// Returns the limbs that people carry as colliders, behind the colliders of `source`. Throws `UsageError` for a limb
-/// that does not exist or that the joints of an avatar do not tell.
+/// Returns the id that follows the colliders of `source`.
+std::uint64_t first_limb_id(const SceneChoice& scene, const ColliderSource& source, std::size_t people);
+
+/// Returns the limbs that people carry as colliders, with ids from `first_id` on. Throws `UsageError` for a limb that
+/// does not exist or that the joints of an avatar do not tell.
 CarriedLimbs limbs_of(const std::vector<PersonChoice>& choices, const std::vector<Person>& people,
-                      const SceneChoice& scene, const ColliderSource& source);
+                      std::uint64_t first_id);
 
 /// Warns if two people stand within each other when the scene begins.
 void warn_of_overlap(const std::vector<Person>& people, Verbosity verbosity);

@@ -36,6 +36,9 @@ constexpr double kFarthest_m = 1e7;  // detector/CONTRACT.md, 2
 /// When a live recording's chunks are closed, so that with the time until somebody looks nothing waits for 100 ms.
 constexpr double kLiveChunk_s = 0.08;
 
+/// Beyond the ids that OSC can send.
+constexpr std::uint64_t kFirstLiveLimb = std::uint64_t{1} << 31U;
+
 /// A radius may come at any time.
 constexpr ColliderShape kLiveShape = ColliderShape::kSpheres;
 
@@ -79,7 +82,8 @@ RecordingSettings settings_of(const RecordOptions& options) {
 Session session_of(const RecordOptions& options, const std::vector<Person>& people, const Invocation& invocation) {
   Session session = provenance_texts(invocation.argv);
   if (options.live.is_live()) {
-    session["live"] = options.live.source;
+    for (std::size_t k = 0; k < options.live.sources.size(); ++k)
+      session[trace_format::numbered("live", k)] = options.live.sources[k];
     if (!options.live.is_lines()) session["rate_hz"] = fmt::format("{}", options.recording.rate_hz);
     return session;
   }
@@ -106,9 +110,10 @@ TraceWriterOptions writing_of(const RecordOptions& options, const ColliderSource
   if (options.compression == "none") writing.compression = Compression::kNone;
   if (options.viz) writing.viz = Viz::kScene;
   writing.shape = colliders == nullptr ? kLiveShape : colliders->shape();
+  if (colliders != nullptr) writing.owners = colliders->owners();
   if (limbs != nullptr && limbs->sphere_count() > 0) {
     writing.shape = ColliderShape::kSpheres;
-    writing.has_owners = true;
+    writing.owners = Owners::kPeople;
   }
   if (options.limits.sync) writing.sync = ChunkSync::kEach;
   if (options.live.is_live()) writing.chunk_s = kLiveChunk_s;
@@ -167,11 +172,11 @@ std::vector<Person> load_people(const RecordOptions& options, const glm::dvec3& 
     Person& person = people.emplace_back();
     person.scene = load_scene(choice.avatar, choice.map, choice.facing, verbosity);
     person.scene.name = choice.name;
+    person.stance = stance_of(choice, person.scene.avatar);
+    require_near(origin_m + person.stance.position_m, "--at", choice.at);
     if (options.live.is_live()) continue;
     load_motion(choice.animation, options.scene.motion, person.scene.avatar, outputs, options.common);
     person.animation = choose_animation(person.scene.avatar, choice.animation, options.scene.morphs, verbosity);
-    person.stance = stance_of(choice, person.scene.avatar);
-    require_near(origin_m + person.stance.position_m, "--at", choice.at);
   }
   if (options.is_touch) let_touch(people);
   return people;
@@ -247,10 +252,12 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   const std::vector<Person> people = load_people(options, settings.origin_m, outputs);
   std::unique_ptr<ColliderSource> colliders;
   std::optional<CarriedLimbs> limbs;
-  if (!options.live.is_live()) {
+  if (options.live.is_live()) {
+    limbs = limbs_of(options.people, people, kFirstLiveLimb);
+  } else {
     warn_of_overlap(people, verbosity);
     colliders = make_colliders(options.scene, people, options.common.seed);
-    limbs = limbs_of(options.people, people, options.scene, *colliders);
+    limbs = limbs_of(options.people, people, first_limb_id(options.scene, *colliders, people.size()));
     check_colliders(options.scene, *colliders, options.recording.duration_s, verbosity);
     if (const std::string how = describe_resampling(colliders->median_step_s(), settings.rate_hz); !how.empty())
       warn(fmt::format("--colliders {}: {}", options.scene.colliders, how), verbosity);
@@ -270,8 +277,12 @@ void run_record(const RecordOptions& options, Invocation& invocation) {
   RecordingResult result;
   if (options.live.is_live()) {
     const auto duration_s = options.has_duration ? std::optional(settings.duration_s) : std::nullopt;
-    result.lost = record_live(options.live, people.front().scene, recorder,
-                              {.rate_hz = settings.rate_hz, .duration_s = duration_s}, settings.origin_m, verbosity);
+    LiveSettings live = {.rate_hz = settings.rate_hz, .duration_s = duration_s};
+    if (limbs->sphere_count() > 0) live.complete = [&](TraceFrame& frame) { limbs->carry(frame); };
+    std::vector<LivePerson> live_people;
+    live_people.reserve(people.size());
+    for (const Person& person : people) live_people.push_back({person.scene.avatar, person.stance});
+    result.lost = record_live(options.live, live_people, recorder, live, settings.origin_m, verbosity);
   } else {
     record_scene(options, people, *colliders, *limbs, settings, recorder);
   }
@@ -291,6 +302,7 @@ void add_record(CLI::App& program, Invocation& invocation) {
                             "  vestige record -o man.mcap\n"
                             "  vestige record --avatar man.glb --map regions.png --count 40 --rate 500 -o man.mcap\n");
   add_scene_options(*verb, options->scene);
+  add_live_options(*verb);
   add_people_options(*verb);
   CLI::Option* colliders = verb->get_option("--colliders");
   std::string description = colliders->get_description();
@@ -308,7 +320,6 @@ void add_record(CLI::App& program, Invocation& invocation) {
       ->capture_default_str()
       ->check(help::kPositive);
   add_limits_options(*verb, options->limits);
-  add_live_options(*verb, options->live);
   verb->add_option("--origin", options->origin, "Where in the world the scene stands, in metres")
       ->capture_default_str()
       ->type_name("X,Y,Z");
@@ -328,14 +339,12 @@ void add_record(CLI::App& program, Invocation& invocation) {
     for (const PersonChoice& person : options->people) animations.push_back(person.animation);
     const bool has_limbs =
         std::ranges::any_of(options->people, [](const PersonChoice& person) { return !person.limbs.empty(); });
-    if (has_limbs && options->live.is_live())
-      throw UsageError("--limbs", "a live recording has no limbs", "leave --limbs or --live out");
     options->is_touch = options->scene.colliders == kTouch;
     if (options->is_touch || (has_limbs && verb->count("--colliders") == 0)) options->scene.colliders = kNoColliders;
     check_scene_choice(options->scene, animations);
+    if (std::ranges::any_of(options->people, [](const PersonChoice& person) { return !person.live.empty(); }))
+      for (const PersonChoice& person : options->people) options->live.sources.push_back(person.live);
     check_live_choice(*verb, options->live);
-    if (options->live.is_live() && options->people.size() > 1)
-      throw UsageError("--avatar", "a live recording holds one person", "name one avatar, or leave --live out");
     options->has_duration = verb->count("--duration") != 0;
     run_record(*options, invocation);
   });

@@ -87,7 +87,7 @@ std::vector<WornVest> vests_of(const StreamOptions& options, const std::vector<P
   if (options.log.empty()) return vests;
   if (vests.size() > 1 && is_pipe(options.log))
     throw UsageError("--log", fmt::format("each of {} vests has a log, and '{}' takes one", vests.size(), options.log),
-                     "name a file: OUT.csv is the first person's, OUT.2.csv the second's");
+                     "name a file: OUT.csv is the first vest's; that of any other person K is OUT.K.csv");
   for (WornVest& vest : vests)
     vest.log = &vest == &vests.front() ? options.log : numbered_path(options.log, vest.person);
   return vests;
@@ -211,7 +211,9 @@ void add_stream(CLI::App& program, Invocation& invocation) {
   add_detector_options(*verb, options->choice);
   verb->add_option("--log", options->log,
                    "Write every changed state: its due time, whether it was sent or superseded, after how many "
-                   "microseconds, and its levels; of person 2 OUT.2.csv")
+                   "microseconds, and its levels; with several vests, OUT.csv is the first one's, and that of any "
+                   "other person K "
+                   "OUT.K.csv")
       ->group("Results")
       ->type_name("OUT.csv|-");
   add_common_options(*verb, options->common);

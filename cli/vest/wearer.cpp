@@ -1,5 +1,7 @@
 #include "cli/vest/wearer.hpp"
 
+#include <fmt/format.h>
+
 #include "cli/choices/person_maps.hpp"
 #include "traces/base/error.hpp"
 
@@ -13,7 +15,8 @@ LawMaker make_laws(const StreamOptions& options, const WornVest& vest, const Tra
     throw Error(vest.map.empty() ? options.trace : vest.map,
                 person.name.empty() ? "has no actuator, so nothing would be felt"
                                     : person.name + " has no actuator, so nothing would be felt",
-                "name a map that has actuators: --map FILE.png");
+                person.name.empty() ? "name a map that has actuators: --map FILE.png"
+                                    : fmt::format("name a map that has actuators: --map {}=FILE.png", vest.person + 1));
   const double rate = options.playback.rate;
   if (options.sink.quantity() == Quantity::kPressure) return {person.map, options.law.options(rate).hold_s};
   return LawMaker(DriveMaker(options.law, person.avatar, person.map, rate));

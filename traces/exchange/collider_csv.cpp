@@ -24,14 +24,22 @@ struct Sample {
   Arrival arrival = Arrival::kMoved;
 };
 
-using Samples = std::map<std::uint32_t, std::vector<Sample>>;
+struct Recorded {
+  std::uint16_t owner = kNobody;
+  std::vector<Sample> samples;
+};
+
+/// By id.
+using Samples = std::map<std::uint32_t, Recorded>;
 
 Samples parse(ColliderRows& rows) {
   Samples samples;
   std::map<std::uint32_t, std::uint64_t> last_frame;
   ColliderRow row;
   while (rows.next(row)) {
-    auto& of_collider = samples[row.sample.id];
+    Recorded& recorded = samples[row.sample.id];
+    recorded.owner = row.sample.owner;
+    auto& of_collider = recorded.samples;
     if (!of_collider.empty() && of_collider.back().time_s == row.time_s)
       throw rows.error(fmt::format("collider {} has two positions at {} s", row.sample.id, row.time_s),
                        "give each collider an id of its own, or remove one of the rows");
@@ -62,12 +70,14 @@ struct Steps {
 Steps steps_of(const Samples& samples) {
   std::vector<double> steps_s;
   std::size_t fast = 0;
-  for (const auto& [id, of_collider] : samples)
+  for (const auto& [id, recorded] : samples) {
+    const std::vector<Sample>& of_collider = recorded.samples;
     for (std::size_t i = 1; i < of_collider.size(); ++i) {
       if (of_collider[i].arrival == Arrival::kApart) continue;
       steps_s.push_back(of_collider[i].time_s - of_collider[i - 1].time_s);
       if (glm::distance(of_collider[i].position_m, of_collider[i - 1].position_m) > kFastest * steps_s.back()) ++fast;
     }
+  }
   if (steps_s.empty()) return {};
   const auto middle = steps_s.begin() + static_cast<std::ptrdiff_t>(steps_s.size() / 2);
   std::ranges::nth_element(steps_s, middle);
@@ -76,13 +86,13 @@ Steps steps_of(const Samples& samples) {
 
 class CsvColliders final : public ColliderSource {
  public:
-  CsvColliders(const Samples& samples, ColliderShape shape, const Convention& convention)
-      : steps_(steps_of(samples)), shape_(shape), convention_(convention) {
+  CsvColliders(const Samples& samples, const ColliderRows& rows, const Convention& convention)
+      : steps_(steps_of(samples)), shape_(rows.shape()), owners_(rows.owners()), convention_(convention) {
     span_s_ = {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-    for (const auto& [id, of_collider] : samples) {
-      tracks_.push_back({id, of_collider, 0});
-      span_s_.first_s = std::min(span_s_.first_s, of_collider.front().time_s);
-      span_s_.last_s = std::max(span_s_.last_s, of_collider.back().time_s);
+    for (const auto& [id, recorded] : samples) {
+      tracks_.push_back({id, recorded, 0});
+      span_s_.first_s = std::min(span_s_.first_s, recorded.samples.front().time_s);
+      span_s_.last_s = std::max(span_s_.last_s, recorded.samples.back().time_s);
     }
   }
 
@@ -91,25 +101,28 @@ class CsvColliders final : public ColliderSource {
     out.clear();
     teleported_.clear();
     for (Track& track : tracks_) {
+      const std::vector<Sample>& samples = track.recorded.samples;
+      const std::uint16_t owner = track.recorded.owner;
       bool is_apart = false;
-      for (; track.next < track.samples.size() && track.samples[track.next].time_s <= time_s; ++track.next)
-        is_apart = is_apart || track.samples[track.next].arrival == Arrival::kApart;
+      for (; track.next < samples.size() && samples[track.next].time_s <= time_s; ++track.next)
+        is_apart = is_apart || samples[track.next].arrival == Arrival::kApart;
       if (is_apart) teleported_.push_back(track.id);
       if (track.next == 0) continue;
-      const Sample& before = track.samples[track.next - 1];
+      const Sample& before = samples[track.next - 1];
       if (before.time_s == time_s) {
-        out.push_back({track.id, before.position_m, before.radius_m});
-      } else if (track.next < track.samples.size() && track.samples[track.next].arrival == Arrival::kMoved) {
-        const Sample& after = track.samples[track.next];
+        out.push_back({track.id, before.position_m, before.radius_m, owner});
+      } else if (track.next < samples.size() && samples[track.next].arrival == Arrival::kMoved) {
+        const Sample& after = samples[track.next];
         const double s = (time_s - before.time_s) / (after.time_s - before.time_s);
         const double grown_m = s * (double{after.radius_m} - double{before.radius_m});
         out.push_back({track.id, before.position_m + s * (after.position_m - before.position_m),
-                       static_cast<float>(double{before.radius_m} + grown_m)});
+                       static_cast<float>(double{before.radius_m} + grown_m), owner});
       }
     }
   }
 
   ColliderShape shape() const override { return shape_; }
+  Owners owners() const override { return owners_; }
   std::optional<std::uint32_t> largest_id() const override { return tracks_.back().id; }
   TimeSpan span_s() const override { return span_s_; }
   double median_step_s() const override { return steps_.median_s; }
@@ -132,11 +145,12 @@ class CsvColliders final : public ColliderSource {
  private:
   struct Track {
     std::uint32_t id;
-    std::vector<Sample> samples;
+    Recorded recorded;
     std::size_t next;  // the first sample after the time of the last `sample`
   };
   Steps steps_;
   ColliderShape shape_;
+  Owners owners_;
   Convention convention_;
   std::vector<Track> tracks_;
   TimeSpan span_s_;
@@ -147,7 +161,7 @@ class CsvColliders final : public ColliderSource {
 std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path, const Convention& convention) {
   ColliderRows rows(path, convention);
   const Samples samples = parse(rows);
-  return std::make_unique<CsvColliders>(samples, rows.shape(), convention);
+  return std::make_unique<CsvColliders>(samples, rows, convention);
 }
 
 }  // namespace vestige

@@ -9,6 +9,7 @@
 
 #include "traces/base/number_text.hpp"
 #include "traces/exchange/trace_export.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/scene/radius.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
@@ -19,23 +20,20 @@ namespace {
 constexpr std::string_view kAloneRemedy =
     "export poses and colliders of the same trace, or leave out the columns frame and teleported";
 
-std::string_view remedy_of(ColliderColumns columns, ColliderShape shape) {
+constexpr std::string_view kPlainRemedy = "each row is time_s,id,x,y,z: seconds, a whole number, metres";
+
+std::string remedy_of(ColliderColumns columns, ColliderShape shape, Owners owners) {
   const bool has_frames = columns == ColliderColumns::kFrames;
-  if (shape == ColliderShape::kPoints)
-    return has_frames
-               ? "each row is frame,time_s,id,x,y,z,teleported: a whole number, seconds, a whole number, metres, "
-                 "0 or 1"
-               : "each row is time_s,id,x,y,z: seconds, a whole number, metres";
-  return has_frames ? "each row is frame,time_s,id,x,y,z,radius_m,teleported: a whole number, seconds, a whole number, "
-                      "metres, 0 or 1"
-                    : "each row is time_s,id,x,y,z,radius_m: seconds, a whole number, metres";
+  return fmt::format("each row is {}: {}seconds, a whole number, metres{}{}", collider_header(columns, shape, owners),
+                     has_frames ? "a whole number, " : "",
+                     owners == Owners::kPeople ? ", the number of a person or 0" : "", has_frames ? ", 0 or 1" : "");
 }
 
 class ColliderCsv final : public TraceExport {
  public:
-  ColliderCsv(const std::filesystem::path& path, Overwrite overwrite, ColliderShape shape)
-      : file_(path, overwrite), shape_(shape) {
-    file_.write(collider_header(ColliderColumns::kFrames, shape));
+  ColliderCsv(const std::filesystem::path& path, Overwrite overwrite, ColliderShape shape, Owners owners)
+      : file_(path, overwrite), shape_(shape), owners_(owners) {
+    file_.write(collider_header(ColliderColumns::kFrames, shape, owners));
     file_.write("\n");
   }
 
@@ -50,6 +48,7 @@ class ColliderCsv final : public TraceExport {
       fmt::format_to(std::back_inserter(row_), "{},{},{},{},{},{},", frame.index, time_, collider.id,
                      collider.position_m.x, collider.position_m.y, collider.position_m.z);
       if (shape_ == ColliderShape::kSpheres) fmt::format_to(std::back_inserter(row_), "{},", collider.radius_m);
+      if (owners_ == Owners::kPeople) fmt::format_to(std::back_inserter(row_), "{},", collider.owner);
       row_ += teleported ? "1\n" : "0\n";
       file_.write(row_);
     }
@@ -60,6 +59,7 @@ class ColliderCsv final : public TraceExport {
  private:
   OutputFile file_;
   ColliderShape shape_;
+  Owners owners_;
   std::string time_;
   std::string row_;
   std::vector<std::uint32_t> teleported_;
@@ -67,55 +67,59 @@ class ColliderCsv final : public TraceExport {
 
 }  // namespace
 
-std::string_view collider_header(ColliderColumns columns, ColliderShape shape) {
-  if (columns == ColliderColumns::kTimes)
-    return shape == ColliderShape::kPoints ? "time_s,id,x,y,z" : "time_s,id,x,y,z,radius_m";
-  return shape == ColliderShape::kPoints ? "frame,time_s,id,x,y,z,teleported"
-                                         : "frame,time_s,id,x,y,z,radius_m,teleported";
+std::string collider_header(ColliderColumns columns, ColliderShape shape, Owners owners) {
+  const bool has_frames = columns == ColliderColumns::kFrames;
+  return fmt::format("{}time_s,id,x,y,z{}{}{}", has_frames ? "frame," : "",
+                     shape == ColliderShape::kSpheres ? ",radius_m" : "", owners == Owners::kPeople ? ",owner" : "",
+                     has_frames ? ",teleported" : "");
 }
 
 std::unique_ptr<TraceExport> make_collider_csv(const std::filesystem::path& path, Overwrite overwrite,
-                                               ColliderShape shape) {
-  return std::make_unique<ColliderCsv>(path, overwrite, shape);
+                                               ColliderShape shape, Owners owners) {
+  return std::make_unique<ColliderCsv>(path, overwrite, shape, owners);
 }
 
 ColliderRows::ColliderRows(const std::filesystem::path& path, const Convention& convention)
-    : reader_(path),
-      lines_(reader_, remedy_of(ColliderColumns::kTimes, ColliderShape::kPoints)),
-      convention_(convention) {
+    : reader_(path), lines_(reader_, kPlainRemedy), convention_(convention) {
   take_header();
 }
 
 void ColliderRows::take_header() {
   const std::string header = fmt::format("{}", fmt::join(lines_.take_header(), ","));
   for (const ColliderColumns columns : {ColliderColumns::kTimes, ColliderColumns::kFrames})
-    for (const ColliderShape shape : {ColliderShape::kPoints, ColliderShape::kSpheres}) {
-      if (header != collider_header(columns, shape)) continue;
-      columns_ = columns;
-      shape_ = shape;
-      lines_.set_remedy(remedy_of(columns, shape));
-      return;
-    }
+    for (const ColliderShape shape : {ColliderShape::kPoints, ColliderShape::kSpheres})
+      for (const Owners owners : {Owners::kNone, Owners::kPeople}) {
+        if (header != collider_header(columns, shape, owners)) continue;
+        columns_ = columns;
+        shape_ = shape;
+        owners_ = owners;
+        remedy_ = remedy_of(columns, shape, owners);
+        lines_.set_remedy(remedy_);
+        return;
+      }
   throw lines_.error(
-      "the header is neither 'time_s,id,x,y,z' nor 'frame,time_s,id,x,y,z,teleported', with or without radius_m behind "
-      "z");
+      "the header is neither 'time_s,id,x,y,z' nor 'frame,time_s,id,x,y,z,teleported', with or without radius_m and "
+      "owner behind z");
 }
 
 void ColliderRows::take_fields(ColliderRow& row) {
   glm::dvec3& position = row.sample.position_m;
   const bool has_frames = columns_ == ColliderColumns::kFrames;
   const bool has_radii = shape_ == ColliderShape::kSpheres;
+  const bool has_owners = owners_ == Owners::kPeople;
   int teleported = 0;
   double radius_m = 0;
   const auto wrong_count = [&] {
-    constexpr std::array kCounts = {"five", "six", "seven", "eight"};
-    return lines_.error(fmt::format("is not {} numbers", kCounts.at((has_frames ? 2U : 0U) + (has_radii ? 1U : 0U))));
+    constexpr std::array kCounts = {"five", "six", "seven", "eight", "nine"};
+    const std::size_t more = (has_frames ? 2U : 0U) + (has_radii ? 1U : 0U) + (has_owners ? 1U : 0U);
+    return lines_.error(fmt::format("is not {} numbers", kCounts.at(more)));
   };
   if (has_frames && !lines_.take(row.frame)) throw lines_.error("frame is not a whole number");
   if (!lines_.take(row.time_s)) throw lines_.error("time_s is not a number");
   if (!lines_.take(row.sample.id)) throw lines_.error("id is not a whole number from 0 to 4294967295");
   if (!lines_.take(position.x) || !lines_.take(position.y) || !lines_.take(position.z)) throw wrong_count();
   if (has_radii && !lines_.take(radius_m)) throw lines_.error("radius_m is not a number");
+  if (has_owners && !lines_.take(row.sample.owner)) throw lines_.error("owner is not a whole number from 0 to 65535");
   if (has_frames && (!lines_.take(teleported) || (teleported != 0 && teleported != 1)))
     throw lines_.error("teleported is neither 0 nor 1");
   if (!lines_.at_end()) throw wrong_count();
@@ -140,6 +144,15 @@ void ColliderRows::check_order(const ColliderRow& row) const {
     throw lines_.error(fmt::format("frame {} is at {} s and at {} s", row.frame, last_time_s_, row.time_s));
 }
 
+void ColliderRows::check_owner(const ColliderSample& sample) {
+  if (owners_ == Owners::kNone) return;
+  const auto [known, is_new] = owner_of_.try_emplace(sample.id, sample.owner);
+  if (known->second != sample.owner)
+    throw lines_.error(fmt::format("collider {} belongs to {}, and before it belonged to {}", sample.id,
+                                   in_words(sample.owner), in_words(known->second)),
+                       "give each collider one owner");
+}
+
 bool ColliderRows::next(ColliderRow& row) {
   if (!lines_.next()) return false;
   take_fields(row);
@@ -151,6 +164,7 @@ bool ColliderRows::next(ColliderRow& row) {
   if (std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}) > trace_format::kFarthest_m)
     throw lines_.error("a coordinate is beyond 1e9 m");
   check_order(row);
+  check_owner(row.sample);
   last_time_s_ = row.time_s;
   last_frame_ = row.frame;
   ++rows_;

@@ -16,6 +16,7 @@
 #include "traces/base/number_text.hpp"
 #include "traces/exchange/trace_export.hpp"
 #include "traces/files/column_file.hpp"
+#include "traces/gltf/clean/append_glb.hpp"
 #include "traces/gltf/clean/clean_avatar.hpp"
 #include "traces/gltf/clean/glb_builder.hpp"
 #include "traces/gltf/glb_container.hpp"
@@ -104,17 +105,63 @@ int add_collider_material(Builder& builder) {
                       {"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.3, 0.1, 1.0}}, {"metallicFactor", 0.0}}}});
 }
 
+/// A person, whose columns stand together: the origin, then three of each node.
+struct GltfAvatar {
+  GltfAvatar(const GltfPerson& person, std::size_t first_column, std::size_t first)
+      : name(person.name),
+        avatar(person.avatar),
+        glb(clean_avatar_glb(person.glb, "avatar.glb")),
+        origin(first_column),
+        first_float(first) {}
+
+  std::size_t node_column(std::size_t node) const { return origin + 1 + 3 * node; }
+  std::size_t columns() const { return 1 + 3 * avatar.nodes.size(); }
+  std::size_t floats() const { return 3 + 10 * avatar.nodes.size(); }
+  /// The numbers of a node in a row.
+  const float* of_node(const std::vector<float>& row, std::size_t node) const {
+    return &row[first_float + 3 + 10 * node];
+  }
+
+  std::string name;
+  const Avatar& avatar;
+  std::vector<std::byte> glb;  ///< the avatar without faults
+  std::size_t origin;          ///< the column
+  std::size_t first_float;     ///< in a row
+};
+
+/// The time's column comes first.
+std::vector<GltfAvatar> avatars_of(std::span<const GltfPerson> people) {
+  std::vector<GltfAvatar> avatars;
+  avatars.reserve(people.size());
+  std::size_t column = 1;
+  std::size_t first_float = 1;
+  for (const GltfPerson& person : people) {
+    const GltfAvatar& one = avatars.emplace_back(person, column, first_float);
+    column += one.columns();
+    first_float += one.floats();
+  }
+  return avatars;
+}
+
+std::vector<std::size_t> column_widths(const std::vector<GltfAvatar>& avatars, std::size_t colliders) {
+  std::vector<std::size_t> widths = {1};
+  for (const GltfAvatar& one : avatars) {
+    widths.push_back(3);
+    for (std::size_t i = 0; i < one.avatar.nodes.size(); ++i) widths.insert(widths.end(), {3, 4, 3});
+  }
+  for (std::size_t i = 0; i < colliders; ++i) widths.insert(widths.end(), {3, 3});
+  return widths;
+}
+
 class FrameGltf final : public TraceExport {
  public:
-  FrameGltf(const std::filesystem::path& path, Overwrite overwrite, const Avatar& avatar,
-            std::span<const std::byte> glb, ColliderIds ids)
+  FrameGltf(const std::filesystem::path& path, Overwrite overwrite, std::span<const GltfPerson> people, ColliderIds ids)
       : file_(path, overwrite),
         path_(path),
-        avatar_(avatar),
-        glb_(clean_avatar_glb(glb, "avatar.glb")),
+        avatars_(avatars_of(people)),
         ids_(std::move(ids.all)),
-        columns_(path, widths(avatar.nodes.size(), ids_.size())),
-        varies_(2 + 3 * avatar.nodes.size() + 2 * ids_.size()) {
+        columns_(path, column_widths(avatars_, ids_.size())),
+        varies_(column_widths(avatars_, ids_.size()).size()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     last_position_.resize(ids_.size(), glm::vec3(0));
     is_sphere_.resize(ids_.size(), false);
@@ -126,18 +173,20 @@ class FrameGltf final : public TraceExport {
   std::vector<std::string> losses() const override;
 
  private:
-  // The columns: time, origin, three of each node, two of each collider.
+  // The columns: time, those of each person, two of each collider.
   static constexpr std::size_t kTime = 0;
-  static constexpr std::size_t kOrigin = 1;
-  static std::size_t node_column(std::size_t node) { return 2 + 3 * node; }
-  std::size_t collider_column(std::size_t collider) const { return 2 + 3 * avatar_.nodes.size() + 2 * collider; }
-  static std::vector<std::size_t> widths(std::size_t nodes, std::size_t colliders) {
-    std::vector<std::size_t> all = {1, 3};
-    for (std::size_t i = 0; i < nodes; ++i) all.insert(all.end(), {3, 4, 3});
-    for (std::size_t i = 0; i < colliders; ++i) all.insert(all.end(), {3, 3});
-    return all;
+  std::size_t collider_column(std::size_t collider) const {
+    return avatars_.back().origin + avatars_.back().columns() + 2 * collider;
+  }
+  std::size_t collider_float(std::size_t collider) const {
+    return avatars_.back().first_float + avatars_.back().floats() + 6 * collider;
   }
 
+  /// Where a person stands in the file.
+  struct PlacedAvatar {
+    int first_node = 0;
+    std::optional<int> origin = {};
+  };
   using Columns = std::vector<std::size_t>;  ///< in the order in which the GLB has them
   /// A column that moves a node.
   struct Channel {
@@ -147,21 +196,23 @@ class FrameGltf final : public TraceExport {
     const char* interpolation = "LINEAR";
   };
 
-  void append_node(std::size_t index, NodeLocal node);
+  void append(const glm::vec3& vector) { row_.insert(row_.end(), {vector.x, vector.y, vector.z}); }
+  void append_pose(const GltfAvatar& person, const Pose& pose);
+  void append_node(const Node& rest, NodeLocal node);
   float scale_of(const ColliderSample& collider, std::size_t place);
   void note_what_varies();
-  void place_nodes(Builder& builder) const;
-  std::optional<int> add_origin_node(Builder& builder) const;
+  PlacedAvatar place(Builder& builder, const GltfAvatar& person, const gltf::AppendedNodes& nodes) const;
+  std::optional<int> add_origin_node(Builder& builder, const GltfAvatar& person, const std::vector<int>& roots) const;
   std::vector<int> add_colliders(Builder& builder) const;
-  Columns add_animation(Builder& builder, std::optional<int> origin, const std::vector<int>& colliders) const;
+  Columns add_animation(Builder& builder, const std::vector<PlacedAvatar>& placed,
+                        const std::vector<int>& colliders) const;
   int begin_animation(Builder& builder) const;
   void add_channel(Builder& builder, Columns& columns, int input, const Channel& channel) const;
   void write_glb(Builder& builder, const Columns& columns);
 
   OutputFile file_;
   std::filesystem::path path_;
-  const Avatar& avatar_;
-  std::vector<std::byte> glb_;  ///< the avatar without faults
+  std::vector<GltfAvatar> avatars_;
   std::vector<std::uint32_t> ids_;
   std::map<std::uint32_t, std::size_t> place_of_;
   ColumnFile columns_;
@@ -175,6 +226,7 @@ class FrameGltf final : public TraceExport {
   std::vector<bool> is_sphere_;  ///< for each collider; the scale of a sphere is its radius, that of a point 1
   glm::dvec3 base_m_ = glm::dvec3(0);
   std::uint64_t frames_left_out_ = 0;
+  std::uint64_t poses_missing_ = 0;
   std::uint64_t non_finite_ = 0;
   std::uint64_t radii_raised_ = 0;
 };
@@ -184,7 +236,7 @@ bool is_finite(const glm::vec3& vector) {
 }
 
 /// Corrects what glTF forbids: a rotation must have length 1, and numbers must be finite.
-void FrameGltf::append_node(std::size_t index, NodeLocal node) {
+void FrameGltf::append_node(const Node& rest_node, NodeLocal node) {
   const auto& q = node.rotation;
   const double length = glm::length(glm::dquat(q));
   if (std::abs(length - 1) > 1e-5 && std::isfinite(length) && length > 0)
@@ -197,7 +249,7 @@ void FrameGltf::append_node(std::size_t index, NodeLocal node) {
     if (!last_row_.empty()) {
       std::copy_n(last_row_.begin() + static_cast<std::ptrdiff_t>(row_.size()), numbers.size(), numbers.begin());
     } else {
-      const NodeLocal& rest = avatar_.nodes[index].rest;
+      const NodeLocal& rest = rest_node.rest;
       numbers = {rest.translation.x, rest.translation.y, rest.translation.z, rest.rotation.x, rest.rotation.y,
                  rest.rotation.z,    rest.rotation.w,    rest.scale.x,       rest.scale.y,    rest.scale.z};
     }
@@ -211,6 +263,25 @@ float FrameGltf::scale_of(const ColliderSample& collider, std::size_t place) {
   return std::max(collider.radius_m, kSmallestRadius_m);
 }
 
+void FrameGltf::append_pose(const GltfAvatar& person, const Pose& pose) {
+  const bool is_missing = pose.nodes.empty() && !person.avatar.nodes.empty();
+  if (is_missing) ++poses_missing_;
+  if (is_missing && !last_row_.empty()) {
+    const auto last = last_row_.begin() + static_cast<std::ptrdiff_t>(person.first_float);
+    row_.insert(row_.end(), last, last + static_cast<std::ptrdiff_t>(person.floats()));
+    return;
+  }
+  glm::vec3 origin(pose.origin_m - base_m_);
+  if (!is_finite(origin)) {
+    ++non_finite_;
+    const std::size_t last = person.first_float;
+    origin = last_row_.empty() ? glm::vec3(0) : glm::vec3(last_row_[last], last_row_[last + 1], last_row_[last + 2]);
+  }
+  append(origin);
+  const std::vector<Node>& nodes = person.avatar.nodes;
+  for (std::size_t i = 0; i < nodes.size(); ++i) append_node(nodes[i], is_missing ? nodes[i].rest : pose.nodes[i]);
+}
+
 void FrameGltf::write(const TraceFrame& frame) {
   const auto time_s = static_cast<float>(static_cast<double>(frame.time_ns) / 1e9);
   if (!last_row_.empty() && !(time_s > last_row_.front())) {
@@ -219,14 +290,7 @@ void FrameGltf::write(const TraceFrame& frame) {
   }
   if (first_row_.empty() && is_finite(glm::vec3(frame.poses.front().origin_m))) base_m_ = frame.poses.front().origin_m;
   row_.assign(1, time_s);
-  const auto append = [&](const glm::vec3& vector) { row_.insert(row_.end(), {vector.x, vector.y, vector.z}); };
-  glm::vec3 origin(frame.poses.front().origin_m - base_m_);
-  if (!is_finite(origin)) {
-    ++non_finite_;
-    origin = last_row_.empty() ? glm::vec3(0) : glm::vec3(last_row_[1], last_row_[2], last_row_[3]);
-  }
-  append(origin);
-  for (std::size_t i = 0; i < frame.poses.front().nodes.size(); ++i) append_node(i, frame.poses.front().nodes[i]);
+  for (std::size_t i = 0; i < avatars_.size(); ++i) append_pose(avatars_[i], frame.poses[i]);
   scale_.assign(ids_.size(), 0);
   for (const ColliderSample& collider : frame.colliders) {
     const auto place = place_of_.find(collider.id);
@@ -263,32 +327,42 @@ void FrameGltf::note_what_varies() {
   }
 }
 
-/// Gives every node its transform in the first frame.
-void FrameGltf::place_nodes(Builder& builder) const {
-  for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
-    if (avatar_.nodes[i].fixed_matrix) continue;
-    Json& node = builder.json["nodes"][i];
-    const float* numbers = &first_row_[4 + 10 * i];
+/// Gives every node of a person its transform in the first frame, and puts the person into the scene.
+FrameGltf::PlacedAvatar FrameGltf::place(Builder& builder, const GltfAvatar& person,
+                                         const gltf::AppendedNodes& nodes) const {
+  for (std::size_t i = 0; i < person.avatar.nodes.size(); ++i) {
+    if (person.avatar.nodes[i].fixed_matrix) continue;
+    Json& node = builder.json["nodes"][static_cast<std::size_t>(nodes.first) + i];
+    const float* numbers = person.of_node(first_row_, i);
     node["translation"] = {numbers[0], numbers[1], numbers[2]};
     node["rotation"] = {numbers[3], numbers[4], numbers[5], numbers[6]};
     node["scale"] = {numbers[7], numbers[8], numbers[9]};
   }
+  return {nodes.first, add_origin_node(builder, person, nodes.roots)};
 }
 
-/// Adds a node above the avatar if the avatar's origin moves in the world. A skinned mesh follows its joints and stays
-/// at the root.
-std::optional<int> FrameGltf::add_origin_node(Builder& builder) const {
-  if (!varies_[kOrigin]) return {};
-  Json& roots = scene_of(builder)["nodes"];
-  Json below = Json::array();
-  Json beside = Json::array();
-  for (const Json& root : roots) {
-    const Json& node = builder.json["nodes"][root.get<std::size_t>()];
-    (node.contains("skin") && !node.contains("children") ? beside : below).push_back(root);
+/// Puts the roots of a person into the scene. If the person's origin moves in the world, or there are several people,
+/// they stand below a node of their own. A skinned mesh follows its joints and stays at the root.
+std::optional<int> FrameGltf::add_origin_node(Builder& builder, const GltfAvatar& person,
+                                              const std::vector<int>& roots) const {
+  Json& scene = scene_of(builder)["nodes"];
+  const bool has_name = avatars_.size() > 1;
+  if (!has_name && !varies_[person.origin]) {
+    for (const int root : roots) scene.push_back(root);
+    return {};
   }
-  const int node = builder.add("nodes", {{"name", "avatar origin"}, {"children", below}});
-  beside.push_back(node);
-  scene_of(builder)["nodes"] = beside;
+  Json below = Json::array();
+  for (const int root : roots) {
+    const Json& node = builder.json["nodes"][static_cast<std::size_t>(root)];
+    (node.contains("skin") && !node.contains("children") ? scene : below).push_back(root);
+  }
+  Json origin = {{"name", has_name ? person.name : "avatar origin"}, {"children", below}};
+  if (has_name) {
+    const float* first = &first_row_[person.first_float];
+    origin["translation"] = {first[0], first[1], first[2]};
+  }
+  const int node = builder.add("nodes", std::move(origin));
+  scene.push_back(node);
   return node;
 }
 
@@ -302,7 +376,7 @@ std::vector<int> FrameGltf::add_colliders(Builder& builder) const {
   const int point_mesh = any_point ? add_sphere(builder, kPoint_m, material) : -1;
   const int sphere_mesh = any_sphere ? add_sphere(builder, 1, material) : -1;
   for (std::size_t i = 0; i < ids_.size(); ++i) {
-    const float* numbers = &first_row_[4 + 10 * avatar_.nodes.size() + 6 * i];
+    const float* numbers = &first_row_[collider_float(i)];
     nodes.push_back(builder.add("nodes", {{"name", fmt::format("collider {}", ids_[i])},
                                           {"mesh", is_sphere_[i] ? sphere_mesh : point_mesh},
                                           {"extras", {{"radius_m", is_sphere_[i] ? 1 : 0}}},
@@ -348,18 +422,21 @@ void FrameGltf::add_channel(Builder& builder, Columns& columns, int input, const
 }
 
 /// Adds the animation: one view after all of the avatar's data, with the times, then a column for each channel.
-FrameGltf::Columns FrameGltf::add_animation(Builder& builder, std::optional<int> origin,
+FrameGltf::Columns FrameGltf::add_animation(Builder& builder, const std::vector<PlacedAvatar>& placed,
                                             const std::vector<int>& colliders) const {
   Columns columns = {kTime};
   const int input = begin_animation(builder);
   const auto add = [&](const Channel& channel) { add_channel(builder, columns, input, channel); };
-  if (origin) add({*origin, kOrigin, "translation"});
-  for (std::size_t i = 0; i < avatar_.nodes.size(); ++i) {
-    if (avatar_.nodes[i].fixed_matrix) continue;
-    const int node = static_cast<int>(i);
-    add({node, node_column(i), "translation"});
-    add({node, node_column(i) + 1, "rotation"});
-    add({node, node_column(i) + 2, "scale"});
+  for (std::size_t k = 0; k < avatars_.size(); ++k) {
+    const GltfAvatar& person = avatars_[k];
+    if (placed[k].origin) add({*placed[k].origin, person.origin, "translation"});
+    for (std::size_t i = 0; i < person.avatar.nodes.size(); ++i) {
+      if (person.avatar.nodes[i].fixed_matrix) continue;
+      const int node = placed[k].first_node + static_cast<int>(i);
+      add({node, person.node_column(i), "translation"});
+      add({node, person.node_column(i) + 1, "rotation"});
+      add({node, person.node_column(i) + 2, "scale"});
+    }
   }
   for (std::size_t i = 0; i < ids_.size(); ++i) {
     add({colliders[i], collider_column(i), "translation"});
@@ -379,14 +456,18 @@ FrameGltf::Columns FrameGltf::add_animation(Builder& builder, std::optional<int>
 void FrameGltf::commit() {
   if (columns_.rows() == 0) throw Error(path_.string(), "there is no frame to export", "");
   columns_.finish();
-  Builder builder = continued(glb_);
+  Builder builder = continued(avatars_.front().glb);
   builder.json["asset"]["generator"] = fmt::format("vestige {}", kVersion);
   builder.json.erase("animations");
-  place_nodes(builder);
-  const std::optional<int> origin = add_origin_node(builder);
+  std::vector<gltf::AppendedNodes> nodes = {{0, scene_of(builder)["nodes"].get<std::vector<int>>()}};
+  for (auto person = avatars_.begin() + 1; person != avatars_.end(); ++person)
+    nodes.push_back(gltf::append_glb(builder, continued(person->glb)));
+  scene_of(builder)["nodes"] = Json::array();
+  std::vector<PlacedAvatar> placed;
+  for (std::size_t i = 0; i < avatars_.size(); ++i) placed.push_back(place(builder, avatars_[i], nodes[i]));
   const std::vector<int> colliders = add_colliders(builder);
   scene_of(builder)["extras"]["origin_m"] = {base_m_.x, base_m_.y, base_m_.z};
-  write_glb(builder, add_animation(builder, origin, colliders));
+  write_glb(builder, add_animation(builder, placed, colliders));
 }
 
 void FrameGltf::write_glb(Builder& builder, const Columns& columns) {
@@ -428,6 +509,9 @@ std::vector<std::string> FrameGltf::losses() const {
     losses.push_back(fmt::format(
         "not finite in fp32: {}; nodes and the origin keep the values of the frame before, colliders are absent",
         counted(non_finite_, "value")));
+  if (poses_missing_ > 0)
+    losses.push_back(
+        fmt::format("{} missing: that person keeps the one of the frame before", counted(poses_missing_, "pose")));
   if (radii_raised_ > 0)
     losses.push_back(fmt::format("{} of spheres below {:g} m became that: a node of scale 0 is an absent collider",
                                  counted(radii_raised_, "radius value"), kSmallestRadius_m));
@@ -437,8 +521,8 @@ std::vector<std::string> FrameGltf::losses() const {
 }  // namespace
 
 std::unique_ptr<TraceExport> make_frame_gltf(const std::filesystem::path& path, Overwrite overwrite,
-                                             const Avatar& avatar, std::span<const std::byte> glb, ColliderIds ids) {
-  return std::make_unique<FrameGltf>(path, overwrite, avatar, glb, std::move(ids));
+                                             std::span<const GltfPerson> people, ColliderIds ids) {
+  return std::make_unique<FrameGltf>(path, overwrite, people, std::move(ids));
 }
 
 }  // namespace vestige

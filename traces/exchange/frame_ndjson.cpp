@@ -5,6 +5,7 @@
 #include "traces/base/number_text.hpp"
 #include "traces/exchange/trace_export.hpp"
 #include "traces/scene/frame_json.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 
@@ -18,8 +19,12 @@ class FrameNdjson final : public TraceExport {
     line_.clear();
     fmt::format_to(std::back_inserter(line_), R"({{"frame":{},"time_s":)", frame.index);
     append_seconds(line_, frame.time_ns);
-    line_ += R"(,"pose":)";
-    append_json(line_, frame.poses.front());
+    for (std::size_t person = 0; person < frame.poses.size(); ++person) {
+      const Pose& pose = frame.poses[person];
+      if (frame.poses.size() > 1 && pose.nodes.empty()) continue;  // it is missing
+      fmt::format_to(std::back_inserter(line_), R"(,"{}":)", trace_format::numbered("pose", person));
+      append_json(line_, pose);
+    }
     line_ += R"(,"colliders":)";
     append_json(line_, frame.colliders);
     if (!frame.teleported.empty())

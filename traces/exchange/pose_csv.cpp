@@ -44,8 +44,9 @@ float& part_of(NodeLocal& node, std::size_t part) {
 
 class PoseCsv final : public TraceExport {
  public:
-  PoseCsv(const std::filesystem::path& path, Overwrite overwrite, const std::vector<std::string>& node_names)
-      : file_(path, overwrite) {
+  PoseCsv(const std::filesystem::path& path, Overwrite overwrite, const std::vector<std::string>& node_names,
+          std::size_t person)
+      : file_(path, overwrite), person_(person), nodes_(node_names.size()) {
     row_ = "frame,time_s,origin_x,origin_y,origin_z";
     for (const std::string& node : pose_csv_nodes(node_names))
       for (const char* part : kPoseCsvParts) {
@@ -57,12 +58,17 @@ class PoseCsv final : public TraceExport {
   }
 
   void write(const TraceFrame& frame) override {
+    const Pose& pose = frame.poses[person_];
+    if (pose.nodes.size() != nodes_) {
+      ++missing_;
+      return;
+    }
     row_ = fmt::format("{},", frame.index);
     append_seconds(row_, frame.time_ns);
     const auto out = std::back_inserter(row_);
-    const glm::dvec3& origin = frame.poses.front().origin_m;
+    const glm::dvec3& origin = pose.origin_m;
     fmt::format_to(out, ",{},{},{}", origin.x, origin.y, origin.z);
-    for (const NodeLocal& node : frame.poses.front().nodes) {
+    for (const NodeLocal& node : pose.nodes) {
       fmt::format_to(out, ",{},{},{}", node.translation.x, node.translation.y, node.translation.z);
       fmt::format_to(out, ",{},{},{},{}", node.rotation.x, node.rotation.y, node.rotation.z, node.rotation.w);
       fmt::format_to(out, ",{},{},{}", node.scale.x, node.scale.y, node.scale.z);
@@ -73,8 +79,16 @@ class PoseCsv final : public TraceExport {
 
   void commit() override { file_.commit(); }
 
+  std::vector<std::string> losses() const override {
+    if (missing_ == 0) return {};
+    return {fmt::format("person {} has no pose in {}", person_ + 1, counted(missing_, "frame"))};
+  }
+
  private:
   OutputFile file_;
+  std::size_t person_;
+  std::size_t nodes_;
+  std::uint64_t missing_ = 0;
   std::string row_;
 };
 
@@ -109,8 +123,8 @@ std::vector<std::string> pose_csv_nodes(const std::vector<std::string>& node_nam
 }
 
 std::unique_ptr<TraceExport> make_pose_csv(const std::filesystem::path& path, Overwrite overwrite,
-                                           const std::vector<std::string>& node_names) {
-  return std::make_unique<PoseCsv>(path, overwrite, node_names);
+                                           const std::vector<std::string>& node_names, std::size_t person) {
+  return std::make_unique<PoseCsv>(path, overwrite, node_names, person);
 }
 
 PoseCsvReader::PoseCsvReader(const std::filesystem::path& path, const Avatar& avatar, const Convention& convention)

@@ -20,7 +20,6 @@ namespace vestige {
 namespace {
 
 constexpr const char* kSession = "session";
-constexpr const char* kNodeNames = "pose/node_names";
 constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 constexpr hsize_t kMostColumns = 1000000;
 constexpr const char* kFormat = "vestige trace";
@@ -31,26 +30,20 @@ class TraceHdf5::Implementation {
  public:
   explicit Implementation(const std::filesystem::path& path) : path_(path), file_(open_hdf5(path, kHdf5Remedy)) {
     require_format();
-    node_names = read_node_names();
-    facing = read_text(kSession, std::string(trace_format::kFacingKey)).value_or("");
-    avatar_glb = read_attachment("avatar.glb");
-    if (avatar_glb.empty()) throw Error(path.string(), "holds no avatar.glb", kHdf5Remedy);
-    actuator_map_png = read_attachment("actuator_map.png");
-    actuator_map_json = read_attachment("actuator_map.json");
+    const std::size_t count = count_people();
+    for (std::size_t person = 0; person < count; ++person) {
+      people.push_back(read_person(person));
+      poses_.emplace_back(file_.id(), path_, trace_format::numbered("pose", person));
+    }
     const hsize_t frames = time_.dimensions()[0];
     if (frames == 0) throw Error(path.string(), "holds no frame", kHdf5Remedy);
     time_.expect({frames});
     index_.expect({frames});
-    origin_.expect({frames, 3});
-    if (translation_.dimensions().size() != 3) translation_.fail("is not frames x nodes x 3");
-    nodes_ = translation_.dimensions()[1];
-    translation_.expect({frames, nodes_, 3});
-    rotation_.expect({frames, nodes_, 4});
-    scale_.expect({frames, nodes_, 3});
-    if (nodes_ > kMostColumns) translation_.fail("has more than a million nodes");
+    std::size_t nodes = 0;
+    for (PoseTables& pose : poses_) nodes += pose.expect(frames);
     read_ids(frames);
-    const std::size_t row_bytes = static_cast<std::size_t>(nodes_) * 10 * sizeof(float) +
-                                  ids_.size() * (3 * sizeof(double) + sizeof(float) + 2) + 40;
+    const std::size_t row_bytes =
+        nodes * 10 * sizeof(float) + ids_.size() * (3 * sizeof(double) + sizeof(float) + 2) + 40;
     block_rows_ = std::max<std::size_t>(1, kBlockBytes / row_bytes);
     frames_ = frames;
   }
@@ -69,8 +62,8 @@ class TraceHdf5::Implementation {
       time_.fail(fmt::format("has {} in row {}, after {}", frame.time_ns, row_, last_time_ns_));
     last_index_ = frame.index;
     last_time_ns_ = frame.time_ns;
-    frame.poses.front().origin_m = vector(block_.origin, place);
-    fill_pose(place, frame.poses.front());
+    frame.poses.resize(poses_.size());
+    for (std::size_t person = 0; person < poses_.size(); ++person) poses_[person].fill(place, frame.poses[person]);
     fill_colliders(place, frame);
     ++row_;
     return true;
@@ -78,14 +71,90 @@ class TraceHdf5::Implementation {
 
   double share() const { return static_cast<double>(row_) / static_cast<double>(frames_); }
   ColliderShape shape() const { return radius_ ? ColliderShape::kSpheres : ColliderShape::kPoints; }
+  Owners owners() const { return owner_of_.empty() ? Owners::kNone : Owners::kPeople; }
 
-  std::vector<std::string> node_names;
-  std::string facing;
-  std::vector<std::byte> avatar_glb;
-  std::vector<std::byte> actuator_map_png;
-  std::vector<std::byte> actuator_map_json;
+  std::vector<Person> people;
 
  private:
+  /// The poses of a person, and a block of their rows.
+  class PoseTables {
+   public:
+    PoseTables(hid_t file, const std::filesystem::path& path, const std::string& group)
+        : origin_(file, path, group + "/origin"),
+          translation_(file, path, group + "/translation"),
+          rotation_(file, path, group + "/rotation"),
+          scale_(file, path, group + "/scale") {}
+
+    /// Returns the number of nodes.
+    std::size_t expect(hsize_t frames) {
+      origin_.expect({frames, 3});
+      if (translation_.dimensions().size() != 3) translation_.fail("is not frames x nodes x 3");
+      const hsize_t nodes = translation_.dimensions()[1];
+      translation_.expect({frames, nodes, 3});
+      rotation_.expect({frames, nodes, 4});
+      scale_.expect({frames, nodes, 3});
+      if (nodes > kMostColumns) translation_.fail("has more than a million nodes");
+      nodes_ = static_cast<std::size_t>(nodes);
+      return nodes_;
+    }
+
+    void read(hsize_t first, hsize_t rows) {
+      origin_.read(first, rows, origin_m_);
+      translation_.read(first, rows, translations_);
+      rotation_.read(first, rows, rotations_);
+      scale_.read(first, rows, scales_);
+    }
+
+    /// `place` is that of the row in the block.
+    void fill(std::size_t place, Pose& pose) const {
+      pose.origin_m = vector(origin_m_, place);
+      pose.nodes.resize(nodes_);
+      for (std::size_t i = 0; i < nodes_; ++i) {
+        const std::size_t k = place * nodes_ + i;
+        const float* t = &translations_[3 * k];
+        const float* r = &rotations_[4 * k];
+        const float* s = &scales_[3 * k];
+        pose.nodes[i] = {.translation = {t[0], t[1], t[2]},
+                         .rotation = glm::quat(r[3], r[0], r[1], r[2]),
+                         .scale = {s[0], s[1], s[2]}};
+      }
+    }
+
+   private:
+    Hdf5Table origin_;
+    Hdf5Table translation_;
+    Hdf5Table rotation_;
+    Hdf5Table scale_;
+    std::size_t nodes_ = 0;
+    std::vector<double> origin_m_;
+    std::vector<float> translations_;
+    std::vector<float> rotations_;
+    std::vector<float> scales_;
+  };
+
+  bool has(const std::string& link) const { return hdf5().link_exists(file_.id(), link.c_str(), H5P_DEFAULT) > 0; }
+
+  std::size_t count_people() const {
+    std::size_t count = 1;
+    while (count < trace_format::kMostPeople && has(trace_format::numbered("pose", count))) ++count;
+    return count;
+  }
+
+  Person read_person(std::size_t person) const {
+    using trace_format::AttachmentKind;
+    using trace_format::numbered;
+    const std::string avatar = trace_format::attachment_name(AttachmentKind::kAvatar, person);
+    Person read = {
+        .avatar_glb = read_attachment(avatar),
+        .actuator_map_png = read_attachment(trace_format::attachment_name(AttachmentKind::kMapImage, person)),
+        .actuator_map_json = read_attachment(trace_format::attachment_name(AttachmentKind::kMapText, person)),
+        .node_names = read_node_names(numbered("pose", person) + "/node_names"),
+        .facing = read_text(kSession, numbered(trace_format::kFacingKey, person)).value_or(""),
+        .name = read_text(kSession, numbered(trace_format::kNameKey, person)).value_or("")};
+    if (read.avatar_glb.empty()) throw Error(path_.string(), fmt::format("holds no {}", avatar), kHdf5Remedy);
+    return read;
+  }
+
   /// A file that does not state its format is accepted.
   void require_format() const {
     const std::string format = read_text("/", "format").value_or(kFormat);
@@ -95,15 +164,15 @@ class TraceHdf5::Implementation {
       const std::optional<int> version = trace_format::parse_version(said);
       if (!version)
         throw Error(path_.string(), fmt::format("its format version is '{}', which is no version", said), kHdf5Remedy);
-      constexpr int kNewest = trace_format::kSpheresVersion;  // HDF5 holds one person
-      if (*version > kNewest)
-        throw Error(path_.string(), unknown_version(said, kNewest), "use the later version of vestige that wrote it");
+      if (*version > trace_format::kNewestVersion)
+        throw Error(path_.string(), unknown_version(said, trace_format::kNewestVersion),
+                    "use the later version of vestige that wrote it");
     }
   }
 
   /// A trace without colliders may lack the tables of colliders.
   void read_ids(hsize_t frames) {
-    if (hdf5().link_exists(file_.id(), "colliders", H5P_DEFAULT) <= 0) return;
+    if (!has("colliders")) return;
     const Hdf5Table ids(file_.id(), path_, "colliders/id");
     const hsize_t colliders = ids.dimensions()[0];
     ids.expect({colliders});
@@ -116,16 +185,26 @@ class TraceHdf5::Implementation {
     position_.emplace(file_.id(), path_, "colliders/position").expect({frames, colliders, 3});
     present_.emplace(file_.id(), path_, "colliders/present").expect({frames, colliders});
     teleported_.emplace(file_.id(), path_, "colliders/teleported").expect({frames, colliders});
-    if (hdf5().link_exists(file_.id(), "colliders/radius", H5P_DEFAULT) > 0)
-      radius_.emplace(file_.id(), path_, "colliders/radius").expect({frames, colliders});
+    if (has("colliders/radius")) radius_.emplace(file_.id(), path_, "colliders/radius").expect({frames, colliders});
+    if (has("colliders/owner")) read_owners(colliders);
+  }
+
+  void read_owners(hsize_t colliders) {
+    const Hdf5Table owners(file_.id(), path_, "colliders/owner");
+    owners.expect({colliders});
+    owners.read(0, colliders, owner_of_);
+    for (std::size_t i = 0; i < owner_of_.size(); ++i)
+      if (owner_of_[i] > people.size())
+        owners.fail(
+            fmt::format("says that collider {} belongs to person {}, of {}", ids_[i], owner_of_[i], people.size()));
   }
 
   /// Empty if there are none.
-  std::vector<std::string> read_node_names() const {
+  std::vector<std::string> read_node_names(const std::string& table) const {
     const Hdf5Library& h5 = hdf5();
-    if (h5.link_exists(file_.id(), kNodeNames, H5P_DEFAULT) <= 0) return {};
-    const std::string what = fmt::format("table {}", kNodeNames);
-    const Hdf5Handle dataset(h5.open_dataset(file_.id(), kNodeNames, H5P_DEFAULT), h5.close_dataset);
+    if (!has(table)) return {};
+    const std::string what = fmt::format("table {}", table);
+    const Hdf5Handle dataset(h5.open_dataset(file_.id(), table.c_str(), H5P_DEFAULT), h5.close_dataset);
     if (dataset.id() < 0)
       throw Error(path_.string(), fmt::format("its {} cannot be opened as a table", what), kHdf5Remedy);
     const Hdf5Handle type(h5.type_of(dataset.id()), h5.close_type);
@@ -136,9 +215,9 @@ class TraceHdf5::Implementation {
   }
 
   /// Empty if there is none.
-  std::vector<std::byte> read_attachment(const char* name) const {
+  std::vector<std::byte> read_attachment(const std::string& name) const {
     std::vector<std::byte> bytes;
-    if (hdf5().link_exists(file_.id(), name, H5P_DEFAULT) <= 0) return bytes;
+    if (!has(name)) return bytes;
     const Hdf5Table table(file_.id(), path_, name);
     table.expect({0});
     if (table.dimensions()[0] > std::filesystem::file_size(path_)) table.fail("is larger than the file");
@@ -165,28 +244,12 @@ class TraceHdf5::Implementation {
     const hsize_t rows = std::min<hsize_t>(block_rows_, frames_ - row_);
     index_.read(row_, rows, block_.index);
     time_.read(row_, rows, block_.time_ns);
-    origin_.read(row_, rows, block_.origin);
-    translation_.read(row_, rows, block_.translation);
-    rotation_.read(row_, rows, block_.rotation);
-    scale_.read(row_, rows, block_.scale);
+    for (PoseTables& pose : poses_) pose.read(row_, rows);
     if (ids_.empty()) return;
     position_->read(row_, rows, block_.position);
     present_->read(row_, rows, block_.present);
     teleported_->read(row_, rows, block_.teleported);
     if (radius_) radius_->read(row_, rows, block_.radius);
-  }
-
-  void fill_pose(std::size_t place, Pose& pose) const {
-    pose.nodes.resize(static_cast<std::size_t>(nodes_));
-    for (std::size_t i = 0; i < pose.nodes.size(); ++i) {
-      const std::size_t k = place * pose.nodes.size() + i;
-      const float* t = &block_.translation[3 * k];
-      const float* r = &block_.rotation[4 * k];
-      const float* s = &block_.scale[3 * k];
-      pose.nodes[i] = {.translation = {t[0], t[1], t[2]},
-                       .rotation = glm::quat(r[3], r[0], r[1], r[2]),
-                       .scale = {s[0], s[1], s[2]}};
-    }
   }
 
   void fill_colliders(std::size_t place, TraceFrame& frame) const {
@@ -197,7 +260,8 @@ class TraceHdf5::Implementation {
       if (block_.present[k] > 1) present_->fail(fmt::format("has {} in row {}, not 0 or 1", block_.present[k], row_));
       if (block_.teleported[k] > 1)
         teleported_->fail(fmt::format("has {} in row {}, not 0 or 1", block_.teleported[k], row_));
-      if (block_.present[k] != 0) frame.colliders.push_back({ids_[i], vector(block_.position, k), radius_at(k)});
+      const std::uint16_t owner = owner_of_.empty() ? kNobody : owner_of_[i];
+      if (block_.present[k] != 0) frame.colliders.push_back({ids_[i], vector(block_.position, k), radius_at(k), owner});
       if (block_.teleported[k] != 0) frame.teleported.push_back(ids_[i]);
     }
   }
@@ -213,10 +277,6 @@ class TraceHdf5::Implementation {
   struct Block {
     std::vector<std::uint64_t> index;
     std::vector<std::int64_t> time_ns;
-    std::vector<double> origin;
-    std::vector<float> translation;
-    std::vector<float> rotation;
-    std::vector<float> scale;
     std::vector<double> position;
     std::vector<float> radius;
     std::vector<std::uint8_t> present;
@@ -227,17 +287,14 @@ class TraceHdf5::Implementation {
   Hdf5Handle file_;
   Hdf5Table time_{file_.id(), path_, "time_ns"};
   Hdf5Table index_{file_.id(), path_, "frame"};
-  Hdf5Table origin_{file_.id(), path_, "pose/origin"};
-  Hdf5Table translation_{file_.id(), path_, "pose/translation"};
-  Hdf5Table rotation_{file_.id(), path_, "pose/rotation"};
-  Hdf5Table scale_{file_.id(), path_, "pose/scale"};
+  std::vector<PoseTables> poses_;
   std::optional<Hdf5Table> position_;
   std::optional<Hdf5Table> present_;
   std::optional<Hdf5Table> teleported_;
   std::optional<Hdf5Table> radius_;
-  hsize_t nodes_ = 0;
   hsize_t frames_ = 0;
   std::vector<std::uint32_t> ids_;
+  std::vector<std::uint16_t> owner_of_;  ///< by the place of the id; empty: all belong to nobody
   std::size_t block_rows_ = 1;
   Block block_;
   hsize_t row_ = 0;
@@ -256,20 +313,11 @@ TraceHdf5::TraceHdf5(const std::filesystem::path& path) {
 }
 TraceHdf5::~TraceHdf5() = default;
 
-const std::vector<std::byte>& TraceHdf5::avatar_glb() const {
-  return implementation_->avatar_glb;
+const std::vector<TraceHdf5::Person>& TraceHdf5::people() const {
+  return implementation_->people;
 }
-const std::vector<std::byte>& TraceHdf5::actuator_map_png() const {
-  return implementation_->actuator_map_png;
-}
-const std::vector<std::byte>& TraceHdf5::actuator_map_json() const {
-  return implementation_->actuator_map_json;
-}
-const std::vector<std::string>& TraceHdf5::node_names() const {
-  return implementation_->node_names;
-}
-std::string TraceHdf5::facing() const {
-  return implementation_->facing;
+Owners TraceHdf5::owners() const {
+  return implementation_->owners();
 }
 ColliderShape TraceHdf5::shape() const {
   return implementation_->shape();

@@ -6,10 +6,10 @@
 
 namespace vestige {
 
-Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name, const char* remedy)
-    : path_(path), name_(name), remedy_(remedy) {
+Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, std::string name, const char* remedy)
+    : path_(path), name_(std::move(name)), remedy_(remedy) {
   const Hdf5Library& h5 = hdf5();
-  dataset_ = Hdf5Handle(h5.open_dataset(file, name, H5P_DEFAULT), h5.close_dataset);
+  dataset_ = Hdf5Handle(h5.open_dataset(file, name_.c_str(), H5P_DEFAULT), h5.close_dataset);
   if (dataset_.id() < 0) fail("is missing");
   const Hdf5Handle space(h5.space_of(dataset_.id()), h5.close_space);
   const int rank = h5.rank(space.id());

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -22,7 +23,7 @@ class Hdf5Table {
  public:
   /// Throws if the table does not exist, has no rank from 1 to 3, or holds no numbers.
   /// `remedy` is that of `fail`.
-  Hdf5Table(hid_t file, const std::filesystem::path& path, const char* name, const char* remedy = kHdf5Remedy);
+  Hdf5Table(hid_t file, const std::filesystem::path& path, std::string name, const char* remedy = kHdf5Remedy);
 
   const std::vector<hsize_t>& dimensions() const { return dimensions_; }
 
@@ -57,7 +58,7 @@ class Hdf5Table {
   void read(const Type& type, hsize_t first, hsize_t rows, void* out) const;
 
   std::filesystem::path path_;
-  const char* name_;
+  std::string name_;
   const char* remedy_;
   Hdf5Handle dataset_;
   Type type_;

@@ -64,9 +64,9 @@ Hdf5Column::Hdf5Column(hid_t file, const std::filesystem::path& path, Descriptio
     hdf5_check(h5.set_deflate(how.id(), 4), path, "choose compression");
     hdf5_check(h5.set_fletcher32(how.id()), path, "choose checksums");
   }
-  dataset_ = Hdf5Handle(
-      h5.create_dataset(file, description_.name, description_.type, space.id(), H5P_DEFAULT, how.id(), H5P_DEFAULT),
-      h5.close_dataset, path, fmt::format("make {}", description_.name));
+  dataset_ = Hdf5Handle(h5.create_dataset(file, description_.name.c_str(), description_.type, space.id(), H5P_DEFAULT,
+                                          how.id(), H5P_DEFAULT),
+                        h5.close_dataset, path, fmt::format("make {}", description_.name));
   if (!description_.units.empty()) write_hdf5_attribute(dataset_.id(), "units", description_.units, path);
   if (!description_.axes.empty()) write_hdf5_attribute(dataset_.id(), "axes", description_.axes, path);
   if (!description_.description.empty())

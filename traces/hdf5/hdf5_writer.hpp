@@ -38,7 +38,7 @@ class Hdf5Output {
 class Hdf5Column {
  public:
   struct Description {
-    const char* name;
+    std::string name;
     hid_t type;
     std::size_t element_bytes;
     std::vector<hsize_t> row;  ///< dimensions of one row; empty for a number

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -35,12 +36,15 @@ std::int64_t nanoseconds_since(Clock::time_point start) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now() - start).count();
 }
 
-/// Waits at most `timeout`. Returns whether there is something to read.
-bool await(int descriptor, std::chrono::nanoseconds timeout) {
-  pollfd place = {.fd = descriptor, .events = POLLIN, .revents = 0};
+pollfd reading_from(int descriptor) {
+  return {.fd = descriptor, .events = POLLIN, .revents = 0};
+}
+
+/// Waits at most `timeout`. Returns whether there is something to read, in any of the places.
+bool await(std::span<pollfd> places, std::chrono::nanoseconds timeout) {
   const auto wait = std::clamp<std::chrono::nanoseconds>(timeout, std::chrono::nanoseconds(0), kLongestWait);
   const timespec time = {.tv_sec = 0, .tv_nsec = wait.count()};
-  return ::ppoll(&place, 1, &time, nullptr) > 0;
+  return ::ppoll(places.data(), places.size(), &time, nullptr) > 0;
 }
 
 void note(std::vector<RecordingNote>& notes, std::string_view topic, std::uint64_t count) {
@@ -78,8 +82,9 @@ LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out,
     ++frames;
   };
   std::string buffer(std::size_t{64} << 10, '\0');
+  pollfd place = reading_from(descriptor);
   while (!ended && !must_stop(out, settings)) {
-    if (!await(descriptor, kLongestWait)) {
+    if (!await({&place, 1}, kLongestWait)) {
       ended = static_cast<double>(nanoseconds_since(start)) >= most_ns;
       continue;
     }
@@ -104,22 +109,23 @@ LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out,
 
 namespace {
 
-/// One recording of a state.
+/// One recording of states.
 class StateRecording {
  public:
-  StateRecording(UdpReceiver& datagrams, VmcState& state, RecordingThread& out, const LiveSettings& settings)
-      : datagrams_(datagrams),
-        state_(state),
+  StateRecording(std::span<const LiveSource> sources, RecordingThread& out, const LiveSettings& settings)
+      : sources_(sources),
         out_(out),
         settings_(settings),
-        frames_(settings.duration_s ? std::max(1.0, std::round(*settings.duration_s * settings.rate_hz)) : INFINITY) {}
+        frames_(settings.duration_s ? std::max(1.0, std::round(*settings.duration_s * settings.rate_hz)) : INFINITY) {
+    for (const LiveSource& source : sources) places_.push_back(reading_from(source.datagrams.descriptor()));
+  }
 
   LiveCounts run() {
     await_beginning();
     while (begun_ && static_cast<double>(index_) < frames_ && !must_stop(out_, settings_)) {
       const std::int64_t left_ns = time_of(index_) - nanoseconds_since(start_);
       if (left_ns > 0) {
-        if (await(datagrams_.descriptor(), std::chrono::nanoseconds(left_ns))) receive();
+        if (await(places_, std::chrono::nanoseconds(left_ns))) receive();
         continue;
       }
       receive();  // everything received until now belongs to this frame
@@ -140,18 +146,23 @@ class StateRecording {
 
   void await_beginning() {
     while (!begun_ && !must_stop(out_, settings_))
-      if (await(datagrams_.descriptor(), kLongestWait)) receive();
+      if (await(places_, kLongestWait)) receive();
     start_ = Clock::now();
   }
 
-  /// Takes a limited number of datagrams. In a flood there is always another one, but frames and stop requests must
-  /// have their turn.
+  /// Takes a limited number of datagrams, from all sources in turn. In a flood there is always another one, but frames
+  /// and stop requests must have their turn.
   void receive() {
     const Clock::time_point until = Clock::now() + kLongestTurn;
-    for (int count = 0; count < kMostInATurn && Clock::now() < until; ++count) {
-      const auto datagram = datagrams_.next();
-      if (!datagram) break;
-      begun_ = state_.take(*datagram) || begun_;
+    bool any = true;
+    for (int count = 0; any && count < kMostInATurn && Clock::now() < until; ++count) {
+      any = false;
+      for (const LiveSource& source : sources_) {
+        const auto datagram = source.datagrams.next();
+        if (!datagram) continue;
+        any = true;
+        begun_ = source.state.take(*datagram) || begun_;
+      }
     }
   }
 
@@ -173,25 +184,50 @@ class StateRecording {
     TraceFrame frame;
     frame.index = index_;
     frame.time_ns = time_of(index_);
-    state_.show(frame);
+    std::vector<std::vector<std::uint32_t>> teleported = show(frame);
+    if (settings_.complete) settings_.complete(frame);
     const Noted before = noted_;
-    std::vector<std::uint32_t> teleported = frame.teleported;
     ++index_;
     if (out_.put(std::move(frame), notes(), WhenBehind::kDrop)) {
-      state_.forget_markers();
+      for (const LiveSource& source : sources_) source.state.forget_markers();
       ++made_;
       return;
     }
     // The frame was not taken, so the next frame must carry its notes.
-    state_.mark_teleported(std::move(teleported));
+    for (std::size_t i = 0; i < sources_.size(); ++i) sources_[i].state.mark_teleported(std::move(teleported[i]));
     noted_ = before;
     ++late_;
   }
 
+  /// Returns in `frame` the states of all sources. Returns which ids each has teleported.
+  std::vector<std::vector<std::uint32_t>> show(TraceFrame& frame) {
+    std::vector<std::vector<std::uint32_t>> teleported(sources_.size());
+    sources_.front().state.show(frame);
+    teleported.front() = frame.teleported;
+    TraceFrame other;
+    for (std::size_t i = 1; i < sources_.size(); ++i) {
+      sources_[i].state.show(other);
+      frame.poses.push_back(other.poses.front());
+      std::vector<ColliderSample> both;
+      std::ranges::set_union(frame.colliders, other.colliders, std::back_inserter(both), {}, &ColliderSample::id,
+                             &ColliderSample::id);
+      counts_.ids_clash = counts_.ids_clash || both.size() < frame.colliders.size() + other.colliders.size();
+      frame.colliders = std::move(both);
+      teleported[i] = other.teleported;
+      for (const std::uint32_t id : other.teleported)
+        if (std::ranges::find(frame.teleported, id) == frame.teleported.end()) frame.teleported.push_back(id);
+    }
+    return teleported;
+  }
+
   /// Returns the losses since the last notes, and the markers.
   std::vector<RecordingNote> notes() {
-    std::vector<RecordingNote> notes = state_.markers();
-    const Noted now = {.late = late_, .input = state_.malformed() + datagrams_.overflowed()};
+    std::vector<RecordingNote> notes;
+    Noted now = {.late = late_};
+    for (const LiveSource& source : sources_) {
+      notes.insert(notes.end(), source.state.markers().begin(), source.state.markers().end());
+      now.input += source.state.malformed() + source.datagrams.overflowed();
+    }
     note_frames(notes, now.late - noted_.late);
     note(notes, kInput, now.input - noted_.input);
     noted_ = now;
@@ -199,11 +235,18 @@ class StateRecording {
   }
 
   LiveCounts counts() const {
-    return {.frames = made_, .late = late_, .malformed = state_.malformed(), .overflowed = datagrams_.overflowed()};
+    LiveCounts counts = counts_;
+    counts.frames = made_;
+    counts.late = late_;
+    for (const LiveSource& source : sources_) {
+      counts.malformed += source.state.malformed();
+      counts.overflowed += source.datagrams.overflowed();
+    }
+    return counts;
   }
 
-  UdpReceiver& datagrams_;
-  VmcState& state_;
+  std::span<const LiveSource> sources_;
+  std::vector<pollfd> places_;
   RecordingThread& out_;
   const LiveSettings& settings_;
   double frames_;  ///< may be infinite
@@ -213,12 +256,13 @@ class StateRecording {
   std::uint64_t made_ = 0;
   std::uint64_t late_ = 0;
   Noted noted_;
+  LiveCounts counts_;
 };
 
 }  // namespace
 
-LiveCounts record_state(UdpReceiver& datagrams, VmcState& state, RecordingThread& out, const LiveSettings& settings) {
-  return StateRecording(datagrams, state, out, settings).run();
+LiveCounts record_states(std::span<const LiveSource> sources, RecordingThread& out, const LiveSettings& settings) {
+  return StateRecording(sources, out, settings).run();
 }
 
 }  // namespace vestige

@@ -4,6 +4,7 @@
 #include <functional>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,13 @@ struct LiveSettings {
   double rate_hz = 1000;             ///< rate of frames made from a state
   std::optional<double> duration_s;  ///< nothing: until the source ends or `asked` stops the recording
   std::function<LiveRequest()> asked = {};
+  std::function<void(TraceFrame&)> complete = {};  ///< adds what no source sends to each frame; may be empty
+};
+
+/// Where the motion of a person comes from, and colliders.
+struct LiveSource {
+  UdpReceiver& datagrams;
+  VmcState& state;
 };
 
 struct LiveCounts {
@@ -28,6 +36,7 @@ struct LiveCounts {
   std::uint64_t late = 0;        ///< frames that were too late, or for which there was no room
   std::uint64_t malformed = 0;   ///< malformed lines or datagrams
   std::uint64_t overflowed = 0;  ///< datagrams that the system discarded
+  bool ids_clash = false;        ///< several sources sent colliders of one id
   bool lost_something() const { return late + malformed + overflowed > 0; }
 };
 
@@ -35,9 +44,10 @@ struct LiveCounts {
 /// trace: a lost line as one message of /pose and one of /colliders. Throws `Error` if reading or writing failed.
 LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out, const LiveSettings& settings);
 
-/// Records frames of the latest state, at absolute times of `rate_hz` since the first datagram that changed the state.
-/// A frame whose time has passed by more than 20 ms is left out. The trace counts lost frames as /pose and /colliders,
+/// Records frames of the latest states, at absolute times of `rate_hz` since the first datagram that changed one of
+/// them. Each source is a person's, in their order. Of a collider's id that several sources send, the first's stands. A
+/// frame whose time has passed by more than 20 ms is left out. The trace counts lost frames as /pose and /colliders,
 /// and lost datagrams as `input`.
-LiveCounts record_state(UdpReceiver& datagrams, VmcState& state, RecordingThread& out, const LiveSettings& settings);
+LiveCounts record_states(std::span<const LiveSource> sources, RecordingThread& out, const LiveSettings& settings);
 
 }  // namespace vestige

@@ -89,8 +89,8 @@ std::size_t outermost(const Avatar& avatar, std::size_t node) {
 
 }  // namespace
 
-VmcState::VmcState(const Avatar& avatar, const glm::dvec3& origin_m)
-    : pose_(rest_pose(avatar)), facing_(avatar.facing.axis) {
+VmcState::VmcState(const Avatar& avatar, const glm::dvec3& origin_m, const Stance& stance)
+    : avatar_(avatar), origin_m_(origin_m), stance_(stance), pose_(rest_pose(avatar)), facing_(avatar.facing.axis) {
   if (avatar.humanoid.node_of.empty())
     throw Error("--avatar", "no joint is recognised as a bone of a human body, so no message can move the avatar",
                 "use a VRM file, or name the joints as in Unity, Mixamo, Unreal or Blender");
@@ -169,7 +169,7 @@ bool VmcState::apply(const OscMessage& message) {
   }
   if (message.address == "/vestige/collider") {
     const glm::dvec3 given(number(message, 1), number(message, 2), number(message, 3));
-    colliders_[id(message)] = {id(message), pose_.origin_m + given, radius(message)};
+    colliders_[id(message)] = {id(message), origin_m_ + stance_.position_m + stance_.turned(given), radius(message)};
     return true;
   }
   if (message.address == "/vestige/collider/remove") return colliders_.erase(id(message)) > 0;
@@ -206,6 +206,7 @@ void VmcState::show(TraceFrame& frame) {
   top.translation = glm::vec3(root_.position + root_.rotation * glm::dvec3(top_local_.translation));
   top.rotation = glm::quat(glm::normalize(root_.rotation * glm::normalize(glm::dquat(top_local_.rotation))));
   frame.poses.front() = pose_;
+  move_to(stance_, avatar_, frame.poses.front());
   frame.colliders.clear();
   for (const auto& [id, collider] : colliders_) frame.colliders.push_back(collider);
   frame.teleported = std::exchange(teleported_, {});

@@ -13,6 +13,7 @@
 #include "traces/live/osc_packet.hpp"
 #include "traces/recording/frame_ring.hpp"
 #include "traces/scene/avatar.hpp"
+#include "traces/scene/stance.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {
@@ -35,14 +36,16 @@ namespace vestige {
 /// addresses are ignored.
 class VmcState {
  public:
-  /// Throws `Error` if the avatar has no bone of a human body, or does not stand (`AvatarFacing::lies_deg`).
-  VmcState(const Avatar& avatar, const glm::dvec3& origin_m);
+  /// All that the sender says is placed by `stance`, from `origin_m` on. Keeps a reference to the avatar. Throws
+  /// `Error` if the avatar has no bone of a human body, or does not stand (`AvatarFacing::lies_deg`).
+  VmcState(const Avatar& avatar, const glm::dvec3& origin_m, const Stance& stance = {});
 
   /// Takes one datagram. A malformed datagram changes nothing and is counted. Returns whether the datagram changed the
   /// state.
   bool take(std::span<const std::byte> datagram);
 
-  /// Returns in `frame` the state, without number and time. Reports each teleport once.
+  /// Returns in `frame` the state, with one pose and by ascending ids, without number and time. Reports each teleport
+  /// once.
   void show(TraceFrame& frame);
   /// Sets teleports that could not be passed on, for the next frame.
   void mark_teleported(std::vector<std::uint32_t> ids) { teleported_ = std::move(ids); }
@@ -72,7 +75,10 @@ class VmcState {
   Placement placement_of(const OscMessage& message) const;
   bool move_bone(const std::string& name, const Placement& placement);
 
-  Pose pose_;
+  const Avatar& avatar_;
+  glm::dvec3 origin_m_;
+  Stance stance_;
+  Pose pose_;                     ///< before the stance
   std::vector<glm::dquat> rest_;  ///< each node's own rotation in the rest pose
   std::map<std::string, Bone, std::less<>> bone_of_;
   Facing facing_;

@@ -28,6 +28,8 @@ class DealtColliders final : public ColliderSource {
       }
       for (const std::uint32_t id : hand.colliders->teleported()) teleported_.push_back(dealt(id));
     }
+    std::ranges::sort(out, {}, &ColliderSample::id);
+    std::ranges::sort(teleported_);
   }
 
   ColliderShape shape() const override {

@@ -17,6 +17,7 @@ class SizedColliders final : public ColliderSource {
     teleported_ = source_->teleported();
   }
   ColliderShape shape() const override { return radius_m_ > 0 ? ColliderShape::kSpheres : ColliderShape::kPoints; }
+  Owners owners() const override { return source_->owners(); }
   std::optional<std::uint32_t> largest_id() const override { return source_->largest_id(); }
   TimeSpan span_s() const override { return source_->span_s(); }
   double median_step_s() const override { return source_->median_step_s(); }

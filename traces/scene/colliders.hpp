@@ -31,6 +31,9 @@ class ColliderSource {
   /// Whether the colliders may have a radius.
   virtual ColliderShape shape() const { return ColliderShape::kPoints; }
 
+  /// Whether the colliders may belong to people. An id keeps its owner.
+  virtual Owners owners() const { return Owners::kNone; }
+
   /// The ids of colliders that jumped to their position in the last `sample`. Their path is not a line segment and must
   /// not be tested.
   const std::vector<std::uint32_t>& teleported() const { return teleported_; }

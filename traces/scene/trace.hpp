@@ -24,6 +24,9 @@ struct ColliderSample {
 /// kPoints: no collider of the trace has a radius. kSpheres: each may have one.
 enum class ColliderShape : std::uint8_t { kPoints, kSpheres };
 
+/// kNone: the trace's colliders belong to nobody. kPeople: each may belong to a person, as in traces of several people.
+enum class Owners : std::uint8_t { kNone, kPeople };
+
 /// Most frames of a trace, which numbers them in 32 bits.
 inline constexpr double kMostTraceFrames = 4294967295.0;
 

@@ -48,6 +48,9 @@ class TraceReader::Implementation {
   ColliderShape shape() const {
     return version_ == trace_format::kPointsVersion ? ColliderShape::kPoints : ColliderShape::kSpheres;
   }
+  Owners owners() const {
+    return version_.value_or(newest_) < trace_format::kPeopleVersion ? Owners::kNone : Owners::kPeople;
+  }
   const std::vector<std::string>& warnings() const { return warnings_; }
   const std::string& recovered() const { return recovered_; }
   bool complete() const { return index_.has_footer && warnings_.empty(); }
@@ -153,8 +156,8 @@ void TraceReader::Implementation::require_people(People allowed) {
   if (allowed == People::kSeveral) return;
   newest_ = trace_format::kSpheresVersion;
   constexpr std::string_view kRemedy =
-      "`vestige replay`, `stream`, `batch`, `sweep`, `plot scene`, `inspect`, `doctor`, `cat`, `trim`, `merge`, "
-      "`recompress` and `recover` read it";
+      "`vestige replay`, `stream`, `batch`, `sweep`, `plot scene`, `export`, `inspect`, `doctor`, `cat`, `trim`, "
+      "`merge`, `recompress` and `recover` read it";
   if (index_.people > 1)
     throw Error(source_.name(), fmt::format("holds {} people, and this verb reads traces of one person", index_.people),
                 kRemedy);
@@ -380,6 +383,9 @@ const std::vector<RecordedPerson>& TraceReader::people() const {
 }
 ColliderShape TraceReader::shape() const {
   return implementation_->shape();
+}
+Owners TraceReader::owners() const {
+  return implementation_->owners();
 }
 const std::vector<std::uint32_t>& TraceReader::collider_ids() {
   return implementation_->census().collider_ids;

@@ -50,6 +50,8 @@ class TraceReader {
   const std::vector<RecordedPerson>& people() const;
   /// Whether the trace's colliders may have a radius: kPoints in format version 1.
   ColliderShape shape() const;
+  /// Whether the trace's colliders may belong to people: kNone in format versions 1 and 2.
+  Owners owners() const;
 
   /// The ids of all colliders in the trace, ascending. The first call of this or the next three functions reads the
   /// whole trace once, without decoding poses, and throws `Error` if a collider changes its owner. `next` still

@@ -120,8 +120,8 @@ TraceWriter::Implementation::Implementation(const std::filesystem::path& path, S
       writer_([this](mcap::Bytes bytes) { file_.write(bytes); },
               {.profile = std::string(trace_format::kProfile), .library = fmt::format("vestige {}", kVersion)},
               writer_options(options)),
-      version_(people.size() > 1 || options.has_owners ? trace_format::kPeopleVersion
-                                                       : trace_format::version_with(options.shape)) {
+      version_(people.size() > 1 || options.owners == Owners::kPeople ? trace_format::kPeopleVersion
+                                                                      : trace_format::version_with(options.shape)) {
   using trace_format::numbered;
   if (people.empty() || people.size() > trace_format::kMostPeople)
     throw Error(path.string(), fmt::format("a trace cannot hold {} people", people.size()),

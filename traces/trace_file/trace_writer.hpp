@@ -36,7 +36,7 @@ struct TraceWriterOptions {
   ChunkSync sync = ChunkSync::kNone;
   Viz viz = Viz::kNone;
   ColliderShape shape = ColliderShape::kPoints;  ///< kSpheres: the trace says format version 2
-  bool has_owners = false;                       ///< whether colliders may belong to people: format version 3
+  Owners owners = Owners::kNone;                 ///< kPeople: the trace says format version 3
 };
 
 /// The attachments that make a trace one self-contained file. The caller keeps the bytes alive until the writer is

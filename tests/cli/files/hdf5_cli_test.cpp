@@ -187,10 +187,10 @@ TEST_F(Hdf5Exchange, OfAnotherVersionOrOtherNodesOrNumbersIsRefused) {
     expect_failure("vestige import changed.h5 -o b.mcap", 1, words, "b.mcap");
   };
   const Hdf5Library& h5 = hdf5();
-  refused([](Hdf5Editor& editor) { editor.set_text("/", "format_version", "3"); },
-          {"changed.h5: its format version is 3, and this vestige reads versions up to 2"});
-  refused([](Hdf5Editor& editor) { editor.set_text("session", "format_version", "3"); },
-          {"changed.h5: its format version is 3, and this vestige reads versions up to 2"});
+  refused([](Hdf5Editor& editor) { editor.set_text("/", "format_version", "4"); },
+          {"changed.h5: its format version is 4, and this vestige reads versions up to 3"});
+  refused([](Hdf5Editor& editor) { editor.set_text("session", "format_version", "4"); },
+          {"changed.h5: its format version is 4, and this vestige reads versions up to 3"});
   refused([](Hdf5Editor& editor) { editor.set_number("/", "format_version", 1); },
           {"changed.h5: its attribute 'format_version' is not a text"});
   refused([](Hdf5Editor& editor) { editor.set_text("/", "format", "another thing"); },

@@ -106,7 +106,7 @@ TEST_F(LimbsOfPeople, WhatCannotBeIsRefused) {
   expect_failure(record + "--limbs tail", 2, {"--limbs", "there is no limb 'tail'", "hand_left"}, "a.mcap");
   expect_failure(record + "--limbs head,head", 2, {"--limbs", "'head' stands there twice"}, "a.mcap");
   expect_failure(record + "--limbs head --limbs torso", 2, {"--limbs", "is given twice"}, "a.mcap");
-  expect_failure(record + "--limbs head --live -", 2, {"--limbs", "live"}, "a.mcap");
+  expect_failure(record + "--limbs head --live -", 2, {"--limbs", "their own limbs never touch"}, "a.mcap");
   expect_failure(record + "--colliders touch --avatar builtin", 2, {"--avatar", "brings its own people"}, "a.mcap");
   expect_failure(record + "--colliders touch --count 3", 2, {"--count"}, "a.mcap");
   write("box.csv", std::string("time_s,id,x,y,z\n0,4294967295,0,0,0\n1,4294967295,0,0,1\n"));

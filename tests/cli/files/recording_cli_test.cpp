@@ -6,10 +6,12 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <thread>
 
 #include "tests/support/background_process.hpp"
+#include "tests/support/builtin_avatar.hpp"
 #include "tests/support/command_line.hpp"
 #include "tests/support/osc.hpp"
 #include "tests/support/udp.hpp"
@@ -227,7 +229,12 @@ TEST_F(Recording, RefusesFlagsThatContradictEachOther) {
            {"--live - --count 5", "--count"},
            {"--live - --ignore-morphs", "--ignore-morphs"},
            {"--live - --origin 1,0,0", "--origin"},
-           {"--live vmc://127.0.0.1:39539 --animation walk", "--animation"}})
+           {"--live - --at 1,0,0", "--at"},
+           {"--live - --limbs all", "--limbs"},
+           {"--live vmc://127.0.0.1:39539 --animation walk", "--animation"},
+           {"--avatar builtin --live vmc://127.0.0.1:39539 --avatar builtin", "person 2 has none"},
+           {"--avatar builtin --live - --avatar builtin --live vmc://127.0.0.1:39539", "of one person"},
+           {"--avatar builtin --live vmc://127.0.0.1:39539 --avatar builtin --live vmc://127.0.0.1:39539", "port"}})
     expect_failure("vestige record -o a.mcap " + flags, 2, {named}, "a.mcap");
   expect_failure("vestige record --split 5 -o -", 2, {"--split"});
 }
@@ -338,6 +345,64 @@ TEST_F(Recording, OfTheVmcProtocolIsWhatWasSent) {
   const auto json = json_of("vestige inspect vr.mcap --json -");
   EXPECT_EQ(json["complete"], true);
   EXPECT_EQ(json["dropped_by_topic"]["input"], 1);
+}
+
+TEST_F(Recording, OfTwoPeopleHearsEachOnAPortOfTheirOwn) {
+  const std::uint16_t ann_port = test::free_udp_port();
+  std::uint16_t bob_port = test::free_udp_port();
+  while (bob_port == ann_port) bob_port = test::free_udp_port();
+  test::BackgroundProcess recorder({"vestige",  "record",
+                                    "--avatar", "builtin",
+                                    "--name",   "ann",
+                                    "--live",   fmt::format("vmc://127.0.0.1:{}", ann_port),
+                                    "--avatar", "builtin",
+                                    "--name",   "bob",
+                                    "--limbs",  "hand_right",
+                                    "--at",     "0,0,0.5,180",
+                                    "--live",   fmt::format("vmc://127.0.0.1:{}", bob_port),
+                                    "--rate",   "100",
+                                    "-o",       (folder_ / "two.mcap").string()},
+                                   folder_ / "error");
+  const test::UdpSender ann(ann_port);
+  const test::UdpSender bob(bob_port);
+  const auto frames_now = [&] {
+    std::vector<TraceFrame> frames;
+    try {
+      TraceReader reader(folder_ / "two.mcap", People::kSeveral);
+      for (TraceFrame frame; reader.next(frame);) frames.push_back(frame);
+    } catch (const Error&) {
+      // It has not begun.
+    }
+    return frames;
+  };
+  for (int i = 0; i < 3000 && frames_now().size() < 20; ++i) {
+    ann.send(test::bundle({test::collider(5, 1, 2, 3), test::collider(6, 0, 0, 0)}));
+    bob.send(test::bundle({test::bone("LeftUpperArm", glm::angleAxis(0.5, glm::dvec3(0, 0, 1))),
+                           test::collider(6, 9, 9, 9), test::collider(7, 1, 2, 3)}));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  recorder.signal(SIGINT);
+  EXPECT_EQ(recorder.wait(), 0) << read_text_file(folder_ / "error");
+  EXPECT_THAT(read_text_file(folder_ / "error"), HasSubstr("several sources sent colliders of one id"));
+  const std::vector<TraceFrame> frames = frames_now();
+  ASSERT_GE(frames.size(), 20U);
+  const TraceFrame& last = frames.back();
+  ASSERT_EQ(last.poses.size(), 2U);
+  EXPECT_EQ(last.poses[1].origin_m, glm::dvec3(0, 0, 0.5));
+  const auto differ = [&](const char* name) {
+    const Avatar avatar = test::builtin_avatar();
+    const std::size_t node = avatar.humanoid.node_of.find(name)->second;
+    return last.poses[0].nodes[node].rotation != last.poses[1].nodes[node].rotation;
+  };
+  EXPECT_TRUE(differ("LeftUpperArm"));
+  EXPECT_FALSE(differ("RightUpperArm"));
+  std::map<std::uint32_t, ColliderSample> colliders;
+  for (const ColliderSample& collider : last.colliders) colliders[collider.id] = collider;
+  EXPECT_EQ(colliders[5].position_m, glm::dvec3(1, 2, 3));
+  EXPECT_EQ(colliders[6].position_m, glm::dvec3(0, 0, 0)) << "the first sender's";
+  EXPECT_NEAR(colliders[7].position_m.x, -1, 1e-9) << "where the second sender stands";
+  EXPECT_NEAR(colliders[7].position_m.z, 0.5 - 3, 1e-9);
+  EXPECT_GT(std::ranges::count(last.colliders, 2, &ColliderSample::owner), 0);
 }
 
 TEST_F(Recording, OfARingOutlivesASnapshotThatFails) {

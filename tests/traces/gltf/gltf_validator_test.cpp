@@ -29,7 +29,7 @@ TEST(GltfValidator, FindsNoFaultInTheMannequin) {
   EXPECT_EQ(issues["numWarnings"], 0) << issues.dump(2);
 }
 
-TEST(GltfValidator, FindsNoErrorInTheExportOfATraceWhoseAvatarHasFaults) {
+TEST(GltfValidator, FindsNoErrorInTheExportOfPeopleWhoseAvatarHasFaults) {
   VESTIGE_REQUIRE_DATA(test::npm_package("gltf-validator"));
   test::GltfBuilder builder = test::skinned_triangle();
   const std::vector<float> weights = {7, 5, 0, 0};
@@ -40,13 +40,16 @@ TEST(GltfValidator, FindsNoErrorInTheExportOfATraceWhoseAvatarHasFaults) {
   const std::vector<std::byte> glb = builder.glb();
   const Avatar avatar = parse_avatar_glb(glb, "a.glb");
   const test::TemporaryFolder folder;
-  const auto file = make_frame_gltf(folder / "a.glb", Overwrite::kRefuse, avatar, glb, {.all = {7, 8}, .spheres = {8}});
+  // Twice.
+  const std::vector<GltfPerson> people = {{"ann", avatar, glb}, {"bob", avatar, glb}};
+  const auto file = make_frame_gltf(folder / "a.glb", Overwrite::kRefuse, people, {.all = {7, 8}, .spheres = {8}});
   for (int i = 0; i < 3; ++i) {
     TraceFrame frame;
     frame.time_ns = i * 1'000'000;
     frame.poses.front() = rest_pose(avatar);
     frame.poses.front().origin_m.x = i;
     frame.poses.front().nodes[2].translation.y = static_cast<float>(i);
+    frame.poses.push_back(frame.poses.front());
     frame.colliders = {{7, glm::dvec3(0.5 * i, 0, 0)}, {8, glm::dvec3(1, 0, 0), 0.1F * static_cast<float>(i + 1)}};
     file->write(frame);
   }

@@ -154,7 +154,7 @@ TEST(TraceOfPeople, IsRefusedByWhoeverKnowsOnePersonOnly) {
   const Avatar avatar = test::skeleton(test::kNodes);
   const std::vector<std::byte> glb = test::skeleton_glb(test::kNodes);
   {
-    TraceWriter writer(folder / "one.mcap", {}, {{avatar, {.avatar_glb = glb}}}, {.has_owners = true});
+    TraceWriter writer(folder / "one.mcap", {}, {{avatar, {.avatar_glb = glb}}}, {.owners = Owners::kPeople});
     TraceFrame frame = test::frame(0, test::kNodes, 1);
     frame.colliders[0].owner = 1;
     writer.write(frame);
