@@ -12,6 +12,7 @@
 #include "traces/exchange/collider_rows.hpp"
 #include "traces/exchange/pose_csv.hpp"
 #include "traces/exchange/trace_hdf5.hpp"
+#include "traces/files/input_file.hpp"
 #include "traces/scene/people.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
