@@ -33,7 +33,7 @@ Curve curve_of(const nlohmann::json& series, ContextName context) {
                           on_renderer(series.at("gl"), context));
   if (const auto planes = series.value("planes", 1); planes > 1) curve.who += fmt::format(" with {} planes", planes);
   if (const int people = people_of(series); people > 1) curve.who += fmt::format(" on {} people", people);
-  if (series.value("colliders_around", "all") == "first") curve.who += " of whom only the first has colliders,";
+  if (series.value("colliders_around", "all") == "first") curve.who += " of whom only the first has colliders";
   curve.skips = series.value("skip", "off") == "on";
   if (series.value("renderer", "off") == "on")
     curve.beside = " beside a renderer" + on_renderer(series.value("renderer_gl", nlohmann::json()));

@@ -13,8 +13,8 @@ namespace vestige {
 /// point in a sweep's JSON. Empty if no stage was measured.
 nlohmann::ordered_json to_json(const StageMeans& means);
 
-/// Returns a table for people: the microseconds of each stage, by series, at every number of colliders of a sweep with
-/// up to three, otherwise at the largest. Empty if no stage was measured.
+/// Returns a table for people: the microseconds of each series in each stage, at every number of colliders of a sweep
+/// with up to three, otherwise at the largest. Empty if no stage was measured.
 std::string stage_table(std::span<const SweepSeries> series);
 
 }  // namespace vestige

@@ -120,6 +120,13 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"disagreements", point.disagreements}};
 }
 
+/// The width of the columns of a table whose heads are the names of these series, in characters.
+std::size_t column_width(std::span<const SweepSeries> series) {
+  std::size_t width = 34;
+  for (const SweepSeries& one : series) width = std::max(width, name_of(one).size());
+  return width;
+}
+
 /// Returns a table with one row for each count, and one column for each series that `has_column`. `cell` is what stands
 /// in it, empty where nothing was measured. Returns an empty text without columns.
 std::string table_of(std::span<const SweepSeries> series, const std::string& title,
@@ -215,12 +222,6 @@ std::string contacts_table(std::span<const SweepSeries> series) {
 }
 
 }  // namespace
-
-std::size_t column_width(std::span<const SweepSeries> series) {
-  std::size_t width = 34;
-  for (const SweepSeries& one : series) width = std::max(width, name_of(one).size());
-  return width;
-}
 
 std::string detector_name(const SweepSeries& series) {
   std::string name = series.detector;

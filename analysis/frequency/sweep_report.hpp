@@ -42,9 +42,6 @@ std::string disagreement_lines(std::span<const SweepSeries> series);
 /// Returns one sentence for each count at which detectors that promise the same bits gave different bits.
 std::vector<std::string> disagreements(std::span<const SweepSeries> series);
 
-/// Returns the width of the columns of a table whose heads are the names of these series, in characters.
-std::size_t column_width(std::span<const SweepSeries> series);
-
 /// Returns the name of a series' detector, for example "paper, egl-surfaceless" or "cpu, skip on".
 std::string detector_name(const SweepSeries& series);
 
