@@ -24,7 +24,8 @@ ColliderMoves::ColliderMoves(std::span<const std::uint32_t> collider_ids)
     : collider_ids_(collider_ids.begin(), collider_ids.end()), columns_(collider_ids.size()) {}
 
 void ColliderMoves::next(const TraceFrame& trace_frame) {
-  moves_.clear();
+  moves_.resize(trace_frame.colliders.size());  // filled in place: one that is built elsewhere and copied costs more
+  std::size_t count = 0;
   IdPlace next = collider_ids_.begin();
   for (const std::uint32_t id : trace_frame.teleported) {
     const IdPlace place = place_of(collider_ids_, id, next);
@@ -33,21 +34,27 @@ void ColliderMoves::next(const TraceFrame& trace_frame) {
     next = place + 1;
   }
   next = collider_ids_.begin();
+  bool ascending = true;
   for (const ColliderSample& sample : trace_frame.colliders) {
     const IdPlace place = place_of(collider_ids_, sample.id, next);
     if (place == collider_ids_.end()) continue;
     next = place + 1;
     const auto column = static_cast<std::size_t>(place - collider_ids_.begin());
     Column& before = columns_[column];
-    if (before.seen_in != 0 && before.seen_in == trace_frame.index)
-      moves_.push_back({.column = static_cast<std::uint32_t>(column),
-                        .owner = sample.owner,
-                        .radius_m = is_sphere_radius(sample.radius_m) ? sample.radius_m : 0,
-                        .start_m = before.position_m,
-                        .end_m = sample.position_m});
-    before = {sample.position_m, trace_frame.index + 1};
+    if (before.seen_in != 0 && before.seen_in == trace_frame.index) {
+      ascending = ascending && (count == 0 || moves_[count - 1].column < column);
+      ColliderMove& move = moves_[count++];
+      move.column = static_cast<std::uint32_t>(column);
+      move.owner = sample.owner;
+      move.radius_m = is_sphere_radius(sample.radius_m) ? sample.radius_m : 0;
+      move.start_m = before.position_m;
+      move.end_m = sample.position_m;
+    }
+    before.position_m = sample.position_m;
+    before.seen_in = trace_frame.index + 1;
   }
-  if (!std::ranges::is_sorted(moves_, {}, &ColliderMove::column)) std::ranges::sort(moves_, {}, &ColliderMove::column);
+  moves_.resize(count);
+  if (!ascending) std::ranges::sort(moves_, {}, &ColliderMove::column);
 }
 
 }  // namespace vestige

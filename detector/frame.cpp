@@ -126,11 +126,11 @@ glm::dvec3 FrameBuilder::carried_m() const {
 
 bool FrameBuilder::is_out_of_reach(const Segment& segment) const {
   const glm::vec3 reach_m = reach_m_ + bounding_radius_m(segment);
-  const auto beyond = [&](int axis) {
-    return std::min(segment.start[axis], segment.end[axis]) > reach_m[axis] ||
-           std::max(segment.start[axis], segment.end[axis]) < -reach_m[axis];
-  };
-  return beyond(0) || beyond(1) || beyond(2);
+  const glm::vec3 low = glm::min(segment.start, segment.end);
+  const glm::vec3 high = glm::max(segment.start, segment.end);
+  // Without a branch for each axis: almost all are in reach.
+  return ((low.x > reach_m.x) | (low.y > reach_m.y) | (low.z > reach_m.z) | (high.x < -reach_m.x) |
+          (high.y < -reach_m.y) | (high.z < -reach_m.z)) != 0;
 }
 
 void FrameBuilder::note_non_finite() {
