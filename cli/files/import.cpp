@@ -75,13 +75,19 @@ void expand_folder(ImportOptions& options) {
   if (options.map.empty()) options.map = "none";
   for (std::size_t k = 1; k < trace_format::kMostPeople; ++k) {
     PersonFiles other;
-    take(trace_format::numbered("poses.csv", k), other.poses);
-    if (other.poses.empty()) break;
+    const std::string poses = trace_format::numbered("poses.csv", k);
     const std::string avatar = trace_format::numbered("avatar.glb", k);
+    take(poses, other.poses);
     take(avatar, other.avatar);
-    if (other.avatar.empty())
-      throw Error(options.from, fmt::format("holds poses of person {}, but no {}", k + 1, avatar),
-                  fmt::format("put {} back, or remove that person's files", avatar));
+    if (other.poses.empty() && other.avatar.empty()) continue;
+    const std::size_t before = options.others.size() + 1;
+    const std::string missing = before < k             ? trace_format::numbered("poses.csv", before)
+                                : other.poses.empty()  ? poses
+                                : other.avatar.empty() ? avatar
+                                                       : "";
+    if (!missing.empty())
+      throw Error(options.from, fmt::format("holds files of person {}, but no {}", k + 1, missing),
+                  fmt::format("put {} back, or remove that person's files", missing));
     take(trace_format::numbered("actuator_map.png", k), other.map);
     if (other.map.empty()) other.map = "none";
     options.others.push_back(std::move(other));

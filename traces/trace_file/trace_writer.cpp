@@ -91,7 +91,7 @@ class TraceWriter::Implementation {
   void write_message(std::uint16_t channel_id, mcap::Bytes data);
   void write_open_chunk();
   bool chunk_is_old() const;
-  [[noreturn]] void refuse(const TraceFrame& frame, std::string_view cause) const;
+  [[noreturn]] void refuse(const TraceFrame& frame, std::string_view cause, std::string_view remedy = {}) const;
 
   std::filesystem::path path_;
   TraceWriterOptions options_;
@@ -172,8 +172,9 @@ void TraceWriter::Implementation::define_pose(std::size_t person, const mcap::St
   writer_.write(channel);
 }
 
-void TraceWriter::Implementation::refuse(const TraceFrame& frame, std::string_view cause) const {
-  throw Error(path_.string(), fmt::format("frame {} cannot be recorded: {}", frame.index, cause), "");
+void TraceWriter::Implementation::refuse(const TraceFrame& frame, std::string_view cause,
+                                         std::string_view remedy) const {
+  throw Error(path_.string(), fmt::format("frame {} cannot be recorded: {}", frame.index, cause), remedy);
 }
 
 void TraceWriter::Implementation::require_usable() const {
@@ -207,7 +208,8 @@ void TraceWriter::Implementation::require_valid_colliders(const TraceFrame& fram
     if (version_ != trace_format::kPeopleVersion && collider.owner != kNobody)
       refuse(frame, fmt::format("collider {} has an owner in a trace without owners", collider.id));
   }
-  if (const auto fault = owner_fault(frame.colliders, node_counts_.size())) refuse(frame, *fault);
+  if (const auto fault = owner_fault(frame.colliders, node_counts_.size()))
+    refuse(frame, *fault, "name a person who is there, or 0 for nobody's");
   std::sort(ids_.begin(), ids_.end());
   const auto twice = std::adjacent_find(ids_.begin(), ids_.end());
   if (twice != ids_.end()) refuse(frame, fmt::format("it has collider {} twice", *twice));

@@ -133,7 +133,9 @@ TEST_F(PeopleExchange, WhatDoesNotFitTogetherIsRefused) {
     ASSERT_EQ(run("rm -rf tables && vestige export a.mcap -o tables -q && " + change).exit_code, 0);
     expect_failure("vestige import tables -o b.mcap", 1, words, "b.mcap");
   };
-  refuses("rm tables/avatar.2.glb", {"poses of person 2, but no avatar.2.glb"});
+  refuses("rm tables/avatar.2.glb", {"files of person 2, but no avatar.2.glb"});
+  refuses("rm tables/poses.2.csv", {"files of person 2, but no poses.2.csv"});
+  refuses("for f in tables/*.2.*; do mv $f $(echo $f | sed s/2/3/); done", {"files of person 3, but no poses.2.csv"});
   refuses("sed -i '$d' tables/poses.2.csv", {"poses.2.csv", "has no pose in frame 59"});
   refuses("sed -i '$d' tables/poses.csv", {"poses.2.csv", "has frame 59, which the first person does not have"});
   refuses("sed -i '5d' tables/poses.2.csv", {"poses.2.csv", "has frame 4 at 0.04 s", "frame 3 at 0.03 s"});
