@@ -160,9 +160,10 @@ int export_for_paraview(const ExportOptions& options) {
   return run_plot(arguments);
 }
 
-/// The files of --what poses: OUT.csv, OUT.2.csv, one for each person.
-std::vector<std::string> pose_paths(const ExportOptions& options, const OpenTrace& trace) {
+/// The files that are not in a folder: one, but of --what poses one for each person, OUT.csv, OUT.2.csv, ….
+std::vector<std::string> output_paths(const ExportOptions& options, const OpenTrace& trace) {
   std::vector<std::string> paths = {options.output};
+  if (options.what != "poses") return paths;
   for (std::size_t i = 1; i < trace.people.size(); ++i) paths.push_back(numbered_path(options.output, i));
   if (paths.size() > 1 && is_pipe(options.output))
     throw UsageError(
@@ -172,7 +173,8 @@ std::vector<std::string> pose_paths(const ExportOptions& options, const OpenTrac
 }
 
 std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& options, const std::string& format,
-                                                     const std::optional<CsvFolder>& folder, OpenTrace& trace,
+                                                     const std::optional<CsvFolder>& folder,
+                                                     const std::vector<std::string>& outputs, OpenTrace& trace,
                                                      const std::optional<ExportedContacts>& contacts) {
   TraceReader& reader = trace.reader;
   const Overwrite overwrite = options.common.overwrite();
@@ -186,7 +188,7 @@ std::vector<std::unique_ptr<TraceExport>> make_files(const ExportOptions& option
     files.push_back(make_collider_csv(folder->colliders, overwrite, reader.shape(), reader.owners()));
   } else if (format == "csv") {
     if (options.what == "poses")
-      add_poses(pose_paths(options, trace));
+      add_poses(outputs);
     else
       files.push_back(make_collider_csv(options.output, overwrite, reader.shape(), reader.owners()));
   } else if (format == "ndjson") {
@@ -242,28 +244,22 @@ void run_export(const ExportOptions& options, Invocation& invocation) {
   OpenTrace trace(options.file, verbosity, People::kSeveral);
   TraceReader& reader = trace.reader;
   std::optional<CsvFolder> folder;
-  std::vector<std::string> outputs = {options.output};
-  if (options.what == "poses" && trace.people.size() > 1) {
-    outputs = pose_paths(options, trace);
-    std::vector<std::string> all = outputs;
-    all.push_back(options.common.json);
-    check_outputs(all, {options.file}, options.common);
-  }
+  std::vector<std::string> all;
   if (is_folder) {
     folder.emplace(options.output, reader);
-    outputs = folder->written();
-    std::vector<std::string> all = folder->removed();
-    all.insert(all.end(), outputs.begin(), outputs.end());
-    all.push_back(options.common.json);
+    all = folder->removed();
     make_output_folder(options.output);
-    check_outputs(all, {options.file}, options.common);
   }
+  const std::vector<std::string> outputs = folder ? folder->written() : output_paths(options, trace);
+  all.insert(all.end(), outputs.begin(), outputs.end());
+  all.push_back(options.common.json);
+  if (is_folder || outputs.size() > 1) check_outputs(all, {options.file}, options.common);
   catch_interrupts();
   require_frames(reader, options.file);
   const std::uint64_t total = reader.frame_count();
   std::optional<ExportedContacts> contacts;
   if (!options.contacts.empty()) contacts.emplace(options.contacts, trace);
-  const std::vector<std::unique_ptr<TraceExport>> files = make_files(options, format, folder, trace, contacts);
+  const std::vector<std::unique_ptr<TraceExport>> files = make_files(options, format, folder, outputs, trace, contacts);
   const std::uint64_t written = write_frames(reader, files, contacts, options);
   std::vector<std::string> losses;
   for (const auto& file : files) {

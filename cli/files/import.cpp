@@ -94,18 +94,29 @@ void expand_folder(ImportOptions& options) {
   }
 }
 
-/// Returns a text that a session.json records of a person, such as the facing; empty if it records none.
-std::string recorded_text(const std::string& session, std::string_view key, std::size_t person) {
-  if (session.empty()) return {};
-  constexpr const char* kRemedy = "export the trace again, or remove the file";
-  const std::string numbered = trace_format::numbered(key, person);
-  const nlohmann::json json = parse_strict_json(read_text_file(session), session, kRemedy);
-  const bool is_object = json.is_object();
-  if (is_object && !json.contains(numbered)) return {};
-  if (!is_object || !json[numbered].is_string())
-    throw Error(session, fmt::format("is not a JSON object with a text '{}'", numbered), kRemedy);
-  return json[numbered].get<std::string>();
-}
+/// The session.json of a folder.
+class RecordedSession {
+ public:
+  /// Without a file, nothing is recorded.
+  explicit RecordedSession(const std::string& file) : file_(file) {
+    if (!file.empty()) json_ = parse_strict_json(read_text_file(file), file, kRemedy);
+  }
+
+  /// Returns a text that it records of a person, such as the facing; empty if it records none.
+  std::string text(std::string_view key, std::size_t person) const {
+    const std::string numbered = trace_format::numbered(key, person);
+    const bool is_object = json_.is_object();
+    if (is_object && !json_.contains(numbered)) return {};
+    if (!is_object || !json_[numbered].is_string())
+      throw Error(file_, fmt::format("is not a JSON object with a text '{}'", numbered), kRemedy);
+    return json_[numbered].get<std::string>();
+  }
+
+ private:
+  static constexpr const char* kRemedy = "export the trace again, or remove the file";
+  std::string file_;
+  nlohmann::json json_ = nlohmann::json::object();
+};
 
 void check_flags(const ImportOptions& options) {
   if (options.motion.empty() && options.poses.empty() && !options.colliders.empty())
@@ -140,12 +151,13 @@ void check_flags(const ImportOptions& options) {
 std::vector<Scene> load_scenes(const ImportOptions& options) {
   std::vector<PersonFiles> files = {{options.poses, options.avatar, options.map}};
   files.insert(files.end(), options.others.begin(), options.others.end());
+  const RecordedSession session(options.session);
   std::vector<Scene> scenes;
   scenes.reserve(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
     scenes.push_back(load_scene(files[i].avatar, files[i].map, options.facing, options.common.verbosity(),
-                                recorded_text(options.session, trace_format::kFacingKey, i)));
-    scenes.back().name = recorded_text(options.session, trace_format::kNameKey, i);
+                                session.text(trace_format::kFacingKey, i)));
+    scenes.back().name = session.text(trace_format::kNameKey, i);
   }
   return scenes;
 }

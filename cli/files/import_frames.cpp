@@ -28,7 +28,8 @@ void require_names(const std::string& file, std::size_t person, const std::vecto
   throw Error(
       file,
       fmt::format("its table {}/node_names does not name its avatar's nodes", trace_format::numbered("pose", person)),
-      "give the poses the nodes of avatar.glb, in the same order");
+      fmt::format("give the poses the nodes of {}, in the same order",
+                  trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, person)));
 }
 
 /// Another person's poses beside those of the first.

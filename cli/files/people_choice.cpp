@@ -26,11 +26,11 @@ namespace {
 constexpr const char* kAvatarFlag = "--avatar";
 
 /// The flags that belong to a person, and where their values go.
-struct FlagOfPerson {
+struct PersonSetting {
   const char* name;
   std::string& (*value)(PersonChoice&);
 };
-constexpr std::array<FlagOfPerson, 7> kFlagsOfPerson = {{
+constexpr std::array<PersonSetting, 7> kPersonSettings = {{
     {"--animation", [](PersonChoice& person) -> std::string& { return person.animation; }},
     {"--map", [](PersonChoice& person) -> std::string& { return person.map; }},
     {"--facing", [](PersonChoice& person) -> std::string& { return person.facing.axis; }},
@@ -113,7 +113,7 @@ void add_people_options(CLI::App& verb) {
       avatar->get_description() +
       ". Repeat it for more people: --animation, --map, --facing, --at, --limbs, --name and --live belong to "
       "the latest --avatar before them");
-  for (const FlagOfPerson& flag : kFlagsOfPerson)
+  for (const PersonSetting& flag : kPersonSettings)
     verb.get_option(flag.name)->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
 
@@ -124,9 +124,9 @@ std::vector<PersonChoice> people_choices(const CLI::App& verb) {
   std::set<std::string> given;                     // for the latest person
   for (const CLI::Option* option : verb.parse_order()) {
     const auto flag = std::ranges::find_if(
-        kFlagsOfPerson, [&](const FlagOfPerson& each) { return option == verb.get_option(each.name); });
+        kPersonSettings, [&](const PersonSetting& each) { return option == verb.get_option(each.name); });
     const bool is_avatar = option == verb.get_option(kAvatarFlag);
-    if (!is_avatar && flag == kFlagsOfPerson.end()) continue;
+    if (!is_avatar && flag == kPersonSettings.end()) continue;
     const std::string& value = option->results().at(seen[option]++);
     const std::string name = is_avatar ? kAvatarFlag : flag->name;
     if (is_avatar && given.contains(name)) {
