@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <glm/gtc/constants.hpp>
 #include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <map>
@@ -14,6 +13,7 @@
 
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/exchange/collider_mesh.hpp"
 #include "traces/exchange/trace_export.hpp"
 #include "traces/files/column_file.hpp"
 #include "traces/gltf/clean/append_glb.hpp"
@@ -36,41 +36,6 @@ constexpr double kPoint_m = 0.01;  ///< radius with which a point is drawn
 /// The scale of a node is the radius of its sphere, and a node of scale 0 is absent.
 constexpr float kSmallestRadius_m = 1e-6F;
 
-struct Sphere {
-  std::vector<float> positions;
-  std::vector<float> normals;
-  std::vector<std::uint16_t> indices;
-};
-
-Sphere make_sphere(double radius_m) {
-  constexpr int kRings = 8;
-  constexpr int kSegments = 12;
-  Sphere sphere;
-  for (int ring = 0; ring <= kRings; ++ring)
-    for (int segment = 0; segment < kSegments; ++segment) {
-      const double polar = glm::pi<double>() * ring / kRings;
-      const double around = 2 * glm::pi<double>() * segment / kSegments;
-      const glm::dvec3 normal(std::sin(polar) * std::cos(around), std::cos(polar), std::sin(polar) * std::sin(around));
-      for (int axis = 0; axis < 3; ++axis) {
-        sphere.normals.push_back(static_cast<float>(normal[axis]));
-        sphere.positions.push_back(static_cast<float>(radius_m * normal[axis]));
-      }
-    }
-  const auto corner = [](int ring, int segment) {
-    return static_cast<std::uint16_t>(ring * kSegments + segment % kSegments);
-  };
-  for (int ring = 0; ring < kRings; ++ring)
-    for (int segment = 0; segment < kSegments; ++segment) {
-      const std::uint16_t a = corner(ring, segment);
-      const std::uint16_t b = corner(ring, segment + 1);
-      const std::uint16_t c = corner(ring + 1, segment);
-      const std::uint16_t d = corner(ring + 1, segment + 1);
-      if (ring > 0) sphere.indices.insert(sphere.indices.end(), {a, b, c});
-      if (ring + 1 < kRings) sphere.indices.insert(sphere.indices.end(), {b, d, c});
-    }
-  return sphere;
-}
-
 /// Returns a file that `clean_avatar_glb` made, to be continued.
 Builder continued(std::span<const std::byte> glb) {
   gltf::Report unused("avatar.glb");
@@ -84,25 +49,6 @@ Builder continued(std::span<const std::byte> glb) {
 /// Returns the only scene of such a file.
 Json& scene_of(Builder& builder) {
   return builder.json["scenes"][0];
-}
-
-/// Adds the mesh of the colliders with this radius.
-int add_sphere(Builder& builder, double radius_m, int material) {
-  const Sphere sphere = make_sphere(radius_m);
-  const int position = builder.add_bounded_accessor(sphere.positions, "VEC3", 3, gltf::Target::kVertices);
-  const int normal = builder.add_accessor(sphere.normals, "VEC3", 3, gltf::Target::kVertices);
-  const int indices = builder.add_accessor(sphere.indices, "SCALAR", 1, gltf::Target::kIndices);
-  return builder.add("meshes",
-                     {{"name", "collider"},
-                      {"primitives", Json::array({{{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
-                                                   {"indices", indices},
-                                                   {"material", material}}})}});
-}
-
-int add_collider_material(Builder& builder) {
-  return builder.add("materials",
-                     {{"name", "collider"},
-                      {"pbrMetallicRoughness", {{"baseColorFactor", {0.9, 0.3, 0.1, 1.0}}, {"metallicFactor", 0.0}}}});
 }
 
 /// A person, whose columns stand together: the origin, then three of each node.
@@ -161,7 +107,7 @@ class FrameGltf final : public TraceExport {
         avatars_(avatars_of(people)),
         ids_(std::move(ids.all)),
         columns_(path, column_widths(avatars_, ids_.size())),
-        varies_(column_widths(avatars_, ids_.size()).size()) {
+        varies_(columns_.columns()) {
     for (std::size_t i = 0; i < ids_.size(); ++i) place_of_[ids_[i]] = i;
     last_position_.resize(ids_.size(), glm::vec3(0));
     is_sphere_.resize(ids_.size(), false);

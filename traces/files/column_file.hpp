@@ -23,6 +23,7 @@ class ColumnFile {
 
   std::uint64_t rows() const { return rows_; }
   std::size_t width(std::size_t column) const { return widths_[column]; }
+  std::size_t columns() const { return widths_.size(); }
 
   /// Passes a whole column to `take`, block by block. Precondition: `finish` was called.
   void read(std::size_t column, const std::function<void(std::span<const float>)>& take) const;
