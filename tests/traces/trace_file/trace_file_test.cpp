@@ -1,13 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <csignal>
 #include <fstream>
-#include <thread>
 
+#include "tests/support/message_of.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/traces/mcap/mcap_files.hpp"
 #include "tests/traces/trace_file/small_trace.hpp"
@@ -23,25 +19,8 @@ namespace {
 
 using test::kColliders;
 using test::kNodes;
+using test::message_of;
 using ::testing::HasSubstr;
-
-/// The message of the `Error` that `call` throws.
-template <typename Call>
-std::string error_of(Call call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-std::vector<std::string> entries_in(const std::filesystem::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename());
-  std::sort(names.begin(), names.end());
-  return names;
-}
 
 class TraceFileCompressed : public ::testing::TestWithParam<Compression> {};
 
@@ -141,18 +120,18 @@ TEST(TraceFile, RefusesFramesThatContradictTheTrace) {
   const auto glb = test::skeleton_glb(kNodes);
   TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}}, test::steady_options());
   writer.write(test::frame(5, kNodes, 1));
-  EXPECT_THAT(error_of([&] { writer.write(test::frame(5, kNodes, 1)); }), HasSubstr("comes after frame 5"));
+  EXPECT_THAT(message_of([&] { writer.write(test::frame(5, kNodes, 1)); }), HasSubstr("comes after frame 5"));
   TraceFrame early = test::frame(6, kNodes, 1);
   early.time_ns = 1;
-  EXPECT_THAT(error_of([&] { writer.write(early); }), HasSubstr("is earlier"));
-  EXPECT_THAT(error_of([&] { writer.write(test::frame(6, kNodes + 1, 1)); }), HasSubstr("4 nodes"));
+  EXPECT_THAT(message_of([&] { writer.write(early); }), HasSubstr("is earlier"));
+  EXPECT_THAT(message_of([&] { writer.write(test::frame(6, kNodes + 1, 1)); }), HasSubstr("4 nodes"));
   TraceFrame twice = test::frame(6, kNodes, 2);
   twice.colliders[1].id = twice.colliders[0].id;
-  EXPECT_THAT(error_of([&] { writer.write(twice); }), HasSubstr("it has collider 3 twice"));
-  EXPECT_THAT(error_of([&] { writer.write(test::frame(std::uint64_t{1} << 32, kNodes, 1)); }), HasSubstr("32 bits"));
+  EXPECT_THAT(message_of([&] { writer.write(twice); }), HasSubstr("it has collider 3 twice"));
+  EXPECT_THAT(message_of([&] { writer.write(test::frame(std::uint64_t{1} << 32, kNodes, 1)); }), HasSubstr("32 bits"));
   writer.write(test::frame(6, kNodes, 1));
   writer.finish();
-  EXPECT_THAT(error_of([&] { writer.write(test::frame(7, kNodes, 1)); }), HasSubstr("closed"));
+  EXPECT_THAT(message_of([&] { writer.write(test::frame(7, kNodes, 1)); }), HasSubstr("closed"));
   TraceReader reader(folder / "a.mcap");
   EXPECT_EQ(reader.frame_count(), 2U);
 }
@@ -167,182 +146,21 @@ TEST(TraceFile, ClosesAChunkBySizeAndByAge) {
   EXPECT_EQ(summarise_mcap(folder / "old.mcap").chunks, 20U);
 }
 
-TEST(TraceFile, RefusesToOverwriteUnlessAllowed) {
-  const test::TemporaryFolder folder;
-  std::ofstream(folder / "a.mcap") << "precious";
-  EXPECT_THAT(error_of([&] { test::write_trace(folder / "a.mcap", 1, test::steady_options()); }), HasSubstr("--force"));
-  EXPECT_EQ(read_text_file(folder / "a.mcap"), "precious");
-  TraceWriterOptions allowed = test::steady_options();
-  allowed.overwrite = Overwrite::kAllow;
-  test::write_trace(folder / "a.mcap", 1, allowed);
-  TraceReader reader(folder / "a.mcap");
-  EXPECT_TRUE(reader.complete());
-  EXPECT_THAT(entries_in(folder.path()), ::testing::ElementsAre("a.mcap"));
-}
-
-TEST(TraceFile, WithoutFinishIsReadableToTheLastFrame) {
-  const test::TemporaryFolder folder;
-  const auto glb = test::skeleton_glb(kNodes);
-  {
-    TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}},
-                       test::steady_options(1000));
-    for (std::uint64_t i = 0; i < 20; ++i) writer.write(test::frame(i, kNodes, kColliders));
-  }
-  TraceReader reader(folder / "a.mcap");
-  EXPECT_EQ(test::read_frames(reader).size(), 20U);
-  EXPECT_FALSE(reader.complete());
-  ASSERT_EQ(reader.warnings().size(), 1U);
-  EXPECT_THAT(reader.warnings()[0], HasSubstr("without a footer"));
-}
-
-TEST(TraceFile, LeavesNothingBehindWhenNoFrameWasWritten) {
-  const test::TemporaryFolder folder;
-  const auto glb = test::skeleton_glb(kNodes);
-  {
-    const TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}},
-                             test::steady_options());
-    EXPECT_TRUE(std::filesystem::exists(folder / "a.mcap"));
-  }
-  EXPECT_TRUE(entries_in(folder.path()).empty());
-}
-
-/// Runs `body` in a child process, which exits with what it returns; gives back waitpid's status.
-template <typename Body>
-int status_of_child(Body body) {
-  const pid_t child = ::fork();
-  if (child == 0) ::_exit(body());
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return status;
-}
-
-/// Writes frames until the file may not grow any more; returns the error's message through `path`.message.
-int record_until_full(const std::filesystem::path& path, rlim_t limit_bytes, Overwrite overwrite) {
-  return status_of_child([&] {
-    std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit = {limit_bytes, limit_bytes};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-    const std::string message = error_of([&] {
-      const auto glb = test::skeleton_glb(kNodes);
-      TraceWriterOptions options = test::steady_options(2000);
-      options.overwrite = overwrite;
-      TraceWriter writer(path, {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}}, options);
-      for (std::uint64_t i = 0; i < 10000; ++i) writer.write(test::frame(i, kNodes, kColliders));
-      writer.finish();
-    });
-    std::ofstream(path.string() + ".message") << message;
-    return 0;
-  });
-}
-
-TEST(TraceFile, KeepsWhatWasWrittenWhenTheDiskIsFull) {
-  const test::TemporaryFolder folder;
-  ASSERT_EQ(record_until_full(folder / "a.mcap", 50'000, Overwrite::kRefuse), 0);
-  const std::string message = read_text_file(folder / "a.mcap.message");
-  EXPECT_THAT(message, HasSubstr("a.mcap: could not write"));
-  EXPECT_THAT(message, HasSubstr("a.mcap.partial"));
-  EXPECT_THAT(entries_in(folder.path()), ::testing::ElementsAre("a.mcap.message", "a.mcap.partial"));
-  TraceReader reader(folder / "a.mcap.partial");
-  const auto frames = test::read_frames(reader);
-  EXPECT_GT(frames.size(), 50U);
-  EXPECT_TRUE(test::same_bits(frames.back(), test::frame(frames.back().index, kNodes, kColliders)));
-  EXPECT_FALSE(reader.complete());
-
-  // A second failure does not replace what the first one kept.
-  ASSERT_EQ(record_until_full(folder / "a.mcap", 50'000, Overwrite::kRefuse), 0);
-  EXPECT_TRUE(std::filesystem::exists(folder / "a.mcap.partial-2"));
-}
-
-TEST(TraceFile, LosesNothingWhenTheDiskIsFullAtTheStart) {
-  const test::TemporaryFolder folder;
-  ASSERT_EQ(record_until_full(folder / "a.mcap", 500, Overwrite::kRefuse), 0);
-  EXPECT_THAT(entries_in(folder.path()), ::testing::ElementsAre("a.mcap.message"));
-  std::ofstream(folder / "a.mcap") << "precious";
-  ASSERT_EQ(record_until_full(folder / "a.mcap", 500, Overwrite::kAllow), 0);
-  EXPECT_EQ(read_text_file(folder / "a.mcap"), "precious");
-  EXPECT_THAT(entries_in(folder.path()), ::testing::ElementsAre("a.mcap", "a.mcap.message"));
-}
-
-TEST(TraceFile, ReportsADeviceWithoutRoom) {
-  EXPECT_THAT(error_of([] { test::write_trace("/dev/full", 1, {.overwrite = Overwrite::kAllow}); }),
-              HasSubstr("/dev/full: could not write"));
-}
-
-TEST(TraceFile, OfAKilledRecorderLosesAtMostOneChunk) {
-  const test::TemporaryFolder folder;
-  int to_parent[2] = {};
-  ASSERT_EQ(::pipe(to_parent), 0);
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const auto glb = test::skeleton_glb(kNodes);
-    TraceWriter writer(folder / "a.mcap", {}, {{test::skeleton(kNodes), {.avatar_glb = glb}}},
-                       test::steady_options(4000));
-    for (std::uint64_t i = 0;; ++i) {
-      writer.write(test::frame(i, kNodes, kColliders));
-      if (::write(to_parent[1], &i, sizeof i) != sizeof i) ::_exit(1);
-    }
-  }
-  ::close(to_parent[1]);
-  std::uint64_t last = 0;
-  while (last < 500) ASSERT_EQ(::read(to_parent[0], &last, sizeof last), static_cast<ssize_t>(sizeof last));
-  ::kill(child, SIGKILL);
-  ::waitpid(child, nullptr, 0);
-  for (std::uint64_t more = 0; ::read(to_parent[0], &more, sizeof more) == sizeof more;) last = more;
-  ::close(to_parent[0]);
-
-  TraceReader reader(folder / "a.mcap");
-  const auto frames = test::read_frames(reader);
-  // A frame takes about 560 bytes of a chunk.
-  constexpr std::uint64_t kFramesInAChunk = 10;
-  EXPECT_GE(frames.size() + kFramesInAChunk, last);
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    EXPECT_TRUE(test::same_bits(frames[i], test::frame(i, kNodes, kColliders))) << i;
-  EXPECT_FALSE(reader.complete());
-}
-
-TEST(TraceFile, GoesThroughPipes) {
-  const test::TemporaryFolder folder;
-  test::write_trace(folder / "expected.mcap", 40, test::steady_options(3000));
-  // One process records to standard output, the other reads standard input.
-  int pipe_ends[2] = {};
-  ASSERT_EQ(::pipe(pipe_ends), 0);
-  const pid_t recorder = ::fork();
-  if (recorder == 0) {
-    ::dup2(pipe_ends[1], STDOUT_FILENO);
-    ::close(pipe_ends[0]);
-    ::close(pipe_ends[1]);
-    test::write_trace("-", 40, test::steady_options(3000));
-    ::_exit(0);
-  }
-  ::close(pipe_ends[1]);  // else the reader would never see the end
-  const int status = status_of_child([&] {
-    ::dup2(pipe_ends[0], STDIN_FILENO);
-    TraceReader reader("-");
-    const bool good = test::read_frames(reader).size() == 40 && reader.frame_count() == 40 && reader.complete();
-    return good ? 0 : 1;
-  });
-  ::close(pipe_ends[0]);
-  int recorder_status = 0;
-  ::waitpid(recorder, &recorder_status, 0);
-  EXPECT_EQ(recorder_status, 0);
-  EXPECT_EQ(status, 0);
-}
-
 TEST(TraceFile, ExplainsWhatIsNoTrace) {
   const test::TemporaryFolder folder;
-  EXPECT_THAT(error_of([] { TraceReader("/no/such.mcap"); }), HasSubstr("there is no such file"));
-  EXPECT_THAT(error_of([] { TraceReader("/tmp"); }), HasSubstr("is a folder"));
+  EXPECT_THAT(message_of([] { TraceReader("/no/such.mcap"); }), HasSubstr("there is no such file"));
+  EXPECT_THAT(message_of([] { TraceReader("/tmp"); }), HasSubstr("is a folder"));
   std::ofstream(folder / "empty.mcap").flush();
-  EXPECT_THAT(error_of([&] { TraceReader(folder / "empty.mcap"); }), HasSubstr("is empty"));
+  EXPECT_THAT(message_of([&] { TraceReader(folder / "empty.mcap"); }), HasSubstr("is empty"));
   std::ofstream(folder / "text.mcap") << "this is not the file you are looking for";
-  EXPECT_THAT(error_of([&] { TraceReader(folder / "text.mcap"); }), HasSubstr("is not an MCAP file"));
-  EXPECT_THAT(error_of([&] { summarise_mcap(folder / "text.mcap"); }), HasSubstr("is not an MCAP file"));
+  EXPECT_THAT(message_of([&] { TraceReader(folder / "text.mcap"); }), HasSubstr("is not an MCAP file"));
+  EXPECT_THAT(message_of([&] { summarise_mcap(folder / "text.mcap"); }), HasSubstr("is not an MCAP file"));
 }
 
 TEST(TraceFile, OfSomeoneElseIsRefusedByTheReaderButSummarised) {
   const auto file = test::data("mcap/compressed/multi-lz4.mcap");
   VESTIGE_REQUIRE_DATA(file);
-  EXPECT_THAT(error_of([&] { TraceReader reader(file); }), HasSubstr("not a trace of vestige"));
+  EXPECT_THAT(message_of([&] { TraceReader reader(file); }), HasSubstr("not a trace of vestige"));
   const McapSummary summary = summarise_mcap(file);
   EXPECT_EQ(summary.messages, 600U);
   EXPECT_EQ(summary.channels.size(), 3U);
@@ -360,7 +178,7 @@ TEST(TraceFile, RefusesAPoseThatDoesNotFitTheAvatar) {
     writer.write(test::frame(0, kNodes, 0));
     writer.finish();
   }
-  EXPECT_THAT(error_of([&] { TraceReader reader(folder / "a.mcap"); }),
+  EXPECT_THAT(message_of([&] { TraceReader reader(folder / "a.mcap"); }),
               HasSubstr("its poses have 3 nodes, but its avatar has 4"));
 }
 
