@@ -10,7 +10,6 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/hdf5/hdf5_reader.hpp"
-#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
 
@@ -26,7 +25,7 @@ PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& ch
 std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify) {
   if (verify.empty() || is_detector(verify)) return {};
   if (!verify.ends_with(".csv") && !has_hdf5_name(verify) && !is_hdf5(verify)) return {};
-  return read_contacts(verify, {.people = std::vector<PersonLimits>(trace_format::kMostPeople)});
+  return read_contacts(verify, {.people = {}});
 }
 
 Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector,

@@ -27,6 +27,9 @@ struct ContactFault {
 /// Returns the first fault, if there is one.
 std::optional<ContactFault> fault_of(const RecordedContact& contact, const ContactLimits& limits);
 
+/// Throws `Error` if a file without avatars is read where there are several people.
+void require_avatars(const std::filesystem::path& path, const OptionalColumns& columns, const ContactLimits& limits);
+
 // The two formats, for `make_contacts_file` and `read_contacts`.
 std::unique_ptr<ContactsFile> make_contacts_csv(const std::filesystem::path& path, Overwrite overwrite,
                                                 OptionalColumns columns);

@@ -72,6 +72,7 @@ std::vector<RecordedContact> read_contacts_csv(const std::filesystem::path& path
   const bool has_depths = columns.shape == ColliderShape::kSpheres;
   const std::string header = header_of(columns);
   CsvLines lines(text, path.string(), header, kContactsRemedy);
+  require_avatars(path, columns, limits);
   std::vector<RecordedContact> contacts;
   while (lines.next()) {
     RecordedContact contact;

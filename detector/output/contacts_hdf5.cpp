@@ -50,7 +50,8 @@ class ContactsHdf5 final : public ContactsFile {
 /// All columns of a file, of equal length.
 class ContactTables {
  public:
-  explicit ContactTables(const std::filesystem::path& path) : path_(path), file_(open_hdf5(path, kContactsRemedy)) {
+  ContactTables(const std::filesystem::path& path, const ContactLimits& limits)
+      : path_(path), limits_(limits), file_(open_hdf5(path, kContactsRemedy)) {
     const std::string format = read_hdf5_attribute(file_.id(), path, "/", "format").value_or("");
     if (format != kFormat)
       throw Error(path.string(), fmt::format("its attribute format is '{}', not '{}'", format, kFormat),
@@ -61,6 +62,7 @@ class ContactTables {
                   "use the later version of vestige that wrote it");
     if (hdf5().link_exists(file_.id(), kDepth, H5P_DEFAULT) > 0) optional_.shape = ColliderShape::kSpheres;
     optional_.has_avatars = hdf5().link_exists(file_.id(), kAvatar, H5P_DEFAULT) > 0;
+    require_avatars(path, optional_, limits);
     for (const Hdf5Column::Description& column : contact_columns(optional_))
       tables_.emplace_back(file_.id(), path, column.name, kContactsRemedy);
     for (const Hdf5Table& table : tables_) table.expect({rows()});
@@ -71,7 +73,7 @@ class ContactTables {
   hsize_t rows() const { return tables_[0].dimensions()[0]; }
 
   /// Appends the contacts from row `first` on, at most `kBlockRows`.
-  void read(hsize_t first, const ContactLimits& limits, std::vector<RecordedContact>& contacts) {
+  void read(hsize_t first, std::vector<RecordedContact>& contacts) {
     const hsize_t count = std::min(kBlockRows, rows() - first);
     tables_[0].read(first, count, frame_);
     tables_[1].read(first, count, time_s_);
@@ -104,7 +106,7 @@ class ContactTables {
                           .position_m = {x_m_[i], y_m_[i], z_m_[i]}});
       if (has_depths) contacts.back().depth_m = depth_m_[i];
       if (optional_.has_avatars) contacts.back().avatar = avatar_[i];
-      if (const auto fault = fault_of(contacts.back(), limits))
+      if (const auto fault = fault_of(contacts.back(), limits_))
         throw Error(path_.string(), fmt::format("its table {}, row {}: {}", fault->column, first + i, fault->cause),
                     fault->remedy);
     }
@@ -112,6 +114,7 @@ class ContactTables {
 
  private:
   std::filesystem::path path_;
+  const ContactLimits& limits_;
   Hdf5Handle file_;
   OptionalColumns optional_;
   std::vector<Hdf5Table> tables_;  ///< in the order of `contact_columns`
@@ -134,9 +137,9 @@ class ContactTables {
 };
 
 std::vector<RecordedContact> read_all(const std::filesystem::path& path, const ContactLimits& limits) {
-  ContactTables tables(path);
+  ContactTables tables(path, limits);
   std::vector<RecordedContact> contacts;
-  for (hsize_t first = 0; first < tables.rows(); first += kBlockRows) tables.read(first, limits, contacts);
+  for (hsize_t first = 0; first < tables.rows(); first += kBlockRows) tables.read(first, contacts);
   return contacts;
 }
 

@@ -54,8 +54,9 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
   if (contact.depth_m.value_or(0) < 0) return ContactFault{"depth", "depth must not be negative", kContactsRemedy};
   if (contact.side < -1 || contact.side > 1) return ContactFault{"side", "side must be -1, 0 or 1", kContactsRemedy};
   if (contact.avatar == 0) return ContactFault{"avatar", "avatar must be from 1 on", kContactsRemedy};
-  if (contact.avatar > limits.people.size()) return beyond("avatar", contact.avatar, limits.people.size(), "there are");
   if (contact.frame >= limits.frames) return beyond("frame", contact.frame, limits.frames, "there are");
+  if (limits.people.empty()) return {};
+  if (contact.avatar > limits.people.size()) return beyond("avatar", contact.avatar, limits.people.size(), "there are");
   const PersonLimits& person = limits.people[contact.avatar - 1U];
   const auto who = [&] {
     return limits.people.size() == 1 ? "there are" : fmt::format("person {} has", contact.avatar);
@@ -63,6 +64,14 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
   if (contact.triangle >= person.triangles) return beyond("triangle", contact.triangle, person.triangles, who());
   if (contact.actuator > person.actuators) return beyond("actuator", contact.actuator, person.actuators, who());
   return {};
+}
+
+void require_avatars(const std::filesystem::path& path, const OptionalColumns& columns, const ContactLimits& limits) {
+  if (columns.has_avatars || limits.people.size() <= 1) return;
+  throw Error(path.string(),
+              fmt::format("has contacts of a trace of one person: they do not say whom of the {} people they touch",
+                          limits.people.size()),
+              "use the contacts of this trace: vestige replay TRACE --contacts FILE");
 }
 
 std::vector<RecordedContact> read_contacts(const std::filesystem::path& path, const ContactLimits& limits) {
@@ -76,7 +85,7 @@ std::vector<RecordedContact> read_contacts(const std::filesystem::path& path, co
   if (twice != contacts.end())
     throw Error(path.string(),
                 fmt::format("collider {} has two contacts in frame {}{}", twice->collider, twice->frame,
-                            limits.people.size() > 1 ? fmt::format(" with avatar {}", twice->avatar) : ""),
+                            limits.people.size() != 1 ? fmt::format(" with avatar {}", twice->avatar) : ""),
                 kContactsRemedy);
   return contacts;
 }

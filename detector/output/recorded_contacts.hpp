@@ -35,14 +35,14 @@ struct PersonLimits {
 
 /// The people and the number of frames that the contacts of a file can refer to.
 struct ContactLimits {
-  std::vector<PersonLimits> people = {PersonLimits()};
+  std::vector<PersonLimits> people = {PersonLimits()};  ///< empty: contacts may be on anybody
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
 };
 
 /// Reads a file of `ContactsFile`, CSV or HDF5 by its content, with rows in any order, and returns the contacts ordered
 /// by frame, avatar and collider. Throws `Error` with file and line, or table and row, also if a contact refers to
-/// something that does not exist. Precondition: no threads have been started, because HDF5 is first read in a child
-/// process.
+/// something that does not exist, or if the limits name several people and the file does not say who was touched.
+/// Precondition: no threads have been started, because HDF5 is first read in a child process.
 std::vector<RecordedContact> read_contacts(const std::filesystem::path& path, const ContactLimits& limits = {});
 
 }  // namespace vestige
