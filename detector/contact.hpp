@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -50,6 +51,7 @@ class ContactRow {
 
   std::size_t size() const { return contacts_.size(); }
   bool empty() const { return contacts_.empty(); }
+  std::size_t hits() const { return static_cast<std::size_t>(std::ranges::count_if(contacts_, &Contact::hit)); }
   const Contact& operator[](std::size_t column) const { return contacts_[column]; }
   Contact& operator[](std::size_t column) {
     constexpr std::size_t kMost = 16;  // beyond, it is as well to clear all

@@ -297,7 +297,7 @@ class BatchRun {
     for (bool more = reader.next(trace_frame); more; more = reader.next(trace_frame)) {
       times.reading_s += lap_s();
       detection.step(trace_frame);
-      contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(), &Contact::hit));
+      contacts += detection.row().hits();
       recording.add(detection.frame().time_s, detection.row());
       cover.add(detection.frame(), detection.row());
       times.detection_s += lap_s();

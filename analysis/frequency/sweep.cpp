@@ -236,7 +236,7 @@ class RunningSweep {
             if (const Contact& one = rows[person][columns[i]]; one.hit()) row[i] = one;
           hashes[person].add(row);
           point.results += row.size();
-          contacts += static_cast<std::uint64_t>(std::ranges::count_if(row, &Contact::hit));
+          contacts += row.hits();
         }
         point.contacts += contacts;
         if (contacts == 0) ++point.empty_frames;

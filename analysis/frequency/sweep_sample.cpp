@@ -28,8 +28,7 @@ std::vector<std::uint32_t> count_contacts(TraceReader& trace, std::span<const De
     if (contacts.size() % kFramesBetweenQuestions == 0 && !goes_on()) return {};
     detection.step(frame);
     std::uint32_t& count = contacts.emplace_back(0);
-    for (std::size_t i = 0; i < people.size(); ++i)
-      count += static_cast<std::uint32_t>(std::ranges::count_if(detection.row(i), &Contact::hit));
+    for (std::size_t i = 0; i < people.size(); ++i) count += static_cast<std::uint32_t>(detection.row(i).hits());
   }
   return contacts;
 }

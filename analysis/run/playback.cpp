@@ -112,8 +112,7 @@ PlaybackResult play(TraceReader& trace, std::span<const DetectedPerson> people, 
       detection.step(trace_frame);
       run->take(time_s, detection);
       ++result.frames;
-      for (std::size_t i = 0; i < people.size(); ++i)
-        result.people[i].contacts += static_cast<std::uint64_t>(std::ranges::count_if(detection.row(i), &Contact::hit));
+      for (std::size_t i = 0; i < people.size(); ++i) result.people[i].contacts += detection.row(i).hits();
     }
     for (std::size_t i = 0; i < people.size(); ++i) {
       result.people[i].non_finite_frames += detection.builder(i).non_finite_frames();

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <numeric>
@@ -47,9 +46,7 @@ struct SceneRun {
   std::uint64_t non_finite_segments = 0;
   std::optional<std::uint64_t> first_non_finite;
 
-  std::size_t contacts_in(std::size_t frame) const {
-    return static_cast<std::size_t>(std::ranges::count_if(rows[frame], &Contact::hit));
-  }
+  std::size_t contacts_in(std::size_t frame) const { return rows[frame].hits(); }
   std::size_t contacts() const {
     std::size_t sum = 0;
     for (std::size_t frame = 0; frame < rows.size(); ++frame) sum += contacts_in(frame);
