@@ -57,8 +57,9 @@ void check_live_choice(const CLI::App& verb, const LiveChoice& choice) {
     if (source == "-" && choice.sources.size() > 1)
       throw UsageError("--live", "lines on standard input are of one person",
                        "name one avatar, or ports: vmc://HOST:PORT");
-    if (source != "-") parse_host_port(source, kScheme, "--live");
-    if (!taken.insert(source).second)
+    const std::string place =
+        source == "-" ? source : host_port_url(kScheme, parse_host_port(source, kScheme, "--live"));
+    if (!taken.insert(place).second)
       throw UsageError("--live", fmt::format("two people have the source {}", source), "give each a port of their own");
   }
   for (const char* flag : {"--animation", "--ignore-morphs", "--colliders", "--count", "--radius"})
@@ -113,8 +114,8 @@ LiveCounts record_from_ports(const LiveChoice& choice, std::span<const LivePerso
   }
   if (counts.ids_clash)
     warn(
-        "several sources sent colliders of one id; the first person's were recorded\n  Give each sender ids of its "
-        "own.",
+        "several sources sent colliders of one id; only those of whoever sent it first were recorded\n  Give each "
+        "sender ids of its own.",
         verbosity);
   return counts;
 }
@@ -135,7 +136,7 @@ LiveCounts record_live(const LiveChoice& choice, std::span<const LivePerson> peo
                     : "make the sender send to this machine and port, and check that no firewall blocks it");
   if (counts.malformed > 0 && choice.is_lines())
     warn(fmt::format("{}: left out {} that could not be read", source, counted(counts.malformed, "line")), verbosity);
-  if (counts.lost_something() && !choice.is_lines())
+  if (counts.late + counts.malformed + counts.overflowed > 0 && !choice.is_lines())
     warn(fmt::format("{}: lost {} that came too late, {} that could not be read, and {} that the system discarded",
                      source, counted(counts.late, "frame"), counted(counts.malformed, "datagram"),
                      counted(counts.overflowed, "datagram")),

@@ -217,9 +217,11 @@ void report(const RecordOptions& options, const std::vector<Person>& people, con
   json["frames"] = recorder.frame_count();
   json["recording_s"] = result.recording_s;
   json["bytes"] = recorder.bytes_written();
-  if (options.live.is_live())
+  if (options.live.is_live()) {
     json["lost"] = {
         {"late", result.lost.late}, {"malformed", result.lost.malformed}, {"overflowed", result.lost.overflowed}};
+    if (people.size() > 1) json["lost"]["ids_clash"] = result.lost.ids_clash;
+  }
   json["avatar"] = to_json(people.front().scene.avatar);
   if (people.size() > 1)
     for (const Person& person : people) {

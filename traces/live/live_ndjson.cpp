@@ -141,6 +141,21 @@ float radius_of(const Json& collider, const FloatJson& in_float) {
   return number_of<float>(in_float["radius"], "radius");
 }
 
+/// Lines are of one person. Of several, somebody would be left out, and limbs would touch those whose they are.
+constexpr std::string_view kOnePerson = "lines are of one person; of several, 'vestige import' reads .h5 and folders";
+
+void refuse_other_poses(const Json& line) {
+  for (const auto& [name, value] : line.items())
+    if (name.starts_with("pose."))
+      throw Malformed(fmt::format("has '{}', the pose of another person: {}", name, kOnePerson));
+}
+
+void refuse_owner(const Json& collider) {
+  const auto owner = collider.find("owner");
+  if (owner != collider.end() && *owner != 0)
+    throw Malformed(fmt::format("has a collider with an owner: {}", kOnePerson));
+}
+
 /// `floats` returns the whole line in floats, which takes as long as reading it.
 template <typename Floats>
 std::vector<ColliderSample> colliders_of(const Json& json, const Floats& floats) {
@@ -150,6 +165,7 @@ std::vector<ColliderSample> colliders_of(const Json& json, const Floats& floats)
   for (const Json& one : json) {
     if (!one.is_object() || !one.contains("id") || !one.contains("position"))
       throw Malformed("a collider has no id or no position");
+    refuse_owner(one);
     colliders.push_back({.id = id_of(one["id"]), .position_m = position_of(one["position"], "position")});
     if (one.contains("radius")) colliders.back().radius_m = radius_of(one, floats()["colliders"][colliders.size() - 1]);
   }
@@ -238,6 +254,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     if (depth_of(line) > kDeepestJson) throw Malformed(fmt::format("is nested deeper than {} levels", kDeepestJson));
     const Json json = Json::parse(line);
     if (!json.is_object()) throw Malformed("is not a JSON object");
+    refuse_other_poses(json);
     note_unknown(json, {"frame", "time_s", "pose", "colliders", "teleported"});
     TraceFrame frame;
     frame.index = next_index_;
@@ -277,7 +294,7 @@ void LiveNdjson::take_line(std::string_view line, std::int64_t now_ns, const Tak
     }
     if (const auto colliders = json.find("colliders"); colliders != json.end()) {
       frame.colliders = colliders_of(*colliders, floats);
-      for (const Json& collider : *colliders) note_unknown(collider, {"id", "position", "radius"});
+      for (const Json& collider : *colliders) note_unknown(collider, {"id", "position", "radius", "owner"});
     }
     if (const auto teleported = json.find("teleported"); teleported != json.end())
       frame.teleported = teleported_of(*teleported);

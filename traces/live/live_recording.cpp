@@ -10,6 +10,7 @@
 #include <cstring>
 #include <iterator>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "traces/base/error.hpp"
@@ -202,21 +203,22 @@ class StateRecording {
   /// Returns in `frame` the states of all sources. Returns which ids each has teleported.
   std::vector<std::vector<std::uint32_t>> show(TraceFrame& frame) {
     std::vector<std::vector<std::uint32_t>> teleported(sources_.size());
-    sources_.front().state.show(frame);
-    teleported.front() = frame.teleported;
-    TraceFrame other;
-    for (std::size_t i = 1; i < sources_.size(); ++i) {
-      sources_[i].state.show(other);
-      frame.poses.push_back(other.poses.front());
-      std::vector<ColliderSample> both;
-      std::ranges::set_union(frame.colliders, other.colliders, std::back_inserter(both), {}, &ColliderSample::id,
-                             &ColliderSample::id);
-      counts_.ids_clash = counts_.ids_clash || both.size() < frame.colliders.size() + other.colliders.size();
-      frame.colliders = std::move(both);
-      teleported[i] = other.teleported;
-      for (const std::uint32_t id : other.teleported)
-        if (std::ranges::find(frame.teleported, id) == frame.teleported.end()) frame.teleported.push_back(id);
+    frame.poses.clear();
+    TraceFrame shown;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      sources_[i].state.show(shown);
+      teleported[i] = shown.teleported;
+      frame.poses.push_back(shown.poses.front());
+      const auto keep = [&](std::uint32_t id) { return source_of_.try_emplace(id, i).first->second == i; };
+      for (const ColliderSample& collider : shown.colliders) {
+        if (keep(collider.id))
+          frame.colliders.push_back(collider);
+        else
+          counts_.ids_clash = true;
+      }
+      std::ranges::copy_if(shown.teleported, std::back_inserter(frame.teleported), keep);
     }
+    std::ranges::sort(frame.colliders, {}, &ColliderSample::id);
     return teleported;
   }
 
@@ -257,6 +259,7 @@ class StateRecording {
   std::uint64_t late_ = 0;
   Noted noted_;
   LiveCounts counts_;
+  std::unordered_map<std::uint32_t, std::size_t> source_of_;  ///< of each collider's id: who sent it first
 };
 
 }  // namespace

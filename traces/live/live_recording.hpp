@@ -36,8 +36,8 @@ struct LiveCounts {
   std::uint64_t late = 0;        ///< frames that were too late, or for which there was no room
   std::uint64_t malformed = 0;   ///< malformed lines or datagrams
   std::uint64_t overflowed = 0;  ///< datagrams that the system discarded
-  bool ids_clash = false;        ///< several sources sent colliders of one id
-  bool lost_something() const { return late + malformed + overflowed > 0; }
+  bool ids_clash = false;        ///< several sources sent colliders of one id, and all but one were left out
+  bool lost_something() const { return late + malformed + overflowed > 0 || ids_clash; }
 };
 
 /// Records frames from lines of JSON on `descriptor`, as they arrive, until it ends. Losses are also counted in the
@@ -45,9 +45,9 @@ struct LiveCounts {
 LiveCounts record_lines(int descriptor, LiveNdjson& lines, RecordingThread& out, const LiveSettings& settings);
 
 /// Records frames of the latest states, at absolute times of `rate_hz` since the first datagram that changed one of
-/// them. Each source is a person's, in their order. Of a collider's id that several sources send, the first's stands. A
-/// frame whose time has passed by more than 20 ms is left out. The trace counts lost frames as /pose and /colliders,
-/// and lost datagrams as `input`.
+/// them. Each source is a person's, in their order. An id of a collider belongs to the source that sent it
+/// first, and colliders and teleports of others with this id are left out. A frame whose time has passed by more than
+/// 20 ms is left out. The trace counts lost frames as /pose and /colliders, and lost datagrams as `input`.
 LiveCounts record_states(std::span<const LiveSource> sources, RecordingThread& out, const LiveSettings& settings);
 
 }  // namespace vestige

@@ -40,8 +40,9 @@ UdpReceiver::UdpReceiver(const HostPort& place, const std::string& name) : buffe
     const int error = errno;
     ::close(socket_);
     throw Error(name, fmt::format("could not listen: {}", std::strerror(error)),
-                error == EADDRINUSE ? "another program listens there: end it, or choose another port"
-                                    : "name an address of this machine, or 0.0.0.0 for all");
+                error == EADDRINUSE
+                    ? "another program, or the --live of another person, listens there: end it, or choose another port"
+                    : "name an address of this machine, or 0.0.0.0 for all");
   }
 }
 
