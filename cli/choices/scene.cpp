@@ -13,6 +13,7 @@
 #include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
 #include "traces/scene/people.hpp"
+#include "traces/scene/person_name.hpp"
 #include "traces/scene/reference_skinning.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
@@ -43,7 +44,9 @@ void give_map(Scene& scene, ActuatorMapFiles files, const SceneNames& names, Ver
   if (!scene.map_png.empty() && scene.map.triangle_count == 0 && !has_texture_coordinates(scene.avatar))
     warn(fmt::format("{}: has no texture coordinates, so the map cannot tell its regions apart", names.avatar),
          verbosity);
-  if (scene.map_png.empty()) warn("there is no actuator map (--map), so no contact will fire an actuator", verbosity);
+  if (scene.map_png.empty())
+    warn(fmt::format("{}: there is no actuator map (--map), so no contact will fire an actuator", names.avatar),
+         verbosity);
 }
 
 /// Gives the scene its map, and settles the facing with what the map records.
@@ -56,21 +59,12 @@ void complete(Scene& scene, ActuatorMapFiles map, const SceneNames& names, const
     warn(other + kOrSetFacing, verbosity);
 }
 
-/// Returns a name in one line, of at most 100 bytes.
-std::string readable(std::string name) {
-  constexpr std::size_t kMostBytes = 100;
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
-  std::ranges::replace_if(name, is_control, ' ');
-  name.resize(std::min(name.size(), kMostBytes));
-  return name;
-}
-
 /// Returns the people's names. Of several people, one without a name, or with the name of an earlier one, gets a
 /// number.
 std::vector<std::string> names_of(const std::vector<RecordedPerson>& people) {
   std::vector<std::string> names;
   names.reserve(people.size());
-  for (const RecordedPerson& person : people) names.push_back(readable(person.name));
+  for (const RecordedPerson& person : people) names.push_back(readable_name(person.name));
   if (people.size() == 1) return names;
   std::set<std::string> taken(names.begin(), names.end());
   std::set<std::string> seen = {""};

@@ -35,7 +35,8 @@ std::string describe_colliders() {
     fmt::format_to(std::back_inserter(text), "\n  {:<{}} {}", scenario.name, longest, scenario.summary);
   fmt::format_to(std::back_inserter(text), "\n  {:<{}} no collider", kNoColliders, longest);
   return text +
-         "\nor a file of rows time_s,id,x,y,z[,radius_m], or the animated nodes of a glTF file. Its convention: " +
+         "\nor a file of rows time_s,id,x,y,z[,radius_m][,owner], or the animated nodes of a glTF file. Its "
+         "convention: " +
          kConvention;
 }
 
@@ -148,7 +149,7 @@ std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const 
     if (choice.from_gltf())
       return read_collider_gltf(choice.colliders, choice.nodes, choice.convention.of_colliders(),
                                 choice.radius.of_gltf());
-    if (choice.from_file()) return read_collider_csv(choice.colliders, choice.convention.of_colliders());
+    if (choice.from_file()) return read_collider_csv(choice.colliders, choice.convention.of_colliders(), choice.people);
     return find_scenario(choice.colliders)
         ->make(avatar, animation, {choice.collider_count(), seed, choice.radius.radius_m()});
   };

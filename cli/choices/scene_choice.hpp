@@ -32,6 +32,7 @@ struct SceneChoice {
   ConventionChoice convention;  ///< of a file of colliders
   RadiusChoice radius;
   std::optional<std::uint32_t> count;  ///< of a scenario; if empty, the scenario's default
+  std::size_t people = 1;              ///< to whom colliders of a file can belong
 
   bool from_file() const { return colliders.ends_with(".csv") || from_gltf(); }
   bool from_gltf() const { return colliders.ends_with(".glb") || colliders.ends_with(".gltf"); }

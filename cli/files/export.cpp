@@ -23,6 +23,7 @@
 #include "traces/files/output_file.hpp"
 #include "traces/scene/facing.hpp"
 #include "traces/scene/people.hpp"
+#include "traces/scene/person_name.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
 namespace vestige::cli {
@@ -55,6 +56,10 @@ std::string format_of(const ExportOptions& options) {
 
 constexpr const char* kPosesName = "poses.csv";
 
+bool exists(const std::string& path) {
+  return std::filesystem::exists(path);
+}
+
 struct Attachment {
   std::string path;
   std::span<const std::byte> bytes;  ///< empty: the trace has none
@@ -76,7 +81,8 @@ class CsvFolder {
       attachments.push_back({inside(attachment_name(AttachmentKind::kMapImage, i)), person.actuator_map_png});
       attachments.push_back({inside(attachment_name(AttachmentKind::kMapText, i)), person.actuator_map_json});
       if (facing_named(person.facing)) json[trace_format::numbered(trace_format::kFacingKey, i)] = person.facing;
-      if (!person.name.empty()) json[trace_format::numbered(trace_format::kNameKey, i)] = person.name;
+      if (const std::string name = readable_name(person.name); !name.empty())
+        json[trace_format::numbered(trace_format::kNameKey, i)] = name;
     }
     if (!json.empty()) session_json = json.dump(2) + "\n";
   }
@@ -95,11 +101,10 @@ class CsvFolder {
       if (attachment.bytes.empty()) all.push_back(attachment.path);
     if (session_json.empty()) all.push_back(session);
     for (std::size_t i = poses.size(); i < trace_format::kMostPeople; ++i) {
-      const std::string more = inside(trace_format::numbered(kPosesName, i));
-      if (!std::filesystem::exists(more)) break;
-      all.push_back(more);
+      std::vector<std::string> more = {inside(trace_format::numbered(kPosesName, i))};
       for (const trace_format::AttachmentKind kind : trace_format::kAttachmentKinds)
-        all.push_back(inside(trace_format::attachment_name(kind, i)));
+        more.push_back(inside(trace_format::attachment_name(kind, i)));
+      std::ranges::copy_if(more, std::back_inserter(all), exists);
     }
     return all;
   }
@@ -153,6 +158,10 @@ void remove_files(const std::vector<std::string>& paths) {
 /// Returns the exit code of vestige-plot.
 int export_for_paraview(const ExportOptions& options) {
   check_outputs({options.output}, {options.file}, options.common);
+  if (options.file != "-" && TraceReader(options.file, People::kSeveral).people().size() > 1)
+    throw UsageError(
+        "-o", fmt::format("ParaView gets one person, and {} holds several", options.file),
+        fmt::format("choose one: vestige plot paraview {} --person 1 -o {}", options.file, options.output));
   std::vector<std::string> arguments = {"paraview", options.file, "-o", options.output};
   if (options.rate_hz) arguments.insert(arguments.end(), {"--rate", fmt::format("{}", *options.rate_hz)});
   if (options.common.force) arguments.emplace_back("--force");
@@ -169,6 +178,9 @@ std::vector<std::string> output_paths(const ExportOptions& options, const OpenTr
     throw UsageError(
         "-o", fmt::format("each of {} people has a table of poses, and '{}' takes one", paths.size(), options.output),
         "name a file: OUT.csv is the first person's, OUT.2.csv the second's");
+  if (const std::string more = numbered_path(options.output, trace.people.size()); exists(more))
+    warn(fmt::format("{}: is not of this trace, which holds {}", more, count_of_people(trace.people.size())),
+         options.common.verbosity());
   return paths;
 }
 
@@ -304,13 +316,14 @@ void add_export(CLI::App& program, Invocation& invocation) {
                    "poses.2.csv and so on. '-' is standard output")
       ->required()
       ->type_name("OUT|-");
-  verb->add_option("--format", options->format,
-                   "The format:\n"
-                   "  csv       poses: a row for each frame; colliders: a row for each collider and frame; lossless\n"
-                   "  ndjson    a line of JSON for each frame, which 'record --live' can read; lossless\n"
-                   "  hdf5      (.h5) for Python, MATLAB and others; lossless\n"
-                   "  gltf      (.glb) the avatars' animation and a sphere for each collider; fp32\n"
-                   "  paraview  (.pvd) posed surfaces, which vestige-plot writes [default: by the extension]")
+  verb->add_option(
+          "--format", options->format,
+          "The format:\n"
+          "  csv       poses: a row for each frame; colliders: a row for each collider and frame; lossless\n"
+          "  ndjson    a line of JSON for each frame, which 'record --live' can read if there is one person; lossless\n"
+          "  hdf5      (.h5) for Python, MATLAB and others; lossless\n"
+          "  gltf      (.glb) the avatars' animation and a sphere for each collider; fp32\n"
+          "  paraview  (.pvd) posed surfaces, which vestige-plot writes [default: by the extension]")
       ->check(CLI::IsMember({"csv", "ndjson", "hdf5", "gltf", "paraview"}));
   verb->add_option("--what", options->what, "Which of the two tables to write; CSV only")
       ->capture_default_str()

@@ -21,6 +21,7 @@
 #include "traces/questions/placement_question.hpp"
 #include "traces/questions/pose_question.hpp"
 #include "traces/scene/people.hpp"
+#include "traces/scene/person_name.hpp"
 #include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_writer.hpp"
 
@@ -112,6 +113,14 @@ class RecordedSession {
     return json_[numbered].get<std::string>();
   }
 
+  std::string name(std::size_t person) const {
+    std::string name = text(trace_format::kNameKey, person);
+    if (const std::string fault = name_fault(name); !fault.empty())
+      throw Error(file_, fmt::format("its '{}' {}", trace_format::numbered(trace_format::kNameKey, person), fault),
+                  "write a short name in one line");
+    return name;
+  }
+
  private:
   static constexpr const char* kRemedy = "export the trace again, or remove the file";
   std::string file_;
@@ -155,9 +164,11 @@ std::vector<Scene> load_scenes(const ImportOptions& options) {
   std::vector<Scene> scenes;
   scenes.reserve(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
-    scenes.push_back(load_scene(files[i].avatar, files[i].map, options.facing, options.common.verbosity(),
-                                session.text(trace_format::kFacingKey, i)));
-    scenes.back().name = session.text(trace_format::kNameKey, i);
+    const std::string facing = session.text(trace_format::kFacingKey, i);
+    if (files.size() > 1) require_axis(options.session, i, facing);
+    const std::string name = session.name(i);
+    scenes.push_back(load_scene(files[i].avatar, files[i].map, options.facing, options.common.verbosity(), facing));
+    scenes.back().name = name;
   }
   return scenes;
 }
@@ -327,11 +338,12 @@ void add_import(CLI::App& program, Invocation& invocation) {
                        kConvention)
       ->type_name("FILE.csv|-");
   add_pose_convention(*verb, options->convention);
-  verb->add_option("--colliders", options->colliders,
-                   std::string("Colliders: rows time_s,id,x,y,z[,radius_m], a file that 'vestige export' wrote, or the "
-                               "animated nodes of a "
-                               "glTF file. Its convention: ") +
-                       kConvention + " [default: none]")
+  verb->add_option(
+          "--colliders", options->colliders,
+          std::string("Colliders: rows time_s,id,x,y,z[,radius_m][,owner], a file that 'vestige export' wrote, or the "
+                      "animated nodes of a "
+                      "glTF file. Its convention: ") +
+              kConvention + " [default: none]")
       ->type_name("FILE.csv|FILE.glb");
   add_collider_convention(*verb, options->convention);
   verb->add_option("--nodes", options->nodes, kNodesHelp)->type_name("PATTERN");

@@ -8,11 +8,13 @@
 #include <utility>
 
 #include "traces/base/error.hpp"
+#include "traces/base/utf8.hpp"
 #include "traces/exchange/collider_files.hpp"
 #include "traces/exchange/collider_rows.hpp"
 #include "traces/exchange/pose_csv.hpp"
 #include "traces/exchange/trace_hdf5.hpp"
 #include "traces/files/input_file.hpp"
+#include "traces/scene/facing.hpp"
 #include "traces/scene/people.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
@@ -32,10 +34,16 @@ void require_names(const std::string& file, std::size_t person, const std::vecto
                   trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, person)));
 }
 
+void warn_of_resting(const std::string& file, const PoseCsvReader& reader, Verbosity verbosity) {
+  warn_of_names(file, "these nodes of the avatar keep their rest pose", reader.resting(), verbosity);
+}
+
 /// Another person's poses beside those of the first.
 class OtherPoses {
  public:
-  OtherPoses(const std::string& file, const Avatar& avatar) : file_(file), reader_(file, avatar) {}
+  OtherPoses(const std::string& file, const Avatar& avatar, Verbosity verbosity) : file_(file), reader_(file, avatar) {
+    warn_of_resting(file, reader_, verbosity);
+  }
 
   /// Reads the pose of a frame of the first person. Throws `Error` unless it is next in the file.
   void read(const TraceFrame& frame, Pose& pose) {
@@ -65,7 +73,7 @@ void read_other_poses(const ImportOptions& options, const std::vector<Scene>& sc
   if (options.others.empty()) return;
   const auto others = std::make_shared<std::deque<OtherPoses>>();
   for (std::size_t i = 0; i < options.others.size(); ++i)
-    others->emplace_back(options.others[i].poses, scenes[i + 1].avatar);
+    others->emplace_back(options.others[i].poses, scenes[i + 1].avatar, options.common.verbosity());
   frames.next_pose = [others, first = frames.next_pose](TraceFrame& frame) {
     frame.poses.resize(others->size() + 1);
     if (!first(frame)) {
@@ -81,6 +89,7 @@ void read_other_poses(const ImportOptions& options, const std::vector<Scene>& sc
 
 void read_colliders(const ImportOptions& options, ImportedFrames& frames) {
   const std::string& path = options.colliders;
+  const std::size_t people = options.others.size() + 1;
   if (path.empty()) return;
   const auto sample_from = [&](std::unique_ptr<ColliderSource> of_file) {
     const std::shared_ptr<ColliderSource> source = options.radius.apply(std::move(of_file));
@@ -100,7 +109,7 @@ void read_colliders(const ImportOptions& options, ImportedFrames& frames) {
   }
   if (!options.poses.empty()) {
     // Rows that say their frame go to it, and nothing is made up between them.
-    auto rows = std::make_shared<ColliderFrames>(path, options.convention.of_colliders());
+    auto rows = std::make_shared<ColliderFrames>(path, options.convention.of_colliders(), people);
     if (rows->columns() == ColliderColumns::kFrames) {
       const std::optional<float> radius_m = options.radius.radius_m();
       frames.shape = radius_m.value_or(0) > 0 ? ColliderShape::kSpheres : rows->shape();
@@ -116,7 +125,7 @@ void read_colliders(const ImportOptions& options, ImportedFrames& frames) {
       throw UsageError("--colliders -", "these rows have no frame numbers",
                        "put the rows into a file, which can be read twice");
   }
-  sample_from(read_collider_csv(path, options.convention.of_colliders()));
+  sample_from(read_collider_csv(path, options.convention.of_colliders(), people));
 }
 
 void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional<double> rate_hz,
@@ -140,6 +149,14 @@ void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional
   frames.share = [count, next] { return static_cast<double>(*next) / static_cast<double>(count); };
 }
 
+void require_axis(const std::string& file, std::size_t person, const std::string& facing) {
+  if (facing.empty() || facing_named(facing)) return;
+  throw Error(file,
+              fmt::format("its '{}' is '{}', which is no axis",
+                          trace_format::numbered(trace_format::kFacingKey, person), in_one_line(facing)),
+              "write +x, -x, +z or -z, or take it out");
+}
+
 std::vector<Scene> read_hdf5(const std::string& path, const FacingChoice& facing, ImportedFrames& frames,
                              Verbosity verbosity) {
   using trace_format::attachment_name;
@@ -148,6 +165,7 @@ std::vector<Scene> read_hdf5(const std::string& path, const FacingChoice& facing
   std::vector<Scene> scenes;
   for (std::size_t i = 0; i < file->people().size(); ++i) {
     const TraceHdf5::Person& person = file->people()[i];
+    if (file->people().size() > 1) require_axis(path, i, person.facing);
     const SceneNames names = {fmt::format("{}, {}", path, attachment_name(AttachmentKind::kAvatar, i)),
                               fmt::format("{}, {}", path, attachment_name(AttachmentKind::kMapImage, i))};
     Scene& scene = scenes.emplace_back(
@@ -168,8 +186,7 @@ std::vector<Scene> read_hdf5(const std::string& path, const FacingChoice& facing
 void read_poses(const ImportOptions& options, const std::vector<Scene>& scenes, ImportedFrames& frames) {
   const Avatar& avatar = scenes.front().avatar;
   const auto reader = std::make_shared<PoseCsvReader>(options.poses, avatar, options.convention.of_poses());
-  warn_of_names(options.poses, "these nodes of the avatar keep their rest pose", reader->resting(),
-                options.common.verbosity());
+  warn_of_resting(options.poses, *reader, options.common.verbosity());
   frames.next_pose = [reader](TraceFrame& frame) { return reader->next(frame); };
   frames.share = [reader] { return reader->share(); };
   frames.placed = reader->placed();

@@ -69,6 +69,9 @@ void read_colliders(const ImportOptions& options, ImportedFrames& frames);
 void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional<double> rate_hz,
                  ImportedFrames& frames);
 
+/// Throws `Error` if a person's recorded facing names no axis: --facing sets that of one person only.
+void require_axis(const std::string& file, std::size_t person, const std::string& facing);
+
 /// Reads the people of an .h5, whose frames follow.
 std::vector<Scene> read_hdf5(const std::string& path, const FacingChoice& facing, ImportedFrames& frames,
                              Verbosity verbosity);

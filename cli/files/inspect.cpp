@@ -5,8 +5,10 @@
 #include "analysis/base/provenance.hpp"
 #include "cli/verbs.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/base/utf8.hpp"
 #include "traces/repair/trace_summary.hpp"
 #include "traces/scene/facing.hpp"
+#include "traces/scene/person_name.hpp"
 #include "traces/trace_file/session_check.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
@@ -44,7 +46,7 @@ std::string describe_people(const McapSummary& summary) {
   std::string text;
   for (std::size_t person = 0; person < summary.people; ++person) {
     const std::string facing = facing_of(summary, person);
-    const std::string name = recorded(summary, trace_format::kNameKey, person);
+    const std::string name = readable_name(recorded(summary, trace_format::kNameKey, person));
     const std::string label = summary.people == 1 ? "avatar faces" : fmt::format("person {}", person + 1);
     if (summary.people > 1)
       text += fmt::format("  {:<20} '{}'{}\n", label, name, facing.empty() ? "" : ", faces " + facing);
@@ -110,7 +112,8 @@ std::string describe(const McapSummary& summary, const std::string& path, bool v
   }
   if (!summary.recovered.empty()) text += fmt::format("the file {}\n", summary.recovered);
   if (verbose && summary.session)
-    for (const auto& [key, value] : *summary.session) text += fmt::format("  {}: {}\n", key, value);
+    for (const auto& [key, value] : *summary.session)
+      text += fmt::format("  {}: {}\n", in_one_line(key), in_one_line(value));
   return text;
 }
 

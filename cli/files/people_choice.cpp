@@ -16,6 +16,7 @@
 #include "traces/recording/dealt_colliders.hpp"
 #include "traces/scenarios/body.hpp"
 #include "traces/scenarios/touch.hpp"
+#include "traces/scene/person_name.hpp"
 #include "traces/scene/reference_skinning.hpp"
 #include "traces/trace_file/trace_format.hpp"
 
@@ -59,21 +60,16 @@ std::vector<PersonChoice> people_who_touch(const CLI::App& verb) {
 /// Gives each of several people a name of their own: the one asked for, otherwise the avatar's file name.
 void name_people(std::vector<PersonChoice>& people) {
   std::set<std::string> taken;
-  constexpr std::size_t kMostBytes = 100;
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
-  for (const PersonChoice& person : people) {
-    if (std::ranges::any_of(person.name, is_control))
-      throw UsageError("--name", "has a control character", "give a name in one line");
-    if (person.name.size() > kMostBytes)
-      throw UsageError("--name", fmt::format("is longer than {} bytes", kMostBytes), "give a shorter name");
-  }
+  for (const PersonChoice& person : people)
+    if (const std::string fault = name_fault(person.name); !fault.empty())
+      throw UsageError("--name", fault, "give a short name in one line");
   for (const PersonChoice& person : people)
     if (!person.name.empty() && !taken.insert(person.name).second)
       throw UsageError("--name", fmt::format("two people are called '{}'", person.name), "give each another name");
   if (people.size() == 1) return;
   for (PersonChoice& person : people) {
     if (!person.name.empty()) continue;
-    const std::string stem = std::filesystem::path(person.avatar).stem().string();
+    const std::string stem = readable_name(std::filesystem::path(person.avatar).stem().string());
     person.name = stem;
     for (int number = 2; !taken.insert(person.name).second; ++number) person.name = fmt::format("{} {}", stem, number);
   }
@@ -176,13 +172,14 @@ Stance stance_of(const PersonChoice& choice, const Avatar& avatar) {
 std::unique_ptr<ColliderSource> make_colliders(const SceneChoice& choice, const std::vector<Person>& people,
                                                std::uint64_t seed) {
   if (choice.colliders == kNoColliders) return no_colliders();
+  SceneChoice of_person = choice;
+  of_person.people = people.size();
   if (choice.from_file() ||
       (people.size() == 1 && people.front().stance.position_m == glm::dvec3(0) && !people.front().stance.is_turned()))
-    return make_colliders(choice, people.front().scene.avatar, people.front().animation, seed);
+    return make_colliders(of_person, people.front().scene.avatar, people.front().animation, seed);
   std::vector<Hand> hands;
   const std::size_t count = choice.collider_count();
   for (std::size_t k = 0; k < people.size(); ++k) {
-    SceneChoice of_person = choice;
     of_person.count = static_cast<std::uint32_t>((count + people.size() - 1 - k) / people.size());
     hands.push_back({*of_person.count == 0
                          ? no_colliders()

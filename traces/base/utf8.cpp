@@ -4,6 +4,10 @@
 
 namespace vestige {
 
+bool is_control(char c) {
+  return static_cast<unsigned char>(c) < ' ' || c == '\x7f';
+}
+
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const unsigned first = byte(0);
@@ -26,6 +30,12 @@ std::string valid_utf8(std::string_view text) {
     text.remove_prefix(std::max<std::size_t>(1, length));
   }
   return valid;
+}
+
+std::string in_one_line(std::string_view text) {
+  std::string line = valid_utf8(text);
+  std::ranges::replace_if(line, is_control, ' ');
+  return line;
 }
 
 }  // namespace vestige

@@ -158,8 +158,9 @@ class CsvColliders final : public ColliderSource {
 
 }  // namespace
 
-std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path, const Convention& convention) {
-  ColliderRows rows(path, convention);
+std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path, const Convention& convention,
+                                                  std::size_t people) {
+  ColliderRows rows(path, convention, people);
   const Samples samples = parse(rows);
   return std::make_unique<CsvColliders>(samples, rows, convention);
 }

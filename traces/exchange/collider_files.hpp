@@ -6,16 +6,19 @@
 
 #include "traces/exchange/convention.hpp"
 #include "traces/scene/colliders.hpp"
+#include "traces/scene/people.hpp"
 
 namespace vestige {
 
-/// Reads a CSV file with the header `time_s,id,x,y,z` or `time_s,id,x,y,z,radius_m`, then a row for each sample, in
-/// metres and seconds unless `convention` says otherwise (a radius is always in metres); times must not decrease.
+/// Reads a CSV file with the header `time_s,id,x,y,z[,radius_m][,owner]`, then a row for each sample, in metres and
+/// seconds unless `convention` says otherwise (a radius is always in metres); times must not decrease.
 /// Between two samples of a collider, its position and radius are interpolated linearly. Before its first and after its
-/// last sample, the collider is absent. An exported trace has the header `frame,time_s,id,x,y,z[,radius_m],teleported`.
-/// With that header, a collider is also absent over frames that it misses and on the way to where it teleported. Throws
-/// `Error` as `ColliderRows` does, and if a collider has two positions at one time or the file has no rows.
-std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path, const Convention& convention = {});
+/// last sample, the collider is absent. An exported trace has the header
+/// `frame,time_s,id,x,y,z[,radius_m][,owner],teleported`. With that header, a collider is also absent over frames that
+/// it misses and on the way to where it teleported. Throws `Error` as `ColliderRows` does, and if a collider has two
+/// positions at one time or the file has no rows.
+std::unique_ptr<ColliderSource> read_collider_csv(const std::filesystem::path& path, const Convention& convention = {},
+                                                  std::size_t people = kMostOwners);
 
 /// Where the radius of a glTF's node comes from. kExtras: `extras.radius_m`, the radius in metres at scale 1, 0 if
 /// absent. kMesh: half of the longest side of the box around its mesh, 0 if it has none; the sphere stands at the

@@ -79,8 +79,8 @@ std::unique_ptr<TraceExport> make_collider_csv(const std::filesystem::path& path
   return std::make_unique<ColliderCsv>(path, overwrite, shape, owners);
 }
 
-ColliderRows::ColliderRows(const std::filesystem::path& path, const Convention& convention)
-    : reader_(path), lines_(reader_, kPlainRemedy), convention_(convention) {
+ColliderRows::ColliderRows(const std::filesystem::path& path, const Convention& convention, std::size_t people)
+    : reader_(path), lines_(reader_, kPlainRemedy), convention_(convention), people_(people) {
   take_header();
 }
 
@@ -146,6 +146,8 @@ void ColliderRows::check_order(const ColliderRow& row) const {
 
 void ColliderRows::check_owner(const ColliderSample& sample) {
   if (owners_ == Owners::kNone) return;
+  if (const auto fault = owner_fault({&sample, 1}, people_))
+    throw lines_.error(*fault, "an owner is 0 for nobody, or the number of a person");
   const auto [known, is_new] = owner_of_.try_emplace(sample.id, sample.owner);
   if (known->second != sample.owner)
     throw lines_.error(fmt::format("collider {} belongs to {}, and before it belonged to {}", sample.id,

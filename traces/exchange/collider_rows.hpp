@@ -10,6 +10,7 @@
 
 #include "traces/base/csv.hpp"
 #include "traces/exchange/convention.hpp"
+#include "traces/scene/people.hpp"
 #include "traces/scene/trace.hpp"
 
 namespace vestige {
@@ -34,10 +35,11 @@ std::string collider_header(ColliderColumns columns, ColliderShape shape, Owners
 /// Reads a collider CSV with one of these headers, one row at a time, and changes its numbers from their
 /// `Convention` to metres, seconds and the trace's axes. Throws `Error` with file and line: another header, a wrong
 /// number of columns, a field that is not a number, not finite, farther than 1e9 m, a radius that is negative or larger
-/// than 10 m, frames or times that decrease, an id with another owner than before.
+/// than 10 m, frames or times that decrease, an id with another owner than before, an owner beyond `people`.
 class ColliderRows {
  public:
-  explicit ColliderRows(const std::filesystem::path& path, const Convention& convention = {});
+  explicit ColliderRows(const std::filesystem::path& path, const Convention& convention = {},
+                        std::size_t people = kMostOwners);
   bool next(ColliderRow& row);
   /// The name that error messages use.
   const std::string& name() const { return reader_.name(); }
@@ -58,6 +60,7 @@ class ColliderRows {
   ColliderColumns columns_ = ColliderColumns::kTimes;
   ColliderShape shape_ = ColliderShape::kPoints;
   Owners owners_ = Owners::kNone;
+  std::size_t people_;
   std::string remedy_;
   std::unordered_map<std::uint32_t, std::uint16_t> owner_of_;  ///< by id
   std::uint64_t rows_ = 0;
@@ -68,8 +71,9 @@ class ColliderRows {
 /// Groups the rows of `frame,time_s,…` files by frame; holds one row.
 class ColliderFrames {
  public:
-  explicit ColliderFrames(const std::filesystem::path& path, const Convention& convention = {})
-      : rows_(path, convention) {
+  explicit ColliderFrames(const std::filesystem::path& path, const Convention& convention = {},
+                          std::size_t people = kMostOwners)
+      : rows_(path, convention, people) {
     advance();
   }
   ColliderColumns columns() const { return rows_.columns(); }

@@ -20,6 +20,7 @@
 #include "traces/gltf/clean/clean_avatar.hpp"
 #include "traces/gltf/clean/glb_builder.hpp"
 #include "traces/gltf/glb_container.hpp"
+#include "traces/trace_file/trace_format.hpp"
 
 namespace vestige {
 
@@ -53,10 +54,10 @@ Json& scene_of(Builder& builder) {
 
 /// A person, whose columns stand together: the origin, then three of each node.
 struct GltfAvatar {
-  GltfAvatar(const GltfPerson& person, std::size_t first_column, std::size_t first)
+  GltfAvatar(const GltfPerson& person, const std::string& file, std::size_t first_column, std::size_t first)
       : name(person.name),
         avatar(person.avatar),
-        glb(clean_avatar_glb(person.glb, "avatar.glb")),
+        glb(clean_avatar_glb(person.glb, file)),
         origin(first_column),
         first_float(first) {}
 
@@ -82,7 +83,8 @@ std::vector<GltfAvatar> avatars_of(std::span<const GltfPerson> people) {
   std::size_t column = 1;
   std::size_t first_float = 1;
   for (const GltfPerson& person : people) {
-    const GltfAvatar& one = avatars.emplace_back(person, column, first_float);
+    const std::string file = trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, avatars.size());
+    const GltfAvatar& one = avatars.emplace_back(person, file, column, first_float);
     column += one.columns();
     first_float += one.floats();
   }

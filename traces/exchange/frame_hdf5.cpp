@@ -9,6 +9,7 @@
 #include "traces/base/number_text.hpp"
 #include "traces/exchange/trace_export.hpp"
 #include "traces/hdf5/hdf5_writer.hpp"
+#include "traces/scene/person_name.hpp"
 #include "traces/trace_file/trace_format.hpp"
 #include "traces/trace_file/trace_reader.hpp"
 
@@ -122,6 +123,12 @@ class FrameHdf5 final : public TraceExport {
     row.scale.assign(3 * row.nodes, kNan);
   }
 
+  /// Names become such as `import` takes.
+  static std::string text_of(std::string_view key, const std::string& value) {
+    const bool is_name = key == trace_format::kNameKey || key.starts_with(std::string(trace_format::kNameKey) + ".");
+    return is_name ? readable_name(value) : value;
+  }
+
   void write_head(TraceReader& trace) {
     const Hdf5Library& h5 = hdf5();
     write_hdf5_attribute(file_.id(), "format", "vestige trace", path_);
@@ -135,7 +142,7 @@ class FrameHdf5 final : public TraceExport {
                       path_, "make a group");
       if (group != "session") continue;
       for (const auto& [key, value] : trace.session())
-        if (value.size() < kMostAttributeBytes) write_hdf5_attribute(made.id(), key, value, path_);
+        if (value.size() < kMostAttributeBytes) write_hdf5_attribute(made.id(), key, text_of(key, value), path_);
     }
     for (std::size_t i = 0; i < trace.people().size(); ++i) {
       using trace_format::AttachmentKind;

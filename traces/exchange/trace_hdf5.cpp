@@ -11,6 +11,7 @@
 #include "traces/base/sha256.hpp"
 #include "traces/hdf5/hdf5_reader.hpp"
 #include "traces/hdf5/hdf5_table.hpp"
+#include "traces/scene/person_name.hpp"
 #include "traces/scene/radius.hpp"
 #include "traces/trace_file/session_check.hpp"
 #include "traces/trace_file/trace_format.hpp"
@@ -151,6 +152,10 @@ class TraceHdf5::Implementation {
         .node_names = read_node_names(numbered("pose", person) + "/node_names"),
         .facing = read_text(kSession, numbered(trace_format::kFacingKey, person)).value_or(""),
         .name = read_text(kSession, numbered(trace_format::kNameKey, person)).value_or("")};
+    if (const std::string fault = name_fault(read.name); !fault.empty())
+      throw Error(path_.string(), fmt::format("the name of person {} {}", person + 1, fault),
+                  fmt::format("change the attribute '{}' of the group {} to a short name in one line",
+                              numbered(trace_format::kNameKey, person), kSession));
     if (read.avatar_glb.empty()) throw Error(path_.string(), fmt::format("holds no {}", avatar), kHdf5Remedy);
     return read;
   }

@@ -10,7 +10,8 @@ Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, std::string 
     : path_(path), name_(std::move(name)), remedy_(remedy) {
   const Hdf5Library& h5 = hdf5();
   dataset_ = Hdf5Handle(h5.open_dataset(file, name_.c_str(), H5P_DEFAULT), h5.close_dataset);
-  if (dataset_.id() < 0) fail("is missing");
+  if (dataset_.id() < 0 && is_missing(file)) fail("is missing");
+  if (dataset_.id() < 0) fail("cannot be opened: the file is damaged", kHdf5DamagedRemedy);
   const Hdf5Handle space(h5.space_of(dataset_.id()), h5.close_space);
   const int rank = h5.rank(space.id());
   if (rank < 1 || rank > 3) fail("does not have 1 to 3 dimensions");
@@ -21,6 +22,13 @@ Hdf5Table::Hdf5Table(hid_t file, const std::filesystem::path& path, std::string 
   if (type_.kind != H5T_INTEGER && type_.kind != H5T_FLOAT) fail("does not hold numbers", kHdf5TypeRemedy);
   type_.bytes = h5.size_of(type.id());
   type_.is_signed = type_.kind == H5T_FLOAT || h5.sign_of(type.id()) == H5T_SGN_2;
+}
+
+bool Hdf5Table::is_missing(hid_t file) const {
+  for (std::size_t end = name_.find('/');; end = name_.find('/', end + 1)) {
+    if (hdf5().link_exists(file, name_.substr(0, end).c_str(), H5P_DEFAULT) == 0) return true;
+    if (end == std::string::npos) return false;
+  }
 }
 
 void Hdf5Table::fail(std::string_view cause, const char* remedy) const {

@@ -57,6 +57,9 @@ class Hdf5Table {
   std::size_t numbers_in(hsize_t rows) const;
   void read(const Type& type, hsize_t first, hsize_t rows, void* out) const;
 
+  /// Whether the file has no such table. Otherwise one that cannot be opened is damaged.
+  bool is_missing(hid_t file) const;
+
   std::filesystem::path path_;
   std::string name_;
   const char* remedy_;

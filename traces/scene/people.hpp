@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +15,9 @@ namespace vestige {
 
 /// Most colliders of a trace, and most teleports of a frame. Readers refuse more.
 inline constexpr std::size_t kMostColliders = 1'000'000;
+
+/// The largest number of a person that `ColliderSample::owner` can hold.
+inline constexpr std::size_t kMostOwners = std::numeric_limits<std::uint16_t>::max();
 
 /// Returns "person 2", or "nobody".
 inline std::string in_words(std::uint16_t owner) {

@@ -195,6 +195,8 @@ TEST_F(Hdf5Exchange, OfAnotherVersionOrOtherNodesOrNumbersIsRefused) {
           {"changed.h5: its attribute 'format_version' is not a text"});
   refused([](Hdf5Editor& editor) { editor.set_text("/", "format", "another thing"); },
           {"changed.h5: its format is 'another thing'"});
+  refused([](Hdf5Editor& editor) { editor.rename("session", "argv", "name"); },
+          {"changed.h5: the name of person 1 is longer than 100 bytes", "the attribute 'name' of the group session"});
   const std::size_t nodes = test::builtin_avatar().nodes.size();
   // Texts of one length, as export writes them, and of any, as Python does.
   const Hdf5Handle any_length(h5.copy_type(h5.text), h5.close_type);

@@ -100,6 +100,9 @@ TEST_F(PeopleOfATrace, WhatCannotBeMeantIsRefused) {
   const std::string record = "vestige record --duration 0.1 -o a.mcap --avatar builtin ";
   expect_failure(record + "--name ann --avatar builtin --name ann", 2, {"--name", "two people are called 'ann'"},
                  "a.mcap");
+  expect_failure(record + "--name \"$(printf 'a\\377')\"", 2, {"--name", "is not UTF-8"}, "a.mcap");
+  expect_failure(record + "--name \"$(printf 'a\\nb')\"", 2, {"--name", "control character"}, "a.mcap");
+  expect_failure(record + "--name ''", 2, {"is empty"}, "a.mcap");
   expect_failure(record + "--map none --map none", 2, {"--map", "is given twice"}, "a.mcap");
   expect_failure(record + "--at 1,2", 2, {"--at", "'1,2' is not X,Y,Z,YAW"}, "a.mcap");
   expect_failure(record + "--at 1,2,3,left", 2, {"--at", "is not X,Y,Z,YAW"}, "a.mcap");

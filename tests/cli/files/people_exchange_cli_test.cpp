@@ -59,6 +59,19 @@ TEST_F(PeopleExchange, ThroughAFolderOfCsvIsTheSameTraceToTheBit) {
             0);
   EXPECT_FALSE(exists("tables/poses.2.csv"));
   EXPECT_FALSE(exists("tables/avatar.2.glb"));
+  // Also what stands behind a gap.
+  ASSERT_EQ(run("vestige export a.mcap -o tables --force && rm tables/poses.2.csv && cp tables/avatar.glb "
+                "tables/avatar.4.glb && vestige export one.mcap -o tables --force")
+                .exit_code,
+            0);
+  EXPECT_EQ(run("ls tables | grep -c '[.][24][.]'").standard_output, "0\n");
+}
+
+TEST_F(PeopleExchange, NodesWithoutPosesAreToldOfEach) {
+  ASSERT_EQ(run("vestige export a.mcap -o tables -q").exit_code, 0);
+  ASSERT_EQ(run("cut -d, -f1-15 tables/poses.2.csv > p && mv p tables/poses.2.csv").exit_code, 0);
+  EXPECT_THAT(run("vestige import tables -o back.mcap").standard_error,
+              HasSubstr("poses.2.csv: these nodes of the avatar keep their rest pose"));
 }
 
 TEST_F(PeopleExchange, ThroughHdf5IsTheSameTraceToTheBitAndTakesContactsAlong) {
@@ -70,6 +83,16 @@ TEST_F(PeopleExchange, ThroughHdf5IsTheSameTraceToTheBitAndTakesContactsAlong) {
   expect_same("back.mcap");
   ASSERT_EQ(run("awk -F, -v OFS=, 'NR == 2 {$NF = 3} {print}' a.csv > b.csv").exit_code, 0);
   expect_failure("vestige export a.mcap -o b.h5 --contacts b.csv", 1, {"b.csv, line 2", "avatar"}, "b.h5");
+  // Without the column, nobody knows whom they touch.
+  ASSERT_EQ(run("sed 's/,[^,]*$//' a.csv > c.csv").exit_code, 0);
+  expect_failure("vestige export a.mcap -o c.h5 --contacts c.csv", 1, {"c.csv", "do not say whom of the 2 people"},
+                 "c.h5");
+  ASSERT_EQ(
+      run("vestige record --rate 100 --duration 0.2 -q -o one.mcap && vestige replay one.mcap --contacts one.h5 -q")
+          .exit_code,
+      0);
+  expect_failure("vestige plot body a.mcap --person 1 --contacts one.h5 -o body", 1,
+                 {"one.h5", "do not say whom of the 2 people"}, "body.png");
 }
 
 /// Joints of the file stand where the trace has them, of both people, in every frame.
@@ -117,6 +140,9 @@ TEST_F(PeopleExchange, PosesAloneAreATableForEach) {
             nlohmann::json({"p.csv", "p.2.csv"}));
   EXPECT_EQ(run("wc -l < p.2.csv").standard_output, "61\n");
   EXPECT_NE(run("cmp p.csv p.2.csv").exit_code, 0);
+  ASSERT_EQ(run("touch p.3.csv").exit_code, 0);
+  EXPECT_THAT(run("vestige export a.mcap -o p.csv --what poses --force").standard_error,
+              HasSubstr("p.3.csv: is not of this trace"));
   expect_failure("vestige export a.mcap -o q.csv --what poses --json q.2.csv", 2, {"q.2.csv"}, "q.csv");
   expect_failure("vestige export a.mcap -o - --format csv --what poses", 2, {"each of 2 people"}, "-");
 }
@@ -126,6 +152,15 @@ TEST_F(PeopleExchange, LinesHoldThePosesOfAll) {
   const nlohmann::json json = nlohmann::json::parse(line);
   EXPECT_NE(json["pose"]["nodes"], json["pose.2"]["nodes"]);
   EXPECT_EQ(json["pose.2"]["nodes"].size(), json["pose"]["nodes"].size());
+  // Nobody is left out without a word, and no limb loses its owner.
+  expect_failure("vestige export a.mcap -o - --format ndjson -q | vestige record --live - -o back.mcap", 1,
+                 {"line 1: has 'pose.2'", "vestige import"}, "back.mcap");
+  expect_failure(
+      "vestige export a.mcap -o - --format ndjson -q | sed 's/\"pose.2\":.*,\"coll/\"coll/' | vestige record "
+      "--live - -o back.mcap",
+      1, {"line 1: has a collider with an owner"}, "back.mcap");
+  expect_failure("vestige export a.mcap -o a.pvd", 2, {"one person", "vestige plot paraview a.mcap --person 1"},
+                 "a.pvd");
 }
 
 TEST_F(PeopleExchange, WhatDoesNotFitTogetherIsRefused) {
@@ -140,8 +175,11 @@ TEST_F(PeopleExchange, WhatDoesNotFitTogetherIsRefused) {
   refuses("sed -i '$d' tables/poses.csv", {"poses.2.csv", "has frame 59, which the first person does not have"});
   refuses("sed -i '5d' tables/poses.2.csv", {"poses.2.csv", "has frame 4 at 0.04 s", "frame 3 at 0.03 s"});
   refuses("awk -F, -v OFS=, 'NR == 9 {$8 = 3} {print}' tables/colliders.csv > c && mv c tables/colliders.csv",
-          {"person 3"});
+          {"colliders.csv, line 9", "person 3"});
   refuses("echo '{\"name.2\": 7}' > tables/session.json", {"session.json", "a text 'name.2'"});
+  refuses("echo '{\"name.2\": \"a\\u0000b\"}' > tables/session.json",
+          {"session.json", "'name.2' has a control character"});
+  refuses("echo '{\"facing.2\": \"up\"}' > tables/session.json", {"session.json", "'facing.2' is 'up'"});
   expect_failure("vestige import tables --facing +x -o b.mcap", 1, {"session.json"}, "b.mcap");
 }
 
@@ -160,7 +198,8 @@ TEST_F(PeopleExchange, CollidersOfAFileMayBelongToPeople) {
   expect_failure(people + "--colliders e.csv -o e.mcap", 1,
                  {"e.csv, line 3", "collider 1 belongs to person 2, and before it belonged to person 1"}, "e.mcap");
   write("f.csv", "time_s,id,x,y,z,owner\n0,1,0,0,0,3\n1,1,0,0,0,3\n");
-  expect_failure(people + "--colliders f.csv -o f.mcap", 1, {"collider 1 belongs to person 3", "are only 2"}, "f.mcap");
+  expect_failure(people + "--colliders f.csv -o f.mcap", 1,
+                 {"f.csv, line 2", "collider 1 belongs to person 3", "are only 2"}, "f.mcap");
   write("g.csv", "time_s,id,x,y,z,owner\n0,1,0,0,0,-1\n");
   expect_failure(people + "--colliders g.csv -o g.mcap", 1, {"g.csv, line 2", "owner is not a whole number"}, "g.mcap");
 }
