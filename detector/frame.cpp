@@ -23,6 +23,16 @@ bool within_reach(const glm::vec3& v) {
   return size.x < kLargestCollider_m && size.y < kLargestCollider_m && size.z < kLargestCollider_m;
 }
 
+/// Whether a segment stays farther away than `reach` along an axis.
+bool is_beyond(const Segment& segment, const glm::vec3& reach) {
+  const glm::vec3 reach_m = reach + bounding_radius_m(segment);
+  const glm::vec3 low = glm::min(segment.start, segment.end);
+  const glm::vec3 high = glm::max(segment.start, segment.end);
+  // Without a branch for each axis: almost all are in reach.
+  return ((low.x > reach_m.x) | (low.y > reach_m.y) | (low.z > reach_m.z) | (high.x < -reach_m.x) |
+          (high.y < -reach_m.y) | (high.z < -reach_m.z)) != 0;
+}
+
 }  // namespace
 
 SegmentBox box_of(const Segment& segment) {
@@ -49,12 +59,19 @@ FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> 
       bind_extent_m_(bind_extent_m(avatar)) {}
 
 const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame) {
-  own_colliders_.next(trace_frame);
-  return next(trace_frame, own_colliders_);
+  begin(trace_frame, own_colliders_.columns());
+  ascending_ = own_colliders_.visit_next(trace_frame, [this](const ColliderMove& move) { add_segment(move); });
+  return finish();
 }
 
 const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame, const ColliderMoves& colliders) {
-  frame_.columns = colliders.columns();
+  begin(trace_frame, colliders.columns());
+  for (const ColliderMove& move : colliders.moves()) add_segment(move);
+  return finish();
+}
+
+void FrameBuilder::begin(const TraceFrame& trace_frame, std::size_t columns) {
+  frame_.columns = columns;
   const double time_s = trace_frame.time_s();
   frame_.duration_s = started_ ? time_s - frame_.time_s : 0;
   frame_.time_s = time_s;
@@ -79,22 +96,28 @@ const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame, const Col
   const std::optional<glm::dvec3> reach_m = reach_of(frame_.palette);
   const std::optional<glm::dvec3> reach_before_m =
       method_ == Method::kStatic ? reach_m : reach_of(frame_.palette_before);
-  const bool in_reach = reach_m.has_value();
-  const bool before_in_reach = method_ == Method::kStatic || reach_before_m.has_value();
   constexpr double kRounding = 1.001;  // of vertices, and of what starts are carried by: less than 2^-20 of the reach
   glm::dvec3 all_m = glm::max(reach_m.value_or(glm::dvec3(0)), reach_before_m.value_or(glm::dvec3(0)));
   if (method_ == Method::kCarried) all_m += carried_m();
   reach_m_ = glm::vec3(all_m * kRounding);
-  build_segments(colliders.moves());
-  if (!in_reach || (!before_in_reach && before_was_in_reach_)) {
+  in_reach_ = reach_m.has_value();
+  before_in_reach_ = method_ == Method::kStatic || reach_before_m.has_value();
+  frame_.segments.clear();
+  ascending_ = true;
+  frame_.out_of_reach = 0;
+}
+
+const DetectorFrame& FrameBuilder::finish() {
+  if (!ascending_) std::ranges::sort(frame_.segments, {}, &Segment::column);
+  if (!in_reach_ || (!before_in_reach_ && before_was_in_reach_)) {
     ++non_finite_frames_;
     note_non_finite();
   }
-  if (!in_reach || !before_in_reach) {
+  if (!in_reach_ || !before_in_reach_) {
     frame_.segments.clear();
     frame_.out_of_reach = 0;
   }
-  before_was_in_reach_ = in_reach;
+  before_was_in_reach_ = in_reach_;
   return frame_;
 }
 
@@ -124,15 +147,6 @@ glm::dvec3 FrameBuilder::carried_m() const {
   return all;
 }
 
-bool FrameBuilder::is_out_of_reach(const Segment& segment) const {
-  const glm::vec3 reach_m = reach_m_ + bounding_radius_m(segment);
-  const glm::vec3 low = glm::min(segment.start, segment.end);
-  const glm::vec3 high = glm::max(segment.start, segment.end);
-  // Without a branch for each axis: almost all are in reach.
-  return ((low.x > reach_m.x) | (low.y > reach_m.y) | (low.z > reach_m.z) | (high.x < -reach_m.x) |
-          (high.y < -reach_m.y) | (high.z < -reach_m.z)) != 0;
-}
-
 void FrameBuilder::note_non_finite() {
   if (!first_non_finite_) first_non_finite_ = frame_.index;
 }
@@ -160,22 +174,17 @@ void FrameBuilder::follow_origin(const Pose& pose) {
   frame_.origin_m = origin;
 }
 
-void FrameBuilder::build_segments(std::span<const ColliderMove> moves) {
-  frame_.segments.clear();
-  frame_.out_of_reach = 0;
-  const std::size_t owner = person_ + 1;
-  for (const ColliderMove& move : moves) {
-    if (move.owner == owner) continue;
-    const Segment segment = {move.column, glm::vec3(move.start_m - frame_.origin_m),
-                             glm::vec3(move.end_m - frame_.origin_m), move.radius_m};
-    if (!within_reach(segment.start) || !within_reach(segment.end)) {
-      ++non_finite_segments_;
-      note_non_finite();
-    } else if (skip_ == Skip::kOn && is_out_of_reach(segment)) {
-      ++frame_.out_of_reach;
-    } else {
-      frame_.segments.push_back(segment);
-    }
+void FrameBuilder::add_segment(const ColliderMove& move) {
+  if (move.owner == person_ + 1) return;
+  const Segment segment = {move.column, glm::vec3(move.start_m - frame_.origin_m),
+                           glm::vec3(move.end_m - frame_.origin_m), move.radius_m};
+  if (!within_reach(segment.start) || !within_reach(segment.end)) {
+    ++non_finite_segments_;
+    note_non_finite();
+  } else if (skip_ == Skip::kOn && is_beyond(segment, reach_m_)) {
+    ++frame_.out_of_reach;
+  } else {
+    frame_.segments.push_back(segment);
   }
 }
 

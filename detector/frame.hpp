@@ -80,10 +80,11 @@ class FrameBuilder {
  private:
   void place(const Pose& pose);
   void follow_origin(const Pose& pose);
-  void build_segments(std::span<const ColliderMove> moves);
+  void begin(const TraceFrame& trace_frame, std::size_t columns);
+  void add_segment(const ColliderMove& move);
+  const DetectorFrame& finish();
   std::optional<glm::dvec3> reach_of(std::span<const SkinMatrix> palette) const;
   glm::dvec3 carried_m() const;
-  bool is_out_of_reach(const Segment& segment) const;
   void note_non_finite();
 
   const Avatar& avatar_;
@@ -97,7 +98,10 @@ class FrameBuilder {
   glm::dvec3 pose_origin_before_m_ = glm::dvec3(0);
   glm::dvec3 bind_extent_m_;
   DetectorFrame frame_;
+  bool ascending_ = true;  ///< the columns of the segments
   bool started_ = false;
+  bool in_reach_ = true;         ///< the skin of this frame
+  bool before_in_reach_ = true;  ///< that of the frame before, from this frame's origin
   bool before_was_in_reach_ = true;
   std::uint64_t non_finite_frames_ = 0;
   std::uint64_t non_finite_segments_ = 0;

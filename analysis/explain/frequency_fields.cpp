@@ -57,6 +57,8 @@ constexpr Field kPoint[] = {
     {"pairs_meeting", "", "of them, pairs that meet, which only geometry and cpu count"},
     {"triangles_tested", "", "triangles of one pass that were tested at least once in their frame"},
     {"meshlets_skinned", "", "meshlets skinned in one pass; 0: the whole mesh was"},
+    {"pairs_spared", "",
+     "pairs of collider and part of the skin that one pass did not look at, as an earlier frame had proven them apart"},
     {"texture_hash", "", "SHA-256 of one pass' contacts; equal: equal to the bit"},
     {"disagreements", "",
      "results of one pass whose hit or actuator differs from its own with all colliders; exact ones never differ"},

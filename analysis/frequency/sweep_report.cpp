@@ -116,6 +116,7 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"pairs_meeting", point.work.pairs_meeting},
           {"triangles_tested", point.work.triangles_tested},
           {"meshlets_skinned", point.work.meshlets_skinned},
+          {"pairs_spared", point.work.pairs_spared},
           {"texture_hash", point.texture_hash},
           {"disagreements", point.disagreements}};
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -110,38 +111,19 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 /// Within this reach no computation overflows.
 constexpr float kLargestReach_m = std::numeric_limits<float>::max() / 64;
 
-glm::vec4 magnitude(const glm::vec4& v) {
-  return {std::abs(v.x), std::abs(v.y), std::abs(v.z), std::abs(v.w)};
-}
-
-/// Returns the largest |s - 1| of the avatar, where s is the sum of a vertex's weights. Returns infinity if a weight is
-/// negative or not a number.
-double weight_excess(const Avatar& avatar) {
-  double excess = 0;
-  for (const Influences& influences : avatar.influences) {
-    double sum = 0;
-    for (std::size_t k = 0; k < avatar.influence_count; ++k) {
-      if (!(influences.weight[k] >= 0)) return static_cast<double>(kInfinity);
-      sum += static_cast<double>(influences.weight[k]);
-    }
-    excess = std::max(excess, std::abs(sum - 1));
-  }
-  return excess;
-}
-
 /// Fills `out` and returns the palette's reach.
 glm::vec4 prepare(std::span<const SkinMatrix> palette, const std::vector<RestBox>& extents,
                   std::vector<BoundTransform>& out) {
   out.resize(palette.size());
   for (std::size_t i = 0; i < palette.size(); ++i) {
     out[i].column = palette[i].column;
-    for (std::size_t column = 0; column < 3; ++column) out[i].magnitude[column] = magnitude(palette[i].column[column]);
+    for (std::size_t column = 0; column < 3; ++column) out[i].magnitude[column] = glm::abs(palette[i].column[column]);
   }
   glm::vec4 reach(0);
   for (const RestBox& extent : extents) {
     const BoundTransform& t = out[extent.entry];
     const glm::vec4 of_entry = t.magnitude[0] * extent.half_extent.x + t.magnitude[1] * extent.half_extent.y +
-                               t.magnitude[2] * extent.half_extent.z + magnitude(t.column[3]);
+                               t.magnitude[2] * extent.half_extent.z + glm::abs(t.column[3]);
     for (int axis = 0; axis < 3; ++axis)
       // Once `reach` is NaN, it stays NaN: then no comparison with it is true.
       if (of_entry[axis] > reach[axis] || std::isnan(of_entry[axis])) reach[axis] = of_entry[axis];
@@ -155,12 +137,25 @@ bool within_reach(const glm::vec4& reach) {
 
 }  // namespace
 
+double weight_excess(const Avatar& avatar) {
+  double excess = 0;
+  for (const Influences& influences : avatar.influences) {
+    double sum = 0;
+    for (std::size_t k = 0; k < avatar.influence_count; ++k) {
+      if (!(influences.weight[k] >= 0)) return static_cast<double>(kInfinity);
+      sum += static_cast<double>(influences.weight[k]);
+    }
+    excess = std::max(excess, std::abs(sum - 1));
+  }
+  return excess;
+}
+
 MeshletBounds::MeshletBounds(const Avatar& avatar, const Meshlets& meshlets) : meshlets_(meshlets) {
   rounding_ = static_cast<float>(0x1p-18 + 2 * weight_excess(avatar));
   double largest = 0;
   if (meshlets.levels() > 0) {
     for (const RestBox& box : meshlets.rest_boxes(meshlets.levels() - 1, 0)) {
-      const glm::vec3 extent = glm::vec3(magnitude(glm::vec4(box.centre, 0))) + box.half_extent;
+      const glm::vec3 extent = glm::abs(box.centre) + box.half_extent;
       extents_.push_back({glm::vec3(0), box.entry, extent, 0});
       largest = std::max(largest,
                          static_cast<double>(extent.x) + static_cast<double>(extent.y) + static_cast<double>(extent.z));
@@ -182,12 +177,15 @@ void MeshletBounds::begin(const DetectorFrame& frame, Method method) {
   for (std::size_t i = 0; i < other_.size(); ++i) {
     for (std::size_t column = 0; column < 4; ++column)
       other_[i].column[column] = frame.palette[i].column[column] - frame.palette_before[i].column[column];
-    for (std::size_t column = 0; column < 3; ++column)
-      other_[i].magnitude[column] = magnitude(other_[i].column[column]);
+    for (std::size_t column = 0; column < 3; ++column) other_[i].magnitude[column] = glm::abs(other_[i].column[column]);
   }
   // Four errors add up: the box, the matrices' difference and its box, the vertices' displacement, and the start
   // rounded to fp32.
   pad_ *= 4;
+}
+
+float MeshletBounds::pad_m() const {
+  return bounded_ ? pad_.x + pad_.y + pad_.z : kInfinity;
 }
 
 void MeshletBounds::boxes(std::size_t level, std::size_t first, std::span<SkinBox> out) const {

@@ -14,6 +14,10 @@
 
 namespace vestige {
 
+/// Returns the largest |s - 1| of the avatar, where s is the sum of a vertex's weights. Returns infinity if a weight is
+/// negative or not a number.
+double weight_excess(const Avatar& avatar);
+
 /// A palette matrix, and the absolute values of its first three columns.
 struct alignas(16) BoundTransform {
   std::array<glm::vec4, 4> column;
@@ -46,6 +50,10 @@ class MeshletBounds {
   /// Returns the boxes of nodes `first` and following in `out`. A box is unbounded (-infinity to infinity) if nothing
   /// is known of the node.
   void boxes(std::size_t level, std::size_t first, std::span<SkinBox> out) const;
+
+  /// Returns the margin of the boxes of this frame: more than the error of a computed place on the skin, and as much
+  /// again. Infinite if nothing is known.
+  float pad_m() const;
 
  private:
   const Meshlets& meshlets_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "detector/broad/meshlet_triangles.cpp"  // NOLINT(bugprone-suspicious-include)
@@ -202,6 +203,36 @@ void meet_triangles(const MeshletTriangles::Bounds& bounds, std::span<const Segm
   }
 }
 
+/// Of each triangle, the farther of its box and its slab. A square below 2^-126 may be lost, which makes a gap smaller;
+/// the divisor is made larger by as much.
+inline float gap_to_triangles(const MeshletTriangles::Bounds& bounds, const glm::vec3& point) {
+  const D d;
+  const auto zero = hn::Zero(d);
+  const Vector at = everywhere(point);
+  const auto away = [&](V low, V high, V x) { return hn::Max(hn::Max(hn::Sub(low, x), hn::Sub(x, high)), zero); };
+  auto least = hn::Set(d, std::numeric_limits<float>::max());
+  for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(d)) {
+    const auto number = [&](const MeshletTriangles::Numbers& numbers) { return hn::Load(d, &numbers[i]); };
+    const Vector box = {away(number(bounds.low[0]), number(bounds.high[0]), at.x),
+                        away(number(bounds.low[1]), number(bounds.high[1]), at.y),
+                        away(number(bounds.low[2]), number(bounds.high[2]), at.z)};
+    const V box2 = dot(box, box);
+    const Vector normal = {number(bounds.normal[0]), number(bounds.normal[1]), number(bounds.normal[2])};
+    const V along = dot(normal, at);
+    const V margin = margin_of(dot(magnitude(normal), magnitude(at)));
+    const V beside =
+        hn::Max(hn::Sub(away(number(bounds.slab_low[1]), number(bounds.slab_high[1]), along), margin), zero);
+    const V slab2 = hn::Div(hn::Mul(beside, beside), hn::Add(dot(normal, normal), hn::Set(d, 0x1p-100F)));
+    const V farther = hn::IfThenElse(hn::Gt(slab2, box2), slab2, box2);
+    least = hn::Min(least, hn::IfThenElseZero(hn::Eq(farther, farther), farther));
+  }
+  return hn::GetLane(hn::Mul(hn::Sqrt(hn::MinOfLanes(d, least)), hn::Set(d, 1 - 0x1p-18F)));
+}
+
+void triangle_gaps(std::span<TriangleGap> gaps) {
+  for (TriangleGap& gap : gaps) gap.gap_m = gap_to_triangles(*gap.bounds, gap.point);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace vestige
 HWY_AFTER_NAMESPACE();
@@ -213,6 +244,7 @@ namespace {
 
 HWY_EXPORT(bound_triangles);
 HWY_EXPORT(meet_triangles);
+HWY_EXPORT(triangle_gaps);
 
 }  // namespace
 
@@ -223,6 +255,10 @@ void MeshletTriangles::bound(const MeshletCorners& now, const MeshletCorners& be
 void MeshletTriangles::meet(std::span<const Segment> segments, std::span<const std::uint32_t> numbers,
                             std::uint32_t* meets) const {
   HWY_DYNAMIC_DISPATCH(meet_triangles)(bounds_, segments, numbers, meets);
+}
+
+void find_triangle_gaps(std::span<TriangleGap> gaps) {
+  HWY_DYNAMIC_DISPATCH(triangle_gaps)(gaps);
 }
 
 }  // namespace vestige

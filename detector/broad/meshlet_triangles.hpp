@@ -35,8 +35,20 @@ class MeshletTriangles {
   /// have no meaning.
   void meet(std::span<const Segment> segments, std::span<const std::uint32_t> numbers, std::uint32_t* meets) const;
 
+  const Bounds& bounds() const { return bounds_; }
+
  private:
   Bounds bounds_ = {};
 };
+
+/// A point, and triangles.
+struct TriangleGap {
+  const MeshletTriangles::Bounds* bounds = nullptr;
+  glm::vec3 point;
+  float gap_m = 0;  ///< at least how far the point is from the nearest of them at the frame's end; 0: nothing is known
+};
+
+/// Fills in `gap_m`.
+void find_triangle_gaps(std::span<TriangleGap> gaps);
 
 }  // namespace vestige

@@ -3,12 +3,12 @@
 #include <span>
 #include <vector>
 
-#include "detector/broad/meshlet_candidates.hpp"
 #include "detector/broad/meshlet_skin.hpp"
 #include "detector/broad/meshlet_triangles.hpp"
 #include "detector/broad/meshlets.hpp"
 #include "detector/broad/skin_motion.hpp"
 #include "detector/broad/triangle_boxes.hpp"
+#include "detector/coherence/candidate_patches.hpp"
 #include "detector/detector.hpp"
 #include "detector/detectors/contact_finder.hpp"
 #include "detector/detectors/make_detectors.hpp"
@@ -67,8 +67,7 @@ class SkippingCpuDetector final : public Detector {
         method_(options.method),
         finder_(avatar, map, options),
         meshlets_(avatar),
-        candidates_(avatar, meshlets_),
-        meshlet_skin_(avatar, meshlets_) {}
+        candidates_(avatar, meshlets_, options.method) {}
 
   const char* name() const override { return "cpu"; }
   Method method() const override { return method_; }
@@ -77,16 +76,17 @@ class SkippingCpuDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.clear(frame.columns);
     if (frame.segments.empty()) return {.frames_skipped = frame.out_of_reach > 0 ? 1U : 0U};
-    enter(Stage::kCandidates);
-    candidates_.find(frame, method_);
+    candidates_.find(frame, stage_clock());
     DetectorWork work;
     work.frames_skipped = candidates_.touched().empty() ? 1 : 0;
-    work.meshlets_skinned = candidates_.touched().size();
-    for (const TouchedMeshlet& touched : candidates_.touched()) {
+    work.meshlets_skinned = candidates_.skinned();
+    work.pairs_spared = candidates_.spared();
+    for (std::size_t i = 0; i < candidates_.touched().size(); ++i) {
+      const TouchedMeshlet& touched = candidates_.touched()[i];
       const std::size_t triangles = meshlets_.triangles(touched.meshlet).size();
       work.triangles_tested += triangles;
       work.pairs_tested += triangles * touched.count;
-      test(frame, touched, row);
+      test(frame, i, row);
     }
     enter(Stage::kDecision);
     finder_.finish(frame, row, work);
@@ -98,18 +98,15 @@ class SkippingCpuDetector final : public Detector {
   }
 
  private:
-  void test(const DetectorFrame& frame, const TouchedMeshlet& touched, ContactRow& row) {
-    enter(Stage::kSkinning);
-    meshlet_skin_.skin(touched.meshlet, frame.palette, now_);
-    if (method_ != Method::kStatic) meshlet_skin_.skin(touched.meshlet, frame.palette_before, before_);
+  void test(const DetectorFrame& frame, std::size_t number, ContactRow& row) {
     enter(Stage::kTest);
-    triangles_.bound(now_, before_, method_);
+    const TouchedMeshlet& touched = candidates_.touched()[number];
     const std::span<const std::uint32_t> numbers = candidates_.segments(touched);
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
-    const MeshletPlaces meshlet = {method_ == Method::kStatic ? now_ : before_, now_, triangles};
+    const MeshletPlaces meshlet = {candidates_.before(number), candidates_.now(number), triangles};
     const auto existing = static_cast<std::uint32_t>((std::uint64_t{1} << triangles.size()) - 1);
     meets_.resize(numbers.size());
-    triangles_.meet(frame.segments, numbers, meets_.data());
+    candidates_.triangles(number).meet(frame.segments, numbers, meets_.data());
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       const Segment& segment = frame.segments[numbers[k]];
       std::uint32_t bits = meets_[k] & existing;
@@ -130,11 +127,7 @@ class SkippingCpuDetector final : public Detector {
   Method method_;
   ContactFinder finder_;
   Meshlets meshlets_;
-  MeshletCandidates candidates_;
-  MeshletSkin meshlet_skin_;
-  MeshletCorners now_ = {};
-  MeshletCorners before_ = {};
-  MeshletTriangles triangles_;
+  CandidatePatches candidates_;
   std::vector<std::uint32_t> meets_;  ///< for each segment that may meet a meshlet: bits of the triangles
 };
 

@@ -13,9 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "detector/broad/meshlet_candidates.hpp"
-#include "detector/broad/meshlet_skin.hpp"
 #include "detector/broad/meshlets.hpp"
+#include "detector/coherence/candidate_patches.hpp"
 #include "detector/decision.hpp"
 #include "detector/detectors/contact_finder.hpp"
 #include "detector/gl/captured_pairs.hpp"
@@ -77,8 +76,7 @@ class SkippingGeometryDetector final : public Detector {
         method_(options.method),
         finder_(avatar, map, options),
         meshlets_(avatar),
-        candidates_(avatar, meshlets_),
-        meshlet_skin_(avatar, meshlets_),
+        candidates_(avatar, meshlets_, options.method),
         corners_(gl_),
         blocks_(gl_),
         captured_(gl_),
@@ -111,15 +109,17 @@ class SkippingGeometryDetector final : public Detector {
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.clear(frame.columns);
     if (frame.segments.empty()) return {.frames_skipped = frame.out_of_reach > 0 ? 1U : 0U};
-    enter(Stage::kCandidates);
-    candidates_.find(frame, method_);
-    DetectorWork work;
+    candidates_.find(frame, stage_clock());
+    DetectorWork work = {.meshlets_skinned = candidates_.skinned(), .pairs_spared = candidates_.spared()};
     if (candidates_.touched().empty()) {
       work.frames_skipped = 1;
       return work;
     }
-    enter(Stage::kSkinning);
-    skin_touched(frame, work);
+    for (const TouchedMeshlet& touched : candidates_.touched()) {
+      const std::size_t triangles = meshlets_.triangles(touched.meshlet).size();
+      work.triangles_tested += triangles;
+      work.pairs_tested += triangles * touched.count;
+    }
     enter(Stage::kUpload);
     fill_slots(frame);
     upload();
@@ -153,20 +153,6 @@ class SkippingGeometryDetector final : public Detector {
     gl_.VertexArrayAttribBinding(vertex_array_, location, 0);
     gl_.VertexArrayAttribFormat(vertex_array_, location, 3, GL_FLOAT, GL_FALSE,
                                 static_cast<GLuint>(corner * sizeof(glm::vec3)));
-  }
-
-  void skin_touched(const DetectorFrame& frame, DetectorWork& work) {
-    const std::span<const TouchedMeshlet> touched = candidates_.touched();
-    now_.resize(touched.size());
-    if (method_ != Method::kStatic) before_.resize(touched.size());
-    for (std::size_t i = 0; i < touched.size(); ++i) {
-      meshlet_skin_.skin(touched[i].meshlet, frame.palette, now_[i]);
-      if (method_ != Method::kStatic) meshlet_skin_.skin(touched[i].meshlet, frame.palette_before, before_[i]);
-      const std::size_t triangles = meshlets_.triangles(touched[i].meshlet).size();
-      work.triangles_tested += triangles;
-      work.pairs_tested += triangles * touched[i].count;
-    }
-    work.meshlets_skinned = touched.size();
   }
 
   /// Distributes the candidates to as many blocks as they need. A meshlet whose segments do not fit into one block
@@ -203,9 +189,9 @@ class SkippingGeometryDetector final : public Detector {
     gpu_corners_.resize(first + kMeshletTriangles * corners_per_triangle());
     glm::vec3* out = &gpu_corners_[first];
     for (std::size_t i = 0; i < kMeshletTriangles; ++i) {
-      for (std::size_t corner = 0; corner < 3; ++corner) *out++ = now_[touched].at(corner, i);
+      for (std::size_t corner = 0; corner < 3; ++corner) *out++ = candidates_.now(touched).at(corner, i);
       if (method_ == Method::kStatic) continue;
-      for (std::size_t corner = 0; corner < 3; ++corner) *out++ = before_[touched].at(corner, i);
+      for (std::size_t corner = 0; corner < 3; ++corner) *out++ = candidates_.before(touched).at(corner, i);
     }
   }
 
@@ -240,8 +226,8 @@ class SkippingGeometryDetector final : public Detector {
     const TouchedMeshlet& meshlet = candidates_.touched()[touched];
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(meshlet.meshlet);
     if (i >= triangles.size()) return 0;
-    const Corners now = now_[touched].corners(i);
-    const Corners before = method_ == Method::kStatic ? now : before_[touched].corners(i);
+    const Corners now = candidates_.now(touched).corners(i);
+    const Corners before = candidates_.before(touched).corners(i);
     const Segment& segment = frame.segments[candidates_.segments(meshlet)[pair.segment]];
     finder_.offer(frame, {before, now}, segment, triangles[i], row[segment.column]);
     return 1;
@@ -253,16 +239,13 @@ class SkippingGeometryDetector final : public Detector {
   Method method_;
   ContactFinder finder_;
   Meshlets meshlets_;
-  MeshletCandidates candidates_;
-  MeshletSkin meshlet_skin_;
+  CandidatePatches candidates_;
   GlBuffer corners_;
   GlBuffer blocks_;
   CapturedPairs captured_;
   CollisionTexture nowhere_;
   GlProgram program_;
   GLuint vertex_array_ = 0;
-  std::vector<MeshletCorners> now_;  ///< for each touched meshlet
-  std::vector<MeshletCorners> before_;
   std::vector<Draw> draws_;
   std::vector<Block> gpu_blocks_;       ///< one for each draw
   std::vector<glm::vec3> gpu_corners_;  ///< for the triangles of each slot

@@ -1,0 +1,109 @@
+#include "detector/coherence/candidate_patches.hpp"
+
+#include <algorithm>
+
+namespace vestige {
+
+CandidatePatches::CandidatePatches(const Avatar& avatar, const Meshlets& meshlets, Method method)
+    : method_(method),
+      meshlet_skin_(avatar, meshlets),
+      anew_(avatar, meshlets),
+      search_(avatar, meshlets),
+      when_(meshlets.size()),
+      now_(meshlets.size()),
+      before_(method == Method::kStatic ? 0 : meshlets.size()),
+      triangles_(meshlets.size()) {}
+
+void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
+  enter_stage(clock, Stage::kCandidates);
+  ++calls_;
+  skinned_ = 0;
+  spared_ = 0;
+  touched_.clear();
+  segments_.clear();
+  is_anew_ = !search_.find(frame, method_);
+  if (is_anew_) return find_anew(frame, clock);
+  look_closer(frame, clock);
+  search_.learn();
+  spared_ = search_.spared();
+  list_touched();
+}
+
+void CandidatePatches::find_anew(const DetectorFrame& frame, StageClock* clock) {
+  anew_.find(frame, method_);
+  touched_.assign(anew_.touched().begin(), anew_.touched().end());
+  for (const TouchedMeshlet& touched : touched_) {
+    const std::span<const std::uint32_t> numbers = anew_.segments(touched);
+    segments_.insert(segments_.end(), numbers.begin(), numbers.end());
+  }
+  enter_stage(clock, Stage::kSkinning);
+  for (std::size_t i = 0; i < touched_.size(); ++i) skin(frame, touched_[i].meshlet, i);
+}
+
+void CandidatePatches::look_closer(const DetectorFrame& frame, StageClock* clock) {
+  const std::span<NearPair> pairs = search_.pairs();
+  ask_.clear();
+  for (std::uint32_t i = 0; i < pairs.size(); ++i)
+    if (when_[pairs[i].meshlet].restart == search_.restarts()) ask_.push_back(i);
+  bound_gaps(frame);
+  ask_.clear();
+  enter_stage(clock, Stage::kSkinning);
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+    if (!pairs[i].may_meet) continue;
+    const std::size_t meshlet = pairs[i].meshlet;
+    if (when_[meshlet].call != calls_) {
+      skin(frame, meshlet, meshlet);
+      triangles_[meshlet].bound(now_[meshlet], method_ == Method::kStatic ? now_[meshlet] : before_[meshlet], method_);
+      when_[meshlet] = {calls_, search_.restarts(), search_.clock(meshlet)};
+    }
+    ask_.push_back(i);
+  }
+  enter_stage(clock, Stage::kCandidates);
+  bound_gaps(frame);
+}
+
+/// Asks the triangles of the pairs in `ask_` how far they are away, as they were skinned last.
+void CandidatePatches::bound_gaps(const DetectorFrame& frame) {
+  const std::span<NearPair> pairs = search_.pairs();
+  gaps_.resize(ask_.size());
+  for (std::size_t k = 0; k < ask_.size(); ++k) {
+    const NearPair& pair = pairs[ask_[k]];
+    gaps_[k].bounds = &triangles_[pair.meshlet].bounds();
+    gaps_[k].point = frame.segments[pair.segment].end;
+  }
+  find_triangle_gaps(gaps_);
+  for (std::size_t k = 0; k < ask_.size(); ++k) {
+    NearPair& pair = pairs[ask_[k]];
+    const float moved_m = search_.moved_m(pair.meshlet, when_[pair.meshlet].clock) + search_.pad_m();
+    pair.gap_m = std::max(pair.gap_m, gaps_[k].gap_m - moved_m);
+    pair.may_meet = pair.may_meet && pair.gap_m <= pair.spent_m;
+  }
+}
+
+void CandidatePatches::skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place) {
+  meshlet_skin_.skin(meshlet, frame.palette, now_[place]);
+  if (method_ != Method::kStatic) meshlet_skin_.skin(meshlet, frame.palette_before, before_[place]);
+  ++skinned_;
+}
+
+void CandidatePatches::list_touched() {
+  order_.clear();
+  for (const NearPair& pair : search_.pairs())
+    if (pair.may_meet) order_.push_back(std::uint64_t{pair.meshlet} << 32U | pair.segment);
+  std::ranges::sort(order_);
+  for (const std::uint64_t pair : order_) {
+    const auto meshlet = static_cast<std::uint32_t>(pair >> 32U);
+    if (touched_.empty() || touched_.back().meshlet != meshlet)
+      touched_.push_back({meshlet, static_cast<std::uint32_t>(segments_.size()), 0});
+    ++touched_.back().count;
+    segments_.push_back(static_cast<std::uint32_t>(pair));
+  }
+}
+
+const MeshletTriangles& CandidatePatches::triangles(std::size_t i) {
+  if (!is_anew_) return triangles_[touched_[i].meshlet];
+  bounded_.bound(now(i), before(i), method_);
+  return bounded_;
+}
+
+}  // namespace vestige

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "detector/broad/meshlet_candidates.hpp"
+#include "detector/broad/meshlet_skin.hpp"
+#include "detector/broad/meshlet_triangles.hpp"
+#include "detector/broad/meshlets.hpp"
+#include "detector/coherence/coherent_search.hpp"
+#include "detector/frame.hpp"
+#include "detector/method.hpp"
+#include "detector/stages.hpp"
+#include "traces/scene/avatar.hpp"
+
+namespace vestige {
+
+/// The broad phase of detectors that skip: finds which segments may meet which meshlets, and skins those. A pair that
+/// is not listed surely misses, bit for bit.
+///
+/// While things move slowly, the search remembers what it proved, and the skin of an earlier frame proves much of this
+/// one. Otherwise each frame is searched from the top of the tree.
+class CandidatePatches {
+ public:
+  /// Keeps references to `avatar` and `meshlets`.
+  CandidatePatches(const Avatar& avatar, const Meshlets& meshlets, Method method);
+
+  /// Charges its time to the stages of `clock`, which may be null.
+  void find(const DetectorFrame& frame, StageClock* clock);
+
+  /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
+  std::span<const TouchedMeshlet> touched() const { return touched_; }
+  /// Numbers in DetectorFrame::segments, ascending.
+  std::span<const std::uint32_t> segments(const TouchedMeshlet& touched) const {
+    return std::span(segments_).subspan(touched.first, touched.count);
+  }
+  /// Where the meshlet of touched()[i] is, in this frame and in the one before. With kStatic both are the same.
+  const MeshletCorners& now(std::size_t i) const { return now_[place_of(i)]; }
+  const MeshletCorners& before(std::size_t i) const {
+    return method_ == Method::kStatic ? now(i) : before_[place_of(i)];
+  }
+  /// Bounds of its triangles, valid until the next call.
+  const MeshletTriangles& triangles(std::size_t i);
+
+  /// The number of meshlets that `find` skinned.
+  std::size_t skinned() const { return skinned_; }
+  /// The number of pairs of collider and part of the skin that needed no look, as an earlier frame proved them apart.
+  std::uint64_t spared() const { return spared_; }
+
+ private:
+  /// When a meshlet was skinned last.
+  struct SkinnedWhen {
+    std::uint64_t call = 0;     ///< from 1 on
+    std::uint64_t restart = 0;  ///< of the search: earlier ones say nothing
+    std::int32_t clock = 0;     ///< of its part
+  };
+
+  void find_anew(const DetectorFrame& frame, StageClock* clock);
+  void look_closer(const DetectorFrame& frame, StageClock* clock);
+  void bound_gaps(const DetectorFrame& frame);
+  void skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place);
+  void list_touched();
+  std::size_t place_of(std::size_t i) const { return is_anew_ ? i : touched_[i].meshlet; }
+
+  Method method_;
+  MeshletSkin meshlet_skin_;
+  MeshletCandidates anew_;
+  CoherentSearch search_;
+  bool is_anew_ = false;  ///< the last `find`; then patches are by their number in touched_, else by meshlet
+
+  std::uint64_t calls_ = 0;
+  std::size_t skinned_ = 0;
+  std::uint64_t spared_ = 0;
+  std::vector<SkinnedWhen> when_;
+  std::vector<MeshletCorners> now_;
+  std::vector<MeshletCorners> before_;
+  std::vector<MeshletTriangles> triangles_;
+  MeshletTriangles bounded_;        ///< if anew
+  std::vector<std::uint32_t> ask_;  ///< numbers of the search's pairs
+  std::vector<TriangleGap> gaps_;
+  std::vector<std::uint64_t> order_;  ///< of the pairs: meshlet, then segment
+  std::vector<TouchedMeshlet> touched_;
+  std::vector<std::uint32_t> segments_;
+};
+
+}  // namespace vestige
