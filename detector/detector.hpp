@@ -39,8 +39,9 @@ struct DetectorWork {
   std::uint64_t pairs_meeting = 0;     ///< pairs that really meet (counted by `geometry` and `cpu`)
   std::uint64_t meshlets_skinned = 0;  ///< 0 if the detector skinned the whole mesh
   std::uint64_t frames_skipped = 0;    ///< 1 if the bounds alone proved that nothing can meet
-  std::uint64_t pairs_spared = 0;  ///< pairs of collider and part of the skin that an earlier frame had proven apart
-  std::uint64_t unsure = 0;        ///< pairs that the filter could not decide and exact arithmetic did
+  std::uint64_t part_pairs = 0;        ///< pairs of a collider in reach and a part of the skin (with skipping)
+  std::uint64_t pairs_spared = 0;      ///< of them, pairs not looked at, as an earlier frame had proven them apart
+  std::uint64_t unsure = 0;            ///< pairs that the filter could not decide and exact arithmetic did
 
   DetectorWork& operator+=(const DetectorWork& other) {
     pairs_tested += other.pairs_tested;
@@ -49,6 +50,7 @@ struct DetectorWork {
     pairs_meeting += other.pairs_meeting;
     meshlets_skinned += other.meshlets_skinned;
     frames_skipped += other.frames_skipped;
+    part_pairs += other.part_pairs;
     pairs_spared += other.pairs_spared;
     unsure += other.unsure;
     return *this;

@@ -45,8 +45,8 @@ struct Contestant {
 
 struct SweepSettings {
   std::vector<std::uint32_t> counts;  ///< numbers of colliders, each drawn from all colliders of the trace
-  std::uint32_t runs = 8;             ///< number of evenly spaced places of the trace to measure
-  std::uint32_t run_frames = 12;      ///< consecutive frames at each place
+  std::uint32_t runs = 4;             ///< number of evenly spaced places of the trace to measure
+  std::uint32_t run_frames = 100;     ///< consecutive frames at each place, the first of them cold
   double min_time_s = 1;              ///< least time for every point; the places are repeated until then
   std::uint64_t seed = 1;             ///< seed of the drawn colliders and of the random order
   bool stages = false;                ///< afterwards, measure where the time goes (`measure_stages`)

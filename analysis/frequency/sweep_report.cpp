@@ -116,6 +116,7 @@ nlohmann::ordered_json to_json(const SweepPoint& point, std::uint64_t seed) {
           {"pairs_meeting", point.work.pairs_meeting},
           {"triangles_tested", point.work.triangles_tested},
           {"meshlets_skinned", point.work.meshlets_skinned},
+          {"part_pairs", point.work.part_pairs},
           {"pairs_spared", point.work.pairs_spared},
           {"texture_hash", point.texture_hash},
           {"disagreements", point.disagreements}};
@@ -219,6 +220,22 @@ std::string contacts_table(std::span<const SweepSeries> series) {
                     const double empty =
                         static_cast<double>(point.empty_frames) / static_cast<double>(point.pass_frames);
                     return fmt::format("{} ({:.1f} %)", point.contacts, percent_floor(empty));
+                  });
+}
+
+/// Says how much of a frame was known from the frame before. Empty unless a detector remembers.
+std::string spared_table(std::span<const SweepSeries> series) {
+  const auto remembers = [](const SweepSeries& one) {
+    return std::ranges::any_of(one.points, [](const SweepPoint& point) { return point.work.pairs_spared > 0; });
+  };
+  return table_of(series,
+                  "Share of the pairs of collider and part of the skin that needed no look, as an earlier frame had "
+                  "proven them apart",
+                  remembers, [](const SweepSeries& one, std::size_t p) {
+                    const DetectorWork& work = one.points[p].work;
+                    if (work.part_pairs == 0) return std::string();
+                    return fmt::format("{:.1f} %", percent_floor(static_cast<double>(work.pairs_spared) /
+                                                                 static_cast<double>(work.part_pairs)));
                   });
 }
 
@@ -329,6 +346,7 @@ std::string sweep_table(std::span<const SweepSeries> series, std::uint64_t seed)
   table += "Hz: frames / total time, whole round trip (95 % bootstrap interval).\n";
   table += cold_table(series);
   table += contacts_table(series);
+  table += spared_table(series);
   for (const Rival& rival : kRivals) table += ratio_table(series, rival);
   table += planes_table(series);
   table += rendered_table(series);

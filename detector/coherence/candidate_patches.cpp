@@ -5,7 +5,8 @@
 namespace vestige {
 
 CandidatePatches::CandidatePatches(const Avatar& avatar, const Meshlets& meshlets, Method method)
-    : method_(method),
+    : meshlets_(meshlets),
+      method_(method),
       meshlet_skin_(avatar, meshlets),
       anew_(avatar, meshlets),
       search_(avatar, meshlets),
@@ -17,16 +18,29 @@ CandidatePatches::CandidatePatches(const Avatar& avatar, const Meshlets& meshlet
 void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
   enter_stage(clock, Stage::kCandidates);
   ++calls_;
-  skinned_ = 0;
-  spared_ = 0;
+  work_ = DetectorWork();
   touched_.clear();
   segments_.clear();
   is_anew_ = !search_.find(frame, method_);
-  if (is_anew_) return find_anew(frame, clock);
-  look_closer(frame, clock);
-  search_.learn();
-  spared_ = search_.spared();
-  list_touched();
+  if (is_anew_) {
+    find_anew(frame, clock);
+  } else {
+    look_closer(frame, clock);
+    search_.learn();
+    list_touched();
+  }
+  count_work(frame);
+}
+
+void CandidatePatches::count_work(const DetectorFrame& frame) {
+  work_.part_pairs = frame.segments.size() * search_.parts();
+  if (!is_anew_) work_.pairs_spared = search_.spared();
+  work_.frames_skipped = touched_.empty() ? 1 : 0;
+  for (const TouchedMeshlet& touched : touched_) {
+    const std::size_t triangles = meshlets_.triangles(touched.meshlet).size();
+    work_.triangles_tested += triangles;
+    work_.pairs_tested += triangles * touched.count;
+  }
 }
 
 void CandidatePatches::find_anew(const DetectorFrame& frame, StageClock* clock) {
@@ -83,7 +97,7 @@ void CandidatePatches::bound_gaps(const DetectorFrame& frame) {
 void CandidatePatches::skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place) {
   meshlet_skin_.skin(meshlet, frame.palette, now_[place]);
   if (method_ != Method::kStatic) meshlet_skin_.skin(meshlet, frame.palette_before, before_[place]);
-  ++skinned_;
+  ++work_.meshlets_skinned;
 }
 
 void CandidatePatches::list_touched() {

@@ -10,6 +10,7 @@
 #include "detector/broad/meshlet_triangles.hpp"
 #include "detector/broad/meshlets.hpp"
 #include "detector/coherence/coherent_search.hpp"
+#include "detector/detector.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
 #include "detector/stages.hpp"
@@ -44,10 +45,8 @@ class CandidatePatches {
   /// Bounds of its triangles, valid until the next call.
   const MeshletTriangles& triangles(std::size_t i);
 
-  /// The number of meshlets that `find` skinned.
-  std::size_t skinned() const { return skinned_; }
-  /// The number of pairs of collider and part of the skin that needed no look, as an earlier frame proved them apart.
-  std::uint64_t spared() const { return spared_; }
+  /// The work of the last `find`, and that of testing what it found.
+  const DetectorWork& work() const { return work_; }
 
  private:
   /// When a meshlet was skinned last.
@@ -62,8 +61,10 @@ class CandidatePatches {
   void bound_gaps(const DetectorFrame& frame);
   void skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place);
   void list_touched();
+  void count_work(const DetectorFrame& frame);
   std::size_t place_of(std::size_t i) const { return is_anew_ ? i : touched_[i].meshlet; }
 
+  const Meshlets& meshlets_;
   Method method_;
   MeshletSkin meshlet_skin_;
   MeshletCandidates anew_;
@@ -71,8 +72,7 @@ class CandidatePatches {
   bool is_anew_ = false;  ///< the last `find`; then patches are by their number in touched_, else by meshlet
 
   std::uint64_t calls_ = 0;
-  std::size_t skinned_ = 0;
-  std::uint64_t spared_ = 0;
+  DetectorWork work_;
   std::vector<SkinnedWhen> when_;
   std::vector<MeshletCorners> now_;
   std::vector<MeshletCorners> before_;

@@ -57,6 +57,7 @@ class CoherentSearch {
   std::int32_t clock(std::size_t meshlet) const { return parts_.clock[meshlet / meshlets_a_part_]; }
   /// Error of the computed skin, which a gap from it must be smaller by.
   float pad_m() const { return pad_m_; }
+  std::size_t parts() const { return static_cast<std::size_t>(std::popcount(parts_.existing)); }
   /// The number of pairs of collider and part that the last `find` needed not look at.
   std::uint64_t spared() const { return spared_; }
   /// Grows whenever all that was known is forgotten, earlier clocks included.

@@ -77,17 +77,8 @@ class SkippingCpuDetector final : public Detector {
     row.clear(frame.columns);
     if (frame.segments.empty()) return {.frames_skipped = frame.out_of_reach > 0 ? 1U : 0U};
     candidates_.find(frame, stage_clock());
-    DetectorWork work;
-    work.frames_skipped = candidates_.touched().empty() ? 1 : 0;
-    work.meshlets_skinned = candidates_.skinned();
-    work.pairs_spared = candidates_.spared();
-    for (std::size_t i = 0; i < candidates_.touched().size(); ++i) {
-      const TouchedMeshlet& touched = candidates_.touched()[i];
-      const std::size_t triangles = meshlets_.triangles(touched.meshlet).size();
-      work.triangles_tested += triangles;
-      work.pairs_tested += triangles * touched.count;
-      test(frame, i, row);
-    }
+    DetectorWork work = candidates_.work();
+    for (std::size_t i = 0; i < candidates_.touched().size(); ++i) test(frame, i, row);
     enter(Stage::kDecision);
     finder_.finish(frame, row, work);
     return work;

@@ -110,16 +110,8 @@ class SkippingGeometryDetector final : public Detector {
     row.clear(frame.columns);
     if (frame.segments.empty()) return {.frames_skipped = frame.out_of_reach > 0 ? 1U : 0U};
     candidates_.find(frame, stage_clock());
-    DetectorWork work = {.meshlets_skinned = candidates_.skinned(), .pairs_spared = candidates_.spared()};
-    if (candidates_.touched().empty()) {
-      work.frames_skipped = 1;
-      return work;
-    }
-    for (const TouchedMeshlet& touched : candidates_.touched()) {
-      const std::size_t triangles = meshlets_.triangles(touched.meshlet).size();
-      work.triangles_tested += triangles;
-      work.pairs_tested += triangles * touched.count;
-    }
+    DetectorWork work = candidates_.work();
+    if (candidates_.touched().empty()) return work;
     enter(Stage::kUpload);
     fill_slots(frame);
     upload();
