@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "analysis/mapping/body_surface.hpp"
@@ -12,7 +11,6 @@
 #include "traces/base/error.hpp"
 #include "traces/files/input_file.hpp"
 #include "traces/gltf/avatar_gltf.hpp"
-#include "traces/scene/people.hpp"
 #include "traces/scene/person_name.hpp"
 #include "traces/scene/reference_skinning.hpp"
 #include "traces/trace_file/trace_format.hpp"
@@ -57,24 +55,6 @@ void complete(Scene& scene, ActuatorMapFiles map, const SceneNames& names, const
   warn_all(vestige::settle_facing(facing, choice.axis, scene.map.facing, names.avatar), verbosity);
   if (const std::string other = other_facing(facing, scene.map.facing, names); !other.empty())
     warn(other + kOrSetFacing, verbosity);
-}
-
-/// Returns the people's names. Of several people, one without a name, or with the name of an earlier one, gets a
-/// number.
-std::vector<std::string> names_of(const std::vector<RecordedPerson>& people) {
-  std::vector<std::string> names;
-  names.reserve(people.size());
-  for (const RecordedPerson& person : people) names.push_back(readable_name(person.name));
-  if (people.size() == 1) return names;
-  std::set<std::string> taken(names.begin(), names.end());
-  std::set<std::string> seen = {""};
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (seen.insert(names[i]).second) continue;
-    std::string name = in_words(static_cast<std::uint16_t>(i + 1));
-    while (!taken.insert(name).second) name += '*';
-    names[i] = name;
-  }
-  return names;
 }
 
 /// Returns what errors call an attachment of a trace.
@@ -132,7 +112,10 @@ ActuatorMapFiles load_map(const std::string& map) {
 
 OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity, People allowed) : reader(path, allowed) {
   const std::vector<RecordedPerson>& recorded = reader.people();
-  const std::vector<std::string> names = names_of(recorded);
+  std::vector<std::string> names;
+  names.reserve(recorded.size());
+  for (const RecordedPerson& person : recorded) names.push_back(person.name);
+  names = names_of_people(names);
   people.reserve(recorded.size());
   for (std::size_t i = 0; i < recorded.size(); ++i) {
     people.push_back(

@@ -170,6 +170,7 @@ std::vector<Scene> load_scenes(const ImportOptions& options) {
     scenes.push_back(load_scene(files[i].avatar, files[i].map, options.facing, options.common.verbosity(), facing));
     scenes.back().name = name;
   }
+  require_different_names(options.session, scenes);
   return scenes;
 }
 

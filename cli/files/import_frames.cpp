@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <set>
 #include <utility>
 
 #include "traces/base/error.hpp"
@@ -157,6 +158,13 @@ void require_axis(const std::string& file, std::size_t person, const std::string
               "write +x, -x, +z or -z, or take it out");
 }
 
+void require_different_names(const std::string& file, const std::vector<Scene>& scenes) {
+  std::set<std::string> names;
+  for (const Scene& scene : scenes)
+    if (!scene.name.empty() && !names.insert(scene.name).second)
+      throw Error(file, fmt::format("two people are called '{}'", scene.name), "give each another name");
+}
+
 std::vector<Scene> read_hdf5(const std::string& path, const FacingChoice& facing, ImportedFrames& frames,
                              Verbosity verbosity) {
   using trace_format::attachment_name;
@@ -176,6 +184,7 @@ std::vector<Scene> read_hdf5(const std::string& path, const FacingChoice& facing
     scene.name = person.name;
     require_names(path, i, person.node_names, scene.avatar);
   }
+  require_different_names(path, scenes);
   frames.next_pose = [file](TraceFrame& frame) { return file->next(frame); };
   frames.share = [file] { return file->share(); };
   frames.shape = file->shape();

@@ -69,8 +69,12 @@ void read_colliders(const ImportOptions& options, ImportedFrames& frames);
 void play_motion(const Avatar& avatar, const LoadedMotion& motion, std::optional<double> rate_hz,
                  ImportedFrames& frames);
 
-/// Throws `Error` if a person's recorded facing names no axis: --facing sets that of one person only.
+/// Throws `Error` if the recorded facing of one of several people names no axis. Of one person it does not matter, as
+/// --facing then sets another.
 void require_axis(const std::string& file, std::size_t person, const std::string& facing);
+
+/// Throws `Error` if two people have one name.
+void require_different_names(const std::string& file, const std::vector<Scene>& scenes);
 
 /// Reads the people of an .h5, whose frames follow.
 std::vector<Scene> read_hdf5(const std::string& path, const FacingChoice& facing, ImportedFrames& frames,

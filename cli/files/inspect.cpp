@@ -32,10 +32,18 @@ std::string facing_of(const McapSummary& summary, std::size_t person) {
   return facing_named(facing) ? facing : "";
 }
 
+std::vector<std::string> names_of(const McapSummary& summary) {
+  std::vector<std::string> names;
+  for (std::size_t person = 0; person < summary.people; ++person)
+    names.push_back(recorded(summary, trace_format::kNameKey, person));
+  return names_of_people(names);
+}
+
 nlohmann::ordered_json people_json(const McapSummary& summary) {
+  const std::vector<std::string> names = names_of(summary);
   nlohmann::ordered_json people = nlohmann::ordered_json::array();
   for (std::size_t person = 0; person < summary.people; ++person)
-    people.push_back({{"name", recorded(summary, trace_format::kNameKey, person)},
+    people.push_back({{"name", names[person]},
                       {"avatar", trace_format::attachment_name(trace_format::AttachmentKind::kAvatar, person)},
                       {"topic", trace_format::numbered("/pose", person)},
                       {"facing", facing_of(summary, person)}});
@@ -43,13 +51,13 @@ nlohmann::ordered_json people_json(const McapSummary& summary) {
 }
 
 std::string describe_people(const McapSummary& summary) {
+  const std::vector<std::string> names = names_of(summary);
   std::string text;
   for (std::size_t person = 0; person < summary.people; ++person) {
     const std::string facing = facing_of(summary, person);
-    const std::string name = readable_name(recorded(summary, trace_format::kNameKey, person));
     const std::string label = summary.people == 1 ? "avatar faces" : fmt::format("person {}", person + 1);
     if (summary.people > 1)
-      text += fmt::format("  {:<20} '{}'{}\n", label, name, facing.empty() ? "" : ", faces " + facing);
+      text += fmt::format("  {:<20} '{}'{}\n", label, names[person], facing.empty() ? "" : ", faces " + facing);
     else if (!facing.empty())
       text += fmt::format("  {:<20} {}, {}\n", label, facing, in_words(AvatarFacing::By::kTrace));
   }

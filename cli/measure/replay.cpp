@@ -205,9 +205,9 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   check_outputs(outputs, inputs, options.common);
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);
-  auto expected = read_expected(options.verify);
 
   OpenTrace trace(options.trace, verbosity, People::kSeveral);
+  auto expected = read_expected(options.verify, trace.people.size());
   for (std::size_t i = 0; i < trace.people.size(); ++i)
     require_surface(
         trace.people[i].avatar,

@@ -22,10 +22,10 @@ PeopleDetectors make_detectors(const std::string& name, const DetectorChoice& ch
   return detectors;
 }
 
-std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify) {
+std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify, std::size_t people) {
   if (verify.empty() || is_detector(verify)) return {};
   if (!verify.ends_with(".csv") && !has_hdf5_name(verify) && !is_hdf5(verify)) return {};
-  return read_contacts(verify, {.people = {}});
+  return read_contacts(verify, {.people = std::vector<PersonLimits>(people)});
 }
 
 Verification load_verification(const ReplayOptions& options, const OpenTrace& trace, const Detector& detector,

@@ -25,8 +25,8 @@ struct Verification {
   ReplayExpectation expectation() const { return {detectors.get(), by_contacts ? &contacts : nullptr}; }
 };
 
-/// Returns the contacts that --verify names, if it names such a file.
-std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify);
+/// Returns the contacts that --verify names, if it names such a file, for a trace of this many people.
+std::optional<std::vector<RecordedContact>> read_expected(const std::string& verify, std::size_t people);
 
 /// Makes ready what the replay by `detector` is compared with: detectors that give `planes`, or a file. `expected` is
 /// from `read_expected`, so that contacts are read before any thread starts. Throws `UsageError` or `Error` for what is

@@ -114,7 +114,7 @@ class ContactTables {
 
  private:
   std::filesystem::path path_;
-  const ContactLimits& limits_;
+  ContactLimits limits_;
   Hdf5Handle file_;
   OptionalColumns optional_;
   std::vector<Hdf5Table> tables_;  ///< in the order of `contact_columns`

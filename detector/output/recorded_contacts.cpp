@@ -55,7 +55,6 @@ std::optional<ContactFault> fault_of(const RecordedContact& contact, const Conta
   if (contact.side < -1 || contact.side > 1) return ContactFault{"side", "side must be -1, 0 or 1", kContactsRemedy};
   if (contact.avatar == 0) return ContactFault{"avatar", "avatar must be from 1 on", kContactsRemedy};
   if (contact.frame >= limits.frames) return beyond("frame", contact.frame, limits.frames, "there are");
-  if (limits.people.empty()) return {};
   if (contact.avatar > limits.people.size()) return beyond("avatar", contact.avatar, limits.people.size(), "there are");
   const PersonLimits& person = limits.people[contact.avatar - 1U];
   const auto who = [&] {
@@ -85,7 +84,7 @@ std::vector<RecordedContact> read_contacts(const std::filesystem::path& path, co
   if (twice != contacts.end())
     throw Error(path.string(),
                 fmt::format("collider {} has two contacts in frame {}{}", twice->collider, twice->frame,
-                            limits.people.size() != 1 ? fmt::format(" with avatar {}", twice->avatar) : ""),
+                            limits.people.size() > 1 ? fmt::format(" with avatar {}", twice->avatar) : ""),
                 kContactsRemedy);
   return contacts;
 }

@@ -35,7 +35,7 @@ struct PersonLimits {
 
 /// The people and the number of frames that the contacts of a file can refer to.
 struct ContactLimits {
-  std::vector<PersonLimits> people = {PersonLimits()};  ///< empty: contacts may be on anybody
+  std::vector<PersonLimits> people = {PersonLimits()};
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
 };
 

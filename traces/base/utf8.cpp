@@ -4,10 +4,6 @@
 
 namespace vestige {
 
-bool is_control(char c) {
-  return static_cast<unsigned char>(c) < ' ' || c == '\x7f';
-}
-
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const unsigned first = byte(0);
@@ -32,9 +28,23 @@ std::string valid_utf8(std::string_view text) {
   return valid;
 }
 
+std::size_t control_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  if (!text.empty() && (byte(0) < ' ' || byte(0) == 0x7F)) return 1;
+  if (byte(0) == 0xC2 && byte(1) >= 0x80 && byte(1) < 0xA0) return 2;                        // U+0080 to U+009F
+  if (byte(0) == 0xE2 && byte(1) == 0x80 && (byte(2) == 0xA8 || byte(2) == 0xA9)) return 3;  // U+2028, U+2029
+  return 0;
+}
+
 std::string in_one_line(std::string_view text) {
-  std::string line = valid_utf8(text);
-  std::ranges::replace_if(line, is_control, ' ');
+  const std::string valid = valid_utf8(text);
+  std::string line;
+  for (std::string_view rest = valid; !rest.empty();) {
+    const std::size_t control = control_length(rest);
+    const std::size_t length = control > 0 ? control : utf8_length(rest);
+    line += control > 0 ? std::string_view(" ") : rest.substr(0, length);
+    rest.remove_prefix(length);
+  }
   return line;
 }
 

@@ -6,9 +6,6 @@
 
 namespace vestige {
 
-/// Whether a byte is a control character of ASCII, such as a line end.
-bool is_control(char c);
-
 /// Returns the length of the UTF-8 sequence (RFC 3629) at the start of `text`, or 0 if there is no valid one.
 std::size_t utf8_length(std::string_view text);
 
@@ -16,7 +13,11 @@ std::size_t utf8_length(std::string_view text);
 /// MCAP strings may not.
 std::string valid_utf8(std::string_view text);
 
-/// Returns `text` as valid UTF-8 with each control character replaced by a space, so that it can be printed in a line.
+/// Returns the length of the control character or line separator at the start of `text`, or 0 if there is none.
+std::size_t control_length(std::string_view text);
+
+/// Returns `text` as valid UTF-8 with each control character and line separator replaced by a space, so that it can be
+/// printed in a line.
 std::string in_one_line(std::string_view text);
 
 }  // namespace vestige

@@ -123,7 +123,7 @@ class FrameHdf5 final : public TraceExport {
     row.scale.assign(3 * row.nodes, kNan);
   }
 
-  /// Names become such as `import` takes.
+  /// Makes names valid, so that `import` accepts them.
   static std::string text_of(std::string_view key, const std::string& value) {
     const bool is_name = key == trace_format::kNameKey || key.starts_with(std::string(trace_format::kNameKey) + ".");
     return is_name ? readable_name(value) : value;

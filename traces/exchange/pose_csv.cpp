@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view kRemedy =
     "a row is frame,time_s,origin_x,origin_y,origin_z, then NODE.tx … NODE.sz for nodes of the avatar";
 constexpr std::string_view kAvatarRemedy =
-    "name the avatar of the exported trace with --avatar, or leave out the column";
+    "take the avatar that the poses were exported with, or leave out the column; write the file again if it was cut";
 
 constexpr double kLongest_s = 9e9;  // limit of int64 nanoseconds
 

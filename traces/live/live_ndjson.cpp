@@ -141,7 +141,7 @@ float radius_of(const Json& collider, const FloatJson& in_float) {
   return number_of<float>(in_float["radius"], "radius");
 }
 
-/// Lines are of one person. Of several, somebody would be left out, and limbs would touch those whose they are.
+/// Lines are of one person. Of several, somebody would be left out, and limbs would touch the person they belong to.
 constexpr std::string_view kOnePerson = "lines are of one person; of several, 'vestige import' reads .h5 and folders";
 
 void refuse_other_poses(const Json& line) {

@@ -179,6 +179,8 @@ TEST_F(PeopleExchange, WhatDoesNotFitTogetherIsRefused) {
   refuses("echo '{\"name.2\": 7}' > tables/session.json", {"session.json", "a text 'name.2'"});
   refuses("echo '{\"name.2\": \"a\\u0000b\"}' > tables/session.json",
           {"session.json", "'name.2' has a control character"});
+  refuses("echo '{\"name\": \"x\", \"name.2\": \"x\"}' > tables/session.json",
+          {"session.json", "two people are called 'x'"});
   refuses("echo '{\"facing.2\": \"up\"}' > tables/session.json", {"session.json", "'facing.2' is 'up'"});
   expect_failure("vestige import tables --facing +x -o b.mcap", 1, {"session.json"}, "b.mcap");
 }
