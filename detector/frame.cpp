@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "detector/build_segments.hpp"
+
 namespace vestige {
 
 namespace {
@@ -13,25 +15,8 @@ namespace {
 /// The origin follows the avatar only if the avatar is more than this far away from it (detector/CONTRACT.md, 2).
 constexpr double kOriginReach_m = 2.0;
 
-/// Within these limits, a skinned vertex (`skins_to_finite`) and a segment's end carried with the skin stay in fp32's
-/// range.
+/// Within this limit, a skinned vertex stays in fp32's range.
 constexpr double kLargestSkin_m = std::numeric_limits<float>::max() / 8;
-constexpr float kLargestCollider_m = std::numeric_limits<float>::max() / 2;
-
-bool within_reach(const glm::vec3& v) {
-  const glm::vec3 size = glm::abs(v);
-  return size.x < kLargestCollider_m && size.y < kLargestCollider_m && size.z < kLargestCollider_m;
-}
-
-/// Whether a segment stays farther away than `reach` along an axis.
-bool is_beyond(const Segment& segment, const glm::vec3& reach) {
-  const glm::vec3 reach_m = reach + bounding_radius_m(segment);
-  const glm::vec3 low = glm::min(segment.start, segment.end);
-  const glm::vec3 high = glm::max(segment.start, segment.end);
-  // Without a branch for each axis: almost all are in reach.
-  return ((low.x > reach_m.x) | (low.y > reach_m.y) | (low.z > reach_m.z) | (high.x < -reach_m.x) |
-          (high.y < -reach_m.y) | (high.z < -reach_m.z)) != 0;
-}
 
 }  // namespace
 
@@ -59,19 +44,12 @@ FrameBuilder::FrameBuilder(const Avatar& avatar, std::span<const std::uint32_t> 
       bind_extent_m_(bind_extent_m(avatar)) {}
 
 const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame) {
-  begin(trace_frame, own_colliders_.columns());
-  ascending_ = own_colliders_.visit_next(trace_frame, [this](const ColliderMove& move) { add_segment(move); });
-  return finish();
+  own_colliders_.next(trace_frame);
+  return next(trace_frame, own_colliders_);
 }
 
 const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame, const ColliderMoves& colliders) {
-  begin(trace_frame, colliders.columns());
-  for (const ColliderMove& move : colliders.moves()) add_segment(move);
-  return finish();
-}
-
-void FrameBuilder::begin(const TraceFrame& trace_frame, std::size_t columns) {
-  frame_.columns = columns;
+  frame_.columns = colliders.columns();
   const double time_s = trace_frame.time_s();
   frame_.duration_s = started_ ? time_s - frame_.time_s : 0;
   frame_.time_s = time_s;
@@ -93,46 +71,26 @@ void FrameBuilder::begin(const TraceFrame& trace_frame, std::size_t columns) {
     pose_origin_before_m_ = pose.origin_m;
   }
   // A pose in reach of its own origin can be out of reach of this frame's origin. Then this frame reports it.
-  const std::optional<glm::dvec3> reach_m = reach_of(frame_.palette);
+  const std::optional<glm::dvec3> reach_m = palette_reach_m(frame_.palette, bind_extent_m_, kLargestSkin_m);
   const std::optional<glm::dvec3> reach_before_m =
-      method_ == Method::kStatic ? reach_m : reach_of(frame_.palette_before);
+      method_ == Method::kStatic ? reach_m : palette_reach_m(frame_.palette_before, bind_extent_m_, kLargestSkin_m);
+  const bool in_reach = reach_m.has_value();
+  const bool before_in_reach = method_ == Method::kStatic || reach_before_m.has_value();
   constexpr double kRounding = 1.001;  // of vertices, and of what starts are carried by: less than 2^-20 of the reach
   glm::dvec3 all_m = glm::max(reach_m.value_or(glm::dvec3(0)), reach_before_m.value_or(glm::dvec3(0)));
   if (method_ == Method::kCarried) all_m += carried_m();
   reach_m_ = glm::vec3(all_m * kRounding);
-  in_reach_ = reach_m.has_value();
-  before_in_reach_ = method_ == Method::kStatic || reach_before_m.has_value();
-  frame_.segments.clear();
-  ascending_ = true;
-  frame_.out_of_reach = 0;
-}
-
-const DetectorFrame& FrameBuilder::finish() {
-  if (!ascending_) std::ranges::sort(frame_.segments, {}, &Segment::column);
-  if (!in_reach_ || (!before_in_reach_ && before_was_in_reach_)) {
+  take_segments(colliders.moves());
+  if (!in_reach || (!before_in_reach && before_was_in_reach_)) {
     ++non_finite_frames_;
     note_non_finite();
   }
-  if (!in_reach_ || !before_in_reach_) {
+  if (!in_reach || !before_in_reach) {
     frame_.segments.clear();
     frame_.out_of_reach = 0;
   }
-  before_was_in_reach_ = in_reach_;
+  before_was_in_reach_ = in_reach;
   return frame_;
-}
-
-/// Returns how far a skinned vertex can be from the origin along each axis, with any influences; rounding adds a
-/// little, as weights sum to 1 only almost. Returns nothing if not all sums of a vertex stay in fp32's range.
-std::optional<glm::dvec3> FrameBuilder::reach_of(std::span<const SkinMatrix> palette) const {
-  glm::dvec3 all(0);
-  for (const SkinMatrix& matrix : palette) {
-    glm::dvec3 reach = skin_reach_m(matrix, bind_extent_m_);
-    // A blended column must not overflow even if the bind pose is flat: infinity times 0 is not a number.
-    for (const auto& column : matrix.column) reach = glm::max(reach, glm::abs(glm::dvec3(column)));
-    if (!(reach.x < kLargestSkin_m && reach.y < kLargestSkin_m && reach.z < kLargestSkin_m)) return {};
-    all = glm::max(all, reach);
-  }
-  return all;
 }
 
 /// Returns how far a vertex can have moved along each axis since the frame before.
@@ -174,18 +132,13 @@ void FrameBuilder::follow_origin(const Pose& pose) {
   frame_.origin_m = origin;
 }
 
-void FrameBuilder::add_segment(const ColliderMove& move) {
-  if (move.owner == person_ + 1) return;
-  const Segment segment = {move.column, glm::vec3(move.start_m - frame_.origin_m),
-                           glm::vec3(move.end_m - frame_.origin_m), move.radius_m};
-  if (!within_reach(segment.start) || !within_reach(segment.end)) {
-    ++non_finite_segments_;
-    note_non_finite();
-  } else if (skip_ == Skip::kOn && is_beyond(segment, reach_m_)) {
-    ++frame_.out_of_reach;
-  } else {
-    frame_.segments.push_back(segment);
-  }
+void FrameBuilder::take_segments(std::span<const ColliderMove> moves) {
+  const glm::vec3 reach_m = skip_ == Skip::kOn ? reach_m_ : glm::vec3(std::numeric_limits<float>::infinity());
+  const auto owner = static_cast<std::uint16_t>(person_ + 1);
+  const LeftOut left = build_segments(moves, {frame_.origin_m, reach_m, owner}, frame_.segments);
+  frame_.out_of_reach = left.out_of_reach;
+  non_finite_segments_ += left.out_of_range;
+  if (left.out_of_range > 0) note_non_finite();
 }
 
 }  // namespace vestige

@@ -35,8 +35,11 @@ struct SegmentBox {
 SegmentBox box_of(const Segment& segment);
 
 /// Returns the radius with room for the rounding of bounds in fp32: 2^-20 larger. 0 for a point.
+inline float bounding_radius_m(float radius_m) {
+  return radius_m * (1 + 0x1p-20F);
+}
 inline float bounding_radius_m(const Segment& segment) {
-  return segment.radius_m * (1 + 0x1p-20F);
+  return bounding_radius_m(segment.radius_m);
 }
 
 /// The input of a detector: detector/CONTRACT.md, 1 to 3. All positions are relative to `origin_m`.
@@ -80,10 +83,7 @@ class FrameBuilder {
  private:
   void place(const Pose& pose);
   void follow_origin(const Pose& pose);
-  void begin(const TraceFrame& trace_frame, std::size_t columns);
-  void add_segment(const ColliderMove& move);
-  const DetectorFrame& finish();
-  std::optional<glm::dvec3> reach_of(std::span<const SkinMatrix> palette) const;
+  void take_segments(std::span<const ColliderMove> moves);
   glm::dvec3 carried_m() const;
   void note_non_finite();
 
@@ -98,10 +98,7 @@ class FrameBuilder {
   glm::dvec3 pose_origin_before_m_ = glm::dvec3(0);
   glm::dvec3 bind_extent_m_;
   DetectorFrame frame_;
-  bool ascending_ = true;  ///< the columns of the segments
   bool started_ = false;
-  bool in_reach_ = true;         ///< the skin of this frame
-  bool before_in_reach_ = true;  ///< that of the frame before, from this frame's origin
   bool before_was_in_reach_ = true;
   std::uint64_t non_finite_frames_ = 0;
   std::uint64_t non_finite_segments_ = 0;

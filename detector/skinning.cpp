@@ -4,20 +4,6 @@
 
 namespace vestige {
 
-void build_palette(const Avatar& avatar, std::span<const glm::dmat4> world, const glm::dvec3& offset_m,
-                   std::vector<SkinMatrix>& out) {
-  out.resize(avatar.palette.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const PaletteEntry& entry = avatar.palette[i];
-    const glm::dmat4 matrix = world[static_cast<std::size_t>(entry.node)] * entry.inverse_bind;
-    for (int column = 0; column < 4; ++column) {
-      glm::dvec3 value(matrix[column]);
-      if (column == 3) value += offset_m;
-      out[i].column[static_cast<std::size_t>(column)] = glm::vec4(glm::vec3(value), 0.0F);
-    }
-  }
-}
-
 glm::dvec3 bind_extent_m(const Avatar& avatar) {
   glm::dvec3 extent_m(0);
   for (const glm::vec3& position : avatar.position_bind) extent_m = glm::max(extent_m, glm::abs(glm::dvec3(position)));

@@ -4,6 +4,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,12 @@ glm::dvec3 bind_extent_m(const Avatar& avatar);
 
 /// Returns an upper bound for each coordinate of M x, and for every part of its sum, over all x within +-`extent_m`.
 glm::dvec3 skin_reach_m(const SkinMatrix& matrix, const glm::dvec3& extent_m);
+
+/// Returns the largest of these bounds, and of the matrices' numbers, over a palette: how far a skinned vertex can be
+/// from the origin along each axis, with any influences; rounding adds a little, as weights sum to 1 only almost.
+/// Returns nothing unless all are below `limit_m`.
+std::optional<glm::dvec3> palette_reach_m(std::span<const SkinMatrix> palette, const glm::dvec3& extent_m,
+                                          double limit_m);
 
 /// Linear blend skinning of one vertex in fp32. Every detector keeps this order: blend the columns over the influences
 /// from zero upwards, then compute ((c0 x + c1 y) + c2 z) + c3, never contracted to fma. Padding influences of weight 0
