@@ -43,6 +43,8 @@ void all_entries(const Avatar& avatar, std::span<const glm::dmat4> world, const 
   }
 }
 
+/// A blended column must not overflow even if the bind pose is flat: infinity times 0 is not a number, and then nothing
+/// is below the limit.
 bool largest_reach(std::span<const SkinMatrix> palette, const glm::dvec3& extent_m, double limit_m, glm::dvec4& out) {
   const D d;
   const hn::Rebind<float, D> as_float;

@@ -136,7 +136,7 @@ LiveCounts record_live(const LiveChoice& choice, std::span<const LivePerson> peo
                     : "make the sender send to this machine and port, and check that no firewall blocks it");
   if (counts.malformed > 0 && choice.is_lines())
     warn(fmt::format("{}: left out {} that could not be read", source, counted(counts.malformed, "line")), verbosity);
-  if (counts.late + counts.malformed + counts.overflowed > 0 && !choice.is_lines())
+  if (counts.lost_input() && !choice.is_lines())
     warn(fmt::format("{}: lost {} that came too late, {} that could not be read, and {} that the system discarded",
                      source, counted(counts.late, "frame"), counted(counts.malformed, "datagram"),
                      counted(counts.overflowed, "datagram")),

@@ -11,6 +11,8 @@
 // After foreach_target.h, which includes this file once for each instruction set.
 #include <hwy/highway.h>
 
+#include "detector/broad/transformed_box-inl.hpp"
+
 // The margin `pad` of a computed box. Let u = 2^-24. Let R be the reach of the palette along an axis: the largest |M_0
 // x| + |M_1 y| + |M_2 z| + |M_3| of any entry, where |x|, |y|, |z| are the largest values over the vertices that the
 // entry moves. No intermediate result is larger than R, apart from factors near 1. Consider a sum of products in which
@@ -29,13 +31,12 @@
 // Underflow: a product below 2^-126 errs by at most 2^-150. If the product is one of a weight and a matrix, the error
 // is multiplied by |x|, |y| or |z|. There are fewer than 64 products, so 2^-116 (1 + |x| + |y| + |z|) is more than
 // enough.
-// A rest box under a matrix has the centre M c and the half extent |M| h.
 HWY_BEFORE_NAMESPACE();
 namespace vestige {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<float, 4>;
+using D = BoxTag;
 using V = hn::Vec<D>;
 
 struct Ends {
@@ -48,13 +49,7 @@ inline Ends transformed(std::span<const RestBox> boxes, const BoundTransform* tr
   const D d;
   Ends ends = {hn::Set(d, std::numeric_limits<float>::infinity()), hn::Set(d, -std::numeric_limits<float>::infinity())};
   for (const RestBox& box : boxes) {
-    const BoundTransform& t = transforms[box.entry];
-    const auto axes_of = [&](const glm::vec4& column) { return hn::Load(d, &column[first]); };
-    const auto product = [&](const glm::vec4& column, float x) { return hn::Mul(axes_of(column), hn::Set(d, x)); };
-    V centre = hn::Add(product(t.column[0], box.centre.x), product(t.column[1], box.centre.y));
-    centre = hn::Add(hn::Add(centre, product(t.column[2], box.centre.z)), axes_of(t.column[3]));
-    V half = hn::Add(product(t.magnitude[0], box.half_extent.x), product(t.magnitude[1], box.half_extent.y));
-    half = hn::Add(half, product(t.magnitude[2], box.half_extent.z));
+    const auto [centre, half] = transformed_box(box, transforms[box.entry], first);
     ends.low = hn::Min(ends.low, hn::Sub(centre, half));
     ends.high = hn::Max(ends.high, hn::Add(centre, half));
   }

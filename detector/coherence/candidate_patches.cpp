@@ -19,8 +19,6 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
   enter_stage(clock, Stage::kCandidates);
   ++calls_;
   work_ = DetectorWork();
-  touched_.clear();
-  segments_.clear();
   is_anew_ = !search_.find(frame, method_);
   if (is_anew_) {
     find_anew(frame, clock);
@@ -35,23 +33,18 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
 void CandidatePatches::count_work(const DetectorFrame& frame) {
   work_.part_pairs = frame.segments.size() * search_.parts();
   if (!is_anew_) work_.pairs_spared = search_.spared();
-  work_.frames_skipped = touched_.empty() ? 1 : 0;
-  for (const TouchedMeshlet& touched : touched_) {
-    const std::size_t triangles = meshlets_.triangles(touched.meshlet).size();
+  work_.frames_skipped = touched().empty() ? 1 : 0;
+  for (const TouchedMeshlet& one : touched()) {
+    const std::size_t triangles = meshlets_.triangles(one.meshlet).size();
     work_.triangles_tested += triangles;
-    work_.pairs_tested += triangles * touched.count;
+    work_.pairs_tested += triangles * one.count;
   }
 }
 
 void CandidatePatches::find_anew(const DetectorFrame& frame, StageClock* clock) {
   anew_.find(frame, method_);
-  touched_.assign(anew_.touched().begin(), anew_.touched().end());
-  for (const TouchedMeshlet& touched : touched_) {
-    const std::span<const std::uint32_t> numbers = anew_.segments(touched);
-    segments_.insert(segments_.end(), numbers.begin(), numbers.end());
-  }
   enter_stage(clock, Stage::kSkinning);
-  for (std::size_t i = 0; i < touched_.size(); ++i) skin(frame, touched_[i].meshlet, i);
+  for (std::size_t i = 0; i < touched().size(); ++i) skin(frame, touched()[i].meshlet, i);
 }
 
 void CandidatePatches::look_closer(const DetectorFrame& frame, StageClock* clock) {
@@ -101,6 +94,8 @@ void CandidatePatches::skin(const DetectorFrame& frame, std::size_t meshlet, std
 }
 
 void CandidatePatches::list_touched() {
+  touched_.clear();
+  segments_.clear();
   order_.clear();
   for (const NearPair& pair : search_.pairs())
     if (pair.may_meet) order_.push_back(std::uint64_t{pair.meshlet} << 32U | pair.segment);

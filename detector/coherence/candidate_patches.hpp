@@ -32,10 +32,10 @@ class CandidatePatches {
   void find(const DetectorFrame& frame, StageClock* clock);
 
   /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
-  std::span<const TouchedMeshlet> touched() const { return touched_; }
+  std::span<const TouchedMeshlet> touched() const { return is_anew_ ? anew_.touched() : touched_; }
   /// Numbers in DetectorFrame::segments, ascending.
   std::span<const std::uint32_t> segments(const TouchedMeshlet& touched) const {
-    return std::span(segments_).subspan(touched.first, touched.count);
+    return is_anew_ ? anew_.segments(touched) : std::span(segments_).subspan(touched.first, touched.count);
   }
   /// Where the meshlet of touched()[i] is, in this frame and in the one before. With kStatic both are the same.
   const MeshletCorners& now(std::size_t i) const { return now_[place_of(i)]; }
@@ -80,9 +80,9 @@ class CandidatePatches {
   MeshletTriangles bounded_;        ///< if anew
   std::vector<std::uint32_t> ask_;  ///< numbers of the search's pairs
   std::vector<TriangleGap> gaps_;
-  std::vector<std::uint64_t> order_;  ///< of the pairs: meshlet, then segment
-  std::vector<TouchedMeshlet> touched_;
-  std::vector<std::uint32_t> segments_;
+  std::vector<std::uint64_t> order_;     ///< of the pairs: meshlet, then segment
+  std::vector<TouchedMeshlet> touched_;  ///< unless anew
+  std::vector<std::uint32_t> segments_;  ///< likewise
 };
 
 }  // namespace vestige

@@ -170,7 +170,7 @@ void CoherentSearch::look_below(std::size_t level) {
     out.segment = due_[pair.due].segment;
     out.may_meet = child.may_meet;
     out.gap_m = child.gap_m;
-    out.spent_m = near_m_[child.pair] / kNearFrames * kUp;
+    out.spent_m = near_m_[child.pair] / kNearFrames * kGapUp;
     out.root = pair.root;
   }
 }

@@ -64,7 +64,6 @@ class CoherentSearch {
   std::uint64_t restarts() const { return restarts_; }
 
  private:
-  static constexpr float kUp = 1 + 0x1p-20F;
   static constexpr float kFarFrames = 4;
   static constexpr float kNearFrames = 3;
   static constexpr float kStale_m = 0.004F;
@@ -84,7 +83,7 @@ class CoherentSearch {
   void restart(std::size_t columns);
   void refresh(std::size_t level, std::size_t node, std::size_t part);
   float since(std::size_t part, std::int32_t then) const {
-    return static_cast<float>(parts_.clock[part] - then) * (kGapUnit_m * kUp);
+    return static_cast<float>(parts_.clock[part] - then) * (kGapUnit_m * kGapUp);
   }
   float carried_m(std::size_t part) const { return method_ == Method::kCarried ? parts_.step_m[part] : 0; }
   Node& node_of(std::size_t level, std::size_t node) { return nodes_[first_node_[level] + node]; }

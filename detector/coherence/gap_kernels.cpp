@@ -24,7 +24,6 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr float kDown = 1 - 0x1p-20F;
-constexpr float kUp = 1 + 0x1p-20F;
 /// No larger gap is kept, and no larger margin asked for: so it is never proven where that is not enough.
 constexpr float kMost_m = kLargestGap_m;
 
@@ -66,7 +65,7 @@ std::size_t follow(const PartList& parts, std::span<const Segment> segments, std
     Follower& follower = known.followers[segment.column];
     std::int32_t* const to_parts = known.distances + segment.column * count;
     const glm::vec3 way = segment.end - segment.start;
-    const float way_m = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z) * kUp + 0x1p-62F;
+    const float way_m = std::sqrt(way.x * way.x + way.y * way.y + way.z * way.z) * kGapUp + 0x1p-62F;
     const bool follows = follower.seen == index && segment.start == follower.end && way_m < kFarthest_m;
     follower.end = segment.end;
     follower.seen = index + 1;

@@ -40,6 +40,8 @@ struct alignas(64) PartList {
   std::array<std::int32_t, kMostParts> clock;  ///< how far it moved since the restart
 };
 inline constexpr float kGapUnit_m = 0x1p-20F;
+/// Makes a computed length at least the true one: 16 u, where u = 2^-24.
+inline constexpr float kGapUp = 1 + 0x1p-20F;
 /// Returns at least `m` in units. Multiplying by a power of two is exact.
 inline std::int32_t units_up(float m) {
   return static_cast<std::int32_t>(m * (1 / kGapUnit_m)) + 1;

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "detector/broad/meshlet_bounds.hpp"
+#include "detector/broad/transformed_box-inl.hpp"
 
 // Under linear blend skinning, a vertex x moves by the sum of w_j D_j x, where D_j is what changed of the matrix of
 // palette entry j, and the w_j sum to s. That is at most s times the largest |D_j x|, and x is in the rest box of j. A
@@ -26,7 +27,7 @@ namespace vestige {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using D = hn::CappedTag<float, 4>;
+using D = BoxTag;
 
 /// Returns the square of the largest displacement of the points of `boxes`.
 inline float largest_squared(std::span<const RestBox> boxes, const EntryMotion* motion) {
@@ -36,15 +37,9 @@ inline float largest_squared(std::span<const RestBox> boxes, const EntryMotion* 
     const EntryMotion& of = motion[box.entry];
     alignas(16) std::array<float, 4> reach;
     for (int first = 0; first < 4; first += static_cast<int>(hn::Lanes(d))) {
-      const auto product = [&](const glm::vec4& column, float x) {
-        return hn::Mul(hn::Load(d, &column[first]), hn::Set(d, x));
-      };
-      auto centre = hn::Add(product(of.column[0], box.centre.x), product(of.column[1], box.centre.y));
-      centre = hn::Add(hn::Add(centre, product(of.column[2], box.centre.z)), hn::Load(d, &of.column[3][first]));
-      auto half = hn::Add(product(of.magnitude[0], box.half_extent.x), product(of.magnitude[1], box.half_extent.y));
-      half = hn::Add(half, product(of.magnitude[2], box.half_extent.z));
-      half = hn::Add(half, hn::Load(d, &of.rounding[first]));
-      hn::Store(hn::Add(hn::Abs(centre), half), d, &reach[static_cast<std::size_t>(first)]);
+      const auto [centre, half] = transformed_box(box, of, first);
+      const auto rounded = hn::Add(half, hn::Load(d, &of.rounding[first]));
+      hn::Store(hn::Add(hn::Abs(centre), rounded), d, &reach[static_cast<std::size_t>(first)]);
     }
     const float squared = reach[0] * reach[0] + reach[1] * reach[1] + reach[2] * reach[2];
     // Not a number: nothing is known.

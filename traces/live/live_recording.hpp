@@ -37,7 +37,8 @@ struct LiveCounts {
   std::uint64_t malformed = 0;   ///< malformed lines or datagrams
   std::uint64_t overflowed = 0;  ///< datagrams that the system discarded
   bool ids_clash = false;        ///< several sources sent colliders of one id, and all but one were left out
-  bool lost_something() const { return late + malformed + overflowed > 0 || ids_clash; }
+  bool lost_input() const { return late + malformed + overflowed > 0; }
+  bool lost_something() const { return lost_input() || ids_clash; }
 };
 
 /// Records frames from lines of JSON on `descriptor`, as they arrive, until it ends. Losses are also counted in the
