@@ -109,7 +109,7 @@ case $size in
     ;;
   short)
     pairs=${pairs:-500000} duration=0.25 counts=1,10:100:10 sweep_flags="--min-time 0.25"
-    accuracy_flags="--detector paper,geometry,cpu,embree,boxes --duration 0.25 --rate 60,250,1000 --events 1 --passes 2 --check-frames 5"
+    accuracy_flags="--detector paper,geometry,compute,cpu,embree,boxes --duration 0.25 --rate 60,250,1000 --events 1 --passes 2 --check-frames 5"
     stress_flags="--n 20"
     ;;
   *)
@@ -171,7 +171,7 @@ for scenario in ${scenarios:-swarm}; do
     # All exact detectors write the texture of cpu without skipping.
     truth=$scenario-cpu-$method-off
     replay "$truth" --detector cpu --method $method --skip off || continue
-    for contestant in cpu-on ${geometry:+geometry-off geometry-on}; do
+    for contestant in cpu-on ${geometry:+geometry-off geometry-on compute-off compute-on}; do
       detector=${contestant%-*}
       skip=${contestant#*-}
       replay "$scenario-$detector-$method-$skip" --detector "$detector" --method $method --skip "$skip" \
@@ -201,7 +201,7 @@ done
 if [ -n "$sweep_on" ]; then
   # One command measures all contexts, taking turns.
   # shellcheck disable=SC2086  # a list of words
-  step sweep vestige sweep "$sweep_on" --detector paper,geometry,cpu,embree --skip off,on --counts "$counts" $sweep_flags \
+  step sweep vestige sweep "$sweep_on" --detector paper,geometry,compute,cpu,embree --skip off,on --counts "$counts" $sweep_flags \
     --no-figure -o "$out/sweep"
 else
   failed="$failed sweep(no-trace)"
@@ -271,7 +271,7 @@ verdict() {
   echo "Device:"
   printf '%s\n' "${device:-    cpu}" | sed 's/^\* /    /; s/^  */    /'
   echo "Agreement:"
-  [ -z "$geometry" ] || echo "    geometry, with and without skipping, and cpu with it, against cpu without: $(sum missed "$out"/agreement-geometry-*.json) missed, $(sum winners_differing "$out"/agreement-geometry-*.json) other winners, of $(sum pairs "$out"/agreement-geometry-*.json) answers"
+  [ -z "$geometry" ] || echo "    geometry and compute, with and without skipping, and cpu with it, against cpu without: $(sum missed "$out"/agreement-geometry-*.json) missed, $(sum winners_differing "$out"/agreement-geometry-*.json) other winners, of $(sum pairs "$out"/agreement-geometry-*.json) answers"
   cat "$out"/agreement-cpu-*.json 2>/dev/null | sed -n '/"total"/,/}/p' >"$out/agreement-total.part"
   echo "    cpu, against rational arithmetic: $(sum differences "$out/agreement-total.part") differ, of $(sum pairs "$out/agreement-total.part") answers"
   rm -f "$out/agreement-total.part"

@@ -3,12 +3,9 @@
 #define VESTIGE_BINDING_PALETTE 0   // mat4 columns, one SkinMatrix for each palette entry
 #define VESTIGE_BINDING_SEGMENTS 1  // one GpuSegment for each collider that has a segment
 
-#define VESTIGE_BINDING_CAPTURED 2    // a count, and the (segment, triangle) pairs that `geometry` could not reject
-#define VESTIGE_BINDING_CANDIDATES 3  // touched meshlets, and the segments that may meet each (candidates.geom)
+#define VESTIGE_BINDING_CAPTURED 2    // the pairs that the shaders could not reject
+#define VESTIGE_BINDING_CANDIDATES 3  // touched meshlets, and the segments that may meet each (candidates.glsl)
 #define VESTIGE_BINDING_QUESTIONS 4   // of the probe of the shaders' arithmetic
-
-#define VESTIGE_ATTRIBUTE_CORNERS 0         // candidates.vert: vec3 a, b, c
-#define VESTIGE_ATTRIBUTE_CORNERS_BEFORE 3  // the same in the previous frame
 
 #define VESTIGE_ATTRIBUTE_POSITION 0            // vec3, bind pose
 #define VESTIGE_ATTRIBUTE_TEXTURE_COORDINATE 1  // vec2
@@ -18,6 +15,7 @@
 #define VESTIGE_ATTRIBUTE_WEIGHT_1 5            // vec4
 
 #define VESTIGE_TEXTURE_ACTUATOR_MAP 0
+#define VESTIGE_TEXTURE_CORNERS 1
 
 #define VESTIGE_UNIFORM_SEGMENT_COUNT 0    // int
 #define VESTIGE_UNIFORM_TEXTURE_COLUMNS 1  // int, of the collision texture
@@ -28,6 +26,8 @@
 #define VESTIGE_UNIFORM_LEAST_RADIUS 6     // float, metres: the error of a skinned vertex by flushed denormals
 #define VESTIGE_UNIFORM_WORLD_TO_CLIP 7    // mat4, for the drawn scene
 #define VESTIGE_UNIFORM_FIRST_TRIANGLE 8   // int, number of the first triangle of the draw
+#define VESTIGE_UNIFORM_FIRST_SLOT 9       // uint, number of the bound block's first slot
+#define VESTIGE_UNIFORM_SLOT_COUNT 10      // uint, of the bound block
 
 // How a collider's motion and the moving skin meet (detector/method.hpp).
 #define VESTIGE_METHOD_STATIC 0

@@ -1,12 +1,14 @@
-// Answers the questions of detector/shader_arithmetic.hpp, in the stage that is compiled: VERTEX, or a geometry stage
-// after a vertex stage that does nothing. The operands come from a buffer, so that no compiler computes the answers. The
+// Answers the questions of detector/shader_arithmetic.hpp, in the stage that is compiled: VERTEX, COMPUTE, or a geometry
+// stage after a vertex stage that does nothing. The operands come from a buffer, so that no compiler computes the answers. The
 // answers are `precise`, as is everything that the proofs of `geometry` depend on.
 
 #ifdef GEOMETRY_FOLLOWS
 void main() {}
 #else
 
-#if !VERTEX
+#if COMPUTE
+layout(local_size_x = 1) in;
+#elif !VERTEX
 layout(points) in;
 layout(points, max_vertices = 1) out;
 #endif
@@ -15,7 +17,13 @@ layout(std140, binding = VESTIGE_BINDING_QUESTIONS) uniform Questions {
   uvec4 questions[QUESTIONS];  // bits of a, b and c, and the operation
 };
 
+#if COMPUTE
+layout(std430, binding = VESTIGE_BINDING_CAPTURED) writeonly buffer Answers {
+  float answers[];
+};
+#else
 out float probe_answer;
+#endif
 
 float answer(uvec4 question) {
   float a = uintBitsToFloat(question.x);
@@ -31,7 +39,9 @@ float answer(uvec4 question) {
 }
 
 void main() {
-#if VERTEX
+#if COMPUTE
+  answers[gl_WorkGroupID.x] = answer(questions[gl_WorkGroupID.x]);
+#elif VERTEX
   probe_answer = answer(questions[gl_VertexID]);
 #else
   probe_answer = answer(questions[gl_PrimitiveIDIn]);

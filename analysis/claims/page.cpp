@@ -19,8 +19,8 @@ This page says what the runs showed. `vestige claims` writes it from their JSON 
 last section says [how each file was made](#how-was-each-file-made).
 
 **A renderer marked as software runs on the CPU: its figures say nothing about a GPU.** A detector that is not "on" a
-renderer runs without OpenGL. `paper` is the published method. `geometry` is exact and uses OpenGL. `cpu` is exact
-without OpenGL. `embree` is the ray tracer Embree, `embree_default` the same without its robust flag. `boxes`, `capsules`
+renderer runs without OpenGL. `paper` is the published method. `geometry` and `compute` are exact and use
+OpenGL. `cpu` is exact without OpenGL. `embree` is the ray tracer Embree, `embree_default` the same without its robust flag. `boxes`, `capsules`
 and `decimated` are approximate: boxes, capsules or fewer triangles stand in for the skin. With `static`, a collider
 moves and the skin rests. With `carried`, the collider's start first moves along with the skin. With `ccd`, both move.
 Skipping leaves out pairs that cannot touch.

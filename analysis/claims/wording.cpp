@@ -55,7 +55,7 @@ std::string approximate_words(const nlohmann::json& series) {
 }
 
 nlohmann::json gl_used_by(const std::string& detector, const nlohmann::json& gl) {
-  if (detector != "paper" && detector != "geometry") return {};
+  if (detector != "paper" && detector != "geometry" && detector != "compute") return {};
   if (gl.is_object()) return gl;
   return {{"renderer", "a renderer that the file does not name"}};
 }

@@ -365,7 +365,7 @@ double SweepPoint::mean_us() const {
 }
 
 bool promises_same_bits(std::string_view detector) {
-  return detector == "cpu" || detector == "geometry" || detector == "exact";
+  return detector == "cpu" || detector == "geometry" || detector == "compute" || detector == "exact";
 }
 
 Sweep run_sweep(TraceReader& trace, std::span<const SweptPerson> people, const ContestantMaker& survey,

@@ -19,7 +19,8 @@ namespace vestige::cli {
 namespace {
 
 constexpr const char* kSkipHelp =
-    "on: cpu, geometry and decimated do not skin or test what bounds prove to miss (the result is the same); off: they "
+    "on: cpu, geometry, compute and decimated do not skin or test what bounds prove to miss (the result is the same); "
+    "off: they "
     "skin the "
     "whole avatar and consider every pair of segment and triangle";
 
@@ -56,7 +57,8 @@ void add_detector_and_context(CLI::App& verb, DetectorChoice& choice) {
   verb.add_option(
           "--detector", choice.detector,
           "paper: HAVE 2010's geometry shader, as published; geometry: exact contacts (a geometry shader proves "
-          "misses, and the CPU decides the rest); cpu: exact contacts without OpenGL; exact: the same contacts by "
+          "misses, and the CPU decides the rest); compute: the same with a compute shader; cpu: exact contacts without "
+          "OpenGL; exact: the same contacts by "
           "slow rational arithmetic, as a check; embree: Embree 3 with its robust flag, refitted each frame (its "
           "fastest configuration); embree_default: embree without the robust flag; auto: the cheapest exact detector. "
           "Approximate ones, with simpler shapes in place of the skin: boxes: a box around what each joint moves, as "
@@ -88,7 +90,7 @@ void add_detector_options(CLI::App& verb, DetectorChoice& choice, std::string& s
 }
 
 bool knows_skip(const std::string& detector) {
-  return detector == "cpu" || detector == "geometry" || detector == "decimated";
+  return detector == "cpu" || detector == "geometry" || detector == "compute" || detector == "decimated";
 }
 
 Method method_named(const std::string& name) {
@@ -97,8 +99,8 @@ Method method_named(const std::string& name) {
 }
 
 const std::vector<std::string>& detector_names() {
-  static const std::vector<std::string> names = {"paper",          "geometry", "cpu",      "exact",    "embree",
-                                                 "embree_default", "boxes",    "capsules", "decimated"};
+  static const std::vector<std::string> names = {"paper",  "geometry",       "compute", "cpu",      "exact",
+                                                 "embree", "embree_default", "boxes",   "capsules", "decimated"};
   return names;
 }
 
@@ -107,7 +109,8 @@ bool is_approximate(const std::string& detector) {
 }
 
 bool takes_radii(const std::string& detector) {
-  return detector == "cpu" || detector == "geometry" || detector == "exact" || is_approximate(detector);
+  return detector == "cpu" || detector == "geometry" || detector == "compute" || detector == "exact" ||
+         is_approximate(detector);
 }
 
 void warn_of_radii(const std::vector<std::string>& detectors, std::size_t spheres, std::size_t colliders,
@@ -115,8 +118,8 @@ void warn_of_radii(const std::vector<std::string>& detectors, std::size_t sphere
   if (spheres == 0) return;
   for (const std::string& detector : detectors)
     if (!takes_radii(detector))
-      warn(fmt::format("{}: {} of {} have a radius, but {} tests the paths of their centres; cpu, geometry, exact, "
-                       "boxes, capsules and decimated test spheres",
+      warn(fmt::format("{}: {} of {} have a radius, but {} tests the paths of their centres; cpu, geometry, compute, "
+                       "exact, boxes, capsules and decimated test spheres",
                        scene, spheres, counted(colliders, "collider"), detector),
            verbosity);
 }
@@ -161,6 +164,7 @@ std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, SharedCont
   if (name == "embree") return make_embree_detector(EmbreeMode::kRobust, avatar, map, options);
   if (name == "embree_default") return make_embree_detector(EmbreeMode::kDefault, avatar, map, options);
   if (name == "geometry") return make_geometry_detector(context.get(), avatar, map, options);
+  if (name == "compute") return make_compute_detector(context.get(), avatar, map, options);
   if (name == "cpu" || name == "auto") return make_cpu_detector(avatar, map, options);
   if (name == "boxes") return make_boxes_detector(avatar, map, options);
   if (name == "capsules") return make_capsules_detector(avatar, map, options);
@@ -168,7 +172,7 @@ std::unique_ptr<Detector> make_on_whole_skin(const std::string& name, SharedCont
   if (name != "paper") throw std::logic_error(fmt::format("nothing here makes the detector '{}'", name));
   if (options.method != Method::kStatic)
     throw UsageError("--method", fmt::format("the published method does not support '{}'", choice.method),
-                     "choose --detector geometry or cpu, or --method static");
+                     "choose --detector geometry, compute or cpu, or --method static");
   return make_paper_detector(context.get(), avatar, map, options);
 }
 

@@ -26,7 +26,7 @@ std::vector<std::string> contestant_names() {
 }
 
 bool needs_opengl(const std::string& detector) {
-  return detector == "paper" || detector == "geometry";
+  return detector == "paper" || detector == "geometry" || detector == "compute";
 }
 
 /// The planes to measure a detector with: only `paper` renders each into a target of its own.
@@ -108,7 +108,7 @@ std::vector<Contestant> make_contestants(const ContestantChoice& choice, Verbosi
       try {
         if (needs_opengl(detector)) {
           const auto gl = make_gl_context(context_kind(context), choice.choice.device);
-          if (detector == "geometry") require_proofs(gl->info());
+          if (detector != "paper") require_proofs(detector, gl->info());
         }
         if (is_embree(detector)) require_embree();
       } catch (const Error& error) {

@@ -21,7 +21,7 @@ namespace {
 constexpr std::uint32_t kMostSubdivisions = 5;
 
 struct GrowthOptions {
-  SweepChoice choice = {{{}, "paper,geometry,cpu,embree", "auto", "off,on"}, "1,3,10,30,100,300,1000"};
+  SweepChoice choice = {{{}, "paper,geometry,compute,cpu,embree", "auto", "off,on"}, "1,3,10,30,100,300,1000"};
   GrowthSettings settings;
 };
 

@@ -34,8 +34,9 @@ QueryResponder make_responder(const QueryOptions& options) {
     return whole_detector([&](const Avatar& avatar, const ActuatorMap& map) {
       return make_detector(detector, options.choice.context, options.choice, avatar, map, PlaneSet());
     });
-  if (detector == "geometry")
-    throw UsageError("--detector", "'geometry' takes fp32 numbers only", "add --round-fp32, or choose cpu or exact");
+  if (detector == "geometry" || detector == "compute")
+    throw UsageError("--detector", fmt::format("'{}' takes fp32 numbers only", detector),
+                     "add --round-fp32, or choose cpu or exact");
   return detector == "exact" ? exact_truth(method) : deciding_code(method);
 }
 
@@ -124,11 +125,12 @@ void add_query(CLI::App& program, Invocation& invocation) {
           "doubles")
       ->required()
       ->type_name("FILE");
-  verb->add_option("--detector", options->choice.detector, "The detector that answers; geometry needs --round-fp32")
+  verb->add_option("--detector", options->choice.detector,
+                   "The detector that answers; geometry and compute need --round-fp32")
       ->capture_default_str()
       ->group(kDetectorGroup)
-      ->check(CLI::IsMember({"cpu", "exact", "geometry"}));
-  verb->add_option("--context", options->choice.context, "OpenGL context that geometry runs in")
+      ->check(CLI::IsMember({"cpu", "exact", "geometry", "compute"}));
+  verb->add_option("--context", options->choice.context, "OpenGL context that geometry and compute run in")
       ->capture_default_str()
       ->group(kDetectorGroup)
       ->check(CLI::IsMember({"auto", "egl", "osmesa"}));

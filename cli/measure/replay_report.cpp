@@ -46,7 +46,8 @@ const SkinningError& worst_skinning(const ReplayResult& result) {
 
 /// Whether the GPU passes pairs on to the CPU, which is worth a line.
 bool captures(const Detector& detector) {
-  return std::string_view(detector.name()) == "geometry";
+  const std::string_view name = detector.name();
+  return name == "geometry" || name == "compute";
 }
 
 nlohmann::ordered_json actuators_of(const TracedPerson& person, const PersonResult& result) {

@@ -15,6 +15,10 @@ namespace vestige {
 /// meshlets equals the savings.
 inline constexpr std::size_t kMeshletTriangles = 32;
 static_assert(kMeshletTriangles % 16 == 0 && kMeshletTriangles <= 32);  // a bit each, and whole vectors
+/// Returns a bit for each of a meshlet's first `triangles` triangles.
+constexpr std::uint32_t bits_of(std::size_t triangles) {
+  return static_cast<std::uint32_t>((std::uint64_t{1} << triangles) - 1);
+}
 /// Number of child nodes of a node.
 inline constexpr std::size_t kMeshletFanout = 8;
 

@@ -1,6 +1,7 @@
 #include "detector/coherence/candidate_patches.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace vestige {
 
@@ -30,10 +31,29 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
   count_work(frame);
 }
 
+void CandidatePatches::take_all(const DetectorFrame& frame, StageClock* clock) {
+  enter_stage(clock, Stage::kSkinning);
+  is_anew_ = false;
+  work_ = DetectorWork();
+  touched_.clear();
+  segments_.resize(frame.segments.size());
+  std::iota(segments_.begin(), segments_.end(), 0U);
+  for (std::uint32_t meshlet = 0; meshlet < meshlets_.size(); ++meshlet) {
+    touched_.push_back({meshlet, 0, static_cast<std::uint32_t>(segments_.size())});
+    skin(frame, meshlet, meshlet);
+  }
+  count_pairs();
+  work_.meshlets_skinned = 0;
+}
+
 void CandidatePatches::count_work(const DetectorFrame& frame) {
   work_.part_pairs = frame.segments.size() * search_.parts();
   if (!is_anew_) work_.pairs_spared = search_.spared();
   work_.frames_skipped = touched().empty() ? 1 : 0;
+  count_pairs();
+}
+
+void CandidatePatches::count_pairs() {
   for (const TouchedMeshlet& one : touched()) {
     const std::size_t triangles = meshlets_.triangles(one.meshlet).size();
     work_.triangles_tested += triangles;

@@ -31,6 +31,9 @@ class CandidatePatches {
   /// Charges its time to the stages of `clock`, which may be null.
   void find(const DetectorFrame& frame, StageClock* clock);
 
+  /// Takes every segment and every meshlet for candidates. For detectors that do not skip.
+  void take_all(const DetectorFrame& frame, StageClock* clock);
+
   /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
   std::span<const TouchedMeshlet> touched() const { return is_anew_ ? anew_.touched() : touched_; }
   /// Numbers in DetectorFrame::segments, ascending.
@@ -62,6 +65,7 @@ class CandidatePatches {
   void skin(const DetectorFrame& frame, std::size_t meshlet, std::size_t place);
   void list_touched();
   void count_work(const DetectorFrame& frame);
+  void count_pairs();
   std::size_t place_of(std::size_t i) const { return is_anew_ ? i : touched_[i].meshlet; }
 
   const Meshlets& meshlets_;

@@ -1,5 +1,6 @@
 #include "detector/detectors/contact_finder.hpp"
 
+#include <bit>
 #include <utility>
 
 #include "detector/decision.hpp"
@@ -28,6 +29,18 @@ void ContactFinder::offer(const DetectorFrame& frame, const MovingCorners& corne
       describe_contact(avatar_, map_, {triangle, way, at_contact, *decision.contact}, frame.duration_s);
   if (surface_ == Surface::kMapped && contact.actuator == 0) return;
   winner = contact;
+}
+
+void ContactFinder::offer(const DetectorFrame& frame, const MeshletPlaces& meshlet, const Segment& segment,
+                          std::uint32_t bits, ContactRow& row) {
+  if (segment.is_sphere()) {
+    spheres_.offer(frame, meshlet, segment, bits);
+    return;
+  }
+  for (; bits != 0; bits &= bits - 1) {
+    const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+    offer(frame, meshlet.at(i), segment, meshlet.triangles[i], row[segment.column]);
+  }
 }
 
 void ContactFinder::finish(const DetectorFrame& frame, ContactRow& row, DetectorWork& work) {

@@ -28,10 +28,9 @@ class ContactFinder {
   void offer(const DetectorFrame& frame, const MovingCorners& corners, const Segment& segment, std::uint32_t triangle,
              Contact& winner);
 
-  /// The same for a sphere and the triangles of a meshlet whose bits are set.
-  void offer(const DetectorFrame& frame, const MeshletPlaces& meshlet, const Segment& sphere, std::uint32_t bits) {
-    spheres_.offer(frame, meshlet, sphere, bits);
-  }
+  /// The same for the triangles of a meshlet whose bits are set. The winner stands in the segment's column of `row`.
+  void offer(const DetectorFrame& frame, const MeshletPlaces& meshlet, const Segment& segment, std::uint32_t bits,
+             ContactRow& row);
 
   /// Completes a frame, after all its pairs were offered: writes the contacts of spheres, and counts pairs.
   void finish(const DetectorFrame& frame, ContactRow& row, DetectorWork& work);

@@ -1,4 +1,3 @@
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -95,22 +94,14 @@ class SkippingCpuDetector final : public Detector {
     const std::span<const std::uint32_t> numbers = candidates_.segments(touched);
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
     const MeshletPlaces meshlet = {candidates_.before(number), candidates_.now(number), triangles};
-    const auto existing = static_cast<std::uint32_t>((std::uint64_t{1} << triangles.size()) - 1);
     meets_.resize(numbers.size());
     candidates_.triangles(number).meet(frame.segments, numbers, meets_.data());
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       const Segment& segment = frame.segments[numbers[k]];
-      std::uint32_t bits = meets_[k] & existing;
+      const std::uint32_t bits = meets_[k] & bits_of(triangles.size());
       if (bits == 0) continue;
       enter(Stage::kDecision);
-      if (segment.is_sphere()) {
-        finder_.offer(frame, meshlet, segment, bits);
-        continue;
-      }
-      for (; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(bits));
-        finder_.offer(frame, meshlet.at(i), segment, triangles[i], row[segment.column]);
-      }
+      finder_.offer(frame, meshlet, segment, bits, row);
     }
   }
 

@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,7 +16,7 @@
 #include "detector/detector.hpp"
 #include "detector/detectors/contact_finder.hpp"
 #include "detector/detectors/make_detectors.hpp"
-#include "detector/detectors/skipping_geometry_detector.hpp"
+#include "detector/detectors/shader_proof_detector.hpp"
 #include "detector/gl/captured_pairs.hpp"
 #include "detector/gl/collision_texture.hpp"
 #include "detector/gl/gl_context.hpp"
@@ -226,15 +227,16 @@ class GeometryDetector final : public Detector {
 
 std::unique_ptr<Detector> make_geometry_detector(std::shared_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options) {
-  require_proofs(context->info());
-  if (options.skip == Skip::kOn) return make_skipping_geometry_detector(std::move(context), avatar, map, options);
+  require_proofs("geometry", context->info());
+  if (options.skip == Skip::kOn)
+    return make_shader_proof_detector(std::move(context), ProofStage::kGeometry, avatar, map, options);
   return std::make_unique<GeometryDetector>(std::move(context), avatar, map, options);
 }
 
-void require_proofs(const GlInfo& gl) {
+void require_proofs(std::string_view detector, const GlInfo& gl) {
   const std::string cause = breaks_proofs(gl.arithmetic, gl.probe_refusal);
   if (!cause.empty())
-    throw Error("--detector geometry",
+    throw Error(fmt::format("--detector {}", detector),
                 fmt::format("is not known to be exact on {} ({}): {}", gl.context, gl.renderer, cause),
                 "use --detector cpu, which finds the same contacts, or another --context or --device");
 }

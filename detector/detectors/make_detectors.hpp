@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string_view>
 
 #include "detector/actuator_map.hpp"
 #include "detector/detector.hpp"
@@ -30,8 +31,12 @@ std::unique_ptr<Detector> make_paper_detector(std::shared_ptr<GlContext> context
 std::unique_ptr<Detector> make_geometry_detector(std::shared_ptr<GlContext> context, const Avatar& avatar,
                                                  const ActuatorMap& map, const DetectorOptions& options);
 
-/// Throws `Error` with the cause if the proofs of `geometry` do not hold with the arithmetic of this driver, or if that
-/// was not measured.
-void require_proofs(const GlInfo& gl);
+/// The same contacts, with a compute shader in place of the geometry shader. Needs and throws the same.
+std::unique_ptr<Detector> make_compute_detector(std::shared_ptr<GlContext> context, const Avatar& avatar,
+                                                const ActuatorMap& map, const DetectorOptions& options);
+
+/// Throws `Error` with the cause if the proofs of `detector`, `geometry` or `compute`, do not hold with the arithmetic
+/// of this driver, or if that was not measured.
+void require_proofs(std::string_view detector, const GlInfo& gl);
 
 }  // namespace vestige

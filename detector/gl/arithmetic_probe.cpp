@@ -17,21 +17,35 @@ namespace {
 /// The shader reads a question as four words.
 static_assert(sizeof(ProbeQuestion) == 16);
 
-/// Asks the last of the stages.
-std::vector<float> ask(const GlFunctions& gl, const GlBuffer& answers, const std::string& head,
-                       std::initializer_list<GlProgram::Stage> stages) {
-  const GlProgram program(gl, head, stages, "probe_answer");
+std::vector<float> read_answers(const GlFunctions& gl, const GlBuffer& answers) {
   std::vector<float> read(probe_questions().size());
-  gl.UseProgram(program.name());
-  gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, answers.name());
-  gl.BeginTransformFeedback(GL_POINTS);
-  gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(read.size()));
-  gl.EndTransformFeedback();
   gl.GetNamedBufferSubData(answers.name(), 0, static_cast<GLsizeiptr>(read.size() * sizeof(float)), read.data());
-  gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
   gl.UseProgram(0);
   check_gl(gl, "probing the shaders' arithmetic");
   return read;
+}
+
+/// Asks the last of the stages that draw.
+std::vector<float> ask(const GlFunctions& gl, const GlBuffer& answers, const std::string& head,
+                       std::initializer_list<GlProgram::Stage> stages) {
+  const GlProgram program(gl, head, stages, "probe_answer");
+  gl.UseProgram(program.name());
+  gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, answers.name());
+  gl.BeginTransformFeedback(GL_POINTS);
+  gl.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(probe_questions().size()));
+  gl.EndTransformFeedback();
+  gl.BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, 0);
+  return read_answers(gl, answers);
+}
+
+std::vector<float> ask_compute(const GlFunctions& gl, const GlBuffer& answers, const std::string& head) {
+  const std::string source = fmt::format("#define COMPUTE 1\n{}", shaders::kProbeGlsl);
+  const GlProgram program(gl, head, {{GL_COMPUTE_SHADER, "probe.glsl", source}});
+  gl.UseProgram(program.name());
+  gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, answers.name());
+  gl.DispatchCompute(static_cast<GLuint>(probe_questions().size()), 1, 1);
+  gl.MemoryBarrier(GL_BUFFER_UPDATE_BARRIER_BIT);
+  return read_answers(gl, answers);
 }
 
 /// What a draw needs even if it draws nothing.
@@ -71,10 +85,11 @@ std::vector<StageArithmetic> probe_arithmetic(const GlFunctions& gl) {
   const std::string vertex = fmt::format("#define VERTEX 1\n{}", shaders::kProbeGlsl);
   const std::string nothing = fmt::format("#define VERTEX 1\n#define GEOMETRY_FOLLOWS 1\n{}", shaders::kProbeGlsl);
   const std::string geometry = fmt::format("#define VERTEX 0\n{}", shaders::kProbeGlsl);
-  return {judge("vertex", ask(gl, answers, head, {{GL_VERTEX_SHADER, "probe.glsl", vertex}})),
-          judge("geometry",
-                ask(gl, answers, head,
-                    {{GL_VERTEX_SHADER, "probe.glsl", nothing}, {GL_GEOMETRY_SHADER, "probe.glsl", geometry}}))};
+  return {
+      judge("vertex", ask(gl, answers, head, {{GL_VERTEX_SHADER, "probe.glsl", vertex}})),
+      judge("geometry", ask(gl, answers, head,
+                            {{GL_VERTEX_SHADER, "probe.glsl", nothing}, {GL_GEOMETRY_SHADER, "probe.glsl", geometry}})),
+      judge("compute", ask_compute(gl, answers, head))};
 }
 
 }  // namespace vestige

@@ -19,6 +19,7 @@ namespace vestige {
   X(PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC, CheckNamedFramebufferStatus)   \
   X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)           \
   X(PFNGLCLEARNAMEDFRAMEBUFFERUIVPROC, ClearNamedFramebufferuiv)         \
+  X(PFNGLCLIENTWAITSYNCPROC, ClientWaitSync)                             \
   X(PFNGLCLIPCONTROLPROC, ClipControl)                                   \
   X(PFNGLCOMPILESHADERPROC, CompileShader)                               \
   X(PFNGLCREATEBUFFERSPROC, CreateBuffers)                               \
@@ -38,16 +39,19 @@ namespace vestige {
   X(PFNGLDELETEQUERIESPROC, DeleteQueries)                               \
   X(PFNGLDELETERENDERBUFFERSPROC, DeleteRenderbuffers)                   \
   X(PFNGLDELETESHADERPROC, DeleteShader)                                 \
+  X(PFNGLDELETESYNCPROC, DeleteSync)                                     \
   X(PFNGLDELETETEXTURESPROC, DeleteTextures)                             \
   X(PFNGLDELETEVERTEXARRAYSPROC, DeleteVertexArrays)                     \
   X(PFNGLDEPTHFUNCPROC, DepthFunc)                                       \
   X(PFNGLDISABLEPROC, Disable)                                           \
+  X(PFNGLDISPATCHCOMPUTEPROC, DispatchCompute)                           \
   X(PFNGLDRAWARRAYSPROC, DrawArrays)                                     \
   X(PFNGLDRAWELEMENTSINSTANCEDPROC, DrawElementsInstanced)               \
   X(PFNGLENABLEPROC, Enable)                                             \
   X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)           \
   X(PFNGLENDQUERYPROC, EndQuery)                                         \
   X(PFNGLENDTRANSFORMFEEDBACKPROC, EndTransformFeedback)                 \
+  X(PFNGLFENCESYNCPROC, FenceSync)                                       \
   X(PFNGLFINISHPROC, Finish)                                             \
   X(PFNGLGETERRORPROC, GetError)                                         \
   X(PFNGLGETINTEGER64VPROC, GetInteger64v)                               \
@@ -55,14 +59,16 @@ namespace vestige {
   X(PFNGLGETNAMEDBUFFERSUBDATAPROC, GetNamedBufferSubData)               \
   X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                       \
   X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                                 \
-  X(PFNGLGETQUERYIVPROC, GetQueryiv)                                     \
   X(PFNGLGETQUERYOBJECTUI64VPROC, GetQueryObjectui64v)                   \
+  X(PFNGLGETQUERYIVPROC, GetQueryiv)                                     \
   X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                         \
   X(PFNGLGETSHADERIVPROC, GetShaderiv)                                   \
   X(PFNGLGETSTRINGPROC, GetString)                                       \
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                                   \
+  X(PFNGLMAPNAMEDBUFFERRANGEPROC, MapNamedBufferRange)                   \
   X(PFNGLMEMORYBARRIERPROC, MemoryBarrier)                               \
   X(PFNGLNAMEDBUFFERDATAPROC, NamedBufferData)                           \
+  X(PFNGLNAMEDBUFFERSTORAGEPROC, NamedBufferStorage)                     \
   X(PFNGLNAMEDBUFFERSUBDATAPROC, NamedBufferSubData)                     \
   X(PFNGLNAMEDFRAMEBUFFERDRAWBUFFERSPROC, NamedFramebufferDrawBuffers)   \
   X(PFNGLNAMEDFRAMEBUFFERREADBUFFERPROC, NamedFramebufferReadBuffer)     \
@@ -76,6 +82,7 @@ namespace vestige {
   X(PFNGLPROGRAMUNIFORMMATRIX4FVPROC, ProgramUniformMatrix4fv)           \
   X(PFNGLREADPIXELSPROC, ReadPixels)                                     \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                                 \
+  X(PFNGLTEXTUREBUFFERPROC, TextureBuffer)                               \
   X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                       \
   X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                         \
   X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                       \

@@ -44,6 +44,22 @@ void GlBuffer::upload(const void* data, std::size_t bytes, GLenum usage) {
   }
 }
 
+GlMappedBuffer::GlMappedBuffer(const GlFunctions& gl, std::size_t bytes) : gl_(gl) {
+  constexpr GLbitfield kShared = GL_MAP_READ_BIT | GL_MAP_WRITE_BIT | GL_MAP_PERSISTENT_BIT | GL_MAP_COHERENT_BIT;
+  const auto size = static_cast<GLsizeiptr>(bytes);
+  gl_.CreateBuffers(1, &name_);
+  const std::vector<std::byte> zeros(bytes);
+  gl_.NamedBufferStorage(name_, size, zeros.data(), kShared);
+  data_ = static_cast<std::byte*>(gl_.MapNamedBufferRange(name_, 0, size, kShared));
+  if (data_ != nullptr) return;
+  gl_.DeleteBuffers(1, &name_);
+  throw Error("OpenGL", fmt::format("the driver does not share {} bytes with shaders", bytes), kFaultRemedy);
+}
+
+GlMappedBuffer::~GlMappedBuffer() {
+  gl_.DeleteBuffers(1, &name_);
+}
+
 GlProgram::GlProgram(const GlFunctions& gl, std::string_view head, std::initializer_list<Stage> stages,
                      std::string_view captured)
     : gl_(gl), name_(gl.CreateProgram()) {

@@ -27,6 +27,25 @@ class GlBuffer {
   std::size_t capacity_bytes_ = 0;
 };
 
+/// Memory of a fixed size that the CPU and the shaders share. What the CPU wrote is there for the next command; what
+/// shaders wrote is there after a barrier (GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT) and a fence. It starts as zeros. The
+/// context must be current at the construction and the destruction.
+class GlMappedBuffer {
+ public:
+  GlMappedBuffer(const GlFunctions& gl, std::size_t bytes);
+  ~GlMappedBuffer();
+  GlMappedBuffer(const GlMappedBuffer&) = delete;
+  GlMappedBuffer& operator=(const GlMappedBuffer&) = delete;
+
+  GLuint name() const { return name_; }
+  std::byte* data() const { return data_; }
+
+ private:
+  const GlFunctions& gl_;
+  GLuint name_ = 0;
+  std::byte* data_ = nullptr;
+};
+
 /// A linked program. Its context must be current at the destruction.
 class GlProgram {
  public:

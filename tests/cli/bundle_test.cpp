@@ -166,16 +166,16 @@ TEST_F(Bundle, MeasureLeavesAFolderOfResultsAndOneVerdict) {
   const auto sweep = json_in("results/sweep/sweep.json");
   for (const auto& one : sweep["series"])
     series.insert(one["detector"].get<std::string>() + " " + one["skip"].get<std::string>());
-  EXPECT_THAT(series, IsSupersetOf({"paper off", "geometry off", "geometry on", "cpu off", "cpu on"}));
+  EXPECT_THAT(series, IsSupersetOf({"paper off", "geometry off", "geometry on", "compute on", "cpu off", "cpu on"}));
 
   const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
   const auto device = json_in("results/devices.json")["auto"];
   EXPECT_THAT(verdict, StartsWith("VERDICT: EXACT on " + device["renderer"].get<std::string>() + "\n"));
   EXPECT_THAT(verdict, AllOf(HasSubstr(device["context"].get<std::string>()), HasSubstr("to nearest even")));
-  // Three methods by three contestants; two methods.
-  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 36000 answers"));
+  // Three methods by five contestants; two methods.
+  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 60000 answers"));
   EXPECT_THAT(verdict, HasSubstr("0 differ, of 4200 answers"));
-  EXPECT_THAT(verdict, HasSubstr("the texture of cpu without skipping: 27 of 27"));
+  EXPECT_THAT(verdict, HasSubstr("the texture of cpu without skipping: 45 of 45"));
   EXPECT_THAT(verdict, HasSubstr("errors: 0, others: "));
   EXPECT_THAT(verdict, HasSubstr("With 100 colliders, against the fastest cpu"));
   EXPECT_THAT(verdict, Not(HasSubstr("FAILED")));
@@ -202,7 +202,7 @@ esac
   const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
   EXPECT_THAT(verdict, StartsWith("VERDICT: INCOMPLETE on "));
   EXPECT_THAT(verdict, HasSubstr("FAILED:\n    sweep(139): results/log/sweep.txt"));
-  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 36000 answers")) << "what ran is kept";
+  EXPECT_THAT(verdict, HasSubstr("0 missed, 0 other winners, of 60000 answers")) << "what ran is kept";
   EXPECT_THAT(verdict, AllOf(HasSubstr("errors: 1, others: "), HasSubstr("GL_INVALID_ENUM in glEnable")));
 }
 
@@ -219,7 +219,7 @@ esac
   EXPECT_EQ(measured.exit_code, 1);
   const std::string verdict = read_text_file(folder_ / "results/verdict.txt");
   EXPECT_THAT(verdict, AllOf(StartsWith("VERDICT: NOT EXACT on "), HasSubstr(": contacts differ\n"),
-                             HasSubstr("the texture of cpu without skipping: 26 of 27"),
+                             HasSubstr("the texture of cpu without skipping: 44 of 45"),
                              HasSubstr("results/log/replay-hug-geometry-carried-on.txt"),
                              HasSubstr("paper, which does not promise to be exact, differ in: replay-swarm-paper")));
 }

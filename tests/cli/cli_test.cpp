@@ -53,25 +53,27 @@ TEST_F(CommandLine, RecordsReplaysAndSaysTheSameEveryTime) {
 TEST_F(CommandLine, GivesTheSameBitsTenThousandKilometresAway) {
   record_small();
   ASSERT_EQ(run("vestige record --count 20 --rate 60 --duration 1 --origin 10000000,0,-3 -o far.mcap").exit_code, 0);
-  for (const char* detector : {"cpu", "paper", "geometry"}) {
+  for (const char* detector : {"cpu", "paper", "geometry", "compute"}) {
     const std::string flags = std::string(" --json - --detector ") + detector + test::gl_flags();
     EXPECT_EQ(json_of("vestige replay far.mcap" + flags)["texture_hash"],
               json_of("vestige replay small.mcap" + flags)["texture_hash"]);
   }
 }
 
-TEST_F(CommandLine, GeometryGivesTheCpusTextureHashWithEveryMethodAndSaysWhatItCaptured) {
+TEST_F(CommandLine, ShadersGiveTheCpusTextureHashWithEveryMethodAndSayWhatTheyCaptured) {
   record_small();
   for (const char* method : {"static", "carried", "ccd"}) {
     const std::string flags = std::string("vestige replay small.mcap --json - --method ") + method;
     const auto cpu = json_of(flags + " --detector cpu");
     // own context: OSMesa, beside the one of all tests
     for (const std::string& context : {test::gl_flags("egl"), std::string(" --context osmesa")}) {
-      const auto geometry = json_of(flags + " --detector geometry" + context);
-      EXPECT_EQ(geometry["texture_hash"], cpu["texture_hash"]) << method << context;
-      EXPECT_GT(geometry["contacts"], 0);
-      EXPECT_GE(geometry["pairs_meeting"], geometry["contacts"]);
-      EXPECT_GE(geometry["pairs_captured"], geometry["pairs_meeting"]);
+      for (const char* detector : {" --detector geometry", " --detector compute"}) {
+        const auto drawn = json_of(flags + detector + context);
+        EXPECT_EQ(drawn["texture_hash"], cpu["texture_hash"]) << method << detector << context;
+        EXPECT_GT(drawn["contacts"], 0);
+        EXPECT_GE(drawn["pairs_meeting"], drawn["contacts"]);
+        EXPECT_GE(drawn["pairs_captured"], drawn["pairs_meeting"]);
+      }
     }
   }
   const test::Outcome verified = run("vestige replay small.mcap --detector cpu --verify geometry" + test::gl_flags());
@@ -272,8 +274,9 @@ TEST_F(CommandLine, RefusesWrongUsageWithExitCodeTwo) {
   expect_failure("vestige record --count 1 --count 2 -o x.mcap", 2, {"--count: is given 2 times\n  name it once"},
                  "x.mcap");
   expect_failure("vestige record --rate", 2, {"--rate: its value is missing\n  write --rate HZ"});
-  expect_failure("vestige replay small.mcap --verify auto", 2,
-                 {"name paper, geometry, cpu, exact, embree, embree_default, boxes, capsules, decimated, or a file"});
+  expect_failure(
+      "vestige replay small.mcap --verify auto", 2,
+      {"name paper, geometry, compute, cpu, exact, embree, embree_default, boxes, capsules, decimated, or a file"});
   expect_failure("vestige replay small.mcap --planes t", 2, {"--textures"});
   expect_failure("vestige record -o x.mcap --seed -1", 2, {"--seed"}, "x.mcap");
   expect_failure("vestige record -o x.mcap --origin 1e300,0,0", 2, {"--origin"}, "x.mcap");

@@ -36,7 +36,7 @@ class LiveRing : public test::CommandLineTest {};
 TEST_F(ThreadsFlag, ThreadsChangeNoBitOfAnyResult) {
   ASSERT_EQ(run(fmt::format("vestige record -q --count 30 --rate 120 --duration {} -o trace.mcap", kSeconds)).exit_code,
             0);
-  for (const std::string detector : {"cpu", "exact", "geometry"}) {
+  for (const std::string detector : {"cpu", "exact", "geometry", "compute"}) {
     for (const std::string threads : {"1", "3"})
       ASSERT_EQ(run("vestige replay -q trace.mcap --force --detector " + detector + " --threads " + threads +
                     " --contacts contacts" + threads + ".csv --timeline timeline" + threads + ".csv --json run" +

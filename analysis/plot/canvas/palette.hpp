@@ -25,16 +25,17 @@ inline constexpr Colour kPurple = {204, 121, 167};
 inline constexpr Colour kOlive = {153, 153, 51};
 inline constexpr Colour kWine = {136, 34, 85};
 inline constexpr Colour kIndigo = {51, 34, 136};
+inline constexpr Colour kDarkGreen = {17, 119, 51};
 
 /// Colours for lines on white. They exclude yellow, which is too pale, and black, which marks the published points.
-inline constexpr std::array<Colour, 9> kLineColours = {kBlue,    kVermillion, kGreen, kPurple, kOrange,
-                                                       kSkyBlue, kOlive,      kWine,  kIndigo};
+inline constexpr std::array<Colour, 10> kLineColours = {kBlue,    kVermillion, kGreen, kPurple, kOrange,
+                                                        kSkyBlue, kOlive,      kWine,  kIndigo, kDarkGreen};
 
 /// Returns a line colour for each detector. A detector has the same colour in every figure. If a detector occurs twice,
 /// the second line takes a colour that is free, and so does a detector without a colour of its own.
 inline std::vector<Colour> line_colours(const std::vector<std::string>& detectors) {
   constexpr std::array<std::string_view, kLineColours.size()> kOwners = {
-      "paper", "geometry", "cpu", "embree", "embree_default", "exact", "boxes", "capsules", "decimated"};
+      "paper", "geometry", "cpu", "embree", "embree_default", "exact", "boxes", "capsules", "decimated", "compute"};
   std::array<bool, kLineColours.size()> taken = {};
   std::vector<std::size_t> numbers(detectors.size(), kLineColours.size());
   for (std::size_t i = 0; i < detectors.size(); ++i) {

@@ -39,6 +39,10 @@ std::unique_ptr<Detector> timed_embree(const Avatar& avatar, const ActuatorMap& 
 std::unique_ptr<Detector> timed_paper(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
   return make_paper_detector(test::make_context(), avatar, map, options);
 }
+std::unique_ptr<Detector> timed_compute(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
+  return make_compute_detector(test::make_context(), avatar, map, options);
+}
+
 std::unique_ptr<Detector> timed_geometry(const Avatar& avatar, const ActuatorMap& map, const DetectorOptions& options) {
   return make_geometry_detector(test::make_context(), avatar, map, options);
 }
@@ -95,6 +99,11 @@ INSTANTIATE_TEST_SUITE_P(
         StagesOf{"geometry", timed_geometry, Skip::kOff, {"pose", "upload", "draw", "read_back", "decision"}},
         StagesOf{"geometry_skipping",
                  timed_geometry,
+                 Skip::kOn,
+                 {"pose", "candidates", "skinning", "upload", "draw", "read_back", "decision"}},
+        StagesOf{"compute", timed_compute, Skip::kOff, {"pose", "skinning", "upload", "draw", "read_back", "decision"}},
+        StagesOf{"compute_skipping",
+                 timed_compute,
                  Skip::kOn,
                  {"pose", "candidates", "skinning", "upload", "draw", "read_back", "decision"}}),
     [](const auto& test) { return std::string(test.param.name); });

@@ -1,7 +1,7 @@
 // Run by hand, and by the bundle's `measure`: geometry_agreement [--method static|carried|ccd] [--pairs N] [--seed K]
-// [--context auto|egl|osmesa] [--device K] [--skip]. Adversarial pairs through `geometry` (with --skip: also through
-// `geometry` and `cpu` with skipping) and the `cpu` that skips nothing, every method or the one named, N pairs each.
-// Prints JSON: what meets, what was captured and what differs; exits 4 if anything does.
+// [--context auto|egl|osmesa] [--device K] [--skip]. Adversarial pairs through `geometry` and `compute` (with --skip:
+// also through both, and `cpu`, with skipping) and the `cpu` that skips nothing, every method or the one named, N pairs
+// each. Prints JSON: what meets, what was captured and what differs; exits 4 if anything does.
 
 #include <fmt/format.h>
 
@@ -67,15 +67,17 @@ nlohmann::ordered_json compare(Method method, const Settings& settings) {
   const auto options = [&](Skip skip) { return DetectorOptions{Surface::kAll, PlaneSet::all(), method, skip}; };
   const auto cpu = make_cpu_detector(avatar, map, options(Skip::kOff));
   std::vector<Contestant> contestants;
-  const auto add_geometry = [&](Skip skip) {
-    // own context: the one that the flags name
-    contestants.push_back({.detector = make_geometry_detector(make_gl_context(settings.context, settings.device),
-                                                              avatar, map, options(skip)),
-                           .skips = skip == Skip::kOn});
+  const auto add_shaders = [&](Skip skip) {
+    for (const auto make : {make_geometry_detector, make_compute_detector}) {
+      // own context: the one that the flags name
+      contestants.push_back(
+          {.detector = make(make_gl_context(settings.context, settings.device), avatar, map, options(skip)),
+           .skips = skip == Skip::kOn});
+    }
   };
-  add_geometry(Skip::kOff);
+  add_shaders(Skip::kOff);
   if (settings.skip) {
-    add_geometry(Skip::kOn);
+    add_shaders(Skip::kOn);
     contestants.push_back({.detector = make_cpu_detector(avatar, map, options(Skip::kOn)), .skips = true});
   }
   test::AdversarialSource source(settings.seed, settings.shape);
@@ -114,7 +116,7 @@ namespace {
 
 int run(int argc, char** argv) {
   vestige::Settings settings;
-  CLI::App app("Compares the geometry detector with cpu.");
+  CLI::App app("Compares the detectors geometry and compute with cpu.");
   std::string method;
   const std::map<std::string, vestige::ContextKind> contexts = {{"auto", vestige::ContextKind::kAuto},
                                                                 {"egl", vestige::ContextKind::kEgl},

@@ -39,26 +39,42 @@ std::unique_ptr<GlContext> context_named(const std::string& name) {
   return name == "gl" ? test::make_context() : make_osmesa_context();
 }
 
-class GeometryDetector : public ::testing::TestWithParam<std::tuple<const char*, Method, Skip>> {
+/// A detector whose shaders prove misses.
+struct Prover {
+  const char* name;
+  decltype(make_geometry_detector)* make;
+  const char* context = "gl";
+  bool as_on_gpu = false;
+};
+constexpr Prover kProvers[] = {{"geometry", make_geometry_detector},
+                               {"geometry_osmesa", make_geometry_detector, "osmesa"},
+                               {"compute", make_compute_detector},
+                               {"compute_osmesa", make_compute_detector, "osmesa"},
+                               {"compute_as_on_gpu", make_compute_detector, "gl", true}};
+
+class ProvingDetector : public ::testing::TestWithParam<std::tuple<Prover, Method, Skip>> {
  protected:
-  std::unique_ptr<Detector> make_geometry(const Avatar& avatar, const ActuatorMap& map) const {
-    return make_geometry_detector(context_named(std::get<0>(GetParam())), avatar, map, options(method(), skip()));
+  std::unique_ptr<Detector> make_prover(const Avatar& avatar, const ActuatorMap& map) const {
+    const Prover& prover = std::get<0>(GetParam());
+    DetectorOptions chosen = options(method(), skip());
+    chosen.as_on_gpu = prover.as_on_gpu;
+    return prover.make(context_named(prover.context), avatar, map, chosen);
   }
   Method method() const { return std::get<1>(GetParam()); }
   Skip skip() const { return std::get<2>(GetParam()); }
 };
 
-INSTANTIATE_TEST_SUITE_P(Each, GeometryDetector,
-                         ::testing::Combine(::testing::Values("gl", "osmesa"),
+INSTANTIATE_TEST_SUITE_P(Each, ProvingDetector,
+                         ::testing::Combine(::testing::ValuesIn(kProvers),
                                             ::testing::Values(Method::kStatic, Method::kCarried, Method::kCcd),
                                             ::testing::Values(Skip::kOff, Skip::kOn)),
                          [](const auto& test) {
-                           return std::string(std::get<0>(test.param)) + "_" + name_of(std::get<1>(test.param)) +
+                           return std::string(std::get<0>(test.param).name) + "_" + name_of(std::get<1>(test.param)) +
                                   (std::get<2>(test.param) == Skip::kOn ? "_skipping" : "");
                          });
 
 /// Compares the two in a scenario whose colliders have this radius. Returns the number of contacts.
-std::uint64_t compare(Detector& geometry, Detector& cpu, const Scenario& scenario, float radius_m) {
+std::uint64_t compare(Detector& prover, Detector& cpu, const Scenario& scenario, float radius_m) {
   std::uint64_t contacts = 0;
   ContactRow row;
   ContactRow expected;
@@ -67,7 +83,7 @@ std::uint64_t compare(Detector& geometry, Detector& cpu, const Scenario& scenari
   for (TraceFrame& trace_frame : test::scene(scenario.name, builtin_avatar(), colliders, 12, 15)) {
     for (ColliderSample& collider : trace_frame.colliders) collider.radius_m = radius_m;
     const DetectorFrame& frame = builder.next(trace_frame);
-    const DetectorWork work = geometry.detect(frame, row);
+    const DetectorWork work = prover.detect(frame, row);
     const DetectorWork expected_work = cpu.detect(frame, expected);
     EXPECT_EQ(work.pairs_meeting, expected_work.pairs_meeting);
     EXPECT_GE(work.pairs_captured, work.pairs_meeting);
@@ -84,24 +100,24 @@ std::uint64_t compare(Detector& geometry, Detector& cpu, const Scenario& scenari
   return contacts;
 }
 
-TEST_P(GeometryDetector, GivesTheBitsOfTheCpuInEveryScenario) {
-  const auto geometry = make_geometry(builtin_avatar(), builtin_map());
+TEST_P(ProvingDetector, GivesTheBitsOfTheCpuInEveryScenario) {
+  const auto prover = make_prover(builtin_avatar(), builtin_map());
   const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options(method(), skip()));
   for (const Scenario& scenario : scenarios()) {
     const bool of_spheres = scenario.name == "rest" || scenario.name == "brush";  // their centres stay outside
     const bool moves = scenario.name != "still" || method() != Method::kStatic;   // a point rarely rests on the skin
-    EXPECT_EQ(compare(*geometry, *cpu, scenario, 0) > 0, moves && !of_spheres) << scenario.name;
-    EXPECT_GT(compare(*geometry, *cpu, scenario, of_spheres ? 0.05F : 0.03F), 0U) << scenario.name;
+    EXPECT_EQ(compare(*prover, *cpu, scenario, 0) > 0, moves && !of_spheres) << scenario.name;
+    EXPECT_GT(compare(*prover, *cpu, scenario, of_spheres ? 0.05F : 0.03F), 0U) << scenario.name;
   }
 }
 
 /// The proof itself: a pair that meets and was not captured would be missing in the count.
-TEST_P(GeometryDetector, CapturesEveryPairThatMeetsHoweverItWasAimed) {
+TEST_P(ProvingDetector, CapturesEveryPairThatMeetsHoweverItWasAimed) {
   constexpr std::size_t kTriangles = 20;
   constexpr std::size_t kSegments = 60;
   const Avatar avatar = loose_triangles(kTriangles);
   const ActuatorMap map;
-  const auto geometry = make_geometry(avatar, map);
+  const auto prover = make_prover(avatar, map);
   const auto cpu = make_cpu_detector(avatar, map, options(method()));
   test::AdversarialSource points(1);
   test::AdversarialSource spheres(1, ColliderShape::kSpheres);
@@ -112,7 +128,7 @@ TEST_P(GeometryDetector, CapturesEveryPairThatMeetsHoweverItWasAimed) {
   for (int draw = 0; draw < 60; ++draw) {
     const test::AdversarialPairs pairs = (draw % 3 == 0 ? spheres : points).draw(kTriangles, kSegments);
     const DetectorFrame frame = loose_frame(pairs.before, pairs.now, pairs.segments);
-    const DetectorWork work = geometry->detect(frame, row);
+    const DetectorWork work = prover->detect(frame, row);
     const DetectorWork expected_work = cpu->detect(frame, expected);
     ASSERT_EQ(work.pairs_meeting, expected_work.pairs_meeting) << "draw " << draw;
     for (std::size_t i = 0; i < row.size(); ++i) ASSERT_TRUE(same(row[i], expected[i])) << draw << ", " << i;
@@ -124,7 +140,7 @@ TEST_P(GeometryDetector, CapturesEveryPairThatMeetsHoweverItWasAimed) {
   EXPECT_LT(captured, kPairs);  // it does prove something, even here
 }
 
-TEST_P(GeometryDetector, LosesNoPairWhereFarMoreMeetThanThereWasRoomFor) {
+TEST_P(ProvingDetector, LosesNoPairWhereFarMoreMeetThanThereWasRoomFor) {
   std::vector<glm::vec3> vertices;
   std::vector<glm::uvec3> triangles;
   for (std::uint32_t i = 0; i < 50; ++i) {
@@ -134,7 +150,7 @@ TEST_P(GeometryDetector, LosesNoPairWhereFarMoreMeetThanThereWasRoomFor) {
   }
   const Avatar avatar = test::rigid_avatar(vertices, triangles);
   const ActuatorMap map;
-  const auto geometry = make_geometry(avatar, map);
+  const auto prover = make_prover(avatar, map);
   std::vector<Segment> segments;
   for (std::uint32_t i = 0; i < 100; ++i) {
     const float x = 0.4F * static_cast<float>(i) / 100;
@@ -144,7 +160,7 @@ TEST_P(GeometryDetector, LosesNoPairWhereFarMoreMeetThanThereWasRoomFor) {
   frame.palette_before = frame.palette;
   ContactRow row;
   for (int i = 0; i < 2; ++i) {  // growing, and grown
-    const DetectorWork work = geometry->detect(frame, row);
+    const DetectorWork work = prover->detect(frame, row);
     EXPECT_EQ(work.pairs_captured, 50U * 100U);
     EXPECT_EQ(work.pairs_meeting, 50U * 100U);
     for (const Contact& contact : row) ASSERT_EQ(contact.triangle, 49U);
@@ -152,7 +168,7 @@ TEST_P(GeometryDetector, LosesNoPairWhereFarMoreMeetThanThereWasRoomFor) {
 }
 
 /// More meshlets, and more segments at one of them, than one draw of `skip` takes; the last meshlet is not full.
-TEST_P(GeometryDetector, FindsAllPairsWhereMeshletsAndSegmentsAreMany) {
+TEST_P(ProvingDetector, FindsAllPairsWhereMeshletsAndSegmentsAreMany) {
   std::vector<glm::vec3> vertices;
   std::vector<glm::uvec3> triangles;
   for (std::uint32_t i = 0; i < 9000; ++i) {
@@ -162,7 +178,7 @@ TEST_P(GeometryDetector, FindsAllPairsWhereMeshletsAndSegmentsAreMany) {
   }
   const Avatar avatar = test::rigid_avatar(vertices, triangles);
   const ActuatorMap map;
-  const auto geometry = make_geometry(avatar, map);
+  const auto prover = make_prover(avatar, map);
   std::vector<Segment> segments;
   for (std::uint32_t i = 0; i < 1000; ++i) {
     // Almost all meshlets, each met about once; then the last, met by 700 more.
@@ -172,36 +188,36 @@ TEST_P(GeometryDetector, FindsAllPairsWhereMeshletsAndSegmentsAreMany) {
   DetectorFrame frame = test::frame_of(avatar, segments);
   frame.palette_before = frame.palette;
   ContactRow row;
-  const DetectorWork work = geometry->detect(frame, row);
+  const DetectorWork work = prover->detect(frame, row);
   EXPECT_EQ(work.pairs_captured, 1000U);
   EXPECT_EQ(work.pairs_meeting, 1000U);
   for (std::uint32_t i = 0; i < 1000; ++i) ASSERT_EQ(row[i].triangle, i < 300 ? 30 * i : 8999U) << i;
 }
 
-TEST_P(GeometryDetector, CapturesWhatItCannotComputeWith) {
+TEST_P(ProvingDetector, CapturesWhatItCannotComputeWith) {
   const float huge = std::ldexp(1.0F, 100);
   const std::vector<LooseTriangle> triangles = {{glm::vec3(-huge, -huge, 0), {huge, -huge, 0}, {0, huge, 0}}};
   const Avatar avatar = loose_triangles(1);
   const ActuatorMap map;
-  const auto geometry = make_geometry(avatar, map);
+  const auto prover = make_prover(avatar, map);
   ContactRow row;
-  geometry->detect(loose_frame(triangles, triangles, {{0, {0, 0, -huge}, {0, 0, 3 * huge}}}), row);
+  prover->detect(loose_frame(triangles, triangles, {{0, {0, 0, -huge}, {0, 0, 3 * huge}}}), row);
   ASSERT_TRUE(row[0].hit());
   EXPECT_EQ(row[0].t, 0.25F);
   // A triangle that it can compute with, a segment that it cannot.
   const std::vector<LooseTriangle> small = {{glm::vec3(-1, -1, 0), {1, -1, 0}, {0, 1, 0}}};
-  geometry->detect(loose_frame(small, small, {{0, {0, 0, -huge}, {0, 0, 3 * huge}}}), row);
+  prover->detect(loose_frame(small, small, {{0, {0, 0, -huge}, {0, 0, 3 * huge}}}), row);
   ASSERT_TRUE(row[0].hit());
   EXPECT_EQ(row[0].t, 0.25F);
 }
 
-TEST_P(GeometryDetector, SkipsAFrameWhoseCollidersAreFarAway) {
-  const auto geometry = make_geometry(builtin_avatar(), builtin_map());
+TEST_P(ProvingDetector, SkipsAFrameWhoseCollidersAreFarAway) {
+  const auto prover = make_prover(builtin_avatar(), builtin_map());
   DetectorFrame frame = test::frame_of(builtin_avatar(), {{0, {9, 9, 9}, {9, 9, 8}}});
   frame.palette_before = frame.palette;
   ContactRow row = {Contact()};
   row[0].triangle = 7;
-  const DetectorWork work = geometry->detect(frame, row);
+  const DetectorWork work = prover->detect(frame, row);
   EXPECT_FALSE(row[0].hit());
   EXPECT_EQ(work.frames_skipped, skip() == Skip::kOn ? 1U : 0U);
   EXPECT_EQ(work.pairs_tested, skip() == Skip::kOn ? 0U : builtin_avatar().triangles.size());

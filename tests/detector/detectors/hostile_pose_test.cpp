@@ -57,6 +57,13 @@ std::unique_ptr<Detector> make_skipping_geometry(const Avatar& avatar, const Act
   return make_geometry(avatar, map, skipping);
 }
 
+std::unique_ptr<Detector> make_skipping_compute(const Avatar& avatar, const ActuatorMap& map,
+                                                const DetectorOptions& options) {
+  DetectorOptions skipping = options;
+  skipping.skip = Skip::kOn;
+  return make_compute_detector(test::make_context(), avatar, map, skipping);
+}
+
 test::SceneRun run(const std::vector<TraceFrame>& scene, Method method, decltype(make_cpu_detector)* make) {
   const auto detector = make(builtin_avatar(), no_map(), {Surface::kAll, kHashedPlanes, method});
   return test::run_scene(scene, builtin_avatar(), kColliders, *detector);
@@ -100,8 +107,8 @@ bool looks_back(Method method) {
 template <typename Check>
 void expect_everywhere(const std::vector<TraceFrame>& scene, Method method, const std::vector<ContactRow>& expected,
                        Check&& check) {
-  for (const auto make :
-       {make_cpu_detector, make_skipping_cpu_detector, make_geometry, make_skipping_geometry, make_exact_detector}) {
+  for (const auto make : {make_cpu_detector, make_skipping_cpu_detector, make_geometry, make_skipping_geometry,
+                          make_skipping_compute, make_exact_detector}) {
     const test::SceneRun found = run(scene, method, make);
     check(found);
     EXPECT_EQ(found.first_non_finite, kHostileFrame);
@@ -183,6 +190,7 @@ TEST_P(FinitePose, HoweverStrangeIsDecidedToTheSameBitsAsTheTruth) {
   const test::SceneRun skipping = run(hostile, method, make_skipping_cpu_detector);
   const test::SceneRun drawn = run(hostile, method, make_geometry);
   const test::SceneRun drawn_skipping = run(hostile, method, make_skipping_geometry);
+  const test::SceneRun computed = run(hostile, method, make_skipping_compute);
   const test::SceneRun truth = run(hostile, method, make_exact_detector);
   EXPECT_FALSE(found.first_non_finite);
   for (std::size_t frame = 0; frame < kHostileFrames; ++frame) {
@@ -190,6 +198,7 @@ TEST_P(FinitePose, HoweverStrangeIsDecidedToTheSameBitsAsTheTruth) {
     EXPECT_EQ(hash_of(skipping.rows[frame]), hash_of(truth.rows[frame])) << frame;
     EXPECT_EQ(hash_of(drawn.rows[frame]), hash_of(truth.rows[frame])) << frame;
     EXPECT_EQ(hash_of(drawn_skipping.rows[frame]), hash_of(truth.rows[frame])) << frame;
+    EXPECT_EQ(hash_of(computed.rows[frame]), hash_of(truth.rows[frame])) << frame;
     if (frame == kHostileFrame || frame == kHostileFrame + 1) continue;
     EXPECT_EQ(hash_of(found.rows[frame]), hash_of(calm.rows[frame])) << frame;
   }

@@ -41,7 +41,7 @@ TEST_P(SameBits, ComeFromTheCpuAndFromTheSlowTruthHereAndTenThousandKilometresAw
   EXPECT_EQ(hash_of(test::run_scene(there, builtin_avatar(), colliders, *cpu)), hash_of(truth));
 }
 
-TEST_P(SameBits, ComeFromTheGeometryShaderInEveryContextSkippingOrNot) {
+TEST_P(SameBits, ComeFromShadersInEveryContextSkippingOrNot) {
   const auto [scenario, method] = GetParam();
   const std::uint32_t colliders = find_scenario(scenario)->default_count;
   const auto scene = test::scene(scenario, builtin_avatar(), colliders, 10, 20);
@@ -52,9 +52,11 @@ TEST_P(SameBits, ComeFromTheGeometryShaderInEveryContextSkippingOrNot) {
   for (const auto make_context : {test::make_context, make_osmesa_context}) {
     for (const Skip skip : {Skip::kOff, Skip::kOn}) {
       options.skip = skip;
-      const auto geometry = make_geometry_detector(make_context(), builtin_avatar(), builtin_map(), options);
-      EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), colliders, *geometry)), expected)
-          << geometry->gl_info().context << (skip == Skip::kOn ? ", skipping" : "");
+      for (const auto make : {make_geometry_detector, make_compute_detector}) {
+        const auto detector = make(make_context(), builtin_avatar(), builtin_map(), options);
+        EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), colliders, *detector)), expected)
+            << detector->name() << ", " << detector->gl_info().context << (skip == Skip::kOn ? ", skipping" : "");
+      }
     }
   }
 }
@@ -75,9 +77,11 @@ TEST(MappedSurface, GivesTheSameBitsFromTheCpuAndFromTheSlowTruth) {
   EXPECT_GT(truth.contacts(), 10U);
   EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *cpu)), hash_of(truth));
   for (const Skip skip : {Skip::kOff, Skip::kOn}) {
-    const auto geometry = make_geometry_detector(test::make_context(), builtin_avatar(), builtin_map(),
-                                                 {Surface::kMapped, kHashedPlanes, Method::kCcd, skip});
-    EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *geometry)), hash_of(truth));
+    for (const auto make : {make_geometry_detector, make_compute_detector}) {
+      const auto detector = make(test::make_context(), builtin_avatar(), builtin_map(),
+                                 {Surface::kMapped, kHashedPlanes, Method::kCcd, skip});
+      EXPECT_EQ(hash_of(test::run_scene(scene, builtin_avatar(), 100, *detector)), hash_of(truth)) << detector->name();
+    }
   }
 }
 

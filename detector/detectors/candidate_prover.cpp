@@ -1,0 +1,245 @@
+#include "detector/detectors/candidate_prover.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <glm/vec4.hpp>
+#include <string>
+#include <utility>
+
+#include "shaders/constants.h"
+#include "shaders/shaders.hpp"
+#include "traces/base/error.hpp"
+
+namespace vestige {
+
+namespace {
+
+constexpr std::size_t kBlockSlots = 256;
+constexpr std::size_t kBlockSegments = 384;
+
+/// Blocks, and meshlets with two sets of corners, that are proven at once.
+constexpr std::size_t kMostBlocks = 64;
+constexpr std::size_t kMostMeshlets = 1024;
+
+/// Texels of a meshlet's corners.
+constexpr std::size_t kCornerTexels = sizeof(MeshletCorners) / sizeof(glm::vec4);
+static_assert(kCornerTexels == 72 && kSlotLanes == 8);  // as candidates.glsl has them
+
+/// Threads of a group on a GPU: whole warps or waves.
+constexpr std::size_t kGpuGroupThreads = 64;
+
+/// std140 layout of the shader's Candidates.
+struct Slot {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+  std::uint32_t place = 0;
+  std::uint32_t unused = 0;
+};
+struct GpuSegment {
+  glm::vec4 start;  ///< w: bounding_radius_m
+  glm::vec4 end;
+};
+
+/// The sets of corners of a meshlet: now, and before if the method uses it.
+std::size_t sets_of(Method method) {
+  return method == Method::kStatic ? 1 : 2;
+}
+
+std::size_t most_meshlets(const GlFunctions& gl, Method method) {
+  const auto texels = static_cast<std::size_t>(gl_limit(gl, GL_MAX_TEXTURE_BUFFER_SIZE));
+  return std::min(kMostMeshlets, texels / (kCornerTexels * sets_of(method)));
+}
+
+}  // namespace
+
+struct CandidateProver::Block {
+  std::array<Slot, kBlockSlots> slots;
+  std::array<GpuSegment, kBlockSegments> segments;
+};
+
+void unpack_words(std::span<const std::uint32_t, kSlotLanes> words, std::size_t segments, std::uint32_t* out) {
+  std::uint32_t any = 0;
+  std::uint32_t all = 0xFFFFFFFF;
+  for (const std::uint32_t word : words) {
+    any |= word;
+    all &= word;
+  }
+  constexpr std::size_t kTestedShift = 4 * kSlotSegments;
+  const std::uint32_t tested = static_cast<std::uint32_t>(8 + segments);
+  if (any >> kTestedShift != tested || all >> kTestedShift != tested)
+    throw Error("OpenGL", "the driver ended a shader before its work was done",
+                "use --detector cpu, which finds the same contacts, or another --context or --device");
+  std::fill_n(out, segments, 0);
+  if ((any & ((1U << kTestedShift) - 1)) == 0) return;
+  for (std::size_t i = 0; i < segments; ++i)
+    for (std::size_t lane = 0; lane < kSlotLanes; ++lane) out[i] |= (words[lane] >> (4 * i) & 15U) << (4 * lane);
+}
+
+CandidateProver::CandidateProver(const GlContext& context, const ProverOptions& options)
+    : gl_(context.gl()),
+      options_(options),
+      waits_actively_(!context.info().software),
+      most_meshlets_(most_meshlets(gl_, options.method)),
+      corners_(gl_, most_meshlets_ * sets_of(options.method) * sizeof(MeshletCorners)),
+      blocks_(gl_, kMostBlocks * sizeof(Block)),
+      words_(gl_, kMostBlocks * kBlockSlots * kSlotLanes * sizeof(std::uint32_t)),
+      nowhere_(gl_, PlaneSet()),
+      timer_(gl_) {
+  static_assert(sizeof(Block) == 16384);  // the size that every driver allows for a uniform block
+  gl_.CreateTextures(GL_TEXTURE_BUFFER, 1, &corner_texture_);
+  gl_.TextureBuffer(corner_texture_, GL_RGBA32F, corners_.name());
+  gl_.CreateVertexArrays(1, &vertex_array_);
+  nowhere_.begin(1);
+  program();
+  check_gl(gl_, "preparing the candidates' shaders");
+}
+
+CandidateProver::~CandidateProver() {
+  gl_.DeleteVertexArrays(1, &vertex_array_);
+  gl_.DeleteTextures(1, &corner_texture_);
+}
+
+const GlProgram& CandidateProver::program() {
+  std::optional<GlProgram>& program = programs_[has_spheres_ ? 1 : 0];
+  if (program) return *program;
+  const std::string head = fmt::format(
+      "#version 450 core\n{}#define METHOD {}\n#define SPHERES {}\n#define BLOCK_SLOTS {}\n#define BLOCK_SEGMENTS {}\n"
+      "#define LANES {}u\n#define SLOT_SEGMENTS {}u\n#define GROUP_THREADS {}u\n",
+      shaders::kConstantsH, static_cast<int>(options_.method), has_spheres_ ? 1 : 0, kBlockSlots, kBlockSegments,
+      kSlotLanes, kSlotSegments, options_.as_on_gpu ? kGpuGroupThreads : kSlotLanes);
+  const std::string proofs(shaders::kCandidatesGlsl);
+  if (options_.stage == ProofStage::kCompute) {
+    const std::string source = proofs + std::string(shaders::kCandidatesComp);
+    program.emplace(gl_, head, std::initializer_list<GlProgram::Stage>{{GL_COMPUTE_SHADER, "candidates.comp", source}});
+  } else {
+    const std::string source = proofs + std::string(shaders::kCandidatesGeom);
+    program.emplace(
+        gl_, head,
+        std::initializer_list<GlProgram::Stage>{{GL_VERTEX_SHADER, "candidates.vert", shaders::kCandidatesVert},
+                                                {GL_GEOMETRY_SHADER, "candidates.geom", source}});
+  }
+  return *program;
+}
+
+void CandidateProver::begin(StageClock* clock) {
+  clock_ = clock;
+  enter_stage(clock_, Stage::kUpload);
+  gl_.BindTextureUnit(VESTIGE_TEXTURE_CORNERS, corner_texture_);
+  gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, VESTIGE_BINDING_CAPTURED, words_.name());
+  if (options_.stage == ProofStage::kGeometry) {
+    gl_.BindVertexArray(vertex_array_);
+    nowhere_.bind();  // a draw without any framebuffer fails in a surfaceless context
+    gl_.Enable(GL_RASTERIZER_DISCARD);
+  }
+  forget();
+  bits_.clear();
+}
+
+void CandidateProver::add(const MeshletCorners& now, const MeshletCorners& before, std::span<const Segment> segments,
+                          std::span<const std::uint32_t> numbers) {
+  while (!numbers.empty()) {
+    if (meshlets_ == most_meshlets_) prove();
+    auto* corners = reinterpret_cast<MeshletCorners*>(corners_.data()) + meshlets_ * sets_of(options_.method);
+    *corners = now;
+    if (options_.method != Method::kStatic) corners[1] = before;
+    ++meshlets_;
+    while (!numbers.empty()) {
+      const std::size_t count = std::min(numbers.size(), kSlotSegments);
+      if (filled_.empty() || filled_.back().slots == kBlockSlots || filled_.back().segments + count > kBlockSegments) {
+        if (filled_.size() == kMostBlocks) {
+          prove();
+          break;  // whose corners are gone
+        }
+        filled_.emplace_back();
+      }
+      add_slot(segments, numbers.first(count));
+      numbers = numbers.subspan(count);
+    }
+  }
+}
+
+void CandidateProver::add_slot(std::span<const Segment> segments, std::span<const std::uint32_t> numbers) {
+  Filled& filled = filled_.back();
+  Block& block = reinterpret_cast<Block*>(blocks_.data())[filled_.size() - 1];
+  slot_segments_.push_back(numbers.size());
+  block.slots[filled.slots++] = {.first = static_cast<std::uint32_t>(filled.segments),
+                                 .count = static_cast<std::uint32_t>(numbers.size()),
+                                 .place = static_cast<std::uint32_t>(meshlets_ - 1)};
+  for (const std::uint32_t number : numbers) {
+    const Segment& segment = segments[number];
+    has_spheres_ = has_spheres_ || segment.is_sphere();
+    block.segments[filled.segments++] = {glm::vec4(segment.start, bounding_radius_m(segment)),
+                                         glm::vec4(segment.end, 0)};
+  }
+}
+
+std::span<const std::uint32_t> CandidateProver::finish() {
+  prove();
+  return bits_;
+}
+
+void CandidateProver::prove() {
+  if (filled_.empty()) return;
+  const GlProgram& shader = program();
+  gl_.UseProgram(shader.name());
+  timer_.time(clock_, [&] {
+    for (std::size_t i = 0; i < filled_.size(); ++i) start_block(i);
+  });
+  enter_stage(clock_, Stage::kReadBack);
+  wait();
+  read_words();
+  forget();
+  enter_stage(clock_, Stage::kUpload);
+}
+
+void CandidateProver::forget() {
+  filled_.clear();
+  slot_segments_.clear();
+  meshlets_ = 0;
+  has_spheres_ = false;
+}
+
+void CandidateProver::start_block(std::size_t number) {
+  const auto slots = static_cast<GLuint>(filled_[number].slots);
+  const GLuint name = program().name();
+  gl_.BindBufferRange(GL_UNIFORM_BUFFER, VESTIGE_BINDING_CANDIDATES, blocks_.name(),
+                      static_cast<GLintptr>(number * sizeof(Block)), static_cast<GLsizeiptr>(sizeof(Block)));
+  gl_.ProgramUniform1ui(name, VESTIGE_UNIFORM_FIRST_SLOT, static_cast<GLuint>(number * kBlockSlots));
+  if (options_.stage == ProofStage::kGeometry) {
+    gl_.DrawArrays(GL_POINTS, 0, static_cast<GLsizei>(slots * kSlotLanes));
+    return;
+  }
+  gl_.ProgramUniform1ui(name, VESTIGE_UNIFORM_SLOT_COUNT, slots);
+  constexpr GLuint kGroupSlots = kGpuGroupThreads / kSlotLanes;
+  gl_.DispatchCompute(options_.as_on_gpu ? (slots + kGroupSlots - 1) / kGroupSlots : 1, 1, 1);
+}
+
+void CandidateProver::wait() {
+  constexpr GLuint64 kSecond_ns = 1000000000;
+  gl_.MemoryBarrier(GL_CLIENT_MAPPED_BUFFER_BARRIER_BIT);
+  const GLsync fence = gl_.FenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  GLenum state = GL_TIMEOUT_EXPIRED;
+  while (state == GL_TIMEOUT_EXPIRED)
+    state = gl_.ClientWaitSync(fence, GL_SYNC_FLUSH_COMMANDS_BIT, waits_actively_ ? 0 : kSecond_ns);
+  gl_.DeleteSync(fence);
+  check_gl(gl_, "proving candidates");
+  if (state == GL_WAIT_FAILED)
+    throw Error("OpenGL", "the driver cannot wait for its own work", "try another --context");
+}
+
+/// Clears each word that it reads, so that a lane that does not write it is noticed.
+void CandidateProver::read_words() {
+  auto* words = reinterpret_cast<std::array<std::uint32_t, kSlotLanes>*>(words_.data());
+  auto segments = slot_segments_.begin();
+  for (const Filled& block : filled_) {
+    for (std::size_t slot = 0; slot < block.slots; ++slot, ++segments) {
+      const std::array<std::uint32_t, kSlotLanes> read = std::exchange(words[slot], {});
+      bits_.resize(bits_.size() + *segments);
+      unpack_words(read, *segments, bits_.data() + bits_.size() - *segments);
+    }
+    words += kBlockSlots;
+  }
+}
+
+}  // namespace vestige

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "detector/broad/meshlet_skin.hpp"
+#include "detector/frame.hpp"
+#include "detector/gl/collision_texture.hpp"
+#include "detector/gl/draw_timer.hpp"
+#include "detector/gl/gl_context.hpp"
+#include "detector/gl/gl_objects.hpp"
+#include "detector/method.hpp"
+#include "detector/stages.hpp"
+
+namespace vestige {
+
+/// The stage of OpenGL that runs shaders/candidates.glsl: its proofs are the same in both.
+enum class ProofStage { kGeometry, kCompute };
+
+struct ProverOptions {
+  ProofStage stage = ProofStage::kCompute;
+  Method method = Method::kStatic;
+  /// Divide the work as on a GPU: many small groups of threads. Otherwise as for a software renderer, where each group
+  /// costs time.
+  bool as_on_gpu = false;
+};
+
+/// The part of a slot's words (shaders/candidates.glsl) that belongs to one of eight lanes, four triangles each.
+inline constexpr std::size_t kSlotLanes = kMeshletTriangles / 4;
+inline constexpr std::size_t kSlotSegments = 7;
+
+/// Writes, for each of `segments` segments of a slot, the bits of the triangles that it may meet to `out`. Throws
+/// `Error` if a word does not say that its lane tested all of them: llvmpipe, for one, ends loops of more than 65 535
+/// rounds without a word.
+void unpack_words(std::span<const std::uint32_t, kSlotLanes> words, std::size_t segments, std::uint32_t* out);
+
+/// Proves by shaders which segments miss which triangles of meshlets. Reads and writes memory that the driver shares,
+/// so no call copies. Belongs to a context, which must be current at every call.
+class CandidateProver {
+ public:
+  CandidateProver(const GlContext& context, const ProverOptions& options);
+  ~CandidateProver();
+  CandidateProver(const CandidateProver&) = delete;
+  CandidateProver& operator=(const CandidateProver&) = delete;
+
+  /// Starts a frame. Also sets what another detector of the context may have changed. `clock` may be null.
+  void begin(StageClock* clock);
+
+  /// Adds the pairs of a meshlet's triangles, skinned now and before, and the segments with these numbers.
+  void add(const MeshletCorners& now, const MeshletCorners& before, std::span<const Segment> segments,
+           std::span<const std::uint32_t> numbers);
+
+  /// Ends the frame. Returns, for each number that was added, in order, bits of the meshlet's triangles: 0 if that
+  /// segment surely misses the triangle. Valid until the next `begin`. Throws `Error` after an OpenGL error.
+  std::span<const std::uint32_t> finish();
+
+ private:
+  /// The input of one draw or dispatch.
+  struct Block;
+  struct Filled {
+    std::size_t slots = 0;
+    std::size_t segments = 0;
+  };
+
+  void add_slot(std::span<const Segment> segments, std::span<const std::uint32_t> numbers);
+  /// Proves what was added since the last call, and makes room.
+  void prove();
+  void forget();
+  void start_block(std::size_t number);
+  void wait();
+  void read_words();
+  const GlProgram& program();
+
+  const GlFunctions& gl_;
+  ProverOptions options_;
+  bool waits_actively_;        ///< a GPU is done before the system would wake this thread
+  std::size_t most_meshlets_;  ///< whose corners fit
+  GlMappedBuffer corners_;
+  GlMappedBuffer blocks_;
+  GlMappedBuffer words_;
+  CollisionTexture nowhere_;
+  DrawTimer timer_;
+  std::array<std::optional<GlProgram>, 2> programs_;  ///< for points alone, and for spheres, too
+  GLuint corner_texture_ = 0;
+  GLuint vertex_array_ = 0;
+
+  StageClock* clock_ = nullptr;
+  bool has_spheres_ = false;
+  std::size_t meshlets_ = 0;
+  std::vector<Filled> filled_;  ///< the blocks
+  std::vector<std::size_t> slot_segments_;
+  std::vector<std::uint32_t> bits_;  ///< what `finish` returns
+};
+
+}  // namespace vestige
