@@ -50,7 +50,7 @@ TEST_F(Devices, SayWhichContextAutoTakesWhetherItIsSoftwareAndThatPaperCanRun) {
   EXPECT_GE(osmesa["limits"]["geometry_output_vertices"], 256);
   EXPECT_GE(osmesa["limits"]["texture_side"], 4096);
   EXPECT_EQ(find(json, "egl-device-0")["egl_device"]["number"], 0);
-  ASSERT_EQ(osmesa["arithmetic"].size(), 2U);
+  ASSERT_EQ(osmesa["arithmetic"].size(), 3U);
   EXPECT_EQ(osmesa["arithmetic"][1]["stage"], "geometry");
   EXPECT_EQ(osmesa["arithmetic"][1]["rounding"], "nearest even");
   EXPECT_TRUE(osmesa["geometry_refused"].is_null());
