@@ -86,6 +86,9 @@ class Detector {
   virtual Method method() const { return Method::kStatic; }
   /// Whether frames for `detect` may leave out segments that are out of the skin's reach.
   virtual Skip skip() const { return Skip::kOff; }
+  /// The number of frames in a run. Frames whose numbers, divided by it, have the same quotient are a run. A detector
+  /// that is given whole runs, each in order, does the same work whatever other runs it is given.
+  virtual std::uint64_t run_length() const { return 1; }
   /// Whether simpler shapes stand in for the avatar's skin.
   virtual bool is_approximate() const { return false; }
   /// The number of triangles of the simpler mesh that stands in for the avatar's skin. Empty if no mesh does.

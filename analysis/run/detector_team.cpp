@@ -45,7 +45,7 @@ DetectorTeam::DetectorTeam(std::size_t threads, Make make)
 
 DetectorTeam::~DetectorTeam() {
   if (batch_ != nullptr) {  // something failed between start and finish
-    next_ = batch_->count;
+    next_ = 1 + run_begins_.size();
     end_.arrive_and_wait();
   }
   dismiss();
@@ -57,8 +57,10 @@ void DetectorTeam::dismiss() {
   for (std::thread& helper : helpers_) helper.join();
 }
 
-void DetectorTeam::start(FrameBatch& batch) {
+void DetectorTeam::start(FrameBatch& batch, std::function<void()> beside) {
   batch_ = &batch;
+  beside_ = std::move(beside);
+  find_runs();
   next_ = 0;
   begin_.arrive_and_wait();
 }
@@ -84,15 +86,33 @@ void DetectorTeam::help() {
 }
 
 void DetectorTeam::work_through(const PeopleDetectors& detectors) try {
-  for (std::size_t i = next_++; i < batch_->count; i = next_++)
-    batch_->work[i] = detectors[i % detectors.size()]->detect(batch_->frames[i], batch_->rows[i]);
+  for (std::size_t task = next_++; task <= run_begins_.size(); task = next_++) {
+    if (task > 0) {
+      detect_run(detectors, task - 1);
+    } else if (beside_) {
+      beside_();
+    }
+  }
 } catch (...) {
   note_failure();
 }
 
+void DetectorTeam::detect_run(const PeopleDetectors& detectors, std::size_t run) {
+  const std::size_t end = run + 1 < run_begins_.size() ? run_begins_[run + 1] : batch_->count;
+  for (std::size_t i = run_begins_[run]; i < end; ++i)
+    batch_->work[i] = detectors[i % detectors.size()]->detect(batch_->frames[i], batch_->rows[i]);
+}
+
+void DetectorTeam::find_runs() {
+  run_begins_.clear();
+  const auto run_of = [&](std::size_t i) { return batch_->frames[i].index / first().run_length(); };
+  for (std::size_t i = 0; i < batch_->count; ++i)
+    if (i == 0 || run_of(i) != run_of(i - 1)) run_begins_.push_back(i);
+}
+
 void DetectorTeam::note_failure() {
   const std::lock_guard lock(failure_mutex_);
-  next_ = batch_->count;  // no thread needs to continue
+  next_ = 1 + run_begins_.size();  // no thread needs to continue
   if (!failure_) failure_ = std::current_exception();
 }
 

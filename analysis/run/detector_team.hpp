@@ -30,8 +30,8 @@ struct FrameBatch {
 using PeopleDetectors = std::vector<std::unique_ptr<Detector>>;
 
 /// A team of equal detectors: in each thread, one for each person. Each thread makes and uses its own. A free thread
-/// takes the next frame of a batch. The rows are in the order of the frames, so the number of threads does not change a
-/// bit of the result.
+/// takes the next run of a batch (`Detector::run_length`). The rows are in the order of the frames, so the number of
+/// threads does not change a bit of the result.
 class DetectorTeam {
  public:
   using Make = std::function<PeopleDetectors()>;  ///< called by several threads at a time
@@ -48,9 +48,10 @@ class DetectorTeam {
   const Detector& first(std::size_t person = 0) const { return *first_[person]; }
   std::size_t threads() const { return helpers_.size() + 1; }
 
-  /// Starts the other threads on `batch`. The batch must stay untouched until `finish` has returned.
-  void start(FrameBatch& batch);
-  /// Lets the calling thread help, and waits for the last frame. Throws what a detector threw.
+  /// Starts the other threads on `batch`, and the first free one on `beside`, if that is not empty. The batch must stay
+  /// untouched until `finish` has returned.
+  void start(FrameBatch& batch, std::function<void()> beside = {});
+  /// Lets the calling thread help, and waits for the last frame. Throws what a detector or `beside` threw.
   void finish();
 
  private:
@@ -58,13 +59,17 @@ class DetectorTeam {
   /// Lets the helpers return. Precondition: no batch is under way.
   void dismiss();
   void work_through(const PeopleDetectors& detectors);
+  void detect_run(const PeopleDetectors& detectors, std::size_t run);
+  void find_runs();
   void note_failure();
 
   Make make_;
   PeopleDetectors first_;
   /// Null except between `start` and `finish`. To begin with null tells the helpers to return.
   FrameBatch* batch_ = nullptr;
-  std::atomic<std::size_t> next_ = 0;
+  std::function<void()> beside_;
+  std::vector<std::size_t> run_begins_;  ///< of `batch_`, by the numbers of frames in it
+  std::atomic<std::size_t> next_ = 0;    ///< 0: `beside_`; then 1 + number of a run
   std::mutex failure_mutex_;
   std::exception_ptr failure_;
   std::barrier<> begin_;

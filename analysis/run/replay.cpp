@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
@@ -17,23 +19,44 @@ constexpr std::uint64_t kSkinningFrames = 5;
 
 using Clock = std::chrono::steady_clock;
 
-/// Chooses how many frames to detect together: enough that threads seldom wait for each other, and few enough that
-/// progress is visible and an interrupt is noticed. A single thread takes frames one by one.
+/// Chooses how many runs of frames to detect together: enough that threads seldom wait for each other, and few enough
+/// that progress is visible, an interrupt is noticed, and they fit into memory. A single thread takes frames one by
+/// one. So do several if a run is too large for memory: a run that is divided would take other work.
 class BatchSize {
  public:
-  explicit BatchSize(std::size_t threads) : alone_(threads == 1), size_(alone_ ? 1 : 4 * threads) {}
+  /// `columns` are those of a frame, of all people together.
+  BatchSize(const DetectorTeam& detectors, std::size_t columns) {
+    const std::uint64_t run_length = detectors.first().run_length();
+    const std::size_t run_bytes = run_length * columns * (sizeof(Segment) + sizeof(Contact));
+    if (detectors.threads() == 1 || run_bytes > kMostBytes) return;
+    run_length_ = run_length;
+    least_ = run_length == 1 ? 1 : detectors.threads();
+    most_ = std::max<std::size_t>(least_, kMostFrames / run_length);
+    if (run_bytes > 0) most_ = std::min(most_, kMostBytes / run_bytes);
+    least_ = std::min(least_, most_);
+    runs_ = std::min(most_, run_length == 1 ? 4 * detectors.threads() : least_);
+  }
 
-  std::size_t now() const { return size_; }
+  bool is_one_by_one() const { return run_length_ == 0; }
+  std::size_t runs() const { return runs_; }
+  /// Which run a frame belongs to.
+  std::uint64_t run_of(const TraceFrame& frame) const {
+    return is_one_by_one() ? frame.index : frame.index / run_length_;
+  }
 
   void took(double batch_s) {
-    if (alone_) return;
-    if (batch_s < 2e-3) size_ = std::min<std::size_t>(2 * size_, 4096);
-    if (batch_s > 0.1) size_ = std::max<std::size_t>(size_ / 2, 1);
+    if (batch_s < 0.01) runs_ = std::min(2 * runs_, most_);
+    if (batch_s > 0.1) runs_ = std::max(runs_ / 2, least_);
   }
 
  private:
-  bool alone_;
-  std::size_t size_;
+  static constexpr std::size_t kMostFrames = 4096;
+  static constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+
+  std::uint64_t run_length_ = 0;  ///< 0: frames are taken one by one
+  std::size_t least_ = 1;
+  std::size_t most_ = 1;
+  std::size_t runs_ = 1;
 };
 
 /// Turns the contacts of a file back into rows, frame by frame and person by person.
@@ -75,7 +98,8 @@ class RecordedRows {
   ContactRow row_;
 };
 
-/// One run through a trace. While the team detects in one batch of frames, the next one is read.
+/// One pass through a trace. While the team detects in one batch of frames, one of its threads takes the results of the
+/// batch before, and the calling thread reads the next one.
 class Replay {
  public:
   Replay(TraceReader& trace, DetectorTeam& detectors, const ReplayPlan& plan)
@@ -84,7 +108,8 @@ class Replay {
         plan_(plan),
         frame_count_(trace.frame_count()),
         skinning_step_(std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames)),
-        colliders_(trace.collider_ids()) {
+        colliders_(trace.collider_ids()),
+        size_(detectors, plan.people.size() * trace.collider_ids().size()) {
     people_.reserve(plan.people.size());
     for (std::size_t person = 0; person < plan.people.size(); ++person)
       people_.emplace_back(plan.people[person], person, detectors.first(person));
@@ -94,80 +119,105 @@ class Replay {
 
   ReplayResult run(const std::function<bool(double)>& progress) {
     trace_.rewind();
-    BatchSize size(detectors_.threads());
-    FrameBatch batch;
-    FrameBatch next_batch;
-    read(batch, size.now());
-    while (batch.count != 0 && !result_.interrupted) {
-      size.took(detect(batch, next_batch, size.now()));
-      take(batch, progress);
-      std::swap(batch, next_batch);
+    read();
+    while (next_.count != 0 && !result_.interrupted) {
+      std::swap(before_, batch_);
+      std::swap(batch_, next_);
+      size_.took(detect(progress));
     }
+    std::swap(before_, batch_);
+    take_before(progress);
+    if (read_failure_ && !result_.interrupted) std::rethrow_exception(read_failure_);
     finish();
     return std::move(result_);
   }
 
  private:
-  /// Reads so many frames of the trace, each of which is a frame for every person.
-  void read(FrameBatch& batch, std::size_t size) {
-    batch.clear();
-    while (batch.count < size * people_.size()) {
-      const auto start = Clock::now();
-      const bool more = trace_.next(trace_frame_);
-      const auto read = Clock::now();
-      result_.reading_s += seconds(read - start);
-      if (!more) return;
-      colliders_.next(trace_frame_);
-      for (PersonReplay& person : people_) batch.add(person.build(trace_frame_, colliders_));
-      building_s_ += seconds(Clock::now() - read);
-      if (frames_read_ % skinning_step_ == 0) check_skinning(batch);
-      ++frames_read_;
+  /// Reads the next batch of the trace. Each of its frames is one for every person. What it throws is kept until all
+  /// frames before have been taken.
+  void read() {
+    next_.clear();
+    next_runs_ = 0;
+    if (read_failure_) return;
+    try {
+      while (read_frame()) add_frame();
+    } catch (...) {
+      read_failure_ = std::current_exception();
     }
   }
 
+  /// Reads a frame of the trace. Returns false at the end, or if the frame belongs to a later batch.
+  bool read_frame() {
+    if (!holds_frame_) {
+      const auto start = Clock::now();
+      holds_frame_ = trace_.next(trace_frame_);
+      result_.reading_s += seconds(Clock::now() - start);
+    }
+    if (!holds_frame_) return false;
+    const std::uint64_t run = size_.run_of(trace_frame_);
+    if (next_.count != 0 && run == last_run_) return true;
+    if (next_runs_ == size_.runs()) return false;
+    ++next_runs_;
+    last_run_ = run;
+    return true;
+  }
+
+  void add_frame() {
+    const auto start = Clock::now();
+    holds_frame_ = false;
+    colliders_.next(trace_frame_);
+    for (PersonReplay& person : people_) next_.add(person.build(trace_frame_, colliders_));
+    building_s_ += seconds(Clock::now() - start);
+    if (frames_read_ % skinning_step_ == 0) check_skinning();
+    ++frames_read_;
+  }
+
   /// Checks how the people of the frame that was read last are skinned.
-  void check_skinning(const FrameBatch& batch) {
+  void check_skinning() {
     const auto start = Clock::now();
     for (std::size_t person = 0; person < people_.size(); ++person)
-      people_[person].check_skinning(trace_frame_, batch.frames[batch.count - people_.size() + person],
+      people_[person].check_skinning(trace_frame_, next_.frames[next_.count - people_.size() + person],
                                      detectors_.first(person));
     checking_s_ += seconds(Clock::now() - start);
   }
 
-  /// Detects in `batch` and reads `next_batch` beside it. Returns the seconds that detection took.
-  double detect(FrameBatch& batch, FrameBatch& next_batch, std::size_t next_size) {
+  /// Detects in the batch, takes the one before and reads the next one. Returns the seconds that detection took.
+  double detect(const std::function<bool(double)>& progress) {
+    const bool is_alone = size_.is_one_by_one();
+    if (is_alone) take_before(progress);
     const auto start = Clock::now();
     const double checked_before_s = checking_s_;
-    detectors_.start(batch);
-    read(next_batch, next_size);
+    detectors_.start(
+        batch_, is_alone ? std::function<void()>() : [&] { take_before(progress); });
+    read();
     const auto finish = Clock::now();
     detectors_.finish();
     const auto end = Clock::now();
-    const double spent_s = is_alone() ? seconds(end - finish) : seconds(end - start) - (checking_s_ - checked_before_s);
+    const double spent_s = is_alone ? seconds(end - finish) : seconds(end - start) - (checking_s_ - checked_before_s);
     result_.detection_s += spent_s;
     if (plan_.expectation.detectors != nullptr) {
-      expected_ = batch;
+      expected_ = batch_;
       plan_.expectation.detectors->start(expected_);
       plan_.expectation.detectors->finish();
     }
     return spent_s;
   }
 
-  void take(FrameBatch& batch, const std::function<bool(double)>& progress) {
-    for (std::size_t i = 0; i < batch.count && !result_.interrupted; i += people_.size()) {
-      for (std::size_t person = 0; person < people_.size(); ++person) take(person, batch, i + person);
+  void take_before(const std::function<bool(double)>& progress) {
+    for (std::size_t i = 0; i < before_.count && !result_.interrupted; i += people_.size()) {
+      for (std::size_t person = 0; person < people_.size(); ++person) take(person, i + person);
       ++result_.frames;
       result_.interrupted = !progress(static_cast<double>(result_.frames) / static_cast<double>(frame_count_));
     }
   }
 
-  /// Takes the row of batch.frames[i], which is a frame of this person.
-  void take(std::size_t person, FrameBatch& batch, std::size_t i) {
-    const DetectorFrame& frame = batch.frames[i];
-    ContactRow& row = batch.rows[i];
+  /// Takes the row of before_.frames[i], which is a frame of this person.
+  void take(std::size_t person, std::size_t i) {
+    const DetectorFrame& frame = before_.frames[i];
+    ContactRow& row = before_.rows[i];
     ContactRow* const other = plan_.expectation.detectors != nullptr ? &expected_.rows[i] : nullptr;
     const auto avatar = static_cast<std::uint16_t>(person + 1);
-    result_.work += batch.work[i];
+    result_.work += before_.work[i];
     people_[person].take(frame, row, other);
     if (other != nullptr) result_.comparison->add(row, *other);
     if (recorded_) result_.comparison->add(row, recorded_->row_of(frame.index, avatar));
@@ -176,7 +226,7 @@ class Replay {
   }
 
   void finish() {
-    if (is_alone()) result_.detection_s += building_s_;  // several threads had it within their time
+    if (size_.is_one_by_one()) result_.detection_s += building_s_;  // several threads had it within their time
     std::vector<std::string> hashes;
     for (PersonReplay& person : people_) {
       const PersonResult& found = result_.people.emplace_back(person.finish());
@@ -195,8 +245,6 @@ class Replay {
     result_.comparison->expected += recorded_->strangers();
   }
 
-  bool is_alone() const { return detectors_.threads() == 1; }
-
   TraceReader& trace_;
   DetectorTeam& detectors_;
   const ReplayPlan& plan_;
@@ -205,9 +253,17 @@ class Replay {
   ColliderMoves colliders_;
   std::vector<PersonReplay> people_;
   std::optional<RecordedRows> recorded_;
+  BatchSize size_;
   TraceFrame trace_frame_;
+  bool holds_frame_ = false;  ///< trace_frame_ is in no batch yet
+  std::uint64_t last_run_ = 0;
+  std::size_t next_runs_ = 0;  ///< in `next_`
   std::uint64_t frames_read_ = 0;
-  FrameBatch expected_;
+  std::exception_ptr read_failure_;
+  FrameBatch before_;
+  FrameBatch batch_;
+  FrameBatch next_;
+  FrameBatch expected_;  ///< of `before_`, from the detectors to compare with
   double building_s_ = 0;
   double checking_s_ = 0;
   ReplayResult result_;

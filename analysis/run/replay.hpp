@@ -43,7 +43,7 @@ struct ReplayResult {
   std::optional<std::uint64_t> first_non_finite;  ///< index of the first frame with a non-finite pose or segment
   std::string texture_hash;                       ///< `texture_hash_of` the people's
   double reading_s = 0;                           ///< decoding the trace
-  /// Whole round trips; excludes decoding, which runs in parallel if there are several threads.
+  /// Whole round trips. If there are several threads, all that they do meanwhile: they read and write beside it.
   double detection_s = 0;
   std::optional<Comparison> comparison;
   bool interrupted = false;

@@ -71,6 +71,7 @@ class SkippingCpuDetector final : public Detector {
   const char* name() const override { return "cpu"; }
   Method method() const override { return method_; }
   Skip skip() const override { return Skip::kOn; }
+  std::uint64_t run_length() const override { return CoherentSearch::kRestart; }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {
     row.clear(frame.columns);

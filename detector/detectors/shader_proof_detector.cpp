@@ -55,6 +55,7 @@ class ShaderProofDetector final : public Detector {
   const char* name() const override { return stage_ == ProofStage::kCompute ? "compute" : "geometry"; }
   Method method() const override { return method_; }
   Skip skip() const override { return skip_; }
+  std::uint64_t run_length() const override { return skip_ == Skip::kOn ? CoherentSearch::kRestart : 1; }
   GlInfo gl_info() const override { return context_->info(); }
 
   DetectorWork detect(const DetectorFrame& frame, ContactRow& row) override {

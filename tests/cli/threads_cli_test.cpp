@@ -54,6 +54,96 @@ TEST_F(ThreadsFlag, ThreadsChangeNoBitOfAnyResult) {
   }
 }
 
+/// What a replay wrote, and what it counted.
+struct Replayed {
+  std::string files;  ///< hashes of contacts and timelines
+  nlohmann::json counts;
+};
+
+class RunsOfFrames : public test::CommandLineTest {
+ protected:
+  /// `flags` are those of the detector.
+  Replayed replay(const std::string& trace, const std::string& flags, int threads) {
+    const test::Outcome outcome = run(fmt::format(
+        "rm -rf out && mkdir out && vestige replay -q --force {} {} --threads {} --contacts out/contacts.csv "
+        "--timeline out/timeline.csv --json run.json && sha256sum out/*",
+        trace, flags, threads));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.standard_error;
+    Replayed replayed = {outcome.standard_output, json_of("cat run.json")};
+    for (const char* field : {"argv", "time", "threads", "reading_s", "detection_s", "hz"})
+      replayed.counts.erase(field);
+    return replayed;
+  }
+
+  void expect_same_with_any_threads(const std::string& trace, const std::string& flags) {
+    const Replayed one = replay(trace, flags, 1);
+    EXPECT_GT(one.counts["contacts"], 0) << flags;
+    for (const int threads : {2, 3, 7}) {
+      const Replayed several = replay(trace, flags, threads);
+      EXPECT_EQ(several.files, one.files) << flags << " " << threads;
+      EXPECT_EQ(several.counts, one.counts) << flags << " " << threads;
+    }
+  }
+};
+
+// At 1 kHz, what a frame found apart is not looked at again in the next.
+TEST_F(RunsOfFrames, ThreadsChangeNoWorkEither) {
+  ASSERT_EQ(run(fmt::format("vestige record -q --animation walk --colliders hug --count 20 --rate 1000 --duration {} "
+                            "-o trace.mcap",
+                            kSeconds))
+                .exit_code,
+            0);
+  for (const char* method : {"static", "carried", "ccd"})
+    expect_same_with_any_threads("trace.mcap", fmt::format("--detector cpu --method {}", method));
+}
+
+TEST_F(RunsOfFrames, ThreadsChangeNoWorkOfSeveralPeople) {
+  ASSERT_EQ(run(fmt::format("vestige record -q --avatar builtin --avatar builtin --at 1,0,0 --colliders swarm "
+                            "--count 40 --rate 1000 --duration {} -o trace.mcap",
+                            kSeconds))
+                .exit_code,
+            0);
+  expect_same_with_any_threads("trace.mcap", "--detector cpu");
+}
+
+TEST_F(RunsOfFrames, AreCutWhereADamagedChunkIsMissing) {
+  ASSERT_EQ(
+      run(fmt::format("vestige record -q --colliders hug --count 20 --rate 1000 --duration {} -o trace.mcap", kSeconds))
+          .exit_code,
+      0);
+  ASSERT_EQ(run("python3 -c \"d=bytearray(open('trace.mcap','rb').read()); h=len(d)//2; d[h:h+64]=bytes(64); "
+                "open('damaged.mcap','wb').write(d)\"")
+                .exit_code,
+            0);
+  const std::string command = "vestige replay damaged.mcap --force --contacts contacts{0}.csv --threads {0}";
+  const test::Outcome one = run(fmt::format(fmt::runtime(command), 1));
+  EXPECT_EQ(one.exit_code, 3);
+  for (const int threads : {2, 7}) {
+    const test::Outcome several = run(fmt::format(fmt::runtime(command), threads));
+    EXPECT_EQ(several.exit_code, one.exit_code);
+    EXPECT_EQ(several.standard_error, one.standard_error);
+    EXPECT_EQ(run(fmt::format("cmp contacts1.csv contacts{}.csv", threads)).exit_code, 0);
+  }
+}
+
+TEST_F(RunsOfFrames, EndWithTheSameErrorOnAFullDisk) {
+  ASSERT_EQ(
+      run(fmt::format("vestige record -q --colliders hug --count 50 --rate 1000 --duration {} -o trace.mcap", kSeconds))
+          .exit_code,
+      0);
+  for (const char* file : {"--contacts", "--timeline"}) {
+    const std::string command = fmt::format("timeout 60 vestige replay -q trace.mcap {} /dev/full --threads ", file);
+    const test::Outcome one = run(command + "1");
+    EXPECT_EQ(one.exit_code, 1);
+    EXPECT_THAT(one.standard_error, HasSubstr("No space left"));
+    for (const char* threads : {"2", "7"}) {
+      const test::Outcome several = run(command + threads);
+      EXPECT_EQ(several.exit_code, one.exit_code) << file;
+      EXPECT_EQ(several.standard_error, one.standard_error) << file;
+    }
+  }
+}
+
 TEST_F(ThreadsFlag, AComparisonRunsOnThemToo) {
   ASSERT_EQ(run(fmt::format("vestige record -q --count 30 --rate 120 --duration {} -o trace.mcap", kSeconds)).exit_code,
             0);

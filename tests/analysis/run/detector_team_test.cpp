@@ -63,7 +63,8 @@ class FailingDetector : public Detector {
 TEST(DetectorTeamTest, PassesOnWhatADetectorThrewOnAnyThread) {
   DetectorTeam team(3, [] { return only(std::make_unique<FailingDetector>()); });
   FrameBatch batch;
-  for (int i = 0; i < 20; ++i) batch.add(DetectorFrame());
+  DetectorFrame frame;
+  for (; frame.index < 20; ++frame.index) batch.add(frame);
   team.start(batch);
   EXPECT_THROW(team.finish(), std::runtime_error);
 }
