@@ -108,6 +108,10 @@ bool is_approximate(const std::string& detector) {
   return detector == "boxes" || detector == "capsules" || detector == "decimated";
 }
 
+bool needs_opengl(const std::string& detector) {
+  return detector == "paper" || detector == "geometry" || detector == "compute";
+}
+
 bool takes_radii(const std::string& detector) {
   return detector == "cpu" || detector == "geometry" || detector == "compute" || detector == "exact" ||
          is_approximate(detector);

@@ -67,6 +67,7 @@ ContextKind context_kind(const std::string& context);
 const std::vector<std::string>& detector_names();
 /// Whether a detector puts simpler shapes in place of the avatar's skin.
 bool is_approximate(const std::string& detector);
+bool needs_opengl(const std::string& detector);
 /// Whether a detector tests spheres. The others test the paths of their centres.
 bool takes_radii(const std::string& detector);
 /// Warns of detectors that ignore the radii of colliders, of which `spheres` have one. `scene` is the name of what they

@@ -25,10 +25,6 @@ std::vector<std::string> contestant_names() {
   return names;
 }
 
-bool needs_opengl(const std::string& detector) {
-  return detector == "paper" || detector == "geometry" || detector == "compute";
-}
-
 /// The planes to measure a detector with: only `paper` renders each into a target of its own.
 std::vector<PlaneSet> planes_of(const std::string& detector, const ContestantChoice& choice) {
   if (detector != "paper") return {PlaneSet()};

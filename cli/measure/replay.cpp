@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,7 @@ namespace vestige::cli {
 
 namespace {
 
+constexpr std::uint64_t kMostThreads = 256;
 constexpr const char* kIntensityGroup = "Intensity";
 
 struct NamedPlane {
@@ -50,6 +52,14 @@ constexpr NamedPlane kPlaneNames[] = {
     {"pressure", Plane::kPressure},
     {"depth", Plane::kDepth},
 };
+
+/// Returns how many threads run if --threads is not given: one measures a frequency, and files are wanted soon.
+/// Contexts of OpenGL share one GPU.
+std::size_t default_threads(const ReplayOptions& options) {
+  const bool writes = !options.contacts.empty() || !options.textures.empty() || !options.timeline.empty();
+  if (!writes || needs_opengl(options.choice.detector) || needs_opengl(options.verify)) return 1;
+  return std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMostThreads);
+}
 
 PlaneSet parse_planes(const std::string& text) {
   PlaneSet planes;
@@ -271,11 +281,12 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   verb->add_option("TRACE", options->trace, "The trace, or '-' for standard input")->required();
   add_detector_and_context(*verb, options->choice);
   add_detector_options(*verb, options->choice);
-  verb->add_option("--threads", options->threads,
-                   "Number of processor threads that detect, frame by frame; the result is the same")
+  verb->add_option(
+          "--threads", options->threads,
+          "Number of processor threads; the result is the same; of several, Hz counts reading and writing, too "
+          "[default: 1; all cores if contacts, textures or a timeline are asked of detectors without OpenGL]")
       ->group(kDetectorGroup)
-      ->capture_default_str()
-      ->check(help::whole_number(1, 256));
+      ->check(help::whole_number(1, kMostThreads));
   const auto add_result = [&](const char* name, auto& value, const std::string& description) {
     return verb->add_option(name, value, description)->group("Results");
   };
@@ -321,7 +332,10 @@ void add_replay(CLI::App& program, Invocation& invocation) {
   verb->get_option("--planes")->needs(verb->get_option("--textures"));
   for (CLI::Option* option : verb->get_options())
     if (option->get_group() == kIntensityGroup) option->needs(verb->get_option("--timeline"));
-  verb->callback([options, &invocation] { run_replay(*options, invocation); });
+  verb->callback([options, &invocation] {
+    if (options->threads == 0) options->threads = default_threads(*options);
+    run_replay(*options, invocation);
+  });
 }
 
 }  // namespace vestige::cli

@@ -15,7 +15,7 @@ struct ReplayOptions {
   CommonOptions common;
   DetectorChoice choice;
   std::string trace;
-  std::size_t threads = 1;
+  std::size_t threads = 0;  ///< 0: the verb chooses
   LawFlags law;
   std::vector<std::string> maps;
   std::vector<std::string> map_at;

@@ -155,9 +155,10 @@ std::string summary(const ReplayResult& result, const ReplayRun& run) {
   const GlInfo gl = detector.gl_info();
   const std::string where = gl.context.empty() ? "" : fmt::format(" on {} ({})", gl.context, gl.renderer);
   std::string text =
-      fmt::format("{}{}{}: {}, {}, {}, {:.0f} Hz\n", detector.name(), detector.is_approximate() ? " (approximate)" : "",
-                  where, counted(result.frames, "frame"), counted(run.colliders, "collider"),
-                  counted(result.contacts, "contact"), static_cast<double>(result.frames) / result.detection_s);
+      fmt::format("{}{}{}: {}, {}, {}, {:.0f} Hz (threads: {})\n", detector.name(),
+                  detector.is_approximate() ? " (approximate)" : "", where, counted(result.frames, "frame"),
+                  counted(run.colliders, "collider"), counted(result.contacts, "contact"),
+                  static_cast<double>(result.frames) / result.detection_s, run.options.threads);
   if (run.picked) text += fmt::format("picked {} ({})\n", describe_picked(*run.picked), run.picked->why);
   const std::vector<TracedPerson>& people = run.trace.people;
   for (std::size_t i = 0; i < people.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <nlohmann/json.hpp>
@@ -142,6 +143,21 @@ TEST_F(RunsOfFrames, EndWithTheSameErrorOnAFullDisk) {
       EXPECT_EQ(several.standard_error, one.standard_error) << file;
     }
   }
+}
+
+TEST_F(ThreadsFlag, WithoutItFilesTakeAllCoresAndAFrequencyTakesOne) {
+  ASSERT_EQ(run("vestige record -q --count 5 --rate 100 --duration 0.2 -o trace.mcap").exit_code, 0);
+  const auto threads = [&](const std::string& flags) {
+    return json_of("vestige replay trace.mcap --force --json - " + flags)["threads"].get<unsigned>();
+  };
+  const unsigned cores = std::min(256U, std::thread::hardware_concurrency());
+  EXPECT_EQ(threads(""), 1U);
+  for (const char* file : {"--contacts out.csv", "--timeline out.csv", "--textures out.exr"})
+    EXPECT_EQ(threads(file), cores) << file;
+  EXPECT_EQ(threads("--detector geometry --contacts out.csv"), 1U);
+  EXPECT_EQ(threads("--contacts out.csv --verify geometry"), 1U);
+  EXPECT_THAT(run("vestige replay trace.mcap --force --contacts out.csv").standard_output,
+              HasSubstr(fmt::format("Hz (threads: {})\n", cores)));
 }
 
 TEST_F(ThreadsFlag, AComparisonRunsOnThemToo) {
