@@ -45,7 +45,7 @@ class BatchSize {
   }
 
   void took(double batch_s) {
-    if (batch_s < 0.01) runs_ = std::min(2 * runs_, most_);
+    if (batch_s < 2e-3) runs_ = std::min(2 * runs_, most_);
     if (batch_s > 0.1) runs_ = std::max(runs_ / 2, least_);
   }
 
