@@ -117,6 +117,7 @@ class MappedSkinDetector final : public Detector {
   const char* name() const override { return detector_->name(); }
   Method method() const override { return detector_->method(); }
   Skip skip() const override { return detector_->skip(); }
+  std::uint64_t run_length() const override { return detector_->run_length(); }
   bool is_approximate() const override { return detector_->is_approximate(); }
   GlInfo gl_info() const override { return detector_->gl_info(); }
   bool skins_in_shader() const override { return detector_->skins_in_shader(); }

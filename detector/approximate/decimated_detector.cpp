@@ -102,6 +102,7 @@ class DecimatedDetector final : public Detector {
 
   const char* name() const override { return "decimated"; }
   Method method() const override { return detector_->method(); }
+  std::uint64_t run_length() const override { return detector_->run_length(); }
   bool is_approximate() const override { return true; }
   std::optional<std::size_t> triangles_kept() const override { return simple_.triangles.size(); }
 

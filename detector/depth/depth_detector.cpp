@@ -19,6 +19,7 @@ class DepthDetector final : public Detector {
   const char* name() const override { return detector_->name(); }
   Method method() const override { return detector_->method(); }
   Skip skip() const override { return detector_->skip(); }
+  std::uint64_t run_length() const override { return detector_->run_length(); }
   bool is_approximate() const override { return detector_->is_approximate(); }
   std::optional<std::size_t> triangles_kept() const override { return detector_->triangles_kept(); }
   GlInfo gl_info() const override { return detector_->gl_info(); }
