@@ -28,7 +28,7 @@ static_assert(offsetof(ColliderMove, radius_m) == offsetof(ColliderMove, end_m) 
 static_assert(offsetof(Segment, end) == offsetof(Segment, start) + 3 * sizeof(float));
 static_assert(offsetof(Segment, radius_m) == offsetof(Segment, end) + 3 * sizeof(float));
 
-LeftOut make_segments(std::span<const ColliderMove> moves, const SegmentPlace& place, std::vector<Segment>& out) {
+SegmentCounts make_segments(std::span<const ColliderMove> moves, const SegmentPlace& place, std::vector<Segment>& out) {
   const D d;
   const hn::Rebind<float, D> as_float;
   alignas(32) const std::array<double, 4> origin_m = {place.origin_m.x, place.origin_m.y, place.origin_m.z, 0};
@@ -36,13 +36,15 @@ LeftOut make_segments(std::span<const ColliderMove> moves, const SegmentPlace& p
   alignas(16) const std::array<float, 4> reach_m = {place.reach_m.x, place.reach_m.y, place.reach_m.z, kAny};
   alignas(16) constexpr std::array<float, 4> kRange_m = {kLargestCollider_m, kLargestCollider_m, kLargestCollider_m,
                                                          kAny};
-  LeftOut left;
+  alignas(16) const std::array<float, 4> long_m = {place.long_m, place.long_m, place.long_m, kAny};
+  SegmentCounts counts;
   out.resize(moves.size());
   std::size_t count = 0;
   for (const ColliderMove& move : moves) {
     if (move.owner == place.left_owner) continue;
     bool in_range = true;
     bool is_beyond = false;
+    bool is_long = false;
     Segment& segment = out[count];
     const auto radius = hn::Set(as_float, bounding_radius_m(static_cast<float>(move.radius_m)));
     // From the back, so that the end's x comes after what is stored behind the start.
@@ -58,16 +60,19 @@ LeftOut make_segments(std::span<const ColliderMove> moves, const SegmentPlace& p
       const auto above = hn::Gt(hn::Min(start, end), reach);
       const auto below = hn::Lt(hn::Max(start, end), hn::Neg(reach));
       is_beyond = is_beyond || !hn::AllFalse(as_float, hn::Or(above, below));
+      const auto way = hn::Abs(hn::Sub(end, start));
+      is_long = is_long || !hn::AllFalse(as_float, hn::Gt(way, hn::Load(as_float, &long_m[i])));
       hn::StoreU(start, as_float, &segment.start.x + i);
       hn::StoreU(end, as_float, &segment.end.x + i);
     }
     segment.column = move.column;
-    left.out_of_range += in_range ? 0U : 1U;
-    left.out_of_reach += in_range && is_beyond ? 1U : 0U;
+    counts.out_of_range += in_range ? 0U : 1U;
+    counts.out_of_reach += in_range && is_beyond ? 1U : 0U;
+    counts.long_segments += in_range && !is_beyond && is_long ? 1U : 0U;
     count += in_range && !is_beyond ? 1U : 0U;  // without a branch, which nobody could foretell
   }
   out.resize(count);
-  return left;
+  return counts;
 }
 
 }  // namespace HWY_NAMESPACE
@@ -83,7 +88,8 @@ HWY_EXPORT(make_segments);
 
 }  // namespace
 
-LeftOut build_segments(std::span<const ColliderMove> moves, const SegmentPlace& place, std::vector<Segment>& out) {
+SegmentCounts build_segments(std::span<const ColliderMove> moves, const SegmentPlace& place,
+                             std::vector<Segment>& out) {
   return HWY_DYNAMIC_DISPATCH(make_segments)(moves, place, out);
 }
 

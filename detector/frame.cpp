@@ -78,8 +78,9 @@ const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame, const Col
   const bool before_in_reach = method_ == Method::kStatic || reach_before_m.has_value();
   constexpr double kRounding = 1.001;  // of vertices, and of what starts are carried by: less than 2^-20 of the reach
   glm::dvec3 all_m = glm::max(reach_m.value_or(glm::dvec3(0)), reach_before_m.value_or(glm::dvec3(0)));
-  if (method_ == Method::kCarried) all_m += carried_m();
-  reach_m_ = glm::vec3(all_m * kRounding);
+  const glm::dvec3 moved_m = method_ == Method::kCarried ? carried_m() : glm::dvec3(0);
+  frame_.carried_m = method_ == Method::kCarried ? glm::vec3(moved_m * kRounding + all_m * 0x1p-19) : glm::vec3(0);
+  frame_.reach_m = glm::vec3((all_m + moved_m) * kRounding);
   take_segments(colliders.moves());
   if (!in_reach || (!before_in_reach && before_was_in_reach_)) {
     ++non_finite_frames_;
@@ -88,6 +89,7 @@ const DetectorFrame& FrameBuilder::next(const TraceFrame& trace_frame, const Col
   if (!in_reach || !before_in_reach) {
     frame_.segments.clear();
     frame_.out_of_reach = 0;
+    frame_.long_segments = 0;
   }
   before_was_in_reach_ = in_reach;
   return frame_;
@@ -133,12 +135,14 @@ void FrameBuilder::follow_origin(const Pose& pose) {
 }
 
 void FrameBuilder::take_segments(std::span<const ColliderMove> moves) {
-  const glm::vec3 reach_m = skip_ == Skip::kOn ? reach_m_ : glm::vec3(std::numeric_limits<float>::infinity());
+  const glm::vec3 reach_m = skip_ == Skip::kOn ? frame_.reach_m : glm::vec3(std::numeric_limits<float>::infinity());
   const auto owner = static_cast<std::uint16_t>(person_ + 1);
-  const LeftOut left = build_segments(moves, {frame_.origin_m, reach_m, owner}, frame_.segments);
-  frame_.out_of_reach = left.out_of_reach;
-  non_finite_segments_ += left.out_of_range;
-  if (left.out_of_range > 0) note_non_finite();
+  const SegmentCounts counts =
+      build_segments(moves, {frame_.origin_m, reach_m, owner, long_way_m(frame_.reach_m)}, frame_.segments);
+  frame_.out_of_reach = counts.out_of_reach;
+  frame_.long_segments = counts.long_segments;
+  non_finite_segments_ += counts.out_of_range;
+  if (counts.out_of_range > 0) note_non_finite();
 }
 
 }  // namespace vestige

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <glm/mat4x4.hpp>
@@ -53,7 +54,15 @@ struct DetectorFrame {
   std::vector<SkinMatrix> palette_before;  ///< of the previous frame, relative to this frame's origin
   std::vector<Segment> segments;           ///< by ascending columns, at most one for each column
   std::size_t out_of_reach = 0;            ///< segments that were left out, as they cannot meet the skin
+  std::size_t long_segments = 0;           ///< segments that are longer than `long_way_m` along an axis
+  glm::vec3 reach_m = glm::vec3(0);        ///< no contact is farther from the origin along an axis
+  glm::vec3 carried_m = glm::vec3(0);      ///< kCarried: no start is carried farther along an axis
 };
+
+/// Longer ways are worth to be cut to where the skin can be: they are long against its parts.
+inline float long_way_m(const glm::vec3& reach_m) {
+  return std::max({reach_m.x, reach_m.y, reach_m.z}) * 0x1p-4F;
+}
 
 /// Converts the frames of a trace to the input of a detector: the segments between consecutive frames, and a palette.
 /// Both are relative to a whole-metre origin that follows the avatar. A trace of several people needs one for each.
@@ -92,7 +101,6 @@ class FrameBuilder {
   Method method_;
   std::size_t person_;
   Skip skip_;
-  glm::vec3 reach_m_ = glm::vec3(0);  ///< segments that stay beyond it along an axis cannot meet the skin
   std::vector<glm::dmat4> world_;
   std::vector<glm::dmat4> world_before_;
   glm::dvec3 pose_origin_before_m_ = glm::dvec3(0);

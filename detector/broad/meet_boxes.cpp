@@ -9,6 +9,7 @@
 #include <hwy/highway.h>
 
 #include "detector/broad/mask_bits-inl.hpp"
+#include "detector/ways/cross_axes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace vestige {
@@ -39,6 +40,27 @@ void meet_block(std::span<const SkinBox> boxes, const float* ends, std::size_t s
     for (std::size_t k = 0; k < boxes.size(); ++k) meets[k] &= (1U << count) - 1;
 }
 
+void cut_block(std::span<const SkinBox> boxes, const float* axes, std::size_t stride, std::size_t count,
+               std::uint32_t* meets) {
+  using Lanes = hn::CappedTag<float, 16>;
+  const Lanes d;
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    if (meets[k] == 0) continue;
+    const SkinBox& box = boxes[k];
+    const Triple<Lanes> low = {hn::Set(d, box.low.x), hn::Set(d, box.low.y), hn::Set(d, box.low.z)};
+    const Triple<Lanes> high = {hn::Set(d, box.high.x), hn::Set(d, box.high.y), hn::Set(d, box.high.z)};
+    const BoxLanes<Lanes> lanes = box_lanes(d, low, high);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+      const auto three = [&](std::size_t first) -> Triple<Lanes> {
+        const float* at = axes + first * stride + i;
+        return {hn::LoadU(d, at), hn::LoadU(d, at + stride), hn::LoadU(d, at + 2 * stride)};
+      };
+      const AxesLanes<Lanes> of_segments = {three(0), three(3), three(6)};
+      meets[k] &= ~(mask_bits(d, are_beside(d, lanes, of_segments)) << i);
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace vestige
 HWY_AFTER_NAMESPACE();
@@ -47,10 +69,16 @@ HWY_AFTER_NAMESPACE();
 namespace vestige {
 
 HWY_EXPORT(meet_block);
+HWY_EXPORT(cut_block);
 
 void meet_boxes(std::span<const SkinBox> boxes, const float* ends, std::size_t stride, std::size_t count,
                 std::uint32_t* meets) {
   HWY_DYNAMIC_DISPATCH(meet_block)(boxes, ends, stride, count, meets);
+}
+
+void meet_cut_segments(std::span<const SkinBox> boxes, const float* axes, std::size_t stride, std::size_t count,
+                       std::uint32_t* meets) {
+  HWY_DYNAMIC_DISPATCH(cut_block)(boxes, axes, stride, count, meets);
 }
 
 }  // namespace vestige

@@ -24,4 +24,9 @@ inline constexpr std::size_t kBoxBlock = 32;
 void meet_boxes(std::span<const SkinBox> boxes, const float* ends, std::size_t stride, std::size_t count,
                 std::uint32_t* meets);
 
+/// Takes away bits from the `meets` of `meet_boxes`: those of boxes i around cut segments that miss boxes[k]. `axes`
+/// holds the CrossAxes of all i, laid out as `ends`.
+void meet_cut_segments(std::span<const SkinBox> boxes, const float* axes, std::size_t stride, std::size_t count,
+                       std::uint32_t* meets);
+
 }  // namespace vestige

@@ -10,15 +10,21 @@ static_assert(kMeshletFanout <= SegmentBoxes::kMostTested);
 MeshletCandidates::MeshletCandidates(const Avatar& avatar, const Meshlets& meshlets)
     : meshlets_(meshlets), bounds_(avatar, meshlets), segments_of_level_(meshlets.levels() + 1) {}
 
-void MeshletCandidates::find(const DetectorFrame& frame, Method method) {
+void MeshletCandidates::find(const DetectorFrame& frame, const Ways& ways, Method method) {
   touched_.clear();
   segments_.clear();
   const std::size_t levels = meshlets_.levels();
-  if (levels == 0 || frame.segments.empty()) return;
+  if (levels == 0 || ways.segments.empty()) return;
   bounds_.begin(frame, method);
-  for (SegmentBoxes& segments : segments_of_level_) segments.reset(frame.segments.size());
-  for (std::size_t i = 0; i < frame.segments.size(); ++i)
-    segments_of_level_[levels].add(frame.segments[i], static_cast<std::uint32_t>(i));
+  for (SegmentBoxes& segments : segments_of_level_) segments.reset(ways.segments.size(), !ways.are_cut.empty());
+  SegmentBoxes& all = segments_of_level_[levels];
+  for (std::uint32_t i = 0; i < ways.segments.size(); ++i) {
+    if (ways.is_cut(i)) {
+      all.add_cut(ways.segments[i], i);
+    } else {
+      all.add(ways.segments[i], i);
+    }
+  }
   descend(levels, 0);
 }
 

@@ -10,6 +10,7 @@
 #include "detector/broad/segment_boxes.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
+#include "detector/ways/cut_ways.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
@@ -28,7 +29,8 @@ class MeshletCandidates {
   /// Keeps a reference to `meshlets`.
   MeshletCandidates(const Avatar& avatar, const Meshlets& meshlets);
 
-  void find(const DetectorFrame& frame, Method method);
+  /// `ways` are the frame's, all of its segments.
+  void find(const DetectorFrame& frame, const Ways& ways, Method method);
 
   /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
   std::span<const TouchedMeshlet> touched() const { return touched_; }

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "detector/broad/mask_bits-inl.hpp"
+#include "detector/ways/cross_axes-inl.hpp"
 
 // Boxes. Those of `static` and `ccd` are not rounded. For `carried`, the displacement m moves a start, which is then
 // rounded to fp32. The moved start is at or above `low` only if the start was at or above low - m. Let M be the largest
@@ -30,6 +31,9 @@
 //
 // Spheres. A sphere of radius r misses if its centre is more than r away from the slab: the same comparison with r |n|
 // more on the segment's side. r is taken 2^-20 larger, which covers the rounding of |n| and of the product.
+//
+// Cut segments. The two slabs are those at the times of the segment's own ends, between which it changes linearly. A
+// cut segment's ends are at any times, so both are compared with the slab that contains the two.
 HWY_BEFORE_NAMESPACE();
 namespace vestige {
 namespace HWY_NAMESPACE {
@@ -164,42 +168,70 @@ void bound_triangles(const MeshletCorners& now, const MeshletCorners& before, Me
   }
 }
 
+/// Returns the axes in all lanes.
+inline AxesLanes<D> everywhere(const CrossAxes& axes) {
+  const auto three = [](const glm::vec3& v) -> Triple<D> {
+    const Vector all = everywhere(v);
+    return {all.x, all.y, all.z};
+  };
+  return {three(axes.way), three(axes.moment), three(axes.spare)};
+}
+
+/// A segment, in the forms that are compared.
+struct Tested {
+  const Segment& segment;
+  SegmentBox box;
+  bool is_cut;
+  CrossAxes axes;  ///< if it is cut
+};
+
 /// Returns a word whose bit k says whether triangle i + k may meet the segment.
-inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Segment& segment, const SegmentBox& box,
-                               std::size_t i) {
+inline std::uint32_t meet_some(const MeshletTriangles::Bounds& bounds, const Tested& tested, std::size_t i) {
   const D d;
   const auto number = [&](const MeshletTriangles::Numbers& numbers) { return hn::Load(d, &numbers[i]); };
   auto apart = hn::FirstN(d, 0);
   for (int axis = 0; axis < 3; ++axis) {
     const auto place = static_cast<std::size_t>(axis);
-    apart = hn::Or(apart, hn::Gt(number(bounds.low[place]), hn::Set(d, box.high[axis])));
-    apart = hn::Or(apart, hn::Lt(number(bounds.high[place]), hn::Set(d, box.low[axis])));
+    apart = hn::Or(apart, hn::Gt(number(bounds.low[place]), hn::Set(d, tested.box.high[axis])));
+    apart = hn::Or(apart, hn::Lt(number(bounds.high[place]), hn::Set(d, tested.box.low[axis])));
+  }
+  std::array<V, 2> slab_low = {number(bounds.slab_low[0]), number(bounds.slab_low[1])};
+  std::array<V, 2> slab_high = {number(bounds.slab_high[0]), number(bounds.slab_high[1])};
+  if (tested.is_cut) {
+    const auto three = [&](const std::array<MeshletTriangles::Numbers, 3>& numbers) -> Triple<D> {
+      return {number(numbers[0]), number(numbers[1]), number(numbers[2])};
+    };
+    const BoxLanes<D> boxes = box_lanes(d, three(bounds.low), three(bounds.high));
+    apart = hn::Or(apart, are_beside(d, boxes, everywhere(tested.axes)));
+    slab_low.fill(hn::Min(slab_low[0], slab_low[1]));
+    slab_high.fill(hn::Max(slab_high[0], slab_high[1]));
   }
   auto meets = hn::Not(apart);
   if (hn::AllFalse(d, meets)) return 0;
   const Vector normal = {number(bounds.normal[0]), number(bounds.normal[1]), number(bounds.normal[2])};
+  const Segment& segment = tested.segment;
   const Vector start = everywhere(segment.start);
   const Vector end = everywhere(segment.end);
   V margin = margin_of(dot(magnitude(normal), greatest(magnitude(start), magnitude(end))));
   if (segment.is_sphere()) margin = hn::Add(margin, reach_along(normal, segment));
   const V along_start = dot(normal, start);
   const V along_end = dot(normal, end);
-  const auto above = hn::And(hn::Gt(hn::Sub(along_start, margin), number(bounds.slab_high[0])),
-                             hn::Gt(hn::Sub(along_end, margin), number(bounds.slab_high[1])));
-  const auto below = hn::And(hn::Lt(hn::Add(along_start, margin), number(bounds.slab_low[0])),
-                             hn::Lt(hn::Add(along_end, margin), number(bounds.slab_low[1])));
+  const auto above =
+      hn::And(hn::Gt(hn::Sub(along_start, margin), slab_high[0]), hn::Gt(hn::Sub(along_end, margin), slab_high[1]));
+  const auto below =
+      hn::And(hn::Lt(hn::Add(along_start, margin), slab_low[0]), hn::Lt(hn::Add(along_end, margin), slab_low[1]));
   meets = hn::AndNot(hn::Or(above, below), meets);
   return mask_bits(d, meets);
 }
 
-void meet_triangles(const MeshletTriangles::Bounds& bounds, std::span<const Segment> segments,
-                    std::span<const std::uint32_t> numbers, std::uint32_t* meets) {
+void meet_triangles(const MeshletTriangles::Bounds& bounds, const Ways& ways, std::span<const std::uint32_t> numbers,
+                    std::uint32_t* meets) {
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     meets[k] = 0;
-    const Segment& segment = segments[numbers[k]];
-    const SegmentBox box = box_of(segment);
-    for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(D()))
-      meets[k] |= meet_some(bounds, segment, box, i) << i;
+    const Segment& segment = ways.segments[numbers[k]];
+    const bool is_cut = ways.is_cut(numbers[k]);
+    const Tested tested = {segment, box_of(segment), is_cut, is_cut ? cross_axes(segment) : CrossAxes()};
+    for (std::size_t i = 0; i < kMeshletTriangles; i += hn::Lanes(D())) meets[k] |= meet_some(bounds, tested, i) << i;
   }
 }
 
@@ -252,9 +284,8 @@ void MeshletTriangles::bound(const MeshletCorners& now, const MeshletCorners& be
   HWY_DYNAMIC_DISPATCH(bound_triangles)(now, before, method, bounds_);
 }
 
-void MeshletTriangles::meet(std::span<const Segment> segments, std::span<const std::uint32_t> numbers,
-                            std::uint32_t* meets) const {
-  HWY_DYNAMIC_DISPATCH(meet_triangles)(bounds_, segments, numbers, meets);
+void MeshletTriangles::meet(const Ways& ways, std::span<const std::uint32_t> numbers, std::uint32_t* meets) const {
+  HWY_DYNAMIC_DISPATCH(meet_triangles)(bounds_, ways, numbers, meets);
 }
 
 void find_triangle_gaps(std::span<TriangleGap> gaps) {

@@ -9,6 +9,7 @@
 #include "detector/broad/meshlets.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
+#include "detector/ways/cut_ways.hpp"
 
 namespace vestige {
 
@@ -31,9 +32,9 @@ class MeshletTriangles {
   /// `kStatic` does not read `before`.
   void bound(const MeshletCorners& now, const MeshletCorners& before, Method method);
 
-  /// Bit i of meets[k] says whether triangle i may meet segments[numbers[k]]. Bits after the meshlet's last triangle
+  /// Bit i of meets[k] says whether triangle i may meet segment numbers[k]. Bits after the meshlet's last triangle
   /// have no meaning.
-  void meet(std::span<const Segment> segments, std::span<const std::uint32_t> numbers, std::uint32_t* meets) const;
+  void meet(const Ways& ways, std::span<const std::uint32_t> numbers, std::uint32_t* meets) const;
 
   const Bounds& bounds() const { return bounds_; }
 

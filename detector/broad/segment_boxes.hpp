@@ -19,10 +19,13 @@ class SegmentBoxes {
   /// Largest number of boxes that `test` takes at once.
   static constexpr std::size_t kMostTested = 8;
 
-  /// Removes all segments, and makes room for `capacity` of them.
-  void reset(std::size_t capacity);
+  /// Removes all segments, and makes room for `capacity` of them. With `are_some_cut`, `add_cut` may follow, and each
+  /// test costs more.
+  void reset(std::size_t capacity, bool are_some_cut = false);
 
   void add(const Segment& segment, std::uint32_t number);
+  /// Adds a segment that a WayCutter cut: it meets only boxes that it passes through, as far as its CrossAxes tell.
+  void add_cut(const Segment& segment, std::uint32_t number);
 
   /// Tests all segments against up to kMostTested boxes. The methods below return the results, until the next `add` or
   /// `test`.
@@ -46,9 +49,13 @@ class SegmentBoxes {
   bool take_met(const SegmentBoxes& from, std::size_t box);
 
  private:
+  static constexpr std::size_t kPlanes = 6;      ///< low x, y, z, high x, y, z
+  static constexpr std::size_t kCutPlanes = 15;  ///< and the numbers of CrossAxes
+
   std::size_t count_ = 0;
   std::size_t stride_ = 0;
-  std::vector<float> ends_;                                    ///< low x, y, z, high x, y, z: `stride_` values each
+  std::size_t planes_ = kPlanes;
+  std::vector<float> ends_;                                    ///< `planes_` planes of `stride_` values
   std::vector<std::uint32_t> number_;                          ///< number in the frame
   std::vector<std::array<std::uint32_t, kMostTested>> meets_;  ///< for each block of segments: the bits for each box
 };

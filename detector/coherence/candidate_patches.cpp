@@ -20,7 +20,8 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
   enter_stage(clock, Stage::kCandidates);
   ++calls_;
   work_ = DetectorWork();
-  is_anew_ = !search_.find(frame, method_);
+  ways_ = cutter_.cut(frame);
+  is_anew_ = !search_.find(frame, ways_, method_);
   if (is_anew_) {
     find_anew(frame, clock);
   } else {
@@ -33,6 +34,7 @@ void CandidatePatches::find(const DetectorFrame& frame, StageClock* clock) {
 
 void CandidatePatches::take_all(const DetectorFrame& frame, StageClock* clock) {
   enter_stage(clock, Stage::kSkinning);
+  ways_ = {frame.segments, {}};
   is_anew_ = false;
   work_ = DetectorWork();
   touched_.clear();
@@ -62,7 +64,7 @@ void CandidatePatches::count_pairs() {
 }
 
 void CandidatePatches::find_anew(const DetectorFrame& frame, StageClock* clock) {
-  anew_.find(frame, method_);
+  anew_.find(frame, ways_, method_);
   enter_stage(clock, Stage::kSkinning);
   for (std::size_t i = 0; i < touched().size(); ++i) skin(frame, touched()[i].meshlet, i);
 }

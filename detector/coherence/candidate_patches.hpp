@@ -14,6 +14,7 @@
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
 #include "detector/stages.hpp"
+#include "detector/ways/cut_ways.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
@@ -34,6 +35,8 @@ class CandidatePatches {
   /// Takes every segment and every meshlet for candidates. For detectors that do not skip.
   void take_all(const DetectorFrame& frame, StageClock* clock);
 
+  /// What was tested in place of the frame's segments. Valid while the frame is.
+  const Ways& ways() const { return ways_; }
   /// The meshlets of the last `find`, in ascending order. Each has at least one segment.
   std::span<const TouchedMeshlet> touched() const { return is_anew_ ? anew_.touched() : touched_; }
   /// Numbers in DetectorFrame::segments, ascending.
@@ -73,6 +76,8 @@ class CandidatePatches {
   MeshletSkin meshlet_skin_;
   MeshletCandidates anew_;
   CoherentSearch search_;
+  WayCutter cutter_;
+  Ways ways_;
   bool is_anew_ = false;  ///< the last `find`; then patches are by their number in touched_, else by meshlet
 
   std::uint64_t calls_ = 0;

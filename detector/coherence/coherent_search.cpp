@@ -116,7 +116,7 @@ bool CoherentSearch::begin(const DetectorFrame& frame, Method method) {
   return true;
 }
 
-bool CoherentSearch::find(const DetectorFrame& frame, Method method) {
+bool CoherentSearch::find(const DetectorFrame& frame, const Ways& ways, Method method) {
   pairs_.clear();
   roots_.clear();
   if (meshlets_.levels() == 0) return true;
@@ -126,7 +126,7 @@ bool CoherentSearch::find(const DetectorFrame& frame, Method method) {
     const Segment& segment = frame.segments[due_[i].segment];
     GapQuery& query = queries_[i];
     query.end = segment.end;
-    query.box = box_of(segment);
+    query.box = box_of(ways.segments[due_[i].segment]);
     query.reach_m = due_[i].way_m + bounding_radius_m(segment) + reserve_m_;
     query.own_clock = followers_[segment.column].own_clock;
     query.column = segment.column;

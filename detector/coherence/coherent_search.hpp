@@ -14,6 +14,7 @@
 #include "detector/coherence/part_motion.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
+#include "detector/ways/cut_ways.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {
@@ -42,9 +43,9 @@ class CoherentSearch {
   CoherentSearch(const Avatar& avatar, const Meshlets& meshlets);
 
   /// Finds the pairs of the frame that may meet, and some that are near. A pair that is not in `pairs` with `may_meet`
-  /// surely misses, bit for bit.
+  /// surely misses, bit for bit. `ways` are the frame's.
   /// Returns false, and forgets everything, if so much moves that looking at everything costs less.
-  bool find(const DetectorFrame& frame, Method method);
+  bool find(const DetectorFrame& frame, const Ways& ways, Method method);
 
   /// The pairs of the last `find`. Whoever knows a larger `gap_m` writes it there, before `learn`.
   std::span<NearPair> pairs() { return pairs_; }

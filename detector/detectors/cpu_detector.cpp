@@ -96,7 +96,7 @@ class SkippingCpuDetector final : public Detector {
     const std::span<const std::uint32_t> triangles = meshlets_.triangles(touched.meshlet);
     const MeshletPlaces meshlet = {candidates_.before(number), candidates_.now(number), triangles};
     meets_.resize(numbers.size());
-    candidates_.triangles(number).meet(frame.segments, numbers, meets_.data());
+    candidates_.triangles(number).meet(candidates_.ways(), numbers, meets_.data());
     for (std::size_t k = 0; k < numbers.size(); ++k) {
       const Segment& segment = frame.segments[numbers[k]];
       const std::uint32_t bits = meets_[k] & bits_of(triangles.size());

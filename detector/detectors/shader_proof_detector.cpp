@@ -80,10 +80,12 @@ class ShaderProofDetector final : public Detector {
  private:
   std::span<const std::uint32_t> prove(const DetectorFrame& frame) {
     context_->make_current();
+    // Otherwise the shader takes the ends' times for those of the frame.
+    const std::span<const Segment> tested =
+        method_ == Method::kStatic ? candidates_.ways().segments : std::span(frame.segments);
     prover_->begin(stage_clock());
     for (std::size_t i = 0; i < candidates_.touched().size(); ++i)
-      prover_->add(candidates_.now(i), candidates_.before(i), frame.segments,
-                   candidates_.segments(candidates_.touched()[i]));
+      prover_->add(candidates_.now(i), candidates_.before(i), tested, candidates_.segments(candidates_.touched()[i]));
     return prover_->finish();
   }
 

@@ -54,7 +54,7 @@ TEST(Segments, AreTheSameOnEveryInstructionSet) {
   std::uniform_real_distribution<double> number(-1, 1);
   const double odd[] = {
       std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e39, -3e38, 1e30, 5.0};
-  const SegmentPlace place = {glm::dvec3(3, -1, 2), glm::vec3(0.5, 0.9, 0.4), 2};
+  const SegmentPlace place = {glm::dvec3(3, -1, 2), glm::vec3(0.5, 0.9, 0.4), 2, 1.25F};
   std::vector<ColliderMove> moves(3000);
   for (std::uint32_t i = 0; i < moves.size(); ++i) {
     ColliderMove& move = moves[i];
@@ -66,7 +66,7 @@ TEST(Segments, AreTheSameOnEveryInstructionSet) {
     if (i % 50 == 0) move.end_m[static_cast<int>(i / 50 % 3)] = odd[i / 150 % std::size(odd)];
     if (i % 70 == 0) move.start_m[static_cast<int>(i / 70 % 3)] = odd[i / 210 % std::size(odd)];
   }
-  const auto expected_with = [&](const glm::vec3& reach_m, LeftOut& left) {
+  const auto expected_with = [&](const glm::vec3& reach_m, SegmentCounts& counts) {
     std::vector<Segment> segments;
     for (const ColliderMove& move : moves) {
       if (move.owner == place.left_owner) continue;
@@ -75,33 +75,40 @@ TEST(Segments, AreTheSameOnEveryInstructionSet) {
       const float radius_m = bounding_radius_m(segment);
       bool in_range = true;
       bool is_beyond = false;
+      bool is_long = false;
       for (int axis = 0; axis < 3; ++axis) {
         const float a = segment.start[axis];
         const float b = segment.end[axis];
         constexpr float kRange_m = std::numeric_limits<float>::max() / 2;
         in_range = in_range && std::abs(a) < kRange_m && std::abs(b) < kRange_m;
+        is_long = is_long || std::abs(b - a) > place.long_m;
         is_beyond =
             is_beyond || std::min(a, b) > reach_m[axis] + radius_m || std::max(a, b) < -(reach_m[axis] + radius_m);
       }
-      if (!in_range)
-        ++left.out_of_range;
-      else if (is_beyond)
-        ++left.out_of_reach;
-      else
+      if (!in_range) {
+        ++counts.out_of_range;
+      } else if (is_beyond) {
+        ++counts.out_of_reach;
+      } else {
+        counts.long_segments += is_long ? 1 : 0;
         segments.push_back(segment);
+      }
     }
     return segments;
   };
   for (const glm::vec3& reach_m : {place.reach_m, glm::vec3(std::numeric_limits<float>::infinity())}) {
-    LeftOut left;
-    const std::vector<Segment> expected = expected_with(reach_m, left);
-    EXPECT_GT(left.out_of_range, 20U);
-    EXPECT_EQ(left.out_of_reach > 100, std::isfinite(reach_m.x));
+    SegmentCounts counts;
+    const std::vector<Segment> expected = expected_with(reach_m, counts);
+    EXPECT_GT(counts.out_of_range, 20U);
+    EXPECT_GT(counts.long_segments, 100U);
+    EXPECT_EQ(counts.out_of_reach > 100, std::isfinite(reach_m.x));
     test::on_every_simd_target([&](const char* target) {
       std::vector<Segment> segments;
-      const LeftOut found = build_segments(moves, {place.origin_m, reach_m, place.left_owner}, segments);
-      EXPECT_EQ(found.out_of_range, left.out_of_range) << target;
-      EXPECT_EQ(found.out_of_reach, left.out_of_reach) << target;
+      const SegmentCounts found =
+          build_segments(moves, {place.origin_m, reach_m, place.left_owner, place.long_m}, segments);
+      EXPECT_EQ(found.out_of_range, counts.out_of_range) << target;
+      EXPECT_EQ(found.out_of_reach, counts.out_of_reach) << target;
+      EXPECT_EQ(found.long_segments, counts.long_segments) << target;
       ASSERT_EQ(segments.size(), expected.size()) << target;
       const auto differ = [](const Segment& a, const Segment& b) { return std::memcmp(&a, &b, sizeof(Segment)) != 0; };
       for (std::size_t i = 0; i < segments.size(); ++i)

@@ -69,7 +69,8 @@ TEST(Meshlets, OfAMeshWithoutTrianglesAreNone) {
   const Meshlets meshlets(empty);
   EXPECT_EQ(meshlets.size(), 0U);
   MeshletCandidates candidates(empty, meshlets);
-  candidates.find(test::frame_of(empty, {{0, {0, 0, 0}, {1, 1, 1}}}), Method::kStatic);
+  const DetectorFrame frame = test::frame_of(empty, {{0, {0, 0, 0}, {1, 1, 1}}});
+  candidates.find(frame, {frame.segments, {}}, Method::kStatic);
   EXPECT_TRUE(candidates.touched().empty());
 }
 
@@ -78,9 +79,11 @@ TEST(Meshlets, OfAMillionTrianglesInOnePlaceAreMadeAndBounded) {
       test::rigid_avatar({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<glm::uvec3>(1'000'000, {0, 1, 2}));
   const Meshlets meshlets(heap);
   MeshletCandidates candidates(heap, meshlets);
-  candidates.find(test::frame_of(heap, {{0, {0.2F, 0.2F, -1}, {0.2F, 0.2F, 1}}}), Method::kStatic);
+  const DetectorFrame through = test::frame_of(heap, {{0, {0.2F, 0.2F, -1}, {0.2F, 0.2F, 1}}});
+  candidates.find(through, {through.segments, {}}, Method::kStatic);
   EXPECT_EQ(candidates.touched().size(), meshlets.size());
-  candidates.find(test::frame_of(heap, {{0, {0.2F, 0.2F, 1}, {0.2F, 0.2F, 2}}}), Method::kStatic);
+  const DetectorFrame above = test::frame_of(heap, {{0, {0.2F, 0.2F, 1}, {0.2F, 0.2F, 2}}});
+  candidates.find(above, {above.segments, {}}, Method::kStatic);
   EXPECT_TRUE(candidates.touched().empty());
 }
 
@@ -351,7 +354,7 @@ RC_GTEST_PROP(MeshletTriangles, RejectNoPairThatMeets, ()) {
               method == Method::kCcd ? decide_ccd(way, corners_before, corners) : decide_static(way, corners);
           const std::uint32_t number = 0;
           std::uint32_t meets = 0;
-          triangles.meet(std::span(&segment, 1), std::span(&number, 1), &meets);
+          triangles.meet({std::span(&segment, 1), {}}, std::span(&number, 1), &meets);
           if (decision.contact) RC_ASSERT(((meets >> i) & 1U) == 1U);
         }
       }
@@ -372,7 +375,7 @@ TEST(MeshletTriangles, RejectMostOfWhatPassesCloseBy) {
   const std::vector<Segment> segments = {beside, through};
   const std::uint32_t numbers[] = {0, 1};
   std::uint32_t meets[2];
-  triangles.meet(segments, numbers, meets);
+  triangles.meet({segments, {}}, numbers, meets);
   EXPECT_EQ(meets[0] & 1U, 0U);
   EXPECT_EQ(meets[1] & 1U, 1U);
 }
@@ -391,7 +394,7 @@ TEST(MeshletCandidates, AreTheSameOnEveryInstructionSetAndLeaveOutNoPairWhoseBox
       using Pair = std::pair<std::size_t, std::uint32_t>;  // meshlet, segment
       std::vector<std::vector<Pair>> found;
       test::on_every_simd_target([&](const char*) {
-        candidates.find(frame, method);
+        candidates.find(frame, {frame.segments, {}}, method);
         auto& listed = found.emplace_back();
         for (const TouchedMeshlet& touched : candidates.touched())
           for (const std::uint32_t segment : candidates.segments(touched))

@@ -125,7 +125,7 @@ class SkippingFrame {
   template <typename Decide>
   const ContactRow& detect(const DetectorFrame& frame, Decide&& decide) {
     winners_.begin(frame);
-    candidates_.find(frame, Method::kStatic);
+    candidates_.find(frame, {frame.segments, {}}, Method::kStatic);
     for (const TouchedMeshlet& touched : candidates_.touched()) {
       skin_.skin(touched.meshlet, frame.palette, corners_);
       boxes_.bound(corners_, corners_, Method::kStatic);
