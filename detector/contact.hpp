@@ -54,9 +54,9 @@ class ContactRow {
   std::size_t hits() const { return static_cast<std::size_t>(std::ranges::count_if(contacts_, &Contact::hit)); }
   const Contact& operator[](std::size_t column) const { return contacts_[column]; }
   Contact& operator[](std::size_t column) {
-    constexpr std::size_t kMost = 16;  // beyond, it is as well to clear all
     if (!touched_.empty() && touched_.back() == column) return contacts_[column];
-    if (touched_.size() == kMost) {
+    const std::size_t most = std::max<std::size_t>(16, contacts_.size() / 16);  // beyond, it is as well to clear all
+    if (touched_.size() >= most) {
       all_touched_ = true;
     } else {
       touched_.push_back(column);
