@@ -73,15 +73,14 @@ INSTANTIATE_TEST_SUITE_P(Each, ProvingDetector,
                                   (std::get<2>(test.param) == Skip::kOn ? "_skipping" : "");
                          });
 
-/// Compares the two in a scenario whose colliders have this radius. Returns the number of contacts.
-std::uint64_t compare(Detector& prover, Detector& cpu, const Scenario& scenario, float radius_m) {
+/// Compares the two in a scene. Returns the number of contacts.
+std::uint64_t compare(Detector& prover, Detector& cpu, const std::vector<TraceFrame>& scene) {
   std::uint64_t contacts = 0;
   ContactRow row;
   ContactRow expected;
-  const std::uint32_t colliders = std::min(scenario.default_count, 40U);
+  const auto colliders = static_cast<std::uint32_t>(scene.front().colliders.size());
   FrameBuilder builder = test::frame_builder(builtin_avatar(), colliders, cpu.method());
-  for (TraceFrame& trace_frame : test::scene(scenario.name, builtin_avatar(), colliders, 12, 15)) {
-    for (ColliderSample& collider : trace_frame.colliders) collider.radius_m = radius_m;
+  for (const TraceFrame& trace_frame : scene) {
     const DetectorFrame& frame = builder.next(trace_frame);
     const DetectorWork work = prover.detect(frame, row);
     const DetectorWork expected_work = cpu.detect(frame, expected);
@@ -93,7 +92,7 @@ std::uint64_t compare(Detector& prover, Detector& cpu, const Scenario& scenario,
     EXPECT_EQ(work.frames_skipped, expected_work.frames_skipped);
     EXPECT_EQ(row.size(), expected.size());
     for (std::size_t i = 0; i < row.size(); ++i) {
-      EXPECT_TRUE(same(row[i], expected[i])) << scenario.name << ", frame " << frame.index << ", column " << i;
+      EXPECT_TRUE(same(row[i], expected[i])) << "frame " << frame.index << ", column " << i;
       if (row[i].hit()) ++contacts;
     }
   }
@@ -104,10 +103,30 @@ TEST_P(ProvingDetector, GivesTheBitsOfTheCpuInEveryScenario) {
   const auto prover = make_prover(builtin_avatar(), builtin_map());
   const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options(method(), skip()));
   for (const Scenario& scenario : scenarios()) {
+    const std::uint32_t colliders = std::min(scenario.default_count, 40U);
+    std::vector<TraceFrame> scene = test::scene(scenario.name, builtin_avatar(), colliders, 12, 15);
+    const auto contacts_with = [&](float radius_m) {
+      for (TraceFrame& frame : scene)
+        for (ColliderSample& collider : frame.colliders) collider.radius_m = radius_m;
+      return compare(*prover, *cpu, scene);
+    };
     const bool of_spheres = scenario.name == "rest" || scenario.name == "brush";  // their centres stay outside
     const bool moves = scenario.name != "still" || method() != Method::kStatic;   // a point rarely rests on the skin
-    EXPECT_EQ(compare(*prover, *cpu, scenario, 0) > 0, moves && !of_spheres) << scenario.name;
-    EXPECT_GT(compare(*prover, *cpu, scenario, of_spheres ? 0.05F : 0.03F), 0U) << scenario.name;
+    EXPECT_EQ(contacts_with(0) > 0, moves && !of_spheres) << scenario.name;
+    EXPECT_GT(contacts_with(of_spheres ? 0.05F : 0.03F), 0U) << scenario.name;
+  }
+}
+
+/// Each collider goes to and fro through a place at the skin.
+TEST_P(ProvingDetector, GivesTheBitsOfTheCpuWhereWaysAreLong) {
+  const auto prover = make_prover(builtin_avatar(), builtin_map());
+  const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options(method(), skip()));
+  for (const double length_m : {10.0, 1e4, 1e8}) {
+    std::vector<TraceFrame> scene = test::scene("hug", builtin_avatar(), 40, 6, 1000);
+    for (std::size_t i = 0; i < scene.size(); ++i)
+      for (ColliderSample& collider : scene[i].colliders)
+        collider.position_m += (i % 2 == 0 ? length_m : -length_m) * glm::dvec3(1, 0.5, 1.0 / (1 + collider.id));
+    EXPECT_GT(compare(*prover, *cpu, scene), 20U) << length_m;
   }
 }
 
