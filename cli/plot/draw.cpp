@@ -12,6 +12,7 @@
 #include "analysis/plot/figures/growth_figure.hpp"
 #include "analysis/plot/figures/measured_figure.hpp"
 #include "analysis/plot/figures/scene_figure.hpp"
+#include "analysis/plot/figures/skipping_figure.hpp"
 #include "analysis/plot/figures/stage_figure.hpp"
 #include "analysis/plot/figures/stress_figure.hpp"
 #include "analysis/plot/figures/sweep_figure.hpp"
@@ -136,6 +137,11 @@ int draw_stages(const Options& options) {
   if (!options.counts.empty()) counts = cli::parse_counts(options.counts, "--counts");
   return write_figure(options, sweep_folder(options) / "stages",
                       [&] { return stage_figure(read_stage_result(options.inputs.front(), counts)); });
+}
+
+int draw_skipping(const Options& options) {
+  return write_figure(options, sweep_folder(options) / "skipping",
+                      [&] { return skipping_figure(read_skipping(options.inputs)); });
 }
 
 int draw_growth(const Options& options) {

@@ -9,6 +9,7 @@ namespace vestige::plot {
 int draw_accuracy(const Options& options);
 int draw_sweep(const Options& options);
 int draw_stages(const Options& options);
+int draw_skipping(const Options& options);
 int draw_growth(const Options& options);
 int draw_stress(const Options& options);
 int draw_timeline(const Options& options);

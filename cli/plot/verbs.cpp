@@ -89,6 +89,20 @@ CLI::App& add_stages(CLI::App& app, Options& options) {
   return stages;
 }
 
+CLI::App& add_skipping(CLI::App& app, Options& options) {
+  CLI::App& skipping = add_command(app, "skipping", "Pairs left after each kind of skipping (skipping.svg, .png)",
+                                   "  vestige plot skipping results/sweep\n"
+                                   "  vestige plot skipping swarm/sweep.json hug/sweep.json -o figures\n");
+  skipping
+      .add_option("INPUT", options.inputs,
+                  "The sweep.json of a sweep that measured cpu with skipping, or the folder that holds it; several go "
+                  "into one figure")
+      ->type_name("DIR|JSON")
+      ->required();
+  add_common_options(skipping, options, "DIR", "Folder for the figure [default: beside the first input]");
+  return skipping;
+}
+
 CLI::App& add_timeline(CLI::App& app, Options& options) {
   CLI::App& timeline = add_command(app, "timeline", "Duty of every actuator over time",
                                    "  vestige plot timeline timeline.csv\n"
@@ -256,6 +270,7 @@ CLI::App& add_paraview(CLI::App& app, Options& options) {
 std::vector<Verb> add_verbs(CLI::App& app, Options& options) {
   return {{&add_sweep(app, options), draw_sweep},
           {&add_stages(app, options), draw_stages},
+          {&add_skipping(app, options), draw_skipping},
           {&add_results(app, options, "accuracy", "Contacts missed over run time (accuracy.svg, .png)",
                         "Folder for the figure [default: the input]"),
            draw_accuracy},
