@@ -20,10 +20,7 @@ constexpr double kLargestSkin_m = std::numeric_limits<float>::max() / 8;
 
 }  // namespace
 
-SegmentBox box_of(const Segment& segment) {
-  SegmentBox box = {glm::min(segment.start, segment.end), glm::max(segment.start, segment.end)};
-  if (!segment.is_sphere()) return box;
-  const float radius_m = bounding_radius_m(segment);
+SegmentBox grown_by(SegmentBox box, float radius_m) {
   for (int axis = 0; axis < 3; ++axis) {
     // Both sums below err by less than 2^-23 of this.
     const float size_m = std::max(std::abs(box.low[axis]), std::abs(box.high[axis])) + radius_m;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -33,7 +34,6 @@ struct SegmentBox {
   glm::vec3 low;
   glm::vec3 high;
 };
-SegmentBox box_of(const Segment& segment);
 
 /// Returns the radius with room for the rounding of bounds in fp32: 2^-20 larger. 0 for a point.
 inline float bounding_radius_m(float radius_m) {
@@ -41,6 +41,14 @@ inline float bounding_radius_m(float radius_m) {
 }
 inline float bounding_radius_m(const Segment& segment) {
   return bounding_radius_m(segment.radius_m);
+}
+
+/// Returns the box with room for a sphere of this bounding radius at each of its places.
+SegmentBox grown_by(SegmentBox box, float radius_m);
+
+inline SegmentBox box_of(const Segment& segment) {
+  const SegmentBox box = {glm::min(segment.start, segment.end), glm::max(segment.start, segment.end)};
+  return segment.is_sphere() ? grown_by(box, bounding_radius_m(segment)) : box;
 }
 
 /// The input of a detector: detector/CONTRACT.md, 1 to 3. All positions are relative to `origin_m`.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <glm/common.hpp>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <tuple>
 
@@ -46,6 +47,9 @@ struct Prover {
   const char* context = "gl";
   bool as_on_gpu = false;
 };
+void PrintTo(const Prover& prover, std::ostream* out) {
+  *out << prover.name;
+}
 constexpr Prover kProvers[] = {{"geometry", make_geometry_detector},
                                {"geometry_osmesa", make_geometry_detector, "osmesa"},
                                {"compute", make_compute_detector},
@@ -119,14 +123,15 @@ TEST_P(ProvingDetector, GivesTheBitsOfTheCpuInEveryScenario) {
 
 /// Each collider goes to and fro through a place at the skin.
 TEST_P(ProvingDetector, GivesTheBitsOfTheCpuWhereWaysAreLong) {
+  if (skip() == Skip::kOff) return;  // that cuts no way
   const auto prover = make_prover(builtin_avatar(), builtin_map());
   const auto cpu = make_cpu_detector(builtin_avatar(), builtin_map(), options(method(), skip()));
   for (const double length_m : {10.0, 1e4, 1e8}) {
-    std::vector<TraceFrame> scene = test::scene("hug", builtin_avatar(), 40, 6, 1000);
+    std::vector<TraceFrame> scene = test::scene("hug", builtin_avatar(), 20, 5, 1000);
     for (std::size_t i = 0; i < scene.size(); ++i)
       for (ColliderSample& collider : scene[i].colliders)
         collider.position_m += (i % 2 == 0 ? length_m : -length_m) * glm::dvec3(1, 0.5, 1.0 / (1 + collider.id));
-    EXPECT_GT(compare(*prover, *cpu, scene), 20U) << length_m;
+    EXPECT_GT(compare(*prover, *cpu, scene), 10U) << length_m;
   }
 }
 
