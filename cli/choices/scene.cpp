@@ -110,7 +110,8 @@ ActuatorMapFiles load_map(const std::string& map) {
   return files;
 }
 
-OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity, People allowed) : reader(path, allowed) {
+OpenTrace::OpenTrace(const std::string& path, Verbosity verbosity, People allowed, std::size_t threads)
+    : reader(path, allowed, threads) {
   const std::vector<RecordedPerson>& recorded = reader.people();
   std::vector<std::string> names;
   names.reserve(recorded.size());

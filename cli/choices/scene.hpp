@@ -62,7 +62,7 @@ struct TracedPerson {
 
 /// A trace with its people.
 struct OpenTrace {
-  OpenTrace(const std::string& path, Verbosity verbosity, People allowed = People::kOne);
+  OpenTrace(const std::string& path, Verbosity verbosity, People allowed = People::kOne, std::size_t threads = 1);
   /// The only person, for verbs that know one.
   TracedPerson& person() { return people.front(); }
   const TracedPerson& person() const { return people.front(); }

@@ -216,7 +216,7 @@ void run_replay(const ReplayOptions& options, Invocation& invocation) {
   if (options.textures == "-") refuse_terminal("--textures -");
   const PlaneSet texture_planes = parse_planes(options.planes);
 
-  OpenTrace trace(options.trace, verbosity, People::kSeveral);
+  OpenTrace trace(options.trace, verbosity, People::kSeveral, options.threads);
   auto expected = read_expected(options.verify, trace.people.size());
   for (std::size_t i = 0; i < trace.people.size(); ++i)
     require_surface(

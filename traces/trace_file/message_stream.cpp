@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "traces/mcap/chunk_expander.hpp"
 #include "traces/mcap/summary.hpp"
 
 namespace vestige {
@@ -90,11 +89,13 @@ std::map<std::size_t, const mcap::Channel*> StreamTable::pose_channels() const {
 }
 
 MessageStream::MessageStream(const mcap::ByteSource& source, const std::vector<MessagePlace>& places,
-                             StreamTable& table, Report report)
-    : source_(source), places_(places), table_(table), report_(std::move(report)) {}
+                             StreamTable& table, std::size_t threads, Report report)
+    : source_(source), places_(places), table_(table), report_(std::move(report)), chunks_(source, threads) {}
 
 void MessageStream::rewind() {
+  chunks_.clear();
   next_place_ = 0;
+  next_to_add_ = 0;
   chunk_ = mcap::Cursor({});
   run_ = {};
 }
@@ -112,12 +113,15 @@ bool MessageStream::next(TraceMessage& message) {
   }
 }
 
+void MessageStream::add_chunks() {
+  for (; chunks_.has_room() && next_to_add_ < places_.size(); ++next_to_add_)
+    if (const MessagePlace& place = places_[next_to_add_]; place.in_chunk) chunks_.add(place.begin, place.end);
+}
+
 void MessageStream::open_chunk(const MessagePlace& place) {
+  add_chunks();
   try {
-    // The length in the file may be broken; `place` has the corrected length.
-    const std::uint64_t content = place.begin + mcap::kRecordHeadBytes;
-    source_.read_at(content, content_.reset(static_cast<std::size_t>(place.end - content)));
-    chunk_ = mcap::Cursor(mcap::expand_chunk(mcap::decode_chunk(content_.bytes()), expanded_));
+    chunk_ = mcap::Cursor(chunks_.take());
     chunk_offset_ = place.begin;
     misfit_told_ = false;
   } catch (const Malformed& malformed) {

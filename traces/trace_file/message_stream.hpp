@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "traces/mcap/byte_source.hpp"
+#include "traces/mcap/chunk_expander.hpp"
 #include "traces/mcap/compression.hpp"
 #include "traces/mcap/decode.hpp"
 #include "traces/mcap/record_walker.hpp"
@@ -71,9 +73,10 @@ class MessageStream {
  public:
   using Report = std::function<void(const mcap::Damage&)>;
 
-  /// Keeps references to `source`, `places` and `table`. Damage is skipped and passed to `report`.
+  /// Keeps references to `source`, `places` and `table`. Damage is skipped and passed to `report`. Other threads than
+  /// the calling one, if `threads` is more than 1, expand chunks ahead.
   MessageStream(const mcap::ByteSource& source, const std::vector<MessagePlace>& places, StreamTable& table,
-                Report report);
+                std::size_t threads, Report report);
 
   /// Reads the next message; its data are valid until the next call. Returns false at the end.
   bool next(TraceMessage& message);
@@ -83,19 +86,21 @@ class MessageStream {
   bool next_in_chunk(TraceMessage& message);
   bool next_in_run(TraceMessage& message);
   void open_chunk(const MessagePlace& place);
+  void add_chunks();
   bool take(std::uint64_t offset, mcap::Bytes content, TraceMessage& message);
 
   const mcap::ByteSource& source_;
   const std::vector<MessagePlace>& places_;
   StreamTable& table_;
   Report report_;
+  mcap::ChunkQueue chunks_;
   std::size_t next_place_ = 0;
+  std::size_t next_to_add_ = 0;  ///< to `chunks_`, of the places
   std::uint64_t chunk_offset_ = 0;
   bool misfit_told_ = false;  ///< whether this chunk's misfits were reported
   mcap::Cursor chunk_ = mcap::Cursor({});
   MessagePlace run_;  ///< the rest of the current run
   mcap::RawBuffer content_;
-  mcap::RawBuffer expanded_;
 };
 
 }  // namespace vestige

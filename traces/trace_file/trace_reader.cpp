@@ -33,8 +33,8 @@ constexpr std::string_view kRecover = "run `vestige recover`, which may still fi
 
 class TraceReader::Implementation {
  public:
-  Implementation(const std::filesystem::path& path, People allowed)
-      : source_(path), index_(index_trace(source_)), frames_(*this, PoseDecoding::kFull) {
+  Implementation(const std::filesystem::path& path, People allowed, std::size_t threads)
+      : source_(path), index_(index_trace(source_)), threads_(threads), frames_(*this, PoseDecoding::kFull) {
     if (index_.recovered) recovered_ = describe_recovered(*index_.recovered);
     for (const mcap::Damage& damage : index_.damages.kept()) warn(damage);
     require_trace();
@@ -74,7 +74,7 @@ class TraceReader::Implementation {
     Frames(Implementation& owner, PoseDecoding decoding)
         : owner_(owner),
           decoding_(decoding),
-          messages_(owner.source_, owner.index_.places, owner.index_.streams,
+          messages_(owner.source_, owner.index_.places, owner.index_.streams, owner.threads_,
                     [&owner](const mcap::Damage& damage) { owner.warn(damage); }) {}
 
     bool next(TraceFrame& frame);
@@ -114,6 +114,7 @@ class TraceReader::Implementation {
 
   mcap::FileSource source_;
   TraceIndex index_;
+  std::size_t threads_;
   std::optional<int> version_;
   int newest_ = trace_format::kNewestVersion;  ///< that the caller can handle
   std::vector<RecordedPerson> people_;
@@ -371,8 +372,8 @@ void TraceReader::Implementation::Frames::take_event(TraceFrame& frame) {
   if (event.kind == trace_format::kDroppedKind) dropped_ += event.count;
 }
 
-TraceReader::TraceReader(const std::filesystem::path& path, People allowed)
-    : implementation_(std::make_unique<Implementation>(path, allowed)) {}
+TraceReader::TraceReader(const std::filesystem::path& path, People allowed, std::size_t threads)
+    : implementation_(std::make_unique<Implementation>(path, allowed, threads)) {}
 TraceReader::~TraceReader() = default;
 
 const Session& TraceReader::session() const {

@@ -39,8 +39,9 @@ enum class People : std::uint8_t { kOne, kSeveral };
 /// pose is missing is left out.
 class TraceReader {
  public:
-  /// "-" is standard input, which is copied to a nameless temporary file.
-  explicit TraceReader(const std::filesystem::path& path, People allowed = People::kOne);
+  /// "-" is standard input, which is copied to a nameless temporary file. With several threads, those other than the
+  /// calling one expand chunks ahead.
+  explicit TraceReader(const std::filesystem::path& path, People allowed = People::kOne, std::size_t threads = 1);
   ~TraceReader();
   TraceReader(const TraceReader&) = delete;
   TraceReader& operator=(const TraceReader&) = delete;

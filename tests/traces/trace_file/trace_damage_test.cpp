@@ -57,6 +57,39 @@ std::optional<std::uint64_t> intact_frames(const std::filesystem::path& path, bo
   }
 }
 
+/// What a reader delivers and says, until it refuses the file.
+struct Read {
+  std::vector<TraceFrame> frames;
+  std::vector<std::string> told;  ///< warnings, and then why it is refused
+};
+
+Read read_with(std::size_t threads, const std::filesystem::path& path) {
+  Read read;
+  try {
+    TraceReader reader(path, People::kOne, threads);
+    try {
+      read.frames.resize(reader.frame_count());
+      for (TraceFrame& frame : read.frames) EXPECT_TRUE(reader.next(frame));
+      reader.rewind();
+      EXPECT_EQ(test::read_frames(reader).size(), read.frames.size());
+    } catch (const Error& error) {
+      read.told.emplace_back(error.what());
+    }
+    read.told.insert(read.told.begin(), reader.warnings().begin(), reader.warnings().end());
+  } catch (const Error& error) {
+    read.told.emplace_back(error.what());
+  }
+  return read;
+}
+
+void expect_same_with_threads(const std::filesystem::path& path) {
+  const Read one = read_with(1, path);
+  const Read three = read_with(3, path);
+  EXPECT_EQ(three.told, one.told);
+  EXPECT_TRUE(
+      std::ranges::equal(three.frames, one.frames, [](const auto& a, const auto& b) { return test::same_bits(a, b); }));
+}
+
 TEST(TraceDamage, ACutAnywhereKeepsEveryWholeChunk) {
   const test::TemporaryFolder folder;
   const SmallTrace trace = small_trace(folder, Compression::kZstd);
@@ -75,6 +108,38 @@ TEST(TraceDamage, ACutAnywhereKeepsEveryWholeChunk) {
     const McapSummary summary = summarise_mcap(file.path());
     EXPECT_EQ(summary.messages, 2 * frames_in(whole)) << length;
     EXPECT_FALSE(summary.complete) << length;
+  }
+}
+
+TEST(TraceDamage, ThreadsChangeNothingThatIsReadOrSaid) {
+  const test::TemporaryFolder folder;
+  const SmallTrace trace = small_trace(folder, Compression::kZstd);
+  const MemoryFile file;
+  for (std::size_t at = trace.head_end; at < trace.data_end; at += kByteStep) {
+    file.assign(std::span(trace.bytes).first(at));
+    expect_same_with_threads(file.path());
+    std::vector<std::byte> damaged = trace.bytes;
+    damaged[at] ^= std::byte{0x41};
+    file.assign(damaged);
+    expect_same_with_threads(file.path());
+  }
+}
+
+TEST(TraceDamage, ChunksTooLargeToExpandAheadAreReadInTheirTurn) {
+  const test::TemporaryFolder folder;
+  TraceWriterOptions options = test::steady_options(std::size_t{9} << 20);
+  for (const Compression compression : {Compression::kNone, Compression::kZstd}) {
+    options.compression = compression;
+    options.overwrite = Overwrite::kAllow;
+    test::write_trace(folder / "large.mcap", 60'000, options);
+    ASSERT_EQ(summarise_mcap(folder / "large.mcap").chunks, 3U);
+    TraceReader reader(folder / "large.mcap", People::kOne, 3);
+    EXPECT_EQ(reader.frame_count(), 60'000U);
+    TraceFrame frame;
+    for (std::uint64_t i = 0; i < reader.frame_count(); ++i) {
+      ASSERT_TRUE(reader.next(frame));
+      ASSERT_TRUE(test::same_bits(frame, test::frame(i, kNodes, kColliders))) << i;
+    }
   }
 }
 
