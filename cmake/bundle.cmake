@@ -12,7 +12,7 @@ file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${programs} RESOLVED_DEPENDENCIES_VAR 
 
 # One process can hold one library of a name only, and OpenGL drivers need these too, perhaps in a newer version than
 # ours: the machine's own is taken where it has one.
-set(of_drivers "^(libstdc\\+\\+|libgcc_s|libz|libzstd|libmd)\\.so")
+set(of_drivers "^(libstdc\\+\\+|libgcc_s|libz|libzstd)\\.so")
 set(system_folders /usr/lib/x86_64-linux-gnu:/lib/x86_64-linux-gnu:/usr/lib64:/lib64:/usr/lib:/lib)
 
 file(REMOVE_RECURSE ${BUNDLE})

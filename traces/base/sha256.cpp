@@ -7,17 +7,17 @@
 namespace vestige {
 
 Sha256::Sha256() : context_() {
-  SHA256Init(&context_);
+  sha256_init(&context_);
 }
 
 void Sha256::update(std::span<const std::byte> bytes) {
-  SHA256Update(&context_, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  sha256_update(&context_, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
 }
 
 std::string Sha256::hex() const {
-  SHA2_CTX copy = context_;
-  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> digest = {};
-  SHA256Final(digest.data(), &copy);
+  sha256_ctx copy = context_;
+  std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest = {};
+  sha256_digest(&copy, digest.size(), digest.data());
   std::string text;
   for (const std::uint8_t byte : digest) text += fmt::format("{:02x}", byte);
   return text;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <sha2.h>
+#include <nettle/sha2.h>
 
 #include <cstddef>
 #include <span>
@@ -17,7 +17,7 @@ class Sha256 {
   std::string hex() const;
 
  private:
-  SHA2_CTX context_;
+  sha256_ctx context_;
 };
 
 /// SHA-256 of bytes that are all present.
