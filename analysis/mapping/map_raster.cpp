@@ -136,12 +136,17 @@ void Painter::pad(std::uint32_t padding) {
       if (x * x + y * y > 0 && x * x + y * y <= reach * reach) steps.push_back({x, y});
   std::ranges::stable_sort(steps, {}, [](const Step& step) { return step.x * step.x + step.y * step.y; });
   const std::vector<std::uint16_t> shown = map_.actuator;
-  for (std::uint32_t row = 0; row < map_.side; ++row)
-    for (std::uint32_t column = 0; column < map_.side; ++column) {
+  const auto side = static_cast<std::int64_t>(map_.side);
+  const auto is_inside = [&](std::int64_t at) { return at >= reach && at < side - reach; };
+  for (std::int64_t row = 0; row < side; ++row)
+    for (std::int64_t column = 0; column < side; ++column) {
       const std::size_t texel = index(column, row);
       if (!is_free(texel)) continue;
+      const bool wraps = !is_inside(column) || !is_inside(row);
       for (const Step& step : steps) {
-        const std::size_t other = index(column + step.x, row + step.y);
+        // `index` divides, which takes far longer than the rest.
+        const std::size_t other = wraps ? index(column + step.x, row + step.y)
+                                        : static_cast<std::size_t>((row + step.y) * side + column + step.x);
         if (is_free(other)) continue;
         map_.actuator[texel] = shown[other];
         break;

@@ -136,6 +136,7 @@ TEST(MadeMaps, PadIntoFreeTexelsOnly) {
   for (int row = 17; row < 47; ++row) {
     for (int column = 8; column < 24; ++column) EXPECT_EQ(at(column, row), 1) << column << ", " << row;
     EXPECT_EQ(at(26, row), 1) << "padding, nearer to the left chart";
+    EXPECT_EQ(at(63, row), 1) << "also where the texture repeats";
     for (int column = 30; column < 48; ++column) EXPECT_EQ(at(column, row), 0) << column << ", " << row;
   }
   EXPECT_EQ(at(16, 10), 1);
