@@ -92,7 +92,7 @@ CLI::App& add_stages(CLI::App& app, Options& options) {
 CLI::App& add_skipping(CLI::App& app, Options& options) {
   CLI::App& skipping = add_command(app, "skipping", "Pairs left after each kind of skipping (skipping.svg, .png)",
                                    "  vestige plot skipping results/sweep\n"
-                                   "  vestige plot skipping swarm/sweep.json hug/sweep.json -o figures\n");
+                                   "  vestige plot skipping gpu/sweep.json software/sweep.json -o figures\n");
   skipping
       .add_option("INPUT", options.inputs,
                   "The sweep.json of a sweep that measured cpu with skipping, or the folder that holds it; several go "

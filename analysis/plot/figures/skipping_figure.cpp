@@ -86,7 +86,7 @@ class SkippingFigure : public Figure {
       }
       top_pt -= kGroupGapPt;
     }
-    draw_x_axis(canvas, plot, x, log_ticks(x.low, x.high), "Pairs of collider and triangle in a frame");
+    draw_x_axis(canvas, plot, x, ticks(x), "Pairs of collider and triangle in a frame");
     double y_pt = 2 + static_cast<double>(small_print_.size()) * kSmallLinePt;
     for (const std::string& line : small_print_) {
       canvas.text({kMarginPt, y_pt}, line, kSmallStyle);
@@ -114,7 +114,17 @@ class SkippingFigure : public Figure {
   double high() const {
     double most = 10;
     for (const SkippingGroup& group : result_.groups) most = std::max(most, group.pairs.all);
-    return std::pow(10, std::ceil(std::log10(most)));
+    return round_up_125(most);
+  }
+
+  /// Labels of large numbers have no room at each power of ten.
+  static std::vector<Tick> ticks(const Axis& x) {
+    constexpr double kMostDecades = 6;
+    std::vector<Tick> ticks = log_ticks(x.low, x.high);
+    if (std::log10(x.high / x.low) <= kMostDecades) return ticks;
+    for (Tick& tick : ticks)
+      if (std::lround(std::log10(tick.value)) % 2 != 0) tick.label.clear();
+    return ticks;
   }
 
   static void draw_row(Canvas& canvas, const Row& row, double pairs, double y_pt, const Axis& x) {
