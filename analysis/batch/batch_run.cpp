@@ -280,7 +280,7 @@ class BatchRun {
                   "run one batch for each facing");
     if (!plan_.takes_radii && reader.has_spheres())
       throw Error(path, fmt::format("has colliders with a radius, of which {} tests only the centres", plan_.detector),
-                  "choose --detector cpu, geometry, exact, boxes, capsules or decimated");
+                  "choose --detector cpu, geometry, compute, exact, boxes, capsules or decimated");
     require_spheres(plan_.laws, reader.has_spheres(), path);
     const std::vector<std::uint32_t>& ids = reader.collider_ids();
     const auto frame_count = static_cast<double>(reader.frame_count());

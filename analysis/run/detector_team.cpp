@@ -57,6 +57,11 @@ void DetectorTeam::dismiss() {
   for (std::thread& helper : helpers_) helper.join();
 }
 
+void DetectorTeam::detect_alone(FrameBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i)
+    batch.work[i] = first_[i % first_.size()]->detect(batch.frames[i], batch.rows[i]);
+}
+
 void DetectorTeam::start(FrameBatch& batch, std::function<void()> beside) {
   batch_ = &batch;
   beside_ = std::move(beside);

@@ -48,6 +48,8 @@ class DetectorTeam {
   const Detector& first(std::size_t person = 0) const { return *first_[person]; }
   std::size_t threads() const { return helpers_.size() + 1; }
 
+  /// Detects in the calling thread, frame by frame.
+  void detect_alone(FrameBatch& batch);
   /// Starts the other threads on `batch`, and the first free one on `beside`, if that is not empty. The batch must stay
   /// untouched until `finish` has returned.
   void start(FrameBatch& batch, std::function<void()> beside = {});

@@ -20,29 +20,31 @@ constexpr std::uint64_t kSkinningFrames = 5;
 using Clock = std::chrono::steady_clock;
 
 /// Chooses how many runs of frames to detect together: enough that threads seldom wait for each other, and few enough
-/// that progress is visible, an interrupt is noticed, and they fit into memory. A single thread takes frames one by
-/// one. So do several if a run is too large for memory: a run that is divided would take other work.
+/// that progress is visible, an interrupt is noticed, and they fit into memory. A run that is divided among threads
+/// would take other work. So the calling thread detects alone, in frames that count as runs, if a run is too large for
+/// memory, or if slower detectors verify each frame.
 class BatchSize {
  public:
   /// `columns` are those of a frame, of all people together.
-  BatchSize(const DetectorTeam& detectors, std::size_t columns) {
+  BatchSize(const DetectorTeam& detectors, std::size_t columns, bool verifies) {
+    const std::size_t threads = detectors.threads();
     const std::uint64_t run_length = detectors.first().run_length();
-    const std::size_t run_bytes = run_length * columns * (sizeof(Segment) + sizeof(Contact));
-    if (detectors.threads() == 1 || run_bytes > kMostBytes) return;
-    run_length_ = run_length;
-    least_ = run_length == 1 ? 1 : detectors.threads();
-    most_ = std::max<std::size_t>(least_, kMostFrames / run_length);
-    if (run_bytes > 0) most_ = std::min(most_, kMostBytes / run_bytes);
-    least_ = std::min(least_, most_);
-    runs_ = std::min(most_, run_length == 1 ? 4 * detectors.threads() : least_);
+    const std::size_t frame_bytes = std::max<std::size_t>(columns, 1) * (sizeof(Segment) + sizeof(Contact));
+    const bool may_divide = run_length == 1 || (!verifies && run_length * frame_bytes <= kMostRunBytes);
+    is_alone_ = threads == 1 || !may_divide;
+    run_length_ = is_alone_ ? 1 : run_length;
+    if (threads == 1 || (is_alone_ && !verifies)) return;  // one frame at a time
+    const std::size_t fit = std::min(kMostFrames, kMostBytes / frame_bytes);
+    most_ = std::max<std::size_t>(fit / run_length_, 1);
+    least_ = run_length_ == 1 ? 1 : std::min(threads, most_);
+    runs_ = run_length_ == 1 ? std::min(4 * threads, most_) : least_;
   }
 
-  bool is_one_by_one() const { return run_length_ == 0; }
+  /// Whether only the calling thread detects.
+  bool is_alone() const { return is_alone_; }
   std::size_t runs() const { return runs_; }
   /// Which run a frame belongs to.
-  std::uint64_t run_of(const TraceFrame& frame) const {
-    return is_one_by_one() ? frame.index : frame.index / run_length_;
-  }
+  std::uint64_t run_of(const TraceFrame& frame) const { return frame.index / run_length_; }
 
   void took(double batch_s) {
     if (batch_s < 2e-3) runs_ = std::min(2 * runs_, most_);
@@ -51,9 +53,11 @@ class BatchSize {
 
  private:
   static constexpr std::size_t kMostFrames = 4096;
-  static constexpr std::size_t kMostBytes = std::size_t{1} << 30;
+  static constexpr std::size_t kMostBytes = std::size_t{64} << 20;      ///< of a batch of several runs; four exist
+  static constexpr std::size_t kMostRunBytes = std::size_t{256} << 20;  ///< of a run
 
-  std::uint64_t run_length_ = 0;  ///< 0: frames are taken one by one
+  bool is_alone_ = true;
+  std::uint64_t run_length_ = 1;
   std::size_t least_ = 1;
   std::size_t most_ = 1;
   std::size_t runs_ = 1;
@@ -109,7 +113,7 @@ class Replay {
         frame_count_(trace.frame_count()),
         skinning_step_(std::max<std::uint64_t>(1, frame_count_ / kSkinningFrames)),
         colliders_(trace.collider_ids()),
-        size_(detectors, plan.people.size() * trace.collider_ids().size()) {
+        size_(detectors, plan.people.size() * trace.collider_ids().size(), plan.expectation.detectors != nullptr) {
     people_.reserve(plan.people.size());
     for (std::size_t person = 0; person < plan.people.size(); ++person)
       people_.emplace_back(plan.people[person], person, detectors.first(person));
@@ -181,26 +185,28 @@ class Replay {
     checking_s_ += seconds(Clock::now() - start);
   }
 
-  /// Detects in the batch, takes the one before and reads the next one. Returns the seconds that detection took.
+  /// Detects in the batch, takes the one before and reads the next one. Returns the seconds that all of it took.
   double detect(const std::function<bool(double)>& progress) {
-    const bool is_alone = size_.is_one_by_one();
-    if (is_alone) take_before(progress);
     const auto start = Clock::now();
-    const double checked_before_s = checking_s_;
-    detectors_.start(
-        batch_, is_alone ? std::function<void()>() : [&] { take_before(progress); });
-    read();
-    const auto finish = Clock::now();
-    detectors_.finish();
-    const auto end = Clock::now();
-    const double spent_s = is_alone ? seconds(end - finish) : seconds(end - start) - (checking_s_ - checked_before_s);
-    result_.detection_s += spent_s;
-    if (plan_.expectation.detectors != nullptr) {
+    if (size_.is_alone()) {
+      take_before(progress);
+      read();
+      const auto read = Clock::now();
+      detectors_.detect_alone(batch_);
+      result_.detection_s += seconds(Clock::now() - read);
+    } else {
+      const double checked_before_s = checking_s_;
+      detectors_.start(batch_, [&] { take_before(progress); });
+      read();
+      detectors_.finish();
+      result_.detection_s += seconds(Clock::now() - start) - (checking_s_ - checked_before_s);
+    }
+    if (plan_.expectation.detectors != nullptr && !result_.interrupted) {
       expected_ = batch_;
       plan_.expectation.detectors->start(expected_);
       plan_.expectation.detectors->finish();
     }
-    return spent_s;
+    return seconds(Clock::now() - start);
   }
 
   void take_before(const std::function<bool(double)>& progress) {
@@ -226,7 +232,7 @@ class Replay {
   }
 
   void finish() {
-    if (size_.is_one_by_one()) result_.detection_s += building_s_;  // several threads had it within their time
+    if (size_.is_alone()) result_.detection_s += building_s_;  // several threads had it within their time
     std::vector<std::string> hashes;
     for (PersonReplay& person : people_) {
       const PersonResult& found = result_.people.emplace_back(person.finish());

@@ -20,8 +20,7 @@ namespace {
 
 constexpr const char* kSkipHelp =
     "on: cpu, geometry, compute and decimated do not skin or test what bounds prove to miss (the result is the same); "
-    "off: they "
-    "skin the "
+    "off: they skin the "
     "whole avatar and consider every pair of segment and triangle";
 
 /// Returns why --keep would change nothing, or "".

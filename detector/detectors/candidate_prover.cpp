@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
 #include <glm/vec4.hpp>
 #include <string>
 #include <utility>
@@ -229,7 +230,7 @@ void CandidateProver::wait() {
 }
 
 /// Clears each word that it reads, so that a lane that does not write it is noticed.
-void CandidateProver::read_words() {
+void CandidateProver::read_words() try {
   auto* words = reinterpret_cast<std::array<std::uint32_t, kSlotLanes>*>(words_.data());
   auto segments = slot_segments_.begin();
   for (const Filled& block : filled_) {
@@ -240,6 +241,9 @@ void CandidateProver::read_words() {
     }
     words += kBlockSlots;
   }
+} catch (const Error&) {
+  std::memset(words_.data(), 0, kMostBlocks * kBlockSlots * kSlotLanes * sizeof(std::uint32_t));
+  throw;
 }
 
 }  // namespace vestige

@@ -1,6 +1,5 @@
 #include "analysis/plot/data/skipping_data.hpp"
 
-#include <algorithm>
 #include <optional>
 
 #include "analysis/base/json_field.hpp"
@@ -18,6 +17,7 @@ std::optional<JsonField> last_point(const JsonField& series, const char* skip) {
   for (std::size_t i = 0; i < series.count(); ++i) {
     const JsonField one = series.at(i);
     if (one.at("detector").text() != "cpu" || !one.has("skip") || one.at("skip").text() != skip) continue;
+    if (one.has("avatars") && one.at("avatars").within(1, kMost) > 1) one.refuse("is of several people");
     const JsonField points = one.at("points");
     std::size_t last = 0;
     for (std::size_t k = 1; k < points.count(); ++k)
@@ -41,11 +41,11 @@ SkippingGroup read_group(const std::filesystem::path& path) {
   group.name = std::filesystem::path(document.at("trace").text()).stem().string();
   group.colliders = on->at("colliders").within(1, kMost);
   group.us = us_of(*on);
-  const double part_pairs = on->at("part_pairs").within(1, kMost);
+  const double part_pairs = on->at("part_pairs").within(0, kMost);
   const double spared = on->at("pairs_spared").within(0, part_pairs);
   const double frames = on->at("pass_frames").within(1, kMost);
   group.pairs.all = group.colliders * document.at("avatar").at("triangles").within(1, kMost);
-  group.pairs.open = group.pairs.all * (1 - spared / part_pairs);
+  group.pairs.open = part_pairs > 0 ? group.pairs.all * (1 - spared / part_pairs) : 0;
   group.pairs.tested = on->at("pairs_tested").within(0, kMost) / frames;
   group.pairs.meeting = on->at("pairs_meeting").within(0, kMost) / frames;
   const std::optional<JsonField> off = last_point(series, "off");

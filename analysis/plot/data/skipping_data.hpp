@@ -32,7 +32,7 @@ struct SkippingResult {
 };
 
 /// Reads sweeps. A path "DIR" stands for DIR/sweep.json. Throws `Error` with file and field, and if a sweep did not
-/// measure `cpu` with skipping, or did so by a version that did not count what it skipped.
+/// measure `cpu` with skipping, did so for several people, or by a version that did not count what it skipped.
 SkippingResult read_skipping(const std::vector<std::filesystem::path>& paths);
 
 }  // namespace vestige::plot

@@ -139,7 +139,7 @@ class SkippingFigure : public Figure {
     std::string text =
         "Means over the frames that a sweep measured, of cpu with skipping. What an earlier frame proved apart is "
         "counted "
-        "in pairs of a collider and a part of the skin, and drawn as that share of all pairs. ";
+        "in pairs of a collider in reach and a part of the skin, and drawn as that share of all pairs. ";
     if (!source.machine.empty()) text += fmt::format("Machine: {}. ", source.machine);
     if (!source.avatar.empty()) text += fmt::format("Avatar: {}. ", source.avatar);
     text += fmt::format("Commit\u00a0{}.", source.commit);

@@ -62,6 +62,9 @@ TEST_F(PlotSkipping, SaysWhatASweepLacks) {
   write_text(folder_ / "sweep.json",
              R"({"commit": "01", "series": [{"detector": "paper", "points": [{"colliders": 1, "hz": 2}]}]})");
   EXPECT_THAT(run("skipping .").standard_error, HasSubstr("does not measure cpu with skipping"));
+  write_text(folder_ / "sweep.json", R"({"commit": "01", "series": [
+      {"detector": "cpu", "skip": "on", "avatars": 2, "points": [{"colliders": 1, "hz": 2}]}]})");
+  EXPECT_THAT(run("skipping .").standard_error, HasSubstr("is of several people"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "skipping.svg"));
 }
 
