@@ -15,8 +15,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 MOST_FILES = 25
 # Not C++, or a program that is built alone.
 ALONE = {"shaders": set(), "transport/firmware": set(), "traces/mannequin": {"traces/scene", "traces/gltf"}}
-# One file for each scenario, shader, run or seed, or written by a program.
-UNCOUNTED = ("results/", "docs/reference", "tests/fuzz/seeds/", "traces/scenarios", "shaders")
+# One file for each shader, run or seed, or written by a program.
+UNCOUNTED = ("results/", "docs/reference", "tests/fuzz/seeds/", "shaders")
 
 problems = []
 

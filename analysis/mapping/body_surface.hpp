@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "traces/scenarios/skin.hpp"
+#include "traces/places/skin.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/box.hpp"
 

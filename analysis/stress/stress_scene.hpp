@@ -7,7 +7,7 @@
 #include "detector/actuator_map.hpp"
 #include "detector/frame.hpp"
 #include "detector/method.hpp"
-#include "traces/scenarios/random.hpp"
+#include "traces/places/random.hpp"
 #include "traces/scene/avatar.hpp"
 #include "traces/scene/trace.hpp"
 

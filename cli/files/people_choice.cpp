@@ -13,8 +13,8 @@
 
 #include "traces/base/error.hpp"
 #include "traces/base/number_text.hpp"
+#include "traces/places/body.hpp"
 #include "traces/recording/dealt_colliders.hpp"
-#include "traces/scenarios/body.hpp"
 #include "traces/scenarios/touch.hpp"
 #include "traces/scene/person_name.hpp"
 #include "traces/scene/reference_skinning.hpp"

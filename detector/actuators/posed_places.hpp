@@ -9,7 +9,7 @@
 
 #include "detector/frame.hpp"
 #include "detector/skinning.hpp"
-#include "traces/scenarios/skin.hpp"
+#include "traces/places/skin.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "traces/scenarios/skin.hpp"
+#include "traces/places/skin.hpp"
 
 namespace vestige {
 

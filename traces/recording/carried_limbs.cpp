@@ -1,6 +1,6 @@
 #include "traces/recording/carried_limbs.hpp"
 
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
 
 namespace vestige {
 

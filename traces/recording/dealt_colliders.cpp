@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
 
 namespace vestige {
 

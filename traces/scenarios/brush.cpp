@@ -1,10 +1,10 @@
 #include <cmath>
 #include <glm/common.hpp>
 
-#include "traces/scenarios/arm.hpp"
-#include "traces/scenarios/body.hpp"
+#include "traces/places/arm.hpp"
+#include "traces/places/body.hpp"
+#include "traces/places/random.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
 #include "traces/scenarios/scenarios.hpp"
 
 namespace vestige {

@@ -1,11 +1,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
+#include "traces/places/random.hpp"
+#include "traces/places/skin_walk.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
 #include "traces/scenarios/scenarios.hpp"
-#include "traces/scenarios/skin_walk.hpp"
 
 namespace vestige {
 

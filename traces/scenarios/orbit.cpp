@@ -2,11 +2,11 @@
 #include <glm/common.hpp>
 #include <numbers>
 
+#include "traces/places/random.hpp"
+#include "traces/places/room.hpp"
+#include "traces/places/skin.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
-#include "traces/scenarios/room.hpp"
 #include "traces/scenarios/scenarios.hpp"
-#include "traces/scenarios/skin.hpp"
 
 namespace vestige {
 

@@ -2,10 +2,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "traces/scenarios/body.hpp"
-#include "traces/scenarios/front_view.hpp"
+#include "traces/places/body.hpp"
+#include "traces/places/front_view.hpp"
+#include "traces/places/random.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
 #include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/pose.hpp"
 #include "traces/scene/reference_skinning.hpp"

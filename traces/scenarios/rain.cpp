@@ -1,8 +1,8 @@
 #include <cmath>
 
+#include "traces/places/random.hpp"
+#include "traces/places/room.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
-#include "traces/scenarios/room.hpp"
 #include "traces/scenarios/scenarios.hpp"
 
 namespace vestige {

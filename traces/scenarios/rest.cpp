@@ -2,10 +2,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "traces/scenarios/arm.hpp"
-#include "traces/scenarios/body.hpp"
+#include "traces/places/arm.hpp"
+#include "traces/places/body.hpp"
+#include "traces/places/random.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
 #include "traces/scenarios/scenarios.hpp"
 
 namespace vestige {

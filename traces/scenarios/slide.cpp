@@ -4,10 +4,10 @@
 #include <map>
 #include <numbers>
 
-#include "traces/scenarios/body.hpp"
-#include "traces/scenarios/front_view.hpp"
+#include "traces/places/body.hpp"
+#include "traces/places/front_view.hpp"
+#include "traces/places/random.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
 #include "traces/scenarios/scenarios.hpp"
 
 namespace vestige {

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
+#include "traces/places/random.hpp"
+#include "traces/places/skin.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
 #include "traces/scenarios/scenarios.hpp"
-#include "traces/scenarios/skin.hpp"
 
 namespace vestige {
 

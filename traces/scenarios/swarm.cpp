@@ -2,9 +2,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
+#include "traces/places/random.hpp"
 #include "traces/scenarios/makers.hpp"
-#include "traces/scenarios/random.hpp"
 #include "traces/scenarios/scenarios.hpp"
 #include "traces/scene/reference_skinning.hpp"
 

@@ -14,7 +14,7 @@
 
 #include "traces/base/error.hpp"
 #include "traces/body/limbs.hpp"
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
 #include "traces/scene/pose.hpp"
 #include "traces/scene/reference_skinning.hpp"
 
@@ -81,10 +81,10 @@ Shoulder shoulder_of(const Avatar& avatar, const Stance& stance) {
   std::vector<glm::dvec3> skin;
   skin_reference(avatar, pose, glm::dvec3(0), skin);
   constexpr double kInwards_m = 0.06;
-  constexpr double kBelow_m = 0.04;
+  constexpr double kBelowJoint_m = 0.04;
   constexpr double kAround_m = 0.02;
   constexpr double kThick_m = 0.16;
-  const glm::dvec3 middle = joint + metre * (kInwards_m * inwards - glm::dvec3(0, kBelow_m, 0));
+  const glm::dvec3 middle = joint + metre * (kInwards_m * inwards - glm::dvec3(0, kBelowJoint_m, 0));
   const glm::dvec3 outwards = glm::normalize(glm::cross(glm::dvec3(0, 1, 0), inwards) + glm::dvec3(0, 1, 0));
   glm::dvec3 place = middle;
   for (const glm::dvec3& p : skin) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "traces/scenarios/skin.hpp"
+#include "traces/places/skin.hpp"
 
 namespace vestige {
 

@@ -1,4 +1,4 @@
-#include "traces/scenarios/skin_walk.hpp"
+#include "traces/places/skin_walk.hpp"
 
 #include <algorithm>
 #include <array>

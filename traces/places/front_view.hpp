@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "traces/scenarios/skin.hpp"
+#include "traces/places/skin.hpp"
 #include "traces/scene/box.hpp"
 
 namespace vestige {

@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "traces/scenarios/random.hpp"
+#include "traces/places/random.hpp"
 #include "traces/scene/avatar.hpp"
 
 namespace vestige {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "traces/scenarios/skin.hpp"
+#include "traces/places/skin.hpp"
 
 namespace vestige {
 

@@ -3,7 +3,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
 
 namespace vestige {
 

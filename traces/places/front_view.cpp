@@ -1,4 +1,4 @@
-#include "traces/scenarios/front_view.hpp"
+#include "traces/places/front_view.hpp"
 
 #include <algorithm>
 #include <array>

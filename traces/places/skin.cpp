@@ -1,4 +1,4 @@
-#include "traces/scenarios/skin.hpp"
+#include "traces/places/skin.hpp"
 
 #include <algorithm>
 #include <array>

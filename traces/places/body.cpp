@@ -1,4 +1,4 @@
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "traces/scenarios/arm.hpp"
+#include "traces/places/arm.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "traces/scenarios/body.hpp"
+#include "traces/places/body.hpp"
 #include "traces/scene/pose.hpp"
 
 namespace vestige {

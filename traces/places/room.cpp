@@ -1,4 +1,4 @@
-#include "traces/scenarios/room.hpp"
+#include "traces/places/room.hpp"
 
 #include <algorithm>
 #include <cmath>
