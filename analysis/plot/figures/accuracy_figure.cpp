@@ -10,6 +10,7 @@
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/free_place.hpp"
 #include "analysis/plot/canvas/palette.hpp"
+#include "analysis/plot/canvas/small_print.hpp"
 
 namespace vestige::plot {
 
@@ -27,7 +28,6 @@ constexpr double kNonePt = 12;  ///< height of the band for no errors below it
 constexpr double kAxisRoomPt = 30;
 constexpr double kSmallGapPt = 26;  ///< between two small panels
 constexpr double kSceneGapPt = 12;
-constexpr double kSmallLinePt = 8;
 constexpr double kLegendLinePt = 10;
 constexpr double kMarkPt = 3.4;
 constexpr double kVestMarkPt = 5.4;
@@ -41,7 +41,6 @@ constexpr TextStyle kTitleStyle = {8, kInk, Anchor::kLeft, Level::kFoot, Weight:
 constexpr TextStyle kSmallTitleStyle = {7, kInk, Anchor::kLeft, Level::kFoot};
 constexpr TextStyle kLegendStyle = {7, kInk, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kNameStyle = {6, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold};
-constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
 /// 60 as "60", 10000 as "10k".
 std::string short_rate(double rate_hz) {
@@ -53,7 +52,7 @@ std::string name_of(const AccuracySeries& series) {
 }
 
 std::vector<std::string> wrapped(const std::string& text) {
-  return plot::wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
+  return plot::wrapped(text, kSmallPrintStyle, kWidthPt - 2 * kMarginPt);
 }
 
 bool has(const AccuracyResult& result, bool (*matches)(const AccuracySeries&, const AccuracyPoint&)) {
@@ -122,7 +121,7 @@ class AccuracyFigure : public Figure {
   double width_pt() const override { return kWidthPt; }
   double height_pt() const override {
     return kMarginPt + static_cast<double>(result_.panels.size()) * scene_height_pt() - kSceneGapPt +
-           static_cast<double>(small_print_.size()) * kSmallLinePt + 6;
+           static_cast<double>(small_print_.size()) * kSmallPrintLinePt + 6;
   }
 
   std::string description() const override {
@@ -141,11 +140,7 @@ class AccuracyFigure : public Figure {
       top_pt -= scene_height_pt();
     }
     draw_legend(canvas);
-    double y_pt = 2 + static_cast<double>(small_print_.size()) * kSmallLinePt;
-    for (const std::string& line : small_print_) {
-      canvas.text({kMarginPt, y_pt}, line, kSmallStyle);
-      y_pt -= kSmallLinePt;
-    }
+    draw_small_print(canvas, kMarginPt, small_print_);
   }
 
  private:
@@ -342,9 +337,9 @@ class AccuracyFigure : public Figure {
     for (const AccuracySeries& one : all)
       if (one.approximate && names.find(one.detector) == std::string::npos)
         names += (names.empty() ? "" : ", ") + one.detector;
-    for (const std::string& line : plot::wrapped("approximate: " + names, kSmallStyle, kLegendPt - 12)) {
-      canvas.text({left_pt, y_pt}, line, kSmallStyle);
-      y_pt -= kSmallLinePt;
+    for (const std::string& line : plot::wrapped("approximate: " + names, kSmallPrintStyle, kLegendPt - 12)) {
+      canvas.text({left_pt, y_pt}, line, kSmallPrintStyle);
+      y_pt -= kSmallPrintLinePt;
     }
   }
 

@@ -8,6 +8,7 @@
 
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/palette.hpp"
+#include "analysis/plot/canvas/small_print.hpp"
 
 namespace vestige::plot {
 
@@ -25,14 +26,12 @@ constexpr double kLegendColumnPt = 113;
 constexpr double kMarkPt = 3.6;
 /// Half of the widest tick label under a panel's right end.
 constexpr double kRightPt = 18;
-constexpr double kSmallLinePt = 8;
 
 constexpr TextStyle kTitleStyle = {8, kInk, Anchor::kLeft, Level::kFoot, Weight::kBold};
 constexpr TextStyle kLegendStyle = {7, kInk, Anchor::kLeft, Level::kMiddle};
-constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
 std::vector<std::string> wrapped(const std::string& text) {
-  return plot::wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
+  return plot::wrapped(text, kSmallPrintStyle, kWidthPt - 2 * kMarginPt);
 }
 
 std::vector<std::string> small_print(const GrowthResult& result) {
@@ -50,7 +49,7 @@ class GrowthFigure : public Figure {
   double width_pt() const override { return kWidthPt; }
   double height_pt() const override {
     return kMarginPt + kTitlePt + kPlotHeightPt + kAxisRoomPt + legend_pt() +
-           static_cast<double>(small_print_.size()) * kSmallLinePt + 4;
+           static_cast<double>(small_print_.size()) * kSmallPrintLinePt + 4;
   }
   std::string description() const override {
     std::string text = "Microseconds a frame.";
@@ -71,11 +70,7 @@ class GrowthFigure : public Figure {
       left_pt += panel_pt + kPanelGapPt;
     }
     draw_legend(canvas, top_pt - kPlotHeightPt - kAxisRoomPt - kLegendLinePt / 2);
-    double y_pt = 2 + static_cast<double>(small_print_.size()) * kSmallLinePt;
-    for (const std::string& line : small_print_) {
-      canvas.text({kMarginPt, y_pt}, line, kSmallStyle);
-      y_pt -= kSmallLinePt;
-    }
+    draw_small_print(canvas, kMarginPt, small_print_);
   }
 
  private:

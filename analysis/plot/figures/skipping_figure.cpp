@@ -9,6 +9,7 @@
 
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/palette.hpp"
+#include "analysis/plot/canvas/small_print.hpp"
 
 namespace vestige::plot {
 
@@ -24,7 +25,6 @@ constexpr double kGroupGapPt = 6;
 constexpr double kAxisRoomPt = 32;
 constexpr double kLeftPt = 172;
 constexpr double kRightPt = 412;
-constexpr double kSmallLinePt = 8;
 constexpr double kInsetPt = 4;
 
 constexpr TextStyle kTitleStyle = {9, kInk, Anchor::kLeft, Level::kFoot, Weight::kBold};
@@ -32,7 +32,6 @@ constexpr TextStyle kHeadStyle = {8, kInk, Anchor::kLeft, Level::kMiddle, Weight
 constexpr TextStyle kDetailStyle = {7, kSmallPrint, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kNameStyle = {7, kInk, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kNumberStyle = {7, kInk, Anchor::kLeft, Level::kMiddle};
-constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
 struct Row {
   const char* name;
@@ -57,8 +56,8 @@ class SkippingFigure : public Figure {
 
   double width_pt() const override { return kWidthPt; }
   double height_pt() const override {
-    return kMarginPt + kTitlePt + groups_pt() + kAxisRoomPt + static_cast<double>(small_print_.size()) * kSmallLinePt +
-           4;
+    return kMarginPt + kTitlePt + groups_pt() + kAxisRoomPt +
+           static_cast<double>(small_print_.size()) * kSmallPrintLinePt + 4;
   }
   std::string description() const override {
     std::string text = "Pairs of collider and triangle left in a frame after each kind of skipping.";
@@ -87,11 +86,7 @@ class SkippingFigure : public Figure {
       top_pt -= kGroupGapPt;
     }
     draw_x_axis(canvas, plot, x, ticks(x), "Pairs of collider and triangle in a frame");
-    double y_pt = 2 + static_cast<double>(small_print_.size()) * kSmallLinePt;
-    for (const std::string& line : small_print_) {
-      canvas.text({kMarginPt, y_pt}, line, kSmallStyle);
-      y_pt -= kSmallLinePt;
-    }
+    draw_small_print(canvas, kMarginPt, small_print_);
   }
 
  private:
@@ -143,7 +138,7 @@ class SkippingFigure : public Figure {
     if (!source.machine.empty()) text += fmt::format("Machine: {}. ", source.machine);
     if (!source.avatar.empty()) text += fmt::format("Avatar: {}. ", source.avatar);
     text += fmt::format("Commit\u00a0{}.", source.commit);
-    return wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
+    return wrapped(text, kSmallPrintStyle, kWidthPt - 2 * kMarginPt);
   }
 
   SkippingResult result_;

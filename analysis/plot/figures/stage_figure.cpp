@@ -10,6 +10,7 @@
 
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/palette.hpp"
+#include "analysis/plot/canvas/small_print.hpp"
 
 namespace vestige::plot {
 
@@ -29,7 +30,6 @@ constexpr double kAxisRoomPt = 32;
 constexpr double kCountsPt = 138;  ///< the right edge of the numbers of colliders
 constexpr double kLeftPt = 144;
 constexpr double kRightPt = 416;
-constexpr double kSmallLinePt = 8;
 constexpr double kInsetPt = 3;
 
 constexpr TextStyle kTitleStyle = {9, kInk, Anchor::kLeft, Level::kFoot, Weight::kBold};
@@ -39,7 +39,6 @@ constexpr TextStyle kCountStyle = {7, kInk, Anchor::kRight, Level::kMiddle};
 constexpr TextStyle kTotalStyle = {8, kInk, Anchor::kRight, Level::kMiddle, Weight::kBold};
 constexpr TextStyle kPartStyle = {6, kInk, Anchor::kCentre, Level::kMiddle};
 constexpr TextStyle kLegendStyle = {7, kInk, Anchor::kLeft, Level::kMiddle, Weight::kBold};
-constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
 struct StageLook {
   const char* name;
@@ -93,7 +92,7 @@ class StageFigure : public Figure {
   double width_pt() const override { return kWidthPt; }
   double height_pt() const override {
     return kMarginPt + kTitlePt + legend_pt() + kHeadPt + groups_pt() + kAxisRoomPt +
-           static_cast<double>(small_print_.size()) * kSmallLinePt + 4;
+           static_cast<double>(small_print_.size()) * kSmallPrintLinePt + 4;
   }
   std::string description() const override {
     std::string text = "Where the time of a frame goes, in microseconds.";
@@ -112,7 +111,7 @@ class StageFigure : public Figure {
     canvas.text({kMarginPt, top_pt + 5}, "Where the time of a frame goes", kTitleStyle);
     draw_legend(canvas, top_pt);
     top_pt -= legend_pt();
-    TextStyle head = kSmallStyle;
+    TextStyle head = kSmallPrintStyle;
     head.level = Level::kMiddle;
     head.anchor = Anchor::kRight;
     canvas.text({kCountsPt, top_pt - kHeadPt / 2}, "colliders", head);
@@ -127,11 +126,7 @@ class StageFigure : public Figure {
       top_pt -= group_pt(group) + kGroupGapPt;
     }
     draw_x_axis(canvas, plot, x, linear_ticks(0, 100, 6), "Share of the frame (%)");
-    double y_pt = 2 + static_cast<double>(small_print_.size()) * kSmallLinePt;
-    for (const std::string& line : small_print_) {
-      canvas.text({kMarginPt, y_pt}, line, kSmallStyle);
-      y_pt -= kSmallLinePt;
-    }
+    draw_small_print(canvas, kMarginPt, small_print_);
   }
 
  private:
@@ -169,7 +164,7 @@ class StageFigure : public Figure {
     if (source.surface == "mapped") text += "Mapped triangles only. ";
     if (!source.complete) text += "Not complete: the run was stopped before its end. ";
     text += fmt::format("Commit\u00a0{}.", source.commit);
-    return wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
+    return wrapped(text, kSmallPrintStyle, kWidthPt - 2 * kMarginPt);
   }
 
   /// Down the columns, so that stages that follow each other are beneath each other.

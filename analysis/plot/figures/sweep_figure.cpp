@@ -9,6 +9,7 @@
 #include "analysis/plot/canvas/axis.hpp"
 #include "analysis/plot/canvas/free_place.hpp"
 #include "analysis/plot/canvas/palette.hpp"
+#include "analysis/plot/canvas/small_print.hpp"
 
 namespace vestige::plot {
 
@@ -31,7 +32,6 @@ constexpr double kLeftPt = 48;
 constexpr double kAxisRoomPt = 34;
 constexpr double kLabelGapPt = 10;
 constexpr double kLabelIndentPt = 16;
-constexpr double kSmallLinePt = 8;
 constexpr double kMarginPt = 8;
 /// Up to here the axis is linear, as the paper's is; counts beyond it span decades.
 constexpr double kLinearColliders = 200;
@@ -41,7 +41,6 @@ constexpr std::array<Mark, 3> kMarks = {Mark::kCircle, Mark::kSquare, Mark::kDia
 
 constexpr TextStyle kLabelStyle = {8, kInk, Anchor::kLeft, Level::kMiddle};
 constexpr TextStyle kNoteStyle = {7, kInk, Anchor::kLeft, Level::kFoot};
-constexpr TextStyle kSmallStyle = {6, kSmallPrint, Anchor::kLeft, Level::kTop};
 
 /// Letters are thinner than lines: the same colour needs more contrast.
 Colour darkened(Colour colour) {
@@ -105,7 +104,7 @@ std::vector<std::string> series_names(const Sweeps& sweeps) {
 }
 
 std::vector<std::string> wrapped(const std::string& text) {
-  return plot::wrapped(text, kSmallStyle, kWidthPt - 2 * kMarginPt);
+  return plot::wrapped(text, kSmallPrintStyle, kWidthPt - 2 * kMarginPt);
 }
 
 std::vector<std::string> small_print(const Sweeps& sweeps) {
@@ -145,7 +144,8 @@ class SweepFigure : public Figure {
 
   double width_pt() const override { return kWidthPt; }
   double height_pt() const override {
-    return kMarginPt + plot_height_pt() + kAxisRoomPt + static_cast<double>(small_print_.size()) * kSmallLinePt + 4;
+    return kMarginPt + plot_height_pt() + kAxisRoomPt + static_cast<double>(small_print_.size()) * kSmallPrintLinePt +
+           4;
   }
   std::string description() const override {
     std::string text =
@@ -176,11 +176,7 @@ class SweepFigure : public Figure {
     draw_published(canvas, x, y, free_place);
     draw_reference_labels(canvas, plot, y, free_place);
     draw_labels(canvas, plot, x, y);
-    double y_pt = 2 + static_cast<double>(small_print_.size()) * kSmallLinePt;
-    for (const std::string& line : small_print_) {
-      canvas.text({kMarginPt, y_pt}, line, kSmallStyle);
-      y_pt -= kSmallLinePt;
-    }
+    draw_small_print(canvas, kMarginPt, small_print_);
   }
 
  private:
